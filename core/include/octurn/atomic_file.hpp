@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace octurn {
+
+/// A file that appears whole or not at all: written under a temporary name beside `target`, and
+/// given its real name by `commit`. Destroyed before that, it leaves nothing behind.
+class AtomicFile {
+ public:
+  /// @throws Error  if the folder cannot be written to
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends. @throws Error  if the disk is full or does not take it
+  void write(std::span<const std::byte> bytes);
+
+  /// Overwrites bytes written before, from `offset`. @throws Error  as above
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+  /// Syncs the file, renames it over `target`, and syncs the folder. @throws Error  as above
+  void commit();
+
+  const std::filesystem::path& temporary() const { return temporary_; }
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+};
+
+/// Writes a small file whole or not at all. @throws Error  if the disk does not take it
+void write_file(const std::filesystem::path& target, std::string_view content);
+
+}  // namespace octurn

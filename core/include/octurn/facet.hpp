@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace octurn {
+
+/// One triangle as a binary STL holds it: little-endian, 50 bytes, millimetres, Z up, its corners
+/// counter-clockwise seen from outside. Surfaces are streamed as spans of these.
+#pragma pack(push, 1)
+struct Facet {
+  std::array<float, 3> normal = {};
+  std::array<std::array<float, 3>, 3> corners = {};
+  std::uint16_t attributes = 0;
+};
+#pragma pack(pop)
+
+static_assert(sizeof(Facet) == 50);
+static_assert(std::endian::native == std::endian::little,
+              "facets are written as they lie in memory");
+
+}  // namespace octurn

@@ -1,0 +1,108 @@
+#include "octurn/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int number) {
+  const std::string reason = std::generic_category().message(number);
+  const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
+  throw Error(full ? "disk-full" : "write-failed",
+              file.string() + ": cannot " + doing + ": " + reason,
+              full ? "Delete scans that are no longer needed, or use a larger disk."
+                   : "Check that the folder exists and that this program may write to it.");
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) {
+    fail(folder, "sync", errno);
+  }
+  const int number = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (number != 0 && number != EINVAL) {  // some file systems have nothing to sync in a folder
+    fail(folder, "sync", number);
+  }
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+  std::error_code unknown;  // opening the file says why
+  const std::filesystem::file_status status = std::filesystem::status(target_, unknown);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw Error("write-failed", target_.string() + ": cannot write: not a regular file",
+                "Name a file that does not exist yet, or one that may be replaced.");
+  }
+  std::string prefix(1, '.');
+  prefix += target_.filename().string() + '.' + std::to_string(::getpid());
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    temporary_ = folder_of(target_) / (prefix + "-" + std::to_string(attempt));
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) {
+      fail(target_, "write", errno);
+    }
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+    ::unlink(temporary_.c_str());
+  }
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) {
+      fail(target_, "write", errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written < 0 ? 0 : written));
+  }
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno != EINTR) {
+      fail(target_, "write", errno);
+    }
+    const auto advanced = static_cast<std::size_t>(written < 0 ? 0 : written);
+    bytes = bytes.subspan(advanced);
+    offset += advanced;
+  }
+}
+
+void AtomicFile::commit() {
+  if (::fsync(descriptor_) != 0) {
+    fail(target_, "sync", errno);
+  }
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    fail(target_, "put in place", errno);
+  }
+  ::close(std::exchange(descriptor_, -1));
+  sync_folder(folder_of(target_));
+}
+
+void write_file(const std::filesystem::path& target, std::string_view content) {
+  AtomicFile file(target);
+  file.write(std::as_bytes(std::span(content)));
+  file.commit();
+}
+
+}  // namespace octurn

@@ -1,0 +1,232 @@
+#include "octurn/isosurface.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "fork_join.hpp"
+#include "octurn/units.hpp"
+#include "tetrahedra.hpp"
+
+namespace octurn {
+namespace {
+
+/// The 8 x 8 x 8 pseudo-voxels whose lowest corners are the leaves of one brick position, and the
+/// up to eight bricks that hold their corners: bit 0 of the index is one brick on in x, bit 1 in y,
+/// bit 2 in z.
+struct CellBrick {
+  Cell position = {};
+  std::array<const Brick*, 8> bricks = {};
+};
+
+constexpr Brick no_leaves{};
+
+/// The cell bricks of one layer that have any leaf in them.
+class LayerOfCells {
+ public:
+  LayerOfCells(const Octree& octree, int layer) : octree_(octree) {
+    for (int up = 0; up < 2; ++up) {
+      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick&) {
+        for (int corner = 0; corner < 4; ++corner) {
+          add({brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
+        }
+      });
+    }
+  }
+
+  const std::vector<CellBrick>& cells() const { return cells_; }
+
+ private:
+  /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
+  void add(const Cell& position, int corner) {
+    CellBrick cell{.position = position, .bricks = {}};
+    for (int i = 0; i < 8; ++i) {
+      const Brick* brick =
+          octree_.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
+      if (brick != nullptr && i < corner) {
+        return;
+      }
+      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
+    }
+    cells_.push_back(cell);
+  }
+
+  const Octree& octree_;
+  std::vector<CellBrick> cells_ = {};
+};
+
+/// The corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1) of 8 x 8 pseudo-voxels on one layer of
+/// leaves.
+using CornerLayer = std::array<std::uint64_t, 4>;
+
+/// @param bricks  the four that meet along z
+CornerLayer corner_layer(const std::array<const Brick*, 4>& bricks, std::size_t z) {
+  constexpr std::uint64_t first_column = 0x0101010101010101;
+  const auto shifted_x = [](std::uint64_t row, std::uint64_t next) {
+    return (row >> 1 & ~(first_column << 7)) | (next & first_column) << 7;
+  };
+  const auto shifted_y = [](std::uint64_t layer, std::uint64_t next) {
+    return layer >> 8 | next << 56;
+  };
+  const std::uint64_t here = bricks[0]->layers[z];
+  const std::uint64_t right = bricks[1]->layers[z];
+  const std::uint64_t behind = bricks[2]->layers[z];
+  const std::uint64_t across = bricks[3]->layers[z];
+  const std::uint64_t x = shifted_x(here, right);
+  return {here, x, shifted_y(here, behind), shifted_y(x, shifted_x(behind, across))};
+}
+
+/// Calls `visit(x, y, z, pattern)` for the pseudo-voxels of a cell brick that the surface crosses.
+template <typename Visit>
+void for_each_mixed(const CellBrick& cell, Visit visit) {
+  const std::array<const Brick*, 4> lower{cell.bricks[0], cell.bricks[1], cell.bricks[2],
+                                          cell.bricks[3]};
+  const std::array<const Brick*, 4> upper{cell.bricks[4], cell.bricks[5], cell.bricks[6],
+                                          cell.bricks[7]};
+  CornerLayer above = corner_layer(lower, 0);
+  for (int z = 0; z < Brick::side; ++z) {
+    const CornerLayer below = above;
+    above = z + 1 < Brick::side ? corner_layer(lower, static_cast<std::size_t>(z + 1))
+                                : corner_layer(upper, 0);
+    const std::uint64_t any =
+        below[0] | below[1] | below[2] | below[3] | above[0] | above[1] | above[2] | above[3];
+    const std::uint64_t all =
+        below[0] & below[1] & below[2] & below[3] & above[0] & above[1] & above[2] & above[3];
+    for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
+      const int bit = std::countr_zero(mixed);
+      std::size_t pattern = 0;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        pattern |= (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1)
+                                                              << (corner + 4);
+      }
+      visit(bit % Brick::side, bit / Brick::side, z, pattern);
+    }
+  }
+}
+
+/// Millimetres of the half-leaf positions of one cell brick, on each axis.
+struct HalfStepPositions {
+  static constexpr std::size_t count = 2 * Brick::side + 1;
+  std::array<std::array<float, count>, 3> mm = {};
+
+  HalfStepPositions(const Octree& octree, const Cell& cell) {
+    const std::array<int, 3> first{cell.x, cell.y, cell.z};
+    const double half_leaf = octree.leaf_side() / 2;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double corner = axis < 2 ? -octree.side() / 2 : 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double halves = 2.0 * Brick::side * first[axis] + 1 + static_cast<double>(i);
+        mm[axis][i] = static_cast<float>(mm_from_metres(corner + halves * half_leaf));
+      }
+    }
+  }
+};
+
+void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Facet>& facets) {
+  const HalfStepPositions positions(octree, cell.position);
+  for_each_mixed(cell, [&](int x, int y, int z, std::size_t pattern) {
+    const CellSurface& surface = cell_surfaces[pattern];
+    const std::array<const float*, 3> mm{&positions.mm[0][static_cast<std::size_t>(2 * x)],
+                                         &positions.mm[1][static_cast<std::size_t>(2 * y)],
+                                         &positions.mm[2][static_cast<std::size_t>(2 * z)]};
+    for (std::size_t i = 0; i < surface.count; ++i) {
+      const CellFacet& from = surface.facets[i];
+      std::array<std::array<float, 3>, 3> corners;  // aligned, as those of a facet are not
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          corners[corner][axis] = mm[axis][from.corners[corner][axis]];
+        }
+      }
+      facets.push_back({.normal = from.normal, .corners = corners, .attributes = 0});
+    }
+  });
+}
+
+/// Lets threads take chunks of work in any order, and hand them in one by one, from first to last.
+class InOrder {
+ public:
+  explicit InOrder(std::size_t count) : count_(count) {}
+
+  /// The next chunk that nobody has taken; nothing when all are taken, or one has failed.
+  std::optional<std::size_t> take() {
+    const std::lock_guard lock(mutex_);
+    return taken_ < count_ && !failed_ ? std::optional(taken_++) : std::nullopt;
+  }
+
+  /// Calls `hand_in` when all chunks before this one were handed in. Not, if one has failed.
+  template <typename HandIn>
+  void in_turn(std::size_t chunk, HandIn hand_in) {
+    std::unique_lock lock(mutex_);
+    moved_on_.wait(lock, [&] { return next_ == chunk || failed_; });
+    if (failed_) {
+      return;
+    }
+    lock.unlock();  // only the thread whose turn it is gets here
+    try {
+      hand_in();
+    } catch (...) {
+      lock.lock();
+      failed_ = true;
+      moved_on_.notify_all();
+      throw;
+    }
+    lock.lock();
+    ++next_;
+    moved_on_.notify_all();
+  }
+
+ private:
+  std::size_t count_;
+  std::mutex mutex_ = {};  // guards what follows
+  std::condition_variable moved_on_ = {};
+  std::size_t taken_ = 0;
+  std::size_t next_ = 0;
+  bool failed_ = false;
+};
+
+/// Calls `visit` for the layers of pseudo-voxels that begin in `layers`, and for those that begin
+/// one leaf below the root.
+template <typename Visit>
+void for_each_layer(const Octree& octree, const BrickLayers& layers, Visit visit) {
+  for (int layer = layers.low == 0 ? -1 : layers.low; layer < layers.end; ++layer) {
+    visit(LayerOfCells(octree, layer).cells());
+  }
+}
+
+}  // namespace
+
+void isosurface(const Octree& octree, const BrickLayers& layers, int threads,
+                const FacetSink& sink) {
+  constexpr std::size_t chunk_size = 8;  // cell bricks: some hundred kilobytes of facets
+  for_each_layer(octree, layers, [&](std::span<const CellBrick> cells) {
+    InOrder chunks((cells.size() + chunk_size - 1) / chunk_size);
+    fork_join(cells.size() > chunk_size ? threads : 1, [&](int) {
+      std::vector<Facet> facets;
+      while (const auto chunk = chunks.take()) {
+        facets.clear();
+        const std::size_t first = *chunk * chunk_size;
+        for (const CellBrick& cell :
+             cells.subspan(first, std::min(chunk_size, cells.size() - first))) {
+          append_facets(octree, cell, facets);
+        }
+        chunks.in_turn(*chunk, [&] { sink(facets); });
+      }
+    });
+  });
+}
+
+std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
+  std::uint64_t count = 0;
+  for_each_layer(octree, layers, [&](std::span<const CellBrick> cells) {
+    for (const CellBrick& cell : cells) {
+      for_each_mixed(
+          cell, [&](int, int, int, std::size_t pattern) { count += cell_surfaces[pattern].count; });
+    }
+  });
+  return count;
+}
+
+}  // namespace octurn

@@ -1,0 +1,53 @@
+#include "octurn/mesh_check.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <bit>
+#include <limits>
+
+namespace octurn {
+namespace {
+
+/// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
+std::uint64_t mixed(std::uint64_t bits) {
+  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ bits >> 27) * 0x94d049bb133111ebU;
+  return bits ^ bits >> 31;
+}
+
+std::uint64_t hash_of(const std::array<float, 3>& corner) {
+  const auto bits = [&](std::size_t axis) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(corner[axis] + 0.0F)};  // folds -0 into 0
+  };
+  return mixed((bits(0) << 32 | bits(1)) + mixed(bits(2) + 1));
+}
+
+std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
+  return mixed(a + std::rotl(b, 32)) - mixed(b + std::rotl(a, 32));
+}
+
+}  // namespace
+
+void MeshCheck::add(std::span<const Facet> facets) {
+  if (facets_ == 0) {
+    bounds_mm_ = {.min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()),
+                  .max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
+  }
+  facets_ += facets.size();
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    const std::array hashes{hash_of(corners[0]), hash_of(corners[1]), hash_of(corners[2])};
+    edges_ += hash_of_edge(hashes[0], hashes[1]) + hash_of_edge(hashes[1], hashes[2]) +
+              hash_of_edge(hashes[2], hashes[0]);
+
+    std::array<Eigen::Vector3d, 3> points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      points[i] = Eigen::Vector3f(corners[i].data()).cast<double>();
+      bounds_mm_.min = bounds_mm_.min.cwiseMin(points[i]);
+      bounds_mm_.max = bounds_mm_.max.cwiseMax(points[i]);
+    }
+    six_volumes_ += points[0].dot(points[1].cross(points[2]));
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,41 @@
+#include "octurn/stl_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+
+std::array<std::byte, 84> stl_header(std::uint64_t facets) {
+  if (facets > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error("model-too-large", std::to_string(facets) + " triangles: an STL holds 4294967295",
+                "Choose a larger leaf size.");
+  }
+  constexpr std::string_view title = "Octurn, millimetres";  // must not begin with "solid"
+  std::array<std::byte, 84> header{};
+  std::ranges::copy(std::as_bytes(std::span(title)), header.begin());
+  const auto count = static_cast<std::uint32_t>(facets);
+  std::memcpy(&header[80], &count, sizeof count);
+  return header;
+}
+
+StlFile::StlFile(std::filesystem::path target) : file_(std::move(target)) {
+  file_.write(stl_header(0));
+}
+
+void StlFile::write(std::span<const Facet> facets) {
+  file_.write(std::as_bytes(facets));
+  facets_ += facets.size();
+}
+
+void StlFile::commit() {
+  file_.write_at(0, stl_header(facets_));
+  file_.commit();
+}
+
+}  // namespace octurn

@@ -1,0 +1,94 @@
+#include "simulator/noise_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace octurn {
+namespace {
+
+constexpr int window_width = 9;   // pixels; the correlation of real frames ends there along a row
+constexpr int window_height = 3;  // and there along a column
+constexpr int picture_width = 640;
+constexpr int picture_height = 480;
+
+/// Share of the variance that a pixel does not share with its neighbours.
+constexpr double own_share = 0.15;
+
+}  // namespace
+
+std::uint32_t mixed(std::uint32_t seed, std::uint32_t number) {
+  std::uint32_t h = seed * 0x9E3779B9U + number;
+  h = (h ^ (h >> 16U)) * 0x85EBCA6BU;
+  h = (h ^ (h >> 13U)) * 0xC2B2AE35U;
+  return h ^ (h >> 16U);
+}
+
+NoiseField::NoiseField(std::uint32_t seed) {
+  // Sums over a window of evenly distributed numbers are close to normally distributed, and related
+  // as far as windows overlap.
+  constexpr std::size_t count = std::size_t{width} * height;
+  std::vector<float> even(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t bits = mixed(seed, static_cast<std::uint32_t>(i)) >> 8U;
+    even[i] = static_cast<float>(bits) / static_cast<float>(1U << 24U) - 0.5F;
+  }
+  std::vector<float> along(count);  // sums along rows
+  for (int v = 0; v < height; ++v) {
+    const float* row = even.data() + static_cast<std::ptrdiff_t>(v) * width;
+    for (int u = 0; u < width; ++u) {
+      float sum = 0;
+      for (int i = 0; i < window_width; ++i) {
+        sum += row[(u + i) % width];
+      }
+      along[static_cast<std::size_t>(v * width + u)] = sum;
+    }
+  }
+  const auto own = static_cast<float>(std::sqrt(12 * own_share));  // the variance of `even` is 1/12
+  const auto shared =
+      static_cast<float>(std::sqrt(12 * (1 - own_share) / (window_width * window_height)));
+  values_.resize(count);
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      float sum = 0;
+      for (int i = 0; i < window_height; ++i) {
+        sum += along[static_cast<std::size_t>((v + i) % height * width + u)];
+      }
+      const auto at = static_cast<std::size_t>(v * width + u);
+      const float alone = even[(at + count / 2) % count];
+      const float value = one * (own * alone + shared * sum);
+      values_[at] = static_cast<std::int8_t>(std::clamp(std::round(value), -127.0F, 127.0F));
+    }
+  }
+}
+
+std::span<const std::int8_t> NoiseField::row(std::uint32_t part, int v) const {
+  constexpr std::uint32_t places = width - picture_width + 1;
+  const auto down = static_cast<int>((part / places) % height);
+  const auto aside = static_cast<int>(part % places);
+  const int first = (v + down) % height * width + aside;
+  return std::span(values_).subspan(static_cast<std::size_t>(first), picture_width);
+}
+
+std::vector<float> leftover_distortion(std::uint32_t seed) {
+  constexpr std::uint32_t waves = 4;
+  constexpr double amplitude = 0.3 * std::numbers::sqrt2 / 2;  // of each, so that variances add up
+  const auto even = [seed](std::uint32_t number) { return mixed(seed, number) / 4294967296.0; };
+  std::vector<float> readings(std::size_t{picture_width} * picture_height, 0.0F);
+  for (std::uint32_t wave = 0; wave < waves; ++wave) {
+    const double heading = 2 * std::numbers::pi * even(3 * wave);
+    const double length = 120 + 180 * even(3 * wave + 1);  // pixels
+    const double start = 2 * std::numbers::pi * even(3 * wave + 2);
+    const double along_u = 2 * std::numbers::pi * std::cos(heading) / length;
+    const double along_v = 2 * std::numbers::pi * std::sin(heading) / length;
+    for (int v = 0; v < picture_height; ++v) {
+      for (int u = 0; u < picture_width; ++u) {
+        readings[static_cast<std::size_t>(v * picture_width + u)] +=
+            static_cast<float>(amplitude * std::sin(start + along_u * u + along_v * v));
+      }
+    }
+  }
+  return readings;
+}
+
+}  // namespace octurn

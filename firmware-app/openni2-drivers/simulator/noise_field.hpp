@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octurn {
+
+/// Random numbers laid out over the picture, close to normally distributed with mean 0 and variance
+/// 1, related to their neighbours as a Kinect's errors are: it compares windows of 9 x 3 pixels or
+/// so, and neighbours share most of their window.
+///
+/// The field is larger than the picture, so that every frame can look at another part of it.
+class NoiseField {
+ public:
+  explicit NoiseField(std::uint32_t seed);
+
+  /// One row of a picture that looks at part `part` of the field, `width` = 640 values in units of
+  /// 1/`one`. Parts are drawn at random: any two of them share few places, or none.
+  std::span<const std::int8_t> row(std::uint32_t part, int v) const;
+
+  static constexpr float one = 25.0F;
+
+ private:
+  static constexpr int width = 1024;
+  static constexpr int height = 512;
+  std::vector<std::int8_t> values_;
+};
+
+/// What calibration leaves of a lens's distortion: a few long waves over a picture of 640 x 480,
+/// 0.3 readings in all, which is by how much planes of 100 x 100 pixels fit worse in real frames
+/// than those of 40 x 40.
+std::vector<float> leftover_distortion(std::uint32_t seed);
+
+/// A well mixed number for each pair, to draw parts by (the finaliser of Murmur3).
+std::uint32_t mixed(std::uint32_t seed, std::uint32_t number);
+
+}  // namespace octurn

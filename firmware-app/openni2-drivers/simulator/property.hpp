@@ -1,0 +1,34 @@
+#pragma once
+
+#include <OniCTypes.h>
+
+#include <cstring>
+#include <type_traits>
+
+namespace octurn {
+
+/// Hands out the value of a property.
+/// @return ONI_STATUS_BAD_PARAMETER if the asker expects another size
+template <typename Value>
+OniStatus give_property(const Value& value, void* data, int* size) {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  if (*size != static_cast<int>(sizeof value)) {
+    return ONI_STATUS_BAD_PARAMETER;
+  }
+  std::memcpy(data, &value, sizeof value);
+  return ONI_STATUS_OK;
+}
+
+/// Takes a new value of a property.
+/// @return ONI_STATUS_BAD_PARAMETER if it has another size
+template <typename Value>
+OniStatus take_property(Value& value, const void* data, int size) {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  if (size != static_cast<int>(sizeof value)) {
+    return ONI_STATUS_BAD_PARAMETER;
+  }
+  std::memcpy(&value, data, sizeof value);
+  return ONI_STATUS_OK;
+}
+
+}  // namespace octurn

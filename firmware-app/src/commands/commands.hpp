@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "config.hpp"
+#include "scan/rig.hpp"
+
+namespace octurn {
+
+/// What a command line says about sensor and turntable.
+struct RigArguments {
+  bool simulate = false;
+  std::string mesh_file = {};   ///< on the simulated platform; empty: the simulator's own object
+  double speed = 1.0;           ///< of the simulated rig, relative to life
+  std::string sensor_uri = {};  ///< for OpenNI2, in place of the simulated sensor
+};
+
+/// @throws Error "no-turntable"  without --simulate
+RigOptions rig_options(const RigArguments& arguments);
+
+struct ServeArguments {
+  RigArguments rig = {};
+  std::optional<std::filesystem::path> config_file = {};
+  std::optional<std::string> address = {};
+  std::optional<int> port = {};
+  std::optional<std::filesystem::path> data = {};
+  std::optional<std::filesystem::path> web = {};
+};
+
+/// `octurn serve`: the daemon. Returns after SIGTERM or SIGINT.
+void serve(const ServeArguments& arguments);
+
+/// What a command line says about a scan, in the units of its options.
+struct SettingsArguments {
+  std::optional<int> snapshots = {};
+  std::optional<std::string> filter = {};
+  std::optional<int> frames = {};
+  std::optional<double> leaf_size_mm = {};
+  std::optional<double> threshold_m2 = {};
+  std::optional<double> root_size_mm = {};
+  std::optional<std::array<double, 6>> clip_mm = {};
+};
+
+struct ScanArguments {
+  RigArguments rig = {};
+  SettingsArguments settings = {};
+  std::optional<std::filesystem::path> config_file = {};
+  std::optional<std::filesystem::path> data = {};
+  std::filesystem::path output = "Scan.stl";
+};
+
+/// `octurn scan`: one scan from the shell. The model goes to `output`, the scan stays in `data`.
+void scan(const ScanArguments& arguments);
+
+struct ReconstructArguments {
+  std::filesystem::path folder = {};
+  std::filesystem::path output = {};  ///< "-" is standard output
+  std::optional<double> leaf_size_mm = {};
+  std::optional<double> root_size_mm = {};
+  std::optional<double> threshold_m2 = {};
+  std::optional<std::array<double, 6>> clip_mm = {};  ///< default: the scan's
+  std::optional<int> level = {};
+  std::optional<int> threads = {};             ///< default: all cores
+  std::optional<double> memory_limit_mb = {};  ///< of the whole process; default: none
+  bool json = false;                           ///< one line of JSON on standard output
+};
+
+/// `octurn reconstruct`: a model from a scan folder.
+void reconstruct(const ReconstructArguments& arguments);
+
+/// Reads the command line and does what it says.
+/// @return the exit status: 0, 1 if it failed, which one line on standard error explains, 2 for bad
+///         usage
+int run(int argc, char** argv);
+
+}  // namespace octurn

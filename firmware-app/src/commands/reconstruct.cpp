@@ -1,0 +1,183 @@
+#include <sys/resource.h>
+
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+#include "commands/commands.hpp"
+#include "interruption.hpp"
+#include "octurn/error.hpp"
+#include "octurn/model.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/stl_file.hpp"
+#include "octurn/units.hpp"
+#include "progress_bar.hpp"
+#include "standard_output.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+/// Time by stage.
+struct Times {
+  Clock::duration snapshots = {};  ///< reading and intersecting them
+  Clock::duration surface = {};    ///< making and writing it
+};
+
+double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
+
+std::uint64_t peak_memory_bytes() {
+  struct ::rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+}
+
+Box box_of(const std::array<double, 6>& mm) {
+  const auto point = [&](std::size_t i) {
+    return Eigen::Vector3d(metres_from_mm(mm[i]), metres_from_mm(mm[i + 1]),
+                           metres_from_mm(mm[i + 2]));
+  };
+  return {.min = point(0), .max = point(3)};
+}
+
+ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan& scan) {
+  ReconstructOptions options{.clip = scan.clip, .level = arguments.level};
+  if (arguments.leaf_size_mm) {
+    options.leaf_size = metres_from_mm(*arguments.leaf_size_mm);
+  }
+  if (arguments.root_size_mm) {
+    options.root_size = metres_from_mm(*arguments.root_size_mm);
+  }
+  if (arguments.clip_mm) {
+    options.clip = box_of(*arguments.clip_mm);
+  }
+  options.threshold = arguments.threshold_m2.value_or(options.threshold);
+  options.threads = arguments.threads.value_or(available_threads());
+  if (arguments.memory_limit_mb) {
+    options.memory_limit = static_cast<std::size_t>(bytes_from_mb(*arguments.memory_limit_mb));
+  }
+  return options;
+}
+
+Json json_of(const ModelReport& report, const ReconstructOptions& options, const Times& times) {
+  const auto mm = [](const Eigen::Vector3d& metres) {
+    return Json::array(
+        {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
+  };
+  Json clip = mm(options.clip.min);
+  for (const auto& value : mm(options.clip.max)) {
+    clip.push_back(value);
+  }
+  return {{"leaves", report.leaves},
+          {"triangles", report.triangles},
+          {"bytes", report.bytes},
+          {"watertight", report.watertight},
+          {"volume_cm3", cm3_from_m3(report.volume)},
+          {"size_mm", mm(report.size)},
+          {"peak_memory_bytes", peak_memory_bytes()},
+          {"seconds",
+           {{"snapshots", seconds(times.snapshots)},
+            {"surface", seconds(times.surface)},
+            {"total", seconds(times.snapshots + times.surface)}}},
+          {"settings",
+           {{"method", "intersection"},
+            {"leaf_size_mm", mm_from_metres(options.leaf_size)},
+            {"root_size_mm", mm_from_metres(options.root_size)},
+            {"threshold_m2", options.threshold},
+            {"clip_mm", clip},
+            {"level", options.level ? Json(*options.level) : Json(nullptr)},
+            {"threads", options.threads},
+            {"memory_limit_mb", mb_from_bytes(static_cast<double>(options.memory_limit))}}}};
+}
+
+[[noreturn]] void stopped() {
+  throw Error("stopped", "stopped before the end: no model was written");
+}
+
+/// Where the model goes: a file that appears whole or not at all, or standard output.
+class ModelOutput {
+ public:
+  /// @param facets  counts them, which standard output needs to know before the first
+  template <typename CountFacets>
+  ModelOutput(const std::filesystem::path& output, CountFacets facets) {
+    if (output != "-") {
+      file_.emplace(output);
+    } else if (const std::uint64_t count = facets(); count > 0) {
+      write_standard_output(stl_header(count));
+    }
+  }
+
+  void write(std::span<const Facet> facets) {
+    if (file_) {
+      file_->write(facets);
+    } else {
+      write_standard_output(std::as_bytes(facets));
+    }
+  }
+
+  void commit() {
+    if (file_) {
+      file_->commit();
+    }
+  }
+
+ private:
+  std::optional<StlFile> file_ = {};
+};
+
+/// The scan's snapshots; reading one shows how far it got, and ends where a stop is requested.
+SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& scan, ProgressBar& bar,
+                            const std::stop_token& stop) {
+  return {.count = scan.shots.size(), .read = [&, stop](std::size_t i) {
+            if (stop.stop_requested()) {
+              stopped();
+            }
+            bar.show(static_cast<int>(i), static_cast<int>(scan.shots.size()), "snapshots");
+            return read_snapshot(folder, scan, scan.shots[i]);
+          }};
+}
+
+}  // namespace
+
+void reconstruct(const ReconstructArguments& arguments) {
+  const Interruption interruption;
+  const std::stop_token stop = interruption.token();
+  const Scan scan = read_scan(arguments.folder);
+  const ReconstructOptions options = options_of(arguments, scan);
+  Reconstruction reconstruction(options);
+  MeshCheck check;
+  SurfaceCount count;
+  Times times;
+  {
+    ProgressBar bar;
+    const SnapshotSource snapshots = snapshots_of(arguments.folder, scan, bar, stop);
+    const Clock::time_point start = Clock::now();
+    reconstruction.add(snapshots);
+    const Clock::time_point seen = Clock::now();
+    bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
+    ModelOutput output(arguments.output, [&] { return reconstruction.count(snapshots).facets; });
+    count = reconstruction.surface(snapshots, [&](std::span<const Facet> facets) {
+      if (stop.stop_requested()) {
+        stopped();
+      }
+      if (arguments.json) {
+        check.add(facets);
+      }
+      output.write(facets);
+    });
+    expect_facets(count);
+    output.commit();
+    times = {.snapshots = seen - start, .surface = Clock::now() - seen};
+  }
+  if (arguments.json) {
+    // Where the model goes to standard output, a line of text does not belong into it.
+    (arguments.output == "-" ? std::cerr : std::cout)
+        << json_of(report_of(count, check), options, times).dump() << std::endl;
+  }
+}
+
+}  // namespace octurn

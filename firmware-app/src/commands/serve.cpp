@@ -1,0 +1,46 @@
+#include <iostream>
+
+#include "commands/commands.hpp"
+#include "http/api.hpp"
+#include "http/http_server.hpp"
+#include "interruption.hpp"
+#include "log.hpp"
+#include "scan/scanner.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+/// Where a browser on this machine finds the page.
+std::string page_address(const HttpOptions& options, int port) {
+  const bool any = options.address == "0.0.0.0" || options.address == "::";
+  const bool v6 = options.address.find(':') != std::string::npos;
+  const std::string host = any ? "localhost" : v6 ? "[" + options.address + "]" : options.address;
+  return "http://" + host + ":" + std::to_string(port) + "/";
+}
+
+}  // namespace
+
+void serve(const ServeArguments& arguments) {
+  Config config = arguments.config_file ? read_config(*arguments.config_file)
+                                        : read_config_if_there(default_config_file);
+  config.http.address = arguments.address.value_or(config.http.address);
+  config.http.port = arguments.port.value_or(config.http.port);
+  const RigOptions rig = rig_options(arguments.rig);
+  load_sensor_drivers();  // before the first thread, as it asks
+
+  const Page page(arguments.web ? *arguments.web : page_folder());
+  const ScanStore store(arguments.data.value_or(config.data));
+  Scanner scanner(rig, config.limits, store);
+  Api api(scanner, store, page, {.defaults = config.scan, .host_names = config.host_names});
+  const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
+
+  std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;
+  log::info("octurn", "version " + std::string(version()) + " ready");
+  wait_for_signal();
+  log::info("octurn", "ending");
+  scanner.request_stop();  // so that no request waits for it while the server ends
+}
+
+}  // namespace octurn

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "http/http_server.hpp"
+#include "scan/scan_settings.hpp"
+
+namespace octurn {
+
+/// What `octurn.json` says; what it leaves out is as here. The command line has the last word.
+struct Config {
+  HttpOptions http = {};
+  std::vector<std::string> host_names = {};  ///< that the page may be opened by, besides local ones
+  std::filesystem::path data = "/var/lib/octurn";
+  Limits limits = {};      ///< of reconstruction
+  ScanSettings scan = {};  ///< what a scan uses for settings that its start does not give
+};
+
+/// The file that is read unless another is named; it need not exist.
+inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
+
+/// Reads a configuration:
+/// `{"listen": "0.0.0.0", "port": 8080, "host_names": [], "data": "/var/lib/octurn", "scan":
+/// {...}}`.
+///
+/// @throws Error "bad-config" that names file and key, its value and what is allowed; also for a
+/// key
+///                            that is none
+Config read_config(const std::filesystem::path& file);
+
+/// The same, but with the defaults if there is no such file.
+Config read_config_if_there(const std::filesystem::path& file);
+
+}  // namespace octurn

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "http/message.hpp"
+#include "http/page.hpp"
+#include "scan/scanner.hpp"
+
+namespace octurn {
+
+struct ApiOptions {
+  ScanSettings defaults = {};                ///< for what a start does not say
+  std::vector<std::string> host_names = {};  ///< that the page may be opened by, besides local ones
+};
+
+/// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
+/// thread may call it.
+class Api {
+ public:
+  Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions options);
+
+  /// Never throws: what goes wrong becomes a problem, as application/problem+json.
+  Response answer(const Request& request) noexcept;
+
+ private:
+  struct Route;
+  static const std::vector<Route>& routes();
+
+  Response dispatch(const Request& request);
+
+  Response status(const Request& request, std::string_view id);
+  Response settings(const Request& request, std::string_view id);
+  Response preview(const Request& request, std::string_view id);
+  Response newest_model(const Request& request, std::string_view id);
+  Response list(const Request& request, std::string_view id);
+  Response start(const Request& request, std::string_view id);
+  Response scan(const Request& request, std::string_view id);
+  Response rename(const Request& request, std::string_view id);
+  Response remove(const Request& request, std::string_view id);
+  Response cancel(const Request& request, std::string_view id);
+  Response model(const Request& request, std::string_view id);
+
+  /// The scan of that id as it is now. @throws Error "no-such-scan"
+  Job find(std::string_view id) const;
+
+  Scanner& scanner_;
+  const ScanStore& store_;
+  const Page& page_;
+  ApiOptions options_;
+};
+
+}  // namespace octurn

@@ -1,0 +1,142 @@
+#include "http/file_response.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <charconv>
+#include <cstdio>
+
+#include "http/problem.hpp"
+
+namespace octurn {
+namespace {
+
+struct ByteRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;  // included
+};
+
+/// What a Range header asks for of a file of `size` bytes.
+struct RangeRequest {
+  enum class Kind { whole, part, outside };
+  Kind kind = Kind::whole;
+  ByteRange range = {};
+};
+
+/// Digits only, all of them; nothing if there are none, or too many for a size.
+std::optional<std::uint64_t> number(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+/// A header that is malformed, or asks for several ranges, is answered by the whole file.
+RangeRequest range_of(std::string_view header, std::uint64_t size) {
+  constexpr std::string_view unit = "bytes=";
+  const std::size_t dash = header.find('-');
+  if (!header.starts_with(unit) || dash == std::string_view::npos) {
+    return {};
+  }
+  const std::string_view before = header.substr(unit.size(), dash - unit.size());
+  const std::string_view after = header.substr(dash + 1);
+  const auto first = number(before);
+  const auto last = number(after);
+  if ((!first && !before.empty()) || (!last && !after.empty()) || (!first && !last) ||
+      (first && last && *last < *first)) {
+    return {};
+  }
+  if (first ? *first >= size : *last == 0 || size == 0) {
+    return {.kind = RangeRequest::Kind::outside};
+  }
+  if (!first) {  // the last so many
+    return {.kind = RangeRequest::Kind::part,
+            .range = {.first = size - std::min(*last, size), .last = size - 1}};
+  }
+  return {.kind = RangeRequest::Kind::part,
+          .range = {.first = *first, .last = last ? std::min(*last, size - 1) : size - 1}};
+}
+
+/// Changes whenever the file does: each version is a new file, put in place of the old one.
+std::string tag_of(const struct ::stat& info) {
+  std::array<char, 80> text{};
+  const int length = std::snprintf(
+      text.data(), text.size(), "\"%jx-%jx-%jx.%lx\"", static_cast<std::uintmax_t>(info.st_ino),
+      static_cast<std::uintmax_t>(info.st_size), static_cast<std::uintmax_t>(info.st_mtim.tv_sec),
+      static_cast<unsigned long>(info.st_mtim.tv_nsec));
+  return {text.data(), static_cast<std::size_t>(length)};
+}
+
+/// RFC 8187: any name, as percent-encoded UTF-8.
+std::string percent_encoded(std::string_view text) {
+  constexpr std::string_view plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._";
+  std::string encoded;
+  for (const char c : text) {
+    if (plain.find(c) != std::string_view::npos) {
+      encoded += c;
+    } else {
+      std::array<char, 4> code{};
+      std::snprintf(code.data(), code.size(), "%%%02X", static_cast<unsigned char>(c));
+      encoded += code.data();
+    }
+  }
+  return encoded;
+}
+
+}  // namespace
+
+bool has_tag(std::string_view list, std::string_view tag) {
+  if (list == "*") {
+    return true;
+  }
+  const std::size_t found = list.find(tag);  // tags are quoted, so none is a part of another
+  return found != std::string_view::npos && !tag.empty();
+}
+
+Response file_response(const Request& request, const std::filesystem::path& file,
+                       const std::string& content_type, const std::string& name) {
+  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  struct ::stat info {};
+  if (!descriptor.is_open() || ::fstat(descriptor.number(), &info) != 0 || !S_ISREG(info.st_mode)) {
+    throw Error("no-model", "the file of this model is missing",
+                "Start a new scan, or rebuild it with octurn reconstruct.");
+  }
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  const std::string tag = tag_of(info);
+  Headers headers{{"ETag", tag}, {"Accept-Ranges", "bytes"}, {"Cache-Control", "no-cache"}};
+  if (const auto wanted = request.header("If-Match"); wanted && !has_tag(*wanted, tag)) {
+    throw Error("changed", "the model is not the one that was asked for", "Download it again.");
+  }
+  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, tag)) {
+    return {.status = 304, .headers = std::move(headers)};
+  }
+
+  RangeRequest wanted;
+  const bool same = request.header("If-Range").value_or(tag) == tag;
+  if (const auto range = request.header("Range"); range && request.method == "GET" && same) {
+    wanted = range_of(*range, size);
+  }
+  if (wanted.kind == RangeRequest::Kind::outside) {
+    Response response = problem({.code = "bad-range",
+                                 .detail = "the model has " + std::to_string(size) + " bytes",
+                                 .hint = "Ask for a part within them."});
+    response.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));
+    return response;
+  }
+  headers.emplace_back("Content-Type", content_type);
+  headers.emplace_back(
+      "Content-Disposition",
+      "attachment; filename=\"Scan.stl\"; filename*=UTF-8''" + percent_encoded(name));
+  if (wanted.kind == RangeRequest::Kind::whole) {
+    return {.headers = std::move(headers), .body = FileSlice{std::move(descriptor), 0, size}};
+  }
+  const auto [first, last] = wanted.range;
+  headers.emplace_back("Content-Range", "bytes " + std::to_string(first) + "-" +
+                                            std::to_string(last) + "/" + std::to_string(size));
+  return {.status = 206,
+          .headers = std::move(headers),
+          .body = FileSlice{std::move(descriptor), first, last - first + 1}};
+}
+
+}  // namespace octurn

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "http/message.hpp"
+
+namespace octurn {
+
+/// Headers and conditions of RFC 9110, sections 13 and 14: ETag, If-Match, If-None-Match, If-Range
+/// and Range with one range (several are answered by the whole).
+///
+/// @param name  under which a browser saves it
+/// @throws Error "no-model" if there is no such file, "changed", "bad-range"
+Response file_response(const Request& request, const std::filesystem::path& file,
+                       const std::string& content_type, const std::string& name);
+
+/// Whether a list of entity tags, as in If-None-Match, contains `tag` or is "*".
+bool has_tag(std::string_view list, std::string_view tag);
+
+}  // namespace octurn

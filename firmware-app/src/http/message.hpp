@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "file_descriptor.hpp"
+
+namespace octurn {
+
+/// Names and values, in order.
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
+/// Whether two header names, or tokens, are the same but for upper and lower case (ASCII).
+inline bool same_token(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+/// A request, whole.
+struct Request {
+  std::string method = "GET";
+  std::string path = "/";  ///< decoded, without the query
+  Headers headers = {};
+  std::string body = {};
+
+  /// The value of the first header of that name.
+  std::optional<std::string_view> header(std::string_view name) const {
+    const auto found = std::ranges::find_if(
+        headers, [&](const auto& header) { return same_token(header.first, name); });
+    return found == headers.end() ? std::nullopt : std::optional<std::string_view>(found->second);
+  }
+
+  bool is_read() const { return method == "GET" || method == "HEAD"; }
+};
+
+/// A part of an open file, sent as it is read.
+struct FileSlice {
+  FileDescriptor file = {};
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+};
+
+/// An answer. The server adds Content-Length and what every answer has, and leaves the body out
+/// where the request was HEAD.
+struct Response {
+  int status = 200;
+  Headers headers = {};
+  std::variant<std::string, FileSlice> body = {};
+};
+
+}  // namespace octurn

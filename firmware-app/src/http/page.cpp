@@ -1,0 +1,103 @@
+#include "http/page.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+
+#include "http/file_response.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ContentType {
+  std::string_view extension;
+  std::string_view name;
+};
+
+constexpr std::array content_types{
+    ContentType{".html", "text/html; charset=utf-8"},
+    ContentType{".css", "text/css; charset=utf-8"},
+    ContentType{".js", "text/javascript; charset=utf-8"},
+    ContentType{".json", "application/json"},
+    ContentType{".webmanifest", "application/manifest+json"},
+    ContentType{".svg", "image/svg+xml"},
+    ContentType{".png", "image/png"},
+    ContentType{".ico", "image/x-icon"},
+    ContentType{".woff2", "font/woff2"},
+    ContentType{".txt", "text/plain; charset=utf-8"},
+};
+
+/// A tag made of the content, since files of an image all have the same date (64-bit FNV-1a).
+std::string tag_of(std::string_view content) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : content) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  }
+  std::array<char, 16> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16).ptr;
+  return "\"" + std::string(digits.data(), end) + "\"";
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) {
+    throw Error("page-missing", file.string() + ": cannot be read");
+  }
+  return content;
+}
+
+[[noreturn]] void no_page(const std::string& where) {
+  throw Error("page-missing", "no page in " + where,
+              "Build the target octurn_web, or name the folder with --web.");
+}
+
+}  // namespace
+
+fs::path page_folder() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const fs::path folder : {"../share/octurn/web", "../web"}) {
+    if (fs::exists(program / folder / "index.html")) {
+      return (program / folder).lexically_normal();
+    }
+  }
+  no_page((program / "../web").lexically_normal().string());
+}
+
+Page::Page(const fs::path& folder) {
+  if (!fs::exists(folder / "index.html")) {
+    no_page(folder.string());
+  }
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const auto* type = std::ranges::find(content_types, entry.path().extension().string(),
+                                         &ContentType::extension);
+    if (!entry.is_regular_file() || type == content_types.end()) {
+      continue;
+    }
+    File file{.content_type = std::string(type->name), .content = read(entry.path())};
+    file.tag = tag_of(file.content);
+    files_.emplace("/" + fs::relative(entry.path(), folder).generic_string(), std::move(file));
+  }
+}
+
+Response Page::file(const Request& request) const {
+  const auto found = files_.find(request.path == "/" ? "/index.html" : request.path);
+  if (found == files_.end()) {
+    throw Error("not-found", "there is no " + request.path, "The page is at /.");
+  }
+  const File& file = found->second;
+  Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};
+  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, file.tag)) {
+    return {.status = 304, .headers = std::move(headers)};
+  }
+  headers.emplace_back("Content-Type", file.content_type);
+  return {.headers = std::move(headers), .body = file.content};
+}
+
+}  // namespace octurn

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "octurn/depth_frame.hpp"
+
+namespace octurn {
+
+/// A depth frame as a picture for people: PNG, 8-bit grey, 320 x 240, near bright, far dark, black
+/// where there is no reading.
+std::string preview_png(const DepthFrame& frame, double depth_unit);
+
+}  // namespace octurn

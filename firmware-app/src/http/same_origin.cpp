@@ -1,0 +1,83 @@
+#include "http/same_origin.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+
+namespace octurn {
+namespace {
+
+// Names that the public DNS does not give away: RFC 6762 (.local), RFC 8375 (home.arpa), ICANN 2024
+// (.internal), and what home routers call their network.
+constexpr std::array<std::string_view, 6> local_domains{".local",    ".localhost",   ".home.arpa",
+                                                        ".internal", ".localdomain", ".lan"};
+
+/// "scanner.local" of "scanner.local:8080", "::1" of "[::1]:8080".
+std::string host_name(std::string_view host) {
+  if (host.starts_with('[')) {
+    return std::string(host.substr(1, host.find(']') - 1));
+  }
+  return std::string(host.substr(0, host.find(':')));
+}
+
+bool is_address(const std::string& name) {
+  std::array<unsigned char, sizeof(in6_addr)> address{};
+  return ::inet_pton(AF_INET, name.c_str(), address.data()) == 1 ||
+         ::inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
+}
+
+bool ends_with_domain(std::string_view name, std::string_view domain) {
+  return name.size() > domain.size() &&
+         same_token(name.substr(name.size() - domain.size()), domain);
+}
+
+bool is_ours(const std::string& name, std::span<const std::string> host_names) {
+  return is_address(name) || (!name.empty() && name.find('.') == std::string::npos) ||
+         std::ranges::any_of(local_domains,
+                             [&](auto domain) { return ends_with_domain(name, domain); }) ||
+         std::ranges::any_of(host_names, [&](const auto& ours) { return same_token(name, ours); });
+}
+
+/// Whether an `Origin` ("http://scanner.local:8080") is that of the page this host serves.
+bool is_same_origin(std::string_view origin, std::string_view host) {
+  const std::size_t scheme = origin.find("://");
+  return scheme != std::string_view::npos && same_token(origin.substr(scheme + 3), host);
+}
+
+bool is_json(std::string_view content_type) {
+  std::string_view type = content_type.substr(0, content_type.find(';'));
+  while (type.ends_with(' ')) {
+    type.remove_suffix(1);
+  }
+  return same_token(type, "application/json");
+}
+
+}  // namespace
+
+std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names) {
+  const std::string_view host = request.header("Host").value_or("");
+  if (!is_ours(host_name(host), host_names)) {
+    return Failure{.code = "wrong-host",
+                   .detail = "\"" + std::string(host) + "\" is not a name of this scanner",
+                   .hint =
+                       "Open the page by the scanner's address, or add the name to host_names "
+                       "in octurn.json."};
+  }
+  if (request.is_read()) {
+    return std::nullopt;
+  }
+  if (const auto origin = request.header("Origin"); origin && !is_same_origin(*origin, host)) {
+    return Failure{.code = "wrong-origin",
+                   .detail = "the request comes from " + std::string(*origin),
+                   .hint = "Use the scanner's own page."};
+  }
+  if (request.method != "DELETE" && !is_json(request.header("Content-Type").value_or(""))) {
+    return Failure{.code = "wrong-content-type",
+                   .detail = request.method + " needs Content-Type: application/json",
+                   .hint = "Send JSON, and say so."};
+  }
+  return std::nullopt;
+}
+
+}  // namespace octurn

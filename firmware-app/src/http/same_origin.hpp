@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "http/message.hpp"
+#include "scan/job.hpp"
+
+namespace octurn {
+
+/// Whether a request may be answered at all, and may change something.
+///
+/// Any page that a browser has open may send requests here. Two rules keep other sites out: the
+/// `Host` must be a name that nobody else can own (an address, a name of the local network, or one
+/// of `host_names`), which defeats DNS rebinding; and what changes something must carry
+/// `Content-Type: application/json`, which no form can send, and an `Origin`, if any, of this host.
+///
+/// @return why not, or nothing
+std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names);
+
+}  // namespace octurn

@@ -1,0 +1,42 @@
+#include "interruption.hpp"
+
+#include <pthread.h>
+#include <signal.h>
+
+namespace octurn {
+namespace {
+
+sigset_t ending_signals() {
+  sigset_t signals{};
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGINT);
+  ::sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+}  // namespace
+
+void block_signals() {
+  const sigset_t signals = ending_signals();
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);  // a reader that has gone shows in what write returns
+}
+
+void wait_for_signal() {
+  const sigset_t signals = ending_signals();
+  int signal = 0;
+  ::sigwait(&signals, &signal);
+}
+
+Interruption::Interruption()
+    : waiter_([this] {
+        wait_for_signal();
+        source_.request_stop();
+      }) {}
+
+Interruption::~Interruption() {
+  // Wakes the waiter, and nobody else, with one of the signals that it waits for.
+  ::pthread_kill(waiter_.native_handle(), SIGTERM);
+}
+
+}  // namespace octurn

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <stop_token>
+#include <thread>
+
+namespace octurn {
+
+/// Blocks SIGINT and SIGTERM in this thread and those that it starts, and ignores SIGPIPE: to be
+/// called before the first thread.
+void block_signals();
+
+/// Waits for SIGINT or SIGTERM, which are blocked.
+void wait_for_signal();
+
+/// Turns SIGINT and SIGTERM, which are blocked, into a stop request as long as it lives.
+class Interruption {
+ public:
+  Interruption();
+  ~Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+
+  std::stop_token token() const { return source_.get_token(); }
+
+ private:
+  std::stop_source source_ = {};
+  std::jthread waiter_;
+};
+
+}  // namespace octurn

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace octurn {
+
+/// A JSON object from outside: its keys are read one by one, checked, and those that nobody has
+/// read are refused at the end. Every message names the key, its value and what it must be.
+class JsonObject {
+ public:
+  /// @param code  of the errors that this object throws, such as "bad-settings"
+  /// @param name  of the object in messages; empty for the outermost
+  /// @throws Error  if it is no object
+  JsonObject(const nlohmann::json& object, std::string code, std::string name);
+
+  /// The value of that key, or null if it is not there.
+  const nlohmann::json* find(std::string_view key);
+
+  /// The value of that key, or nothing if it is not there.
+  /// @throws Error  if it is of another kind or out of its range
+  std::optional<double> number(std::string_view key, double least, double most);
+  std::optional<int> whole_number(std::string_view key, int least, int most);
+  std::optional<bool> flag(std::string_view key);
+  std::optional<std::string> text(std::string_view key);
+
+  /// @throws Error  if there is a key that nobody has asked for
+  void refuse_unread() const;
+
+  /// @param must  completes "... is VALUE: must be"
+  [[noreturn]] void refuse(std::string_view key, const nlohmann::json& value,
+                           const std::string& must) const;
+
+ private:
+  std::string quoted(std::string_view key) const;
+
+  const nlohmann::json& object_;
+  std::string code_;
+  std::string name_;
+  std::set<std::string, std::less<>> read_ = {};
+};
+
+/// Parses a JSON text. @throws Error of that code, which says that `what` is no JSON
+nlohmann::json parse_json(std::string_view text, const std::string& code, const std::string& what);
+
+}  // namespace octurn

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "octurn/error.hpp"
+#include "octurn/model.hpp"
+#include "scan/scan_settings.hpp"
+
+namespace octurn {
+
+enum class JobState {
+  running,
+  finished,
+  cancelled,
+  failed,
+  interrupted,  ///< the daemon ended while it ran
+};
+
+/// What a scan is doing.
+enum class Phase { starting, turning, capturing, building, done };
+
+std::string_view name_of(JobState state);
+std::string_view name_of(Phase phase);
+
+/// Why something did not work, as the API tells it.
+struct Failure {
+  std::string code = {};
+  std::string detail = {};
+  std::string hint = {};
+};
+
+Failure failure_of(const Error& error);
+
+/// Why a scan has no model whose daemon ended while it ran.
+Failure interruption();
+
+/// A finished model, and how long it took once the last snapshot was stored.
+struct Model {
+  ModelReport report = {};
+  std::chrono::duration<double> build_time = {};
+};
+
+/// One scan: what was asked for, and what has become of it.
+struct Job {
+  std::string id = {};
+  std::string name = {};  ///< given by a person, or empty
+  JobState state = JobState::running;
+  Phase phase = Phase::starting;
+  std::string created = {};  ///< UTC, as in ISO 8601
+  int snapshots_done = 0;
+  std::chrono::duration<double> elapsed = {};
+  std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
+  ScanSettings settings = {};
+  std::optional<Failure> failure = {};
+  std::optional<Model> model = {};
+};
+
+/// A scan as the API has it.
+nlohmann::json json_of(const Job& job);
+
+/// Reads what `json_of` has written.
+/// @throws Error "job-malformed"  that says what is missing or wrong
+Job job_from(const nlohmann::json& object);
+
+}  // namespace octurn

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <utility>
+
+namespace octurn {
+
+/// The latest of something, handed from the worker to any number of readers. A reader's copy stays
+/// as it was, however often it is replaced meanwhile.
+template <typename Value>
+class Latest {
+ public:
+  std::shared_ptr<const Value> get() const {
+    const std::lock_guard lock(mutex_);
+    return value_;
+  }
+
+  void set(Value value) {
+    auto next = std::make_shared<const Value>(std::move(value));
+    {
+      const std::lock_guard lock(mutex_);
+      value_.swap(next);
+    }
+    changed_.notify_all();
+  }
+
+  /// Replaces the value by a copy that `change` has worked on; nothing comes in between.
+  template <typename Change>
+  void update(Change change) {
+    {
+      const std::lock_guard lock(mutex_);
+      Value next = *value_;
+      change(next);
+      value_ = std::make_shared<const Value>(std::move(next));
+    }
+    changed_.notify_all();
+  }
+
+  /// Waits until the value is as wanted, but no longer than `patience`.
+  /// @return the latest value, wanted or not
+  template <typename Wanted>
+  std::shared_ptr<const Value> wait(const std::stop_token& stop, std::chrono::milliseconds patience,
+                                    Wanted wanted) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, patience, [&] { return wanted(*value_); });
+    return value_;
+  }
+
+ private:
+  mutable std::mutex mutex_;  // guards value_, the pointer: what it points to never changes
+  mutable std::condition_variable_any changed_;
+  std::shared_ptr<const Value> value_ = std::make_shared<const Value>();
+};
+
+}  // namespace octurn

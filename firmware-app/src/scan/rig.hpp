@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "sensor/depth_sensor.hpp"
+#include "turntable/turntable.hpp"
+
+namespace octurn {
+
+/// What to scan with. This version drives the simulated turntable only.
+struct RigOptions {
+  std::string sensor_uri = {};  ///< for OpenNI2
+  double speed = 1.0;           ///< of the simulated turntable, relative to life
+};
+
+bool is_simulated_sensor(const std::string& uri);
+
+/// The sensor and the turntable under it. Used by one thread at a time.
+class Rig {
+ public:
+  explicit Rig(RigOptions options);
+  ~Rig();
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
+
+  /// Opens the sensor if it is closed. @throws Error "sensor-missing" or "sensor-failed"
+  DepthSensor& sensor();
+
+  /// Closes the sensor, which ends its light and its traffic; the next use opens it again.
+  void close_sensor() { sensor_.reset(); }
+
+  Turntable& turntable() { return *turntable_; }
+
+ private:
+  RigOptions options_;
+  std::unique_ptr<Turntable> turntable_;
+  std::unique_ptr<DepthSensor> sensor_;
+};
+
+}  // namespace octurn

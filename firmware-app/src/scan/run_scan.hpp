@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+
+#include "scan/job.hpp"
+#include "scan/rig.hpp"
+
+namespace octurn {
+
+/// Told what a scan is doing, on the thread that runs it.
+struct ScanObserver {
+  std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
+  std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
+                                                                                double) {};
+};
+
+/// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.
+///
+/// Each snapshot is on the disk before the platform moves on, and goes into the octree while it
+/// turns. What was stored stays, however the scan ends.
+///
+/// @return the model, or nothing if stopped first
+/// @throws Error  if the sensor, the turntable or the disk fails, or there is no surface
+std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
+                              const std::filesystem::path& folder, Rig& rig,
+                              const std::stop_token& stop, const ScanObserver& observer);
+
+}  // namespace octurn

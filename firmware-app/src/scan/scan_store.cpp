@@ -1,0 +1,264 @@
+#include "scan/scan_store.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include "json_object.hpp"
+#include "log.hpp"
+#include "octurn/atomic_file.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view id_form = "00000000-000000-xxxx";  // date, time of day (UTC), chance
+
+// Folders in the making, and on their way out, begin with a dot: they are not listed, and the next
+// start clears them away.
+constexpr std::string_view unfinished = ".new-";
+constexpr std::string_view removed = ".removed-";
+
+// A 16-bit depth image that does not compress at all, and a fine model.
+constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
+constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
+
+std::string formatted(std::time_t time, const char* format) {
+  std::tm utc{};
+  ::gmtime_r(&time, &utc);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &utc)};
+}
+
+std::string four_hex_digits() {
+  std::random_device chance;
+  std::string digits;
+  for (int i = 0; i < 4; ++i) {
+    digits += "0123456789abcdef"[chance() % 16];
+  }
+  return digits;
+}
+
+[[noreturn]] void fail(const fs::path& path, const std::string& doing, std::error_code reason) {
+  const bool full = reason == std::errc::no_space_on_device;
+  throw Error(
+      full ? "disk-full" : "data-failed",
+      path.string() + ": cannot " + doing + ": " + reason.message(),
+      full ? "Delete scans that are no longer needed."
+           : "Check that this program may write there, or choose another folder with --data.");
+}
+
+std::optional<std::string> read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return std::nullopt;
+  }
+  return std::string{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Removes what begins with a dot: temporary files, and folders that were not finished.
+void clear_unfinished(const fs::path& folder) {
+  std::error_code ignored;  // what cannot be cleared away does no harm
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().starts_with('.')) {
+      fs::remove_all(entry.path(), ignored);
+    }
+  }
+}
+
+int stored_snapshots(const fs::path& folder) {
+  try {
+    return static_cast<int>(read_scan(folder).shots.size());
+  } catch (const Error&) {
+    return 0;  // it ended before the first snapshot, which writes the first scan.json
+  }
+}
+
+}  // namespace
+
+bool is_scan_id(std::string_view text) {
+  return std::ranges::equal(text, id_form, [](char c, char form) {
+    const bool digit = c >= '0' && c <= '9';
+    return form == '0' ? digit : form == 'x' ? digit || (c >= 'a' && c <= 'f') : c == form;
+  });
+}
+
+ScanStore::ScanStore(fs::path data) : data_(std::move(data)), scans_(data_ / "scans") {
+  std::error_code error;
+  fs::create_directories(scans_, error);
+  if (error) {
+    fail(scans_, "make the folder", error);
+  }
+  const fs::path file = data_ / "lock";
+  lock_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!lock_.is_open()) {
+    fail(file, "open", {errno, std::generic_category()});
+  }
+  if (::flock(lock_.number(), LOCK_EX | LOCK_NB) != 0) {
+    throw Error("data-in-use", data_.string() + ": another octurn works in this folder",
+                "End it first, or choose another folder with --data.");
+  }
+  recover();
+}
+
+Job ScanStore::create(const ScanSettings& settings) const {
+  const std::uint64_t needed =
+      model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
+  if (const std::uint64_t available = free_bytes(); available < needed) {
+    const auto mb = [](std::uint64_t bytes) {
+      return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
+    };
+    throw Error("disk-full",
+                mb(available) + " free in " + data_.string() + ", a scan of " +
+                    std::to_string(settings.snapshots) + " snapshots needs " + mb(needed),
+                "Delete scans that are no longer needed.");
+  }
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  Job job{.created = formatted(now, "%Y-%m-%dT%H:%M:%SZ"), .settings = settings};
+  do {
+    job.id = formatted(now, "%Y%m%d-%H%M%S-") + four_hex_digits();
+  } while (fs::exists(folder(job.id)));
+
+  const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
+  std::error_code error;
+  fs::create_directory(beginning, error);
+  if (error) {
+    fail(beginning, "make the folder", error);
+  }
+  write_file(beginning / "job.json", json_of(job).dump(1) + "\n");
+  fs::rename(beginning, folder(job.id), error);
+  if (error) {
+    fail(folder(job.id), "make the folder", error);
+  }
+  return job;
+}
+
+void ScanStore::save(const Job& job) const {
+  write_file(folder(job.id) / "job.json", json_of(job).dump(1) + "\n");
+}
+
+std::vector<Job> ScanStore::list() const {
+  std::vector<Job> jobs;
+  for (const std::string& id : ids_newest_first()) {
+    if (auto job = find(id)) {
+      jobs.push_back(*std::move(job));
+    }
+  }
+  return jobs;
+}
+
+std::optional<Job> ScanStore::find(std::string_view id) const {
+  if (!is_scan_id(id) || !fs::is_directory(folder(id))) {
+    return std::nullopt;
+  }
+  Job job;
+  try {
+    job = job_from(
+        parse_json(read_text(folder(id) / "job.json").value_or(""), "job-malformed", "the file"));
+  } catch (const Error& error) {
+    job.state = JobState::failed;
+    job.phase = Phase::done;
+    job.failure =
+        Failure{.code = "job-malformed",
+                .detail = std::string("job.json: ") + error.what(),
+                .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
+  }
+  job.id = id;
+  job.name = read_text(folder(id) / "name.txt").value_or("");
+  return job;
+}
+
+std::optional<Job> ScanStore::newest_finished() const {
+  for (const std::string& id : ids_newest_first()) {
+    if (auto job = find(id); job && job->state == JobState::finished) {
+      return job;
+    }
+  }
+  return std::nullopt;
+}
+
+void ScanStore::rename(std::string_view id, std::string_view name) const {
+  if (!find(id)) {
+    throw Error("no-such-scan", "there is no scan " + std::string(id));
+  }
+  write_file(folder(id) / "name.txt", name);
+}
+
+void ScanStore::remove(std::string_view id) const {
+  if (!find(id)) {
+    throw Error("no-such-scan", "there is no scan " + std::string(id));
+  }
+  // Renamed first: a scan that is half removed is never seen.
+  const fs::path leaving = scans_ / (std::string(removed) + std::string(id));
+  std::error_code error;
+  fs::rename(folder(id), leaving, error);
+  if (error) {
+    fail(folder(id), "remove", error);
+  }
+  fs::remove_all(leaving, error);
+  if (error) {
+    log::warning("store", leaving.string() + ": cannot remove: " + error.message());
+  }
+}
+
+fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
+
+std::uint64_t ScanStore::free_bytes() const {
+  std::error_code error;
+  const fs::space_info space = fs::space(scans_, error);
+  if (error) {
+    fail(scans_, "read", error);
+  }
+  return space.available;
+}
+
+std::vector<std::string> ScanStore::ids_newest_first() const {
+  std::vector<std::string> ids;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(scans_, error)) {
+    if (std::string name = entry.path().filename().string(); is_scan_id(name)) {
+      ids.push_back(std::move(name));
+    }
+  }
+  std::ranges::sort(ids, std::ranges::greater());  // they begin with the time
+  return ids;
+}
+
+void ScanStore::recover() const {
+  clear_unfinished(scans_);
+  for (Job& job : list()) {
+    if (job.state != JobState::running) {
+      continue;
+    }
+    clear_unfinished(folder(job.id));
+    clear_unfinished(folder(job.id) / "snapshots");
+    job.state = JobState::interrupted;
+    job.phase = Phase::done;
+    job.snapshots_done = stored_snapshots(folder(job.id));
+    job.failure = interruption();
+    log::info("store", "scan " + job.id + " was interrupted after " +
+                           std::to_string(job.snapshots_done) + " snapshots");
+    try {
+      save(job);
+    } catch (const Error& error) {
+      // A full disk: the API calls the scan interrupted all the same, and the page can delete it.
+      log::warning("store", error.what());
+    }
+  }
+}
+
+}  // namespace octurn

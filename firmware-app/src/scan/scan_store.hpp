@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "file_descriptor.hpp"
+#include "scan/job.hpp"
+
+namespace octurn {
+
+/// Whether a text has the form of a scan's name in paths: "20261121-081500-3f2a". Nothing else may
+/// become part of a path.
+bool is_scan_id(std::string_view text);
+
+/// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
+/// asked for and what became of it) and `name.txt` (what a person called it).
+///
+/// Holds nothing but the path. Each file appears whole or not at all and has one writer (the worker
+/// those of the scan, an HTTP thread the name), so any thread may call anything at any time.
+class ScanStore {
+ public:
+  /// Takes hold of the folder, clears away what a dead process left unfinished, and marks the scans
+  /// that it was making as interrupted.
+  /// @throws Error "data-in-use" if another process holds it; if it cannot be made or written to
+  explicit ScanStore(std::filesystem::path data);
+
+  /// Makes the folder of a new scan, in state running.
+  /// @throws Error "disk-full" if a scan of that many snapshots may not fit
+  Job create(const ScanSettings& settings) const;
+
+  /// Writes `job.json`.
+  void save(const Job& job) const;
+
+  /// All scans, newest first. One whose `job.json` cannot be read is listed as failed.
+  std::vector<Job> list() const;
+  std::optional<Job> find(std::string_view id) const;
+
+  /// The newest finished scan, if there is one.
+  std::optional<Job> newest_finished() const;
+
+  /// @throws Error "no-such-scan"
+  void rename(std::string_view id, std::string_view name) const;
+  void remove(std::string_view id) const;
+
+  /// @param id  that exists
+  std::filesystem::path folder(std::string_view id) const;
+  std::filesystem::path model_file(std::string_view id) const { return folder(id) / "Scan.stl"; }
+
+  std::uint64_t free_bytes() const;
+
+ private:
+  std::vector<std::string> ids_newest_first() const;
+  void recover() const;
+
+  std::filesystem::path data_;
+  std::filesystem::path scans_;
+  FileDescriptor lock_;  // locked while it is open
+};
+
+}  // namespace octurn

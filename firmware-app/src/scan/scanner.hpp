@@ -1,0 +1,104 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "scan/job.hpp"
+#include "scan/latest.hpp"
+#include "scan/rig.hpp"
+#include "scan/scan_store.hpp"
+
+namespace octurn {
+
+/// How a sensor or a turntable is, as far as the last use of it told.
+struct DeviceStatus {
+  enum class State { ready, missing, failed };
+  State state = State::missing;
+  std::string name = {};
+  bool simulated = false;
+  std::string message = {};  ///< what is wrong, or empty
+};
+
+struct Status {
+  DeviceStatus sensor = {};
+  DeviceStatus turntable = {};
+  std::optional<Job> job = {};  ///< the scan that was started last, running or not
+  std::chrono::steady_clock::time_point job_started = {};
+  std::optional<std::chrono::steady_clock::time_point> job_end = {};  ///< as expected
+
+  bool busy() const { return job && job->state == JobState::running; }
+};
+
+/// What the sensor saw last, or why it saw nothing.
+struct View {
+  std::chrono::steady_clock::time_point time = {};
+  DepthFrame frame = {};
+  double depth_unit = 0;  ///< metres
+  std::optional<Failure> failure = {};
+};
+
+/// Runs one scan at a time on a worker of its own, which alone touches sensor, turntable and
+/// octree. Everything else here may be called from any thread.
+class Scanner {
+ public:
+  Scanner(RigOptions rig, const Limits& limits, const ScanStore& store);
+  ~Scanner() = default;
+  Scanner(const Scanner&) = delete;
+  Scanner& operator=(const Scanner&) = delete;
+
+  /// Starts a scan, unless one runs: nothing then.
+  /// @throws Error "disk-full", "data-failed"
+  std::optional<Job> start(const ScanSettings& settings);
+
+  /// Asks the scan of that id to stop. @return false if it does not run
+  bool cancel(std::string_view id);
+
+  Status status() const;
+
+  /// Waits until no scan runs, but no longer than `patience`.
+  Status wait_until_done(std::chrono::milliseconds patience) const;
+
+  /// What the sensor sees now, or, during a scan, what it saw last.
+  /// @throws Error "sensor-..."  if it sees nothing
+  std::shared_ptr<const View> view();
+
+  /// Asks the worker to end. The destructor does the same, and waits for it.
+  void request_stop() { worker_.request_stop(); }
+
+ private:
+  struct Order {
+    Job job = {};
+    std::stop_source cancel = {};
+  };
+  enum class Demand { none, view, scan };
+
+  void work(const std::stop_token& stop);
+  Demand wait_for_demand(const std::stop_token& stop);
+  void look(Rig& rig, const std::stop_token& stop);
+  void run_order(Rig& rig, const std::stop_token& stop);
+  void report(Phase phase, int snapshots_done);
+  void finish(Job job);
+  void set_sensor_ready(const std::string& name);
+  void set_device_failed(const Failure& failure);
+  void set_view(const DepthFrame& frame, double depth_unit);
+
+  RigOptions rig_options_;
+  Limits limits_;
+  const ScanStore& store_;
+  Latest<Status> status_;
+  Latest<View> view_;
+  mutable std::mutex mutex_;  // guards order_ and view_wanted_until_
+  std::condition_variable_any wake_;
+  std::optional<Order> order_;  // the one job slot: full while a scan waits or runs
+  std::chrono::steady_clock::time_point view_wanted_until_ = {};
+  std::jthread worker_;  // the last member, so that it ends before what it uses goes away
+};
+
+}  // namespace octurn

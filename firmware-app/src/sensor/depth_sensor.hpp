@@ -1,0 +1,52 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/intrinsics.hpp"
+
+namespace octurn {
+
+/// A depth frame and when its exposure ended, by the steady clock.
+struct TimedFrame {
+  DepthFrame frame = {};
+  std::chrono::steady_clock::time_point time = {};
+};
+
+/// Loads OpenNI2 and its drivers, the first time it is called. The working directory of the process
+/// changes meanwhile, so a program with several threads calls it before it starts the second.
+/// @throws Error "sensor-failed"
+void load_sensor_drivers();
+
+/// A depth camera behind OpenNI2: a Kinect v1 through Octurn's driver, a simulated one, any sensor
+/// that OpenNI2 knows, or a recording. Used by one thread at a time.
+class DepthSensor {
+ public:
+  /// Opens the device of that URI, or the first one found if `uri` is empty, and starts its depth
+  /// stream. @throws Error "sensor-missing" if there is none, "sensor-failed" if it does not start
+  explicit DepthSensor(const std::string& uri);
+  ~DepthSensor();
+  DepthSensor(const DepthSensor&) = delete;
+  DepthSensor& operator=(const DepthSensor&) = delete;
+
+  const std::string& name() const;
+  const Intrinsics& intrinsics() const;
+
+  /// Waits for the next frame; nothing if stopped before it came.
+  /// @throws Error "sensor-silent" if none comes for 2 s, "sensor-lost" if the device is gone
+  std::optional<TimedFrame> read(const std::stop_token& stop);
+
+  /// Tells a simulated sensor where its turntable stands. Others pass it over.
+  /// @param angle  of the platform, radians, counter-clockwise seen from above
+  void show_angle(double angle);
+
+ private:
+  struct Device;
+  std::unique_ptr<Device> device_;
+};
+
+}  // namespace octurn

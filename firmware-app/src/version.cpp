@@ -1,0 +1,7 @@
+#include "version.hpp"
+
+namespace octurn {
+
+std::string_view version() { return OCTURN_VERSION; }
+
+}  // namespace octurn

@@ -1,0 +1,163 @@
+// Requests to the scanner. What it answers is described in API.md.
+
+/**
+ * @typedef {Object} Settings
+ * @property {number} snapshots
+ * @property {'basic' | 'average' | 'average-discard'} filter
+ * @property {number} frames
+ * @property {number} leaf_size_mm
+ * @property {number} threshold_m2
+ * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
+ *
+ * @typedef {Object} Model
+ * @property {string} url
+ * @property {number} bytes
+ * @property {number} triangles
+ * @property {number} leaves
+ * @property {boolean} watertight
+ * @property {number} volume_cm3
+ * @property {number[]} size_mm
+ * @property {number} seconds
+ *
+ * @typedef {Object} Scan
+ * @property {string} id
+ * @property {string} name
+ * @property {'running' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
+ * @property {'starting' | 'turning' | 'capturing' | 'building' | 'done'} phase
+ * @property {string} created
+ * @property {number} snapshots_done
+ * @property {number} snapshots_total
+ * @property {number} seconds_elapsed
+ * @property {number | null} seconds_left
+ * @property {Settings} settings
+ * @property {{code: string, detail: string, hint: string} | null} error
+ * @property {Model | null} model
+ *
+ * @typedef {Object} Device
+ * @property {'ready' | 'missing' | 'failed'} state
+ * @property {string} name
+ * @property {boolean} simulated
+ * @property {string} message
+ *
+ * @typedef {Object} Status
+ * @property {string} version
+ * @property {Device} sensor
+ * @property {Device} turntable
+ * @property {number} disk_free_bytes
+ * @property {Scan | null} scan
+ * @property {string | null} newest
+ */
+
+const root = '/api/v1/';
+const patience = 8000;  // milliseconds until a request counts as unanswered
+
+/** Why the scanner did not do what it was asked, in the words of its problem+json. */
+export class Problem extends Error {
+  /**
+   * @param {string} code  "unreachable" when no answer came at all
+   * @param {string} title
+   * @param {string} [detail]
+   * @param {string} [hint]
+   */
+  constructor(code, title, detail = '', hint = '') {
+    super(detail || title);
+    this.name = 'Problem';
+    this.code = code;
+    this.title = title;
+    this.detail = detail;
+    this.hint = hint;
+  }
+}
+
+const unreachable = () => new Problem('unreachable', 'The scanner does not answer', '',
+    'Check that it has power and is in the same network.');
+
+/** @param {Response} response */
+async function problemOf(response) {
+  const isProblem = response.headers.get('Content-Type')?.startsWith('application/problem+json');
+  const body = isProblem ? await response.json().catch(() => ({})) : {};
+  return new Problem(body.code ?? 'http', body.title || `The scanner answered ${response.status}`, body.detail, body.hint);
+}
+
+/**
+ * @param {string} path  below the API's root, or absolute
+ * @param {RequestInit} [options]
+ * @returns {Promise<Response>} a good one
+ * @throws {Problem}
+ */
+async function request(path, options = {}) {
+  let response;
+  try {
+    response = await fetch(path.startsWith('/') ? path : root + path,
+        {signal: AbortSignal.timeout(patience), cache: 'no-store', ...options});
+  } catch (error) {
+    throw options.signal?.aborted ? error : unreachable();
+  }
+  if (!response.ok) {
+    throw await problemOf(response);
+  }
+  return response;
+}
+
+/**
+ * @param {string} path
+ * @param {RequestInit} [options]
+ */
+async function json(path, options) {
+  const response = await request(path, options);
+  return response.json().catch(() => {
+    throw unreachable();  // cut short, or something else than the scanner answers at this address
+  });
+}
+
+/**
+ * @param {string} method
+ * @param {Object} [body]
+ * @returns {RequestInit}
+ */
+const sending = (method, body = {}) => ({
+  method,
+  headers: {'Content-Type': 'application/json'},
+  body: JSON.stringify(body),
+});
+
+const scan = (/** @type {string} */ id) => `scans/${encodeURIComponent(id)}`;
+
+/** @returns {Promise<Status>} */
+export const status = () => json('status');
+
+/** @returns {Promise<Scan[]>} newest first */
+export const scans = async () => (await json('scans')).scans;
+
+/** @returns {Promise<Settings>} what a scan uses unless told otherwise */
+export const defaults = async () => (await json('settings')).defaults;
+
+/**
+ * @param {Partial<Settings>} settings
+ * @returns {Promise<Scan>}
+ */
+export const start = (settings) => json('scans', sending('POST', settings));
+
+/** @param {string} id @returns {Promise<Scan>} */
+export const cancel = (id) => json(`${scan(id)}/cancel`, sending('POST'));
+
+/** @param {string} id @param {string} name @returns {Promise<Scan>} */
+export const rename = (id, name) => json(scan(id), sending('PATCH', {name}));
+
+/** @param {string} id */
+export const remove = (id) => request(scan(id), {method: 'DELETE', headers: {'Content-Type': 'application/json'}});
+
+/** @returns {Promise<Blob>} what the sensor sees now, as a PNG */
+export const preview = async () => (await request('preview/depth.png')).blob();
+
+/**
+ * A finished model, as it arrives. It may take minutes, and the browser may keep it.
+ *
+ * @param {string} url
+ * @param {AbortSignal} signal
+ * @returns {Promise<ReadableStream<Uint8Array>>}
+ */
+export async function model(url, signal) {
+  const {body} = await request(url, {signal, cache: 'default'});
+  return /** @type {ReadableStream<Uint8Array>} */ (body);
+}

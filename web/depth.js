@@ -1,0 +1,51 @@
+// The depth picture in colours: deep blue far away, through teal, to warm white near by.
+
+/** Colours at equal steps of brightness, far to near. */
+const stops = [[13, 38, 66], [14, 82, 105], [28, 130, 130], [98, 182, 143], [196, 221, 150], [255, 244, 214]];
+const faintest = 24;  // what the scanner gives the farthest reading (API.md); darker is no reading
+
+/** @param {number} brightness  0 to 255 @returns {number[]} red, green, blue */
+export function colourOf(brightness) {
+  const at = (Math.max(brightness, faintest) - faintest) / (255 - faintest) * (stops.length - 1);
+  const index = Math.min(Math.floor(at), stops.length - 2);
+  return stops[index].map((value, channel) => Math.round(value + (stops[index + 1][channel] - value) * (at - index)));
+}
+
+const table = Array.from({length: 256}, (_, brightness) => colourOf(brightness));
+
+/**
+ * Colours a grey picture in place. Where nothing was read it becomes transparent.
+ * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
+ */
+export function colour(pixels) {
+  for (let i = 0; i < pixels.length; i += 4) {
+    const brightness = pixels[i];
+    if (brightness === 0) {
+      pixels[i + 3] = 0;
+    } else {
+      [pixels[i], pixels[i + 1], pixels[i + 2]] = table[brightness];
+    }
+  }
+}
+
+/** @param {HTMLCanvasElement} canvas @param {Blob} png */
+export async function drawDepth(canvas, png) {
+  const bitmap = await createImageBitmap(png);
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d', {willReadFrequently: true}));
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+  bitmap.close();
+  const picture = context.getImageData(0, 0, canvas.width, canvas.height);
+  colour(picture.data);
+  context.putImageData(picture, 0, 0);
+}
+
+/** Draws the scale of colours. @param {HTMLCanvasElement} canvas  as wide as there are shades */
+export function drawScale(canvas) {
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+  const picture = context.createImageData(canvas.width, 1);
+  for (let x = 0; x < canvas.width; ++x) {
+    picture.data.set([...colourOf(faintest + x), 255], 4 * x);
+  }
+  context.putImageData(picture, 0, 0);
+}

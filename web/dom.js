@@ -1,0 +1,50 @@
+// The few things that every module of the page does to the DOM.
+
+/** @param {string} id @returns {any} the element of that id */
+export const element = (id) => document.getElementById(id);
+
+/** Changes text only where it differs, so that selections stay and screen readers hear only news.
+ * @param {Element} target @param {string} text */
+export function setText(target, text) {
+  if (target.textContent !== text) {
+    target.textContent = text;
+  }
+}
+
+/** @param {HTMLElement} target @param {boolean} isShown */
+export function show(target, isShown) {
+  target.hidden = !isShown;
+}
+
+/** @param {string} id  of a template with one element @returns {any} a copy of it */
+export const copyOf = (id) => element(id).content.firstElementChild.cloneNode(true);
+
+/** @param {ParentNode} parent @param {string} selector @returns {any} */
+export const part = (parent, selector) => parent.querySelector(selector);
+
+/**
+ * Makes the children of `parent` those of `items`, in order; an item that stays keeps its element, and so its focus.
+ *
+ * @template Item
+ * @param {Element} parent
+ * @param {Item[]} items
+ * @param {(item: Item) => string} keyOf
+ * @param {string} template
+ * @param {(child: any, item: Item) => void} fill
+ */
+export function list(parent, items, keyOf, template, fill) {
+  const known = new Map([...parent.children].map((child) => [/** @type {HTMLElement} */ (child).dataset.key, child]));
+  items.forEach((item, index) => {
+    const key = keyOf(item);
+    const child = known.get(key) ?? copyOf(template);
+    known.delete(key);
+    child.dataset.key = key;
+    fill(child, item);
+    if (parent.children[index] !== child) {
+      parent.insertBefore(child, parent.children[index] ?? null);
+    }
+  });
+  for (const child of known.values()) {
+    child.remove();
+  }
+}

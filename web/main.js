@@ -1,0 +1,148 @@
+// Asks the scanner, keeps the state, and has it shown.
+
+import * as api from './api.js';
+import {watchCamera} from './camera.js';
+import {element} from './dom.js';
+import {chosenSettings, prepareForm} from './form.js';
+import {nameOf, screenOf} from './screen.js';
+import {prepareStage, renderStage} from './stage.js';
+import * as states from './state.js';
+import {askDelete, askName, render} from './view.js';
+
+let state = states.initial;
+let actions = 0;  // asked of the scanner so far: a status from before one is old news after it
+
+/** @param {states.State} next */
+function change(next) {
+  const wasSelected = state.selected;
+  state = next;
+  if (wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
+    location.hash = state.selected ?? '';
+  }
+  const screen = screenOf(state);
+  render(screen);
+  renderStage(screen.stage);
+}
+
+/**
+ * Does what the user asked for, one thing at a time, and shows why if it fails.
+ * @param {string} failure  what did not happen then
+ * @param {() => Promise<(state: states.State) => states.State>} action  tells how its answer changes the state
+ */
+async function act(failure, action) {
+  if (state.isPending) {
+    return;
+  }
+  change(states.withPending(state));
+  try {
+    const apply = await action();
+    change(apply(states.withAnswer(state)));
+  } catch (error) {
+    const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
+    change(states.withProblem(states.withAnswer(state), {title: failure, detail: detail || title, hint}));
+  }
+  ++actions;
+}
+
+const start = () => act('The scan did not start', async () => {
+  const scan = await api.start(chosenSettings());
+  return (now) => states.withStarted(now, scan);
+});
+
+const cancel = () => act('The scan was not cancelled', async () => {
+  const id = states.running(state)?.id;
+  if (id) {
+    await api.cancel(id);
+  }
+  return (now) => now;
+});
+
+/** @param {string | null} id */
+async function rename(id) {
+  const scan = states.scanOf(state, id);
+  const name = scan && await askName(nameOf(scan));
+  if (scan && name !== null) {
+    await act('The scan was not renamed', async () => {
+      const renamed = await api.rename(scan.id, name);
+      return (now) => states.withScan(now, renamed);
+    });
+  }
+}
+
+/** @param {string | null} id */
+async function remove(id) {
+  const scan = states.scanOf(state, id);
+  if (scan && await askDelete(nameOf(scan))) {
+    await act('The scan was not deleted', async () => {
+      await api.remove(scan.id);
+      return (now) => states.withoutScan(now, scan.id);
+    });
+  }
+}
+
+/** One look at the scanner; what changed is shown at once, the list of scans with it. */
+async function look() {
+  const before = actions;
+  try {
+    const status = await api.status();
+    const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
+    const defaults = state.defaults ?? await api.defaults();
+    if (before !== actions || state.isPending) {
+      return;
+    }
+    if (!state.defaults) {
+      prepareForm(defaults);
+    }
+    const news = states.withDefaults(states.withStatus(state, status), defaults);
+    change(scans ? states.withScans(news, scans) : news);
+  } catch {
+    change(states.withoutAnswer(state));
+  }
+}
+
+let wake = () => {};
+
+/** Looks again and again, for as long as the page is open. */
+async function watch() {
+  for (;;) {
+    await look();
+    await new Promise((/** @type {(value?: undefined) => void} */ done) => {
+      const timer = setTimeout(done, states.pause(state));
+      wake = () => {
+        clearTimeout(timer);
+        done();
+      };
+    });
+  }
+}
+
+function listen() {
+  const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
+  element('form').addEventListener('submit', (/** @type {Event} */ event) => {
+    event.preventDefault();
+    start();
+  });
+  click('cancel', cancel);
+  click('retry', () => wake());
+  click('dismiss', () => change(states.withProblem(state, null)));
+  click('show-model', () => change(states.withStage(state, 'model')));
+  click('show-camera', () => change(states.withStage(state, 'camera')));
+  click('details-rename', () => rename(state.selected));
+  element('rows').addEventListener('click', (/** @type {any} */ event) => {
+    const id = event.target.closest('.scan').dataset.key;
+    const what = event.target.closest('[data-do]')?.dataset.do;
+    if (what === 'rename') {
+      rename(id);
+    } else if (what === 'delete') {
+      remove(id);
+    }
+  });
+  addEventListener('hashchange', () => change(states.withSelected(state, location.hash.slice(1) || null)));
+  document.addEventListener('visibilitychange', () => document.hidden || wake());
+}
+
+change(states.withSelected(state, location.hash.slice(1) || null));
+listen();
+prepareStage();
+watch();
+watchCamera();

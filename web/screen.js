@@ -1,0 +1,207 @@
+// What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
+
+import * as format from './format.js';
+import {isAway, running, scanOf} from './state.js';
+
+/** @typedef {import('./state.js').State} State */
+/** @typedef {import('./api.js').Scan} Scan */
+/** @typedef {import('./api.js').Device} Device */
+/** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
+
+const filters = {'basic': 'unfiltered', 'average': 'average', 'average-discard': 'strict average'};
+
+/** @type {Record<Scan['state'], {tone: Tone, text: string}>} */
+const badges = {
+  running: {tone: 'busy', text: 'Scanning'},
+  finished: {tone: 'good', text: 'Finished'},
+  cancelled: {tone: 'idle', text: 'Cancelled'},
+  failed: {tone: 'bad', text: 'Failed'},
+  interrupted: {tone: 'warn', text: 'Interrupted'},
+};
+
+/** @param {Scan} scan */
+export const nameOf = (scan) => scan.name || `Scan of ${format.when(scan.created)}`;
+
+/** @param {Scan} scan */
+const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
+
+/** @param {Scan} scan */
+function phaseText(scan) {
+  const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
+  switch (scan.phase) {
+    case 'starting': return 'Getting ready';
+    case 'turning': return `Turning to ${stop}`;
+    case 'capturing': return `Looking at ${stop}`;
+    default: return 'Building the model';
+  }
+}
+
+/**
+ * Building takes a moment after the last stop, so the last hundredths are its own.
+ * @param {Scan} scan
+ */
+function percent(scan) {
+  return scan.snapshots_total > 0 ? Math.floor(97 * scan.snapshots_done / scan.snapshots_total) : 0;
+}
+
+const steps = /** @type {const} */ (['ready', 'capture', 'build']);
+
+/** @param {Scan} scan */
+function stepStates(scan) {
+  const now = scan.phase === 'starting' ? 0 : scan.phase === 'building' || scan.phase === 'done' ? 2 : 1;
+  return steps.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'}));
+}
+
+/** @param {Scan} scan */
+const progressOf = (scan) => ({
+  id: scan.id,
+  phase: scan.phase,
+  text: phaseText(scan),
+  percent: percent(scan),
+  done: scan.snapshots_done,
+  total: scan.snapshots_total,
+  left: format.timeLeft(scan.seconds_left),
+  steps: stepStates(scan),
+});
+
+/** Why a scan has no model. @param {Scan} scan */
+function troubleOf(scan) {
+  const said = {detail: format.sentence(scan.error?.detail ?? ''), hint: format.sentence(scan.error?.hint ?? '')};
+  switch (scan.state) {
+    case 'cancelled':
+      return {...said, tone: 'idle', title: 'Scan cancelled', detail: said.detail || 'It was stopped before the turn was complete.'};
+    case 'interrupted':
+      return {...said, tone: 'warn', title: 'Scan interrupted'};
+    case 'failed':
+      return {...said, tone: 'bad', title: 'Scan failed'};
+    default:
+      return null;
+  }
+}
+
+/** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
+function factsOf(scan) {
+  const {model, settings} = scan;
+  const took = scan.seconds_elapsed > 0 ? `, in ${format.duration(scan.seconds_elapsed)}` : '';
+  const pictures = settings.filter === 'basic' ? '' : ` of ${settings.frames}`;
+  const capture = [
+    {label: 'Snapshots', text: `${taken(scan)}, ${filters[settings.filter]}${pictures}`},
+    {label: 'Taken', text: `${format.when(scan.created)}${took}`},
+  ];
+  if (!model) {
+    return capture;
+  }
+  return [
+    {label: 'Triangles', text: format.number(model.triangles)},
+    model.watertight ? {label: 'Watertight', text: 'Yes, ready to slice', tone: 'good'} :
+        {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
+    {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
+    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${format.number(model.leaves)} leaves`},
+    ...capture,
+  ];
+}
+
+/** @param {Scan} scan */
+const detailsOf = (scan) => ({
+  id: scan.id,
+  name: nameOf(scan),
+  trouble: troubleOf(scan),
+  size: scan.model ? format.size(scan.model.size_mm) : '',
+  facts: factsOf(scan),
+  download: scan.model && {url: scan.model.url, bytes: format.bytes(scan.model.bytes)},
+});
+
+/** @param {State} state */
+const rowOf = (state) => (/** @type {Scan} */ scan) => ({
+  id: scan.id,
+  name: scan.name || 'Untitled scan',
+  fullName: nameOf(scan),
+  badge: badges[scan.state],
+  when: format.when(scan.created),
+  about: scan.model ? `${format.size(scan.model.size_mm, 0)} · ${format.bytes(scan.model.bytes)}` :
+    `${taken(scan)} snapshots${scan.state === 'running' ? '' : ' kept'}`,
+  download: scan.model?.url ?? null,
+  isCurrent: scan.id === (state.selected ?? running(state)?.id),
+  isRunning: scan.state === 'running',
+});
+
+/** @param {string} role @param {Device} device */
+function deviceOf(role, device) {
+  const isReady = device.state === 'ready';
+  const words = {ready: 'ready', missing: 'not found', failed: 'failed'};
+  return {
+    role,
+    tone: isReady ? 'good' : 'bad',
+    name: device.name || role,
+    text: words[device.state],
+    message: isReady ? '' : format.sentence(device.message || `the ${role} is ${words[device.state]}`),
+  };
+}
+
+/** @param {State} state */
+function titleOf(state) {
+  const scan = running(state);
+  if (isAway(state)) {
+    return 'No answer · Octurn';
+  }
+  if (scan) {
+    return scan.phase === 'building' ? 'Building · Octurn' : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
+  }
+  const shown = scanOf(state, state.selected);
+  return shown ? `${shown.state === 'finished' ? 'Done' : badges[shown.state].text} · Octurn` : 'Octurn';
+}
+
+/**
+ * For ears: one sentence a quarter of the turn, not one a stop.
+ * @param {State} state
+ */
+function announcementOf(state) {
+  const scan = running(state);
+  if (scan) {
+    const quarter = Math.floor(4 * scan.snapshots_done / Math.max(scan.snapshots_total, 1)) * 25;
+    return scan.phase === 'building' ? 'Building the model.' :
+      quarter === 0 ? `Scanning, ${scan.snapshots_total} snapshots.` : `${quarter} percent of the snapshots taken.`;
+  }
+  const shown = scanOf(state, state.selected);
+  return shown?.model ? `The model of ${nameOf(shown)} is ready.` : shown ? `${troubleOf(shown)?.title ?? ''}.` : '';
+}
+
+/** @param {State} state */
+export function screenOf(state) {
+  const scan = running(state);
+  const chosen = scanOf(state, state.selected);
+  const panel = !state.status ? 'waiting' : chosen ? 'details' : scan ? 'progress' : 'form';
+  const hasModel = panel === 'details' && Boolean(chosen?.model);
+  const devices = state.status ? [deviceOf('sensor', state.status.sensor), deviceOf('turntable', state.status.turntable)] : [];
+  return {
+    title: titleOf(state),
+    announcement: announcementOf(state),
+    isAway: isAway(state),
+    isBusy: state.isPending,
+    isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
+    devices,
+    panel,
+    progress: scan && progressOf(scan),
+    details: chosen && detailsOf(chosen),
+    isScanElsewhere: panel === 'details' && scan !== null,
+    problem: state.problem && {
+      title: state.problem.title,
+      detail: format.sentence(state.problem.detail),
+      hint: format.sentence(state.problem.hint),
+    },
+    faults: panel === 'form' ? devices.map(({message}) => message).filter(Boolean) : [],
+    stage: {
+      shows: hasModel ? state.stage : 'camera',
+      hasChoice: hasModel,
+      model: hasModel ? chosen?.model ?? null : null,
+      name: chosen ? nameOf(chosen) : '',
+      sensor: state.status?.sensor.name ?? '',
+      isReachable: !isAway(state),
+      isLive: state.status?.sensor.state === 'ready' && !isAway(state),
+      isScanning: scan !== null,
+    },
+    rows: state.scans.map(rowOf(state)),
+    isListed: state.listed !== null,
+    footer: state.status ? {version: `Octurn ${state.status.version}`, disk: `${format.bytes(state.status.disk_free_bytes)} free`} : null,
+  };
+}

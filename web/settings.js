@@ -1,0 +1,59 @@
+// The settings of a scan as the form has them, and as the API has them.
+
+/** @typedef {import('./api.js').Settings} Settings */
+
+/** @typedef {{mm: number, name: string}} Detail */
+
+/** Named leaf sizes, coarse to fine. Each halves the one before it, as the octree's levels do. */
+const details = [
+  {mm: 4, name: 'Draft'},
+  {mm: 2, name: 'Coarse'},
+  {mm: 1, name: 'Standard'},
+  {mm: 0.5, name: 'Fine'},
+];
+
+/**
+ * The leaf sizes to choose from: the named ones, and the scanner's default if it is another.
+ * @param {number} preset  millimetres
+ * @returns {Detail[]} coarse to fine
+ */
+export function leafChoices(preset) {
+  return details.some(({mm}) => mm === preset) ? details :
+      [...details, {mm: preset, name: 'Preset'}].sort((a, b) => b.mm - a.mm);
+}
+
+const explanations = {
+  'basic': 'One depth picture at each stop. Quickest, and the noisiest.',
+  'average': 'The mean of several pictures. Smooth surfaces, small holes filled.',
+  'average-discard': 'The mean, but only where every picture saw something. Cleanest edges, more holes.',
+};
+
+/** @param {Settings['filter']} filter */
+export const explain = (filter) => explanations[filter];
+
+const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
+const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrecision(6));
+
+/**
+ * @typedef {Object} Form
+ * @property {number} snapshots
+ * @property {number} leaf_size_mm
+ * @property {Settings['filter']} filter
+ * @property {number} frames
+ * @property {number} gap_mm  the longest edge between neighbouring readings
+ * @property {number[]} clip_mm
+ */
+
+/** @param {Settings} settings @returns {Form} */
+export const formOf = ({snapshots, leaf_size_mm, filter, frames, threshold_m2, clip_mm}) =>
+    ({snapshots, leaf_size_mm, filter, frames, gap_mm: gap(threshold_m2), clip_mm});
+
+/** @param {Form} form @returns {Partial<Settings>} */
+export const settingsOf = ({snapshots, leaf_size_mm, filter, frames, gap_mm, clip_mm}) =>
+    ({snapshots, leaf_size_mm, filter, frames, threshold_m2: threshold(gap_mm), clip_mm});
+
+/**
+ * Angle between two stops.
+ * @param {number} snapshots
+ */
+export const stepText = (snapshots) => `one each ${Number((360 / snapshots).toFixed(1))}°`;

@@ -1,0 +1,117 @@
+// The large picture: the camera, or the model of the scan that is looked at.
+
+import * as api from './api.js';
+import {element, setText, show} from './dom.js';
+import * as format from './format.js';
+import {loadsUnasked} from './state.js';
+import {readStl} from './stl.js';
+
+/** @typedef {ReturnType<import('./screen.js').screenOf>['stage']} Stage */
+/** @typedef {import('./api.js').Model} Model */
+
+const isHandheld = matchMedia('(pointer: coarse)').matches;
+const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+
+/** @type {import('./viewer.js').Viewer | undefined} */
+let viewer;
+/** @type {string | null} url of the model that is shown, offered or being loaded */
+let current = null;
+let loading = new AbortController();
+
+/** @param {string} text @param {{button?: string, progress?: number}} [more] */
+function note(text, {button, progress} = {}) {
+  show(element('model-note'), text !== '');
+  show(element('tools'), text === '');
+  setText(element('model-text'), text);
+  show(element('model-progress'), progress !== undefined);
+  element('model-progress').value = progress ?? 0;
+  show(element('load-model'), button !== undefined);
+  setText(element('load-model'), button ?? '');
+}
+
+function pressed(/** @type {string} */ id, /** @type {boolean} */ isPressed) {
+  element(id).setAttribute('aria-pressed', String(isPressed));
+}
+
+async function openViewer() {
+  const {Viewer} = await import('./viewer.js');
+  return new Viewer(element('view'), {
+    onTurning: (isTurning) => pressed('turn', isTurning),
+    onLost: () => note('This device gave up drawing the model.', {button: 'Show it again'}),
+  });
+}
+
+/** @param {Model} model */
+async function load(model) {
+  loading.abort();
+  loading = new AbortController();
+  const {signal} = loading;
+  viewer?.clear();
+  note('Loading the model', {progress: 0});
+  try {
+    viewer ??= await openViewer();
+  } catch {
+    note('This browser cannot draw in 3D (WebGL is off or missing). The model can be downloaded all the same.');
+    return;
+  }
+  try {
+    const mesh = await readStl(await api.model(model.url, signal), (progress) => note('Loading the model', {progress}));
+    if (!signal.aborted) {
+      viewer.show(mesh);
+      viewer.turn(!isStill);
+      note('');
+    }
+  } catch (error) {
+    if (!signal.aborted) {
+      note(format.sentence(error instanceof Error ? error.message : String(error)), {button: 'Try again'});
+    }
+  }
+}
+
+/** @param {Model | null} model */
+function setModel(model) {
+  if ((model?.url ?? null) === current) {
+    return;
+  }
+  current = model?.url ?? null;
+  loading.abort();
+  viewer?.clear();
+  if (!model) {
+    note('');
+  } else if (loadsUnasked(model.bytes, isHandheld)) {
+    load(model);
+  } else {
+    note('This is a large model.', {button: `Show it (${format.bytes(model.bytes)})`});
+  }
+}
+
+/** @type {Model | null} */
+let wanted = null;
+
+/** @param {Stage} stage */
+export function renderStage(stage) {
+  wanted = stage.model;
+  element('stage').dataset.reachable = stage.isReachable ? 'yes' : 'no';
+  element('stage').dataset.live = stage.isLive ? 'yes' : 'no';
+  element('stage').dataset.shows = stage.shows;
+  show(element('stage-choice'), stage.hasChoice);
+  pressed('show-model', stage.shows === 'model');
+  pressed('show-camera', stage.shows === 'camera');
+  show(element('camera'), stage.shows === 'camera');
+  show(element('model'), stage.shows === 'model');
+  setText(element('live-text'), stage.shows === 'model' ? stage.name :
+      [stage.isScanning ? 'Scanning' : stage.isLive ? 'Live depth' : 'No picture', stage.sensor].filter(Boolean).join(' · '));
+  setModel(stage.model);
+}
+
+/** Makes the buttons on the picture work. */
+export function prepareStage() {
+  element('load-model').addEventListener('click', () => wanted && load(wanted));
+  element('reset-view').addEventListener('click', () => viewer?.reset());
+  element('turn').addEventListener('click', () => viewer?.turn(element('turn').getAttribute('aria-pressed') !== 'true'));
+  element('edges').addEventListener('click', () => {
+    const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
+    pressed('edges', areShown);
+    viewer?.showEdges(areShown);
+  });
+}

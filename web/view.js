@@ -1,0 +1,181 @@
+// Puts a screen (screen.js) into the DOM, except the large picture (stage.js) and the form's fields (form.js).
+
+import {tickWidth, ticks} from './dial.js';
+import {element, list, part, setText, show} from './dom.js';
+
+/** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
+
+/** @param {HTMLElement} target @param {{tone?: string, text: string}} badge */
+function setBadge(target, {tone, text}) {
+  setText(target, text);
+  target.dataset.tone = tone ?? '';
+}
+
+/** @param {Screen} screen */
+function showDevices({devices, isSimulated}) {
+  show(element('simulated'), isSimulated);
+  list(element('devices'), devices, ({role}) => role, 'device', (item, device) => {
+    item.dataset.tone = device.tone;
+    item.title = device.message;
+    setText(part(item, '.device-name'), device.name);
+    setText(part(item, '.device-state'), device.text);
+  });
+}
+
+/** Shows one panel; focus that would vanish with another goes to its heading. @param {string} name */
+function showPanel(name) {
+  const panels = [...document.querySelectorAll('[data-panel]')];
+  const shown = /** @type {HTMLElement} */ (panels.find((panel) => /** @type {HTMLElement} */ (panel).dataset.panel === name));
+  if (!shown.hidden) {
+    return;
+  }
+  const hadFocus = element('panel').contains(document.activeElement);
+  for (const panel of panels) {
+    show(/** @type {HTMLElement} */ (panel), panel === shown);
+  }
+  if (hadFocus) {
+    part(shown, 'h1')?.focus({preventScroll: true});
+  }
+}
+
+/** @param {NonNullable<Screen['progress']>} progress */
+function showProgress(progress) {
+  const {done, total} = progress;
+  const dial = element('dial');
+  dial.dataset.phase = progress.phase;
+  dial.setAttribute('aria-valuenow', String(progress.percent));
+  dial.setAttribute('aria-valuetext', `${done} of ${total} snapshots. ${progress.text}.`);
+  for (const [id, from, to] of /** @type {[string, number, number][]} */ ([
+    ['ticks', 0, total], ['ticks-done', 0, done], ['tick-now', done, Math.min(done + 1, total)]])) {
+    const path = element(id);
+    path.setAttribute('d', ticks(from, to, total));
+    path.setAttribute('stroke-width', tickWidth(total).toFixed(2));
+  }
+  setText(element('dial-done'), String(done));
+  setText(element('dial-total'), `of ${total}`);
+  setText(element('phase'), progress.text);
+  setText(element('left'), progress.left);
+  for (const {name, state} of progress.steps) {
+    const step = part(element('steps'), `[data-step=${name}]`);
+    step.dataset.state = state;
+    step.toggleAttribute('aria-current', state === 'now');
+  }
+}
+
+/** @param {NonNullable<Screen['details']>} details */
+function showDetails({name, trouble, size, facts, download}) {
+  setText(element('details-name'), name);
+  show(element('trouble'), trouble !== null);
+  if (trouble) {
+    element('trouble').dataset.tone = trouble.tone;
+    setText(element('trouble-title'), trouble.title);
+    setText(element('trouble-detail'), trouble.detail);
+    setText(element('trouble-hint'), trouble.hint);
+  }
+  show(element('size'), size !== '');
+  setText(element('size'), size);
+  list(element('facts'), facts, ({label}) => label, 'fact', (item, {label, ...value}) => {
+    setText(part(item, 'dt'), label);
+    setBadge(part(item, 'dd'), value);
+  });
+  show(element('download'), download !== null);
+  if (download) {
+    element('download').href = download.url;
+    setText(element('download-bytes'), download.bytes);
+  }
+}
+
+/** @param {Screen} screen */
+function showRows({rows, isListed}) {
+  show(element('no-scans'), isListed && rows.length === 0);
+  list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
+    item.classList.toggle('current', row.isCurrent);
+    const name = part(item, '.scan-name');
+    setText(name, row.name);
+    name.href = `#${row.id}`;
+    name.toggleAttribute('aria-current', row.isCurrent);
+    setBadge(part(item, '.badge'), row.badge);
+    setText(part(item, '.scan-when'), row.when);
+    setText(part(item, '.scan-about'), row.about);
+    for (const action of item.querySelectorAll('[data-do]')) {
+      action.setAttribute('aria-label', `${action.title}: ${row.fullName}`);
+    }
+    const download = part(item, '[data-do=download]');
+    show(download, row.download !== null);
+    download.href = row.download ?? '';
+    show(part(item, '[data-do=delete]'), !row.isRunning);
+  });
+}
+
+/** @param {Screen} screen */
+function showNotices({isAway, isScanElsewhere, problem, faults}) {
+  show(element('away'), isAway);
+  show(element('elsewhere'), isScanElsewhere);
+  show(element('again'), !isScanElsewhere);
+  show(element('problem'), problem !== null);
+  for (const line of /** @type {const} */ (['title', 'detail', 'hint'])) {
+    setText(element(`problem-${line}`), problem?.[line] ?? '');
+  }
+  show(element('faults'), faults.length > 0);
+  const lines = part(element('faults'), 'ul');
+  if (lines.textContent !== faults.join('')) {
+    lines.replaceChildren(...faults.map((fault) => {
+      const line = document.createElement('li');
+      line.textContent = fault;
+      return line;
+    }));
+  }
+}
+
+/** @param {Screen} screen */
+export function render(screen) {
+  document.title = screen.title;
+  setText(element('announcement'), screen.announcement);
+  showDevices(screen);
+  showNotices(screen);
+  if (screen.progress) {
+    showProgress(screen.progress);
+  }
+  if (screen.details) {
+    showDetails(screen.details);
+  }
+  showPanel(screen.panel);
+  showRows(screen);
+  for (const id of ['start', 'cancel']) {
+    element(id).disabled = screen.isAway;
+    element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled it keeps the focus
+  }
+  if (screen.footer) {
+    setText(element('version'), screen.footer.version);
+    setText(element('disk'), screen.footer.disk);
+  }
+}
+
+/**
+ * @param {HTMLDialogElement} dialog
+ * @returns {Promise<boolean>} whether the answer was yes
+ */
+function ask(dialog) {
+  dialog.returnValue = '';
+  part(dialog, 'button[type=button]').onclick = () => dialog.close();
+  dialog.showModal();
+  return new Promise((answer) => {
+    dialog.addEventListener('close', () => answer(dialog.returnValue === 'yes'), {once: true});
+  });
+}
+
+/** @param {string} name @returns {Promise<string | null>} another name, or null to leave it */
+export async function askName(name) {
+  const field = element('rename-name');
+  field.value = name;
+  field.placeholder = 'Teapot';
+  const answer = ask(element('rename-dialog'));
+  field.select();
+  return await answer && field.value.trim() !== name ? field.value.trim() : null;
+}
+
+/** @param {string} name */
+export function askDelete(name) {
+  setText(element('delete-title'), `Delete “${name}”?`);
+  return ask(element('delete-dialog'));
+}

@@ -1,0 +1,69 @@
+#include "config.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+Config config_of(const char* text) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json", text);
+  return read_config(folder.path() / "octurn.json");
+}
+
+TEST(Config, ReadsEveryKey) {
+  const Config config =
+      config_of(R"({"listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"],
+                                      "data": "/srv/scans", "threads": 2, "memory_limit_mb": 64,
+                                      "scan": {"snapshots": 12}})");
+  EXPECT_EQ(config.http.address, "127.0.0.1");
+  EXPECT_EQ(config.http.port, 80);
+  EXPECT_EQ(config.host_names, std::vector<std::string>{"octurn.example"});
+  EXPECT_EQ(config.data, "/srv/scans");
+  EXPECT_EQ(config.limits.threads, 2);
+  EXPECT_EQ(config.limits.memory_bytes, 64U << 20U);
+  EXPECT_EQ(config.scan.snapshots, 12);
+}
+
+TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {
+  const Config config = config_of("{}");
+  EXPECT_EQ(config.http.port, 8080);
+  EXPECT_EQ(config.scan.snapshots, 36);
+}
+
+TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {
+  for (const char* const text :
+       {R"({"port": 65536})", R"({"port": "80"})", R"({"listen": 1})", R"({"host_names": "a"})",
+        R"({"host_names": [1]})", R"({"data": false})", R"({"threads": 0})",
+        R"({"memory_limit_mb": 0})", R"({"ports": 80})"}) {
+    const Error error = error_thrown_by([&] { config_of(text); });
+    EXPECT_EQ(error.code(), "bad-config") << text;
+    const std::string key(text + 1, std::string(text).find(':') - 1);
+    EXPECT_NE(std::string(error.what()).find("octurn.json: " + key), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Config, NamesASettingByWhereItStands) {
+  const Error error = error_thrown_by([] { config_of(R"({"scan": {"frames": 0}})"); });
+  EXPECT_NE(std::string(error.what()).find("\"scan.frames\" is 0"), std::string::npos)
+      << error.what();
+}
+
+TEST(Config, RefusesWhatIsNoJson) {
+  EXPECT_EQ(code_thrown_by([] { config_of("{"); }), "bad-config");
+  EXPECT_EQ(code_thrown_by([] { config_of("[]"); }), "bad-config");
+  EXPECT_EQ(code_thrown_by([] { config_of(""); }), "bad-config");
+}
+
+TEST(Config, NeedNotExistUnlessItIsNamed) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_config_if_there(folder.path() / "none.json").http.port, 8080);
+  EXPECT_EQ(code_thrown_by([&] { read_config(folder.path() / "none.json"); }), "bad-config");
+}
+
+}  // namespace
+}  // namespace octurn

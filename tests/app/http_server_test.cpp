@@ -1,0 +1,170 @@
+#include "http/http_server.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "support/http_client.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Answers with what it was asked, as JSON.
+Response echo(const Request& request) {
+  nlohmann::json said{{"method", request.method}, {"path", request.path}, {"body", request.body}};
+  for (const auto& [name, value] : request.headers) {
+    said["headers"][name] = value;
+  }
+  return {.headers = {{"Content-Type", "application/json"}}, .body = said.dump()};
+}
+
+HttpServer echo_server() { return {{.address = "127.0.0.1", .port = 0, .patience = 1s}, echo}; }
+
+nlohmann::json said(const Reply& reply) { return nlohmann::json::parse(reply.body); }
+
+TEST(HttpServer, HandsOverTheWholeRequest) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const Reply reply =
+      request(server.port(), "POST", "/a%20b/c?query=1", R"({"x":1})", {{"X-Test", "yes"}});
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(said(reply)["method"], "POST");
+  EXPECT_EQ(said(reply)["path"], "/a b/c");
+  EXPECT_EQ(said(reply)["body"], R"({"x":1})");
+  EXPECT_EQ(said(reply)["headers"]["X-Test"], "yes");
+}
+
+TEST(HttpServer, TakesABodyInChunks) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const Reply reply = reply_to(server.port(),
+                               "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked"
+                               "\r\n\r\n3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n");
+  EXPECT_EQ(said(reply)["body"], "abcde");
+}
+
+TEST(HttpServer, SaysTheLengthAndWhatEveryPageMayDo) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const Reply reply = request(server.port(), "GET", "/");
+  EXPECT_EQ(reply.header("Content-Length"), std::to_string(reply.body.size()));
+  EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff");
+  EXPECT_NE(reply.header("Content-Security-Policy").find("default-src 'self'"), std::string::npos);
+  EXPECT_EQ(reply.header("Access-Control-Allow-Origin"), "");
+}
+
+TEST(HttpServer, AnswersAHeadWithoutTheBody) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const Reply whole = request(server.port(), "GET", "/");
+  const Reply head = request(server.port(), "HEAD", "/");
+  EXPECT_EQ(head.status, 200);
+  EXPECT_EQ(head.body, "");
+  EXPECT_EQ(std::stoul(head.header("Content-Length")), whole.body.size() + 1);  // HEAD for GET
+}
+
+TEST(HttpServer, LeavesPreflightsToItsOwner) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const Reply reply = request(server.port(), "OPTIONS", "/", "",
+                              {{"Origin", "http://evil.example"},
+                               {"Access-Control-Request-Method", "POST"},
+                               {"Access-Control-Request-Headers", "content-type"}});
+  EXPECT_EQ(said(reply)["method"], "OPTIONS");
+  EXPECT_EQ(reply.header("Access-Control-Allow-Origin"), "");
+  EXPECT_EQ(reply.header("Access-Control-Allow-Methods"), "");
+}
+
+TEST(HttpServer, SendsAPartOfAFile) {
+  const TemporaryFolder folder;
+  std::string content(300'000, '\0');
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    content[i] = static_cast<char>(i * 31 >> 3);
+  }
+  put(folder.path() / "file", content);
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+    return Response{
+        .status = 206,
+        .body = FileSlice{FileDescriptor(::open((folder.path() / "file").c_str(), O_RDONLY)), 1000,
+                          250'000}};
+  });
+  const Reply reply = request(server.port(), "GET", "/");
+  EXPECT_EQ(reply.status, 206);
+  EXPECT_EQ(reply.header("Content-Length"), "250000");
+  EXPECT_TRUE(reply.body == content.substr(1000, 250'000));
+}
+
+TEST(HttpServer, RefusesABodyThatIsTooLarge) {
+  const HttpServer server = echo_server();
+  EXPECT_EQ(request(server.port(), "POST", "/", std::string(65536, ' ')).status, 200);
+  EXPECT_EQ(request(server.port(), "POST", "/", std::string(65537, ' ')).status, 413);
+  const Reply announced = reply_to(server.port(),
+                                   "POST / HTTP/1.1\r\nHost: localhost\r\n"
+                                   "Content-Length: 99999999999999\r\n\r\n");
+  EXPECT_EQ(announced.status, 413);
+  std::string chunks = "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n";
+  for (int i = 0; i < 80; ++i) {
+    chunks += "400\r\n" + std::string(1024, 'x') + "\r\n";
+  }
+  EXPECT_EQ(reply_to(server.port(), chunks + "0\r\n\r\n").status, 413);
+}
+
+TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {
+  const HttpServer server = echo_server();
+  const std::string host = "Host: localhost\r\n\r\n";
+  for (const std::string& text : std::vector<std::string>{
+           "\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n" + host, "BREW / HTTP/1.1\r\n" + host,
+           "GET / HTTP/1.1\r\nHost localhost\r\n\r\n", std::string("\0\1\2\3\r\n\r\n", 8),
+           "POST / HTTP/1.1\r\nContent-Length: -5\r\n" + host,
+           "POST / HTTP/1.1\r\nContent-Length: abc\r\n" + host,
+           "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + host,
+           "GET / HTTP/1.1\r\nX: " + std::string(20000, 'a') + "\r\n" + host}) {
+    const Reply reply = reply_to(server.port(), text);
+    EXPECT_TRUE(reply.status == 0 || reply.status >= 400)
+        << reply.status << " for " << text.substr(0, 60);
+  }
+  EXPECT_EQ(request(server.port(), "GET", "/").status, 200);
+}
+
+TEST(HttpServer, EndsConnectionsThatStall) {
+  const HttpServer server = echo_server();  // waits for 1 s
+  const auto started = std::chrono::steady_clock::now();
+  for (const char* const text :
+       {"", "GET / HTT", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1234"}) {
+    const FileDescriptor socket = connected(server.port());
+    send_text(socket, text);
+    receive_all(socket);  // returns when the server closes
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - started, 10s);
+}
+
+TEST(HttpServer, AnswersOthersWhileSomeStall) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  std::vector<FileDescriptor> stalled;
+  for (int i = 0; i < 10; ++i) {
+    stalled.push_back(connected(server.port()));
+    send_text(stalled.back(), "GET / HTTP/1.1\r\nHost: l");
+  }
+  const auto started = std::chrono::steady_clock::now();
+  EXPECT_EQ(request(server.port(), "GET", "/").status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - started, 2s);
+}
+
+TEST(HttpServer, SaysThatThePortIsTaken) {
+  const HttpServer first({.address = "127.0.0.1", .port = 0}, echo);
+  const Error error =
+      error_thrown_by([&] { HttpServer({.address = "127.0.0.1", .port = first.port()}, echo); });
+  EXPECT_EQ(error.code(), "listen-failed");
+  EXPECT_NE(std::string(error.what()).find(std::to_string(first.port())), std::string::npos);
+  EXPECT_NE(error.hint().find("--port"), std::string::npos);
+}
+
+TEST(HttpServer, SaysThatAnAddressIsNone) {
+  EXPECT_EQ(code_thrown_by([] { HttpServer({.address = "300.1.1.1", .port = 0}, echo); }),
+            "listen-failed");
+}
+
+}  // namespace
+}  // namespace octurn

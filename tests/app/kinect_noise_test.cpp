@@ -1,0 +1,282 @@
+// How the simulated Kinect's noise compares with that of real frames. The figures of the last
+// comparison are in simulated_kinect.hpp.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numeric>
+
+#include "app/simulated_frames.hpp"
+#include "octurn/depth_png.hpp"
+#include "support/shared_folder.hpp"
+
+namespace octurn {
+namespace {
+
+/// Readings of one frame, before they are rounded; 0 for none.
+using Readings = std::vector<double>;
+
+constexpr int width = 640;
+constexpr int height = 480;
+
+std::size_t index(int u, int v) { return static_cast<std::size_t>(v * width + u); }
+
+/// @param unit  of the frame's depths, metres
+Readings readings_of(const DepthFrame& frame, double unit) {
+  Readings readings(frame.depth.size(), 0);
+  std::ranges::transform(frame.depth, readings.begin(), [unit](std::uint16_t depth) {
+    return depth == 0 ? 0 : std::round(reading_of_depth(depth * unit));
+  });
+  return readings;
+}
+
+/// What is left of a square window when the plane that fits best is taken away. A plane is affine
+/// in u, v and reading.
+class PlaneWindow {
+ public:
+  static constexpr int side = 40;
+
+  /// @return false if a pixel is missing or far off: then the window is not of one plane
+  bool fit(const Readings& readings, int left, int top) {
+    double sum = 0;
+    double along_u = 0;
+    double along_v = 0;
+    for (int v = 0; v < side; ++v) {
+      for (int u = 0; u < side; ++u) {
+        const double reading = readings[index(left + u, top + v)];
+        if (reading == 0) {
+          return false;
+        }
+        at(u, v) = reading;
+        sum += reading;
+        along_u += reading * (u - middle);
+        along_v += reading * (v - middle);
+      }
+    }
+    mean_ = sum / (side * side);
+    constexpr double spread = side * (side * (side * side - 1) / 12.0);  // sum of (u - middle)^2
+    for (int v = 0; v < side; ++v) {
+      for (int u = 0; u < side; ++u) {
+        at(u, v) -= mean_ + along_u / spread * (u - middle) + along_v / spread * (v - middle);
+      }
+    }
+    return std::ranges::all_of(residual_, [](double off) { return std::abs(off) < 6; });
+  }
+
+  double depth() const { return 0.345489 / (1089.40 - mean_) * 1000; }  // metres
+
+  /// Mean product of residuals that lie (u, v) apart.
+  double covariance(int aside, int down) const {
+    double sum = 0;
+    for (int v = 0; v < side - down; ++v) {
+      for (int u = 0; u < side - aside; ++u) {
+        sum += at(u, v) * at(u + aside, v + down);
+      }
+    }
+    return sum / ((side - aside) * (side - down));
+  }
+
+ private:
+  static constexpr double middle = (side - 1) / 2.0;
+  double& at(int u, int v) { return residual_[static_cast<std::size_t>(v * side + u)]; }
+  double at(int u, int v) const { return residual_[static_cast<std::size_t>(v * side + u)]; }
+
+  double mean_ = 0;
+  std::array<double, std::size_t{side}* side> residual_ = {};
+};
+
+constexpr std::array<int, 5> lags = {1, 2, 4, 6, 12};  // pixels
+
+struct NoiseFigures {
+  std::array<double, 3> residual = {};   // readings, at 0.65, 0.75 and 0.85 m
+  std::array<double, 5> along_row = {};  // correlation at each of the lags
+  std::array<double, 5> along_column = {};
+  double whole_top_edges = 0;  // share of the upper edges of things that lose no pixel
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) {
+    return 0;
+  }
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// Columns in which something at least 25 mm nearer than what is above it begins, within 3 pixels:
+/// how many there are, and in how many no pixel is missing in between.
+std::pair<int, int> top_edges(const Readings& readings) {
+  int edges = 0;
+  int whole = 0;
+  for (int u = 0; u < width; ++u) {
+    int above = -1;
+    for (int v = 0; v < height; ++v) {
+      const double here = readings[index(u, v)];
+      if (here == 0) {
+        continue;
+      }
+      if (above >= 0 && v - above <= 4) {
+        const double step =
+            345.489 / (1089.40 - readings[index(u, above)]) - 345.489 / (1089.40 - here);
+        if (step > 0.025 && step < 0.4) {
+          ++edges;
+          whole += v == above + 1 ? 1 : 0;
+        }
+      }
+      above = v;
+    }
+  }
+  return {edges, whole};
+}
+
+NoiseFigures figures_of(const std::vector<Readings>& frames) {
+  std::array<std::vector<double>, 3> residuals;
+  std::vector<PlaneWindow> windows;
+  int edges = 0;
+  int whole_edges = 0;
+  for (const Readings& readings : frames) {
+    for (int top = 0; top + PlaneWindow::side <= height; top += 20) {
+      for (int left = 0; left + PlaneWindow::side <= width; left += 20) {
+        PlaneWindow window;
+        const bool is_plane = window.fit(readings, left, top);
+        const auto band = static_cast<int>(std::floor((window.depth() - 0.6) / 0.1));
+        if (is_plane && band >= 0 && band < 3) {
+          residuals[static_cast<std::size_t>(band)].push_back(std::sqrt(window.covariance(0, 0)));
+          windows.push_back(window);
+        }
+      }
+    }
+    const auto [all, whole] = top_edges(readings);
+    edges += all;
+    whole_edges += whole;
+  }
+  const auto mean_covariance = [&windows](int aside, int down) {
+    return std::accumulate(
+        windows.begin(), windows.end(), 0.0,
+        [&](double sum, const auto& window) { return sum + window.covariance(aside, down); });
+  };
+  NoiseFigures figures;
+  std::ranges::transform(residuals, figures.residual.begin(), median);
+  for (std::size_t i = 0; i < lags.size(); ++i) {
+    figures.along_row[i] = mean_covariance(lags[i], 0) / mean_covariance(0, 0);
+    figures.along_column[i] = mean_covariance(0, lags[i]) / mean_covariance(0, 0);
+  }
+  figures.whole_top_edges = static_cast<double>(whole_edges) / std::max(edges, 1);
+  return figures;
+}
+
+std::filesystem::path real_frames() { return shared_folder() / "reference/real-depth"; }
+
+std::vector<Readings> simulated_readings() {
+  std::vector<Readings> frames;
+  for (const int seed : {1, 2, 3}) {
+    const std::string uri = "octurn-simulator://?seed=" + std::to_string(seed);
+    frames.push_back(readings_of(frame_of(uri, 0.7 * seed).frame, 0.0001));
+  }
+  return frames;
+}
+
+void show(const char* name, const NoiseFigures& figures) {
+  std::printf("%-9s residual", name);
+  for (const double residual : figures.residual) {
+    std::printf(" %.2f", residual);
+  }
+  std::printf("  along a row");
+  for (const double correlation : figures.along_row) {
+    std::printf(" %.2f", correlation);
+  }
+  std::printf("  along a column");
+  for (const double correlation : figures.along_column) {
+    std::printf(" %.2f", correlation);
+  }
+  std::printf("  whole edges %.2f\n", figures.whole_top_edges);
+}
+
+TEST(KinectNoise, LooksLikeThatOfRealFrames) {
+  if (!std::filesystem::is_directory(real_frames())) {
+    GTEST_SKIP() << "no real frames in " << real_frames()
+                 << ": set OCTURN_SHARED to the folder that holds reference/real-depth";
+  }
+  std::vector<Readings> real;
+  for (const auto& file : std::filesystem::directory_iterator(real_frames())) {
+    // Frames of one unit and one way of writing; the others are of another unit.
+    if (file.path().filename().string().starts_with("learn")) {
+      const std::string png = content_of(file.path());
+      real.push_back(readings_of(
+          decode_depth_png(file.path().string(), std::as_bytes(std::span(png)), width, height),
+          0.001));
+    }
+  }
+  ASSERT_EQ(real.size(), 8U);
+
+  const NoiseFigures expected = figures_of(real);
+  const NoiseFigures simulated = figures_of(simulated_readings());
+  show("real", expected);
+  show("simulated", simulated);
+
+  for (std::size_t i = 0; i < expected.residual.size(); ++i) {
+    EXPECT_NEAR(simulated.residual[i] / expected.residual[i], 1, 0.12) << i;
+  }
+  for (std::size_t i = 0; i < lags.size(); ++i) {
+    EXPECT_NEAR(simulated.along_row[i], expected.along_row[i], 0.15) << lags[i];
+    EXPECT_NEAR(simulated.along_column[i], expected.along_column[i], 0.15) << lags[i];
+  }
+  EXPECT_NEAR(simulated.whole_top_edges, expected.whole_top_edges, 0.15);
+}
+
+/// How far depths of 0.60 to 0.70 m are from the platform's plane, root mean square, millimetres.
+double platform_error_mm(const std::vector<double>& depths) {
+  const Eigen::Isometry3d pose = nominal_platform_from_sensor();
+  double squares = 0;
+  int count = 0;
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width - 8; ++u) {
+      const Eigen::Vector3d ray = pose.linear() * ray_of(u, v);
+      const double truth = -pose.translation().z() / ray.z();
+      const double radius = (pose.translation() + truth * ray).head<2>().norm();
+      const double depth = depths[index(u, v)];
+      if (depth > 0 && truth > 0.60 && truth < 0.70 && radius > 0.02 && radius < 0.14) {
+        squares += (depth - truth) * (depth - truth);
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 5000);
+  return mm_from_metres(std::sqrt(squares / count));
+}
+
+TEST(KinectNoise, FallsToHalfWhenTenFramesAreAveragedAndNoFurther) {
+  const BoxesOnPlatform speck({{Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(1, 1, 1)}});
+  DepthSensor sensor(speck.uri(1, 5));
+  std::vector<double> sum(std::size_t{width} * height, 0.0);
+  std::vector<double> count(sum.size(), 0.0);
+  const auto mean = [&] {
+    std::vector<double> depths(sum.size());
+    std::ranges::transform(sum, count, depths.begin(),
+                           [](double all, double times) { return times > 0 ? all / times : 0; });
+    return depths;
+  };
+  std::array<double, 3> errors = {};
+  for (int frame = 1; frame <= 30; ++frame) {
+    const DepthFrame taken = sensor.read({})->frame;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += taken.depth[i] * 0.0001;
+      count[i] += taken.depth[i] == 0 ? 0 : 1;
+    }
+    if (frame == 1 || frame == 10 || frame == 30) {
+      errors[frame == 1 ? 0 : frame == 10 ? 1 : 2] = platform_error_mm(mean());
+    }
+  }
+  std::printf("error of 1, 10 and 30 frames: %.2f %.2f %.2f mm\n", errors[0], errors[1], errors[2]);
+
+  // An independent model of the Kinect gave 1.17, 0.63 and 0.57 mm over whole objects.
+  EXPECT_NEAR(errors[0], 1.17, 0.2);
+  EXPECT_NEAR(errors[1], 0.63, 0.1);
+  EXPECT_NEAR(errors[2], 0.57, 0.1);
+}
+
+}  // namespace
+}  // namespace octurn

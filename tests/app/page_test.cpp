@@ -1,0 +1,65 @@
+#include "http/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+class PageTest : public ::testing::Test {
+ protected:
+  PageTest() {
+    put(folder_.path() / "index.html", "<!doctype html>");
+    put(folder_.path() / "app.js", "export {};");
+    put(folder_.path() / "lib" / "three.js", "export const REVISION = 1;");
+    put(folder_.path() / "notes.md", "not for the page");
+    put(folder_.path() / "icon.svg", "<svg/>");
+  }
+
+  Response get(const std::string& path, Headers headers = {}) const {
+    return Page(folder_.path()).file({.path = path, .headers = std::move(headers)});
+  }
+
+  static std::string value_of(const Response& response, std::string_view name) {
+    const auto found =
+        std::ranges::find(response.headers, name, &std::pair<std::string, std::string>::first);
+    return found == response.headers.end() ? "" : found->second;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PageTest, GivesItsFilesWithTheirTypes) {
+  EXPECT_EQ(std::get<std::string>(get("/").body), "<!doctype html>");
+  EXPECT_EQ(value_of(get("/"), "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(value_of(get("/app.js"), "Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(value_of(get("/icon.svg"), "Content-Type"), "image/svg+xml");
+  EXPECT_EQ(std::get<std::string>(get("/lib/three.js").body), "export const REVISION = 1;");
+}
+
+TEST_F(PageTest, GivesNothingElse) {
+  put(folder_.path().parent_path() / (folder_.path().filename().string() + ".js"), "outside");
+  for (const std::string& path :
+       std::vector<std::string>{"/notes.md", "/lib", "/lib/", "", "//",
+                                "/../" + folder_.path().filename().string() + ".js",
+                                "/lib/../app.js", "/app.js/", "/App.js"}) {
+    EXPECT_EQ(code_thrown_by([&] { get(path); }), "not-found") << path;
+  }
+  std::filesystem::remove(folder_.path().string() + ".js");
+}
+
+TEST_F(PageTest, IsNotSentAgainUntilItChanges) {
+  const std::string tag = value_of(get("/app.js"), "ETag");
+  EXPECT_EQ(get("/app.js", {{"If-None-Match", tag}}).status, 304);
+  put(folder_.path() / "app.js", "export { };");
+  EXPECT_EQ(get("/app.js", {{"If-None-Match", tag}}).status, 200);
+}
+
+TEST_F(PageTest, SaysThatThereIsNone) {
+  EXPECT_EQ(code_thrown_by([&] { Page(folder_.path() / "lib"); }), "page-missing");
+}
+
+}  // namespace
+}  // namespace octurn

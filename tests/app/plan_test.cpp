@@ -1,0 +1,50 @@
+#include "scan/plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace octurn {
+namespace {
+
+TEST(Plan, DividesATurnThatDividesEvenly) {
+  EXPECT_EQ(stop_positions(0, 800, 8), (std::vector<int>{0, 100, 200, 300, 400, 500, 600, 700}));
+}
+
+TEST(Plan, StopsAtTheNearestMicrostepWhereItDoesNot) {
+  // 800 / 3 = 266.67 and 533.33; 800 / 64 = 12.5, whose half is rounded up.
+  EXPECT_EQ(stop_positions(0, 800, 3), (std::vector<int>{0, 267, 533}));
+  EXPECT_EQ(stop_positions(0, 800, 64)[1], 13);
+  EXPECT_EQ(stop_positions(0, 800, 64)[2], 25);
+}
+
+TEST(Plan, SumsToOneTurnExactly) {
+  for (const int steps : {200, 800, 3200, 12345}) {
+    for (int stops = 1; stops <= 200; ++stops) {
+      const std::vector<int> positions = stop_positions(0, steps, stops);
+      ASSERT_EQ(positions.size(), static_cast<std::size_t>(stops));
+      EXPECT_EQ(positions.front(), 0);
+      for (int stop = 0; stop < stops; ++stop) {
+        const double exact = static_cast<double>(stop) * steps / stops;
+        EXPECT_LE(std::abs(positions[static_cast<std::size_t>(stop)] - exact), 0.5 + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Plan, BeginsAtTheNextWholeTurnSoThatThePlatformTurnsOneWay) {
+  EXPECT_EQ(stop_positions(700, 800, 2), (std::vector<int>{800, 1200}));
+  EXPECT_EQ(stop_positions(800, 800, 2), (std::vector<int>{800, 1200}));
+  EXPECT_EQ(stop_positions(-100, 800, 2), (std::vector<int>{0, 400}));
+}
+
+TEST(Plan, TellsTheAngleOfAPosition) {
+  EXPECT_EQ(angle_deg_at(0, 800), 0.0);
+  EXPECT_EQ(angle_deg_at(200, 800), 90.0);
+  EXPECT_EQ(angle_deg_at(267, 800), 120.15);
+  EXPECT_EQ(angle_deg_at(1000, 800), 90.0);
+  EXPECT_EQ(angle_deg_at(-200, 800), 270.0);
+}
+
+}  // namespace
+}  // namespace octurn

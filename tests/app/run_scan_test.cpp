@@ -1,0 +1,200 @@
+#include "scan/run_scan.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <vector>
+
+#include "octurn/scan_folder.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Twenty times faster than life: a stop takes about 50 ms.
+constexpr const char* simulator = "octurn-simulator://?speed=20";
+
+RigOptions rig_of(const std::string& uri = simulator) { return {.sensor_uri = uri, .speed = 20}; }
+
+ScanSettings few_snapshots(int snapshots = 3) {
+  return {.snapshots = snapshots, .frames = 2, .leaf_size = 0.004};
+}
+
+/// The images that a scan folder holds.
+int snapshots_in(const fs::path& folder) {
+  return static_cast<int>(
+      std::distance(fs::directory_iterator(folder / "snapshots"), fs::directory_iterator()));
+}
+
+TEST(RunScan, StoresAScanThatGivesTheSameModelLater) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  const auto model = run_scan(few_snapshots(), {}, folder.path(), rig, {}, {});
+  ASSERT_TRUE(model);
+  EXPECT_TRUE(model->report.watertight);
+  EXPECT_GT(model->report.triangles, 1000U);
+
+  const Scan scan = read_scan(folder.path());
+  const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t shot) {
+                                   return read_snapshot(folder.path(), scan, scan.shots[shot]);
+                                 }};
+  Reconstruction again(reconstruct_options(few_snapshots(), {.threads = 1}));
+  again.add(snapshots);
+  write_model(again, snapshots, folder.path() / "again.stl", {});
+  EXPECT_TRUE(content_of(folder.path() / "Scan.stl") == content_of(folder.path() / "again.stl"));
+}
+
+TEST(RunScan, TellsTheAngleOfEachStopAndTheSettings) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}));
+  const Scan scan = read_scan(folder.path());
+  ASSERT_EQ(scan.shots.size(), 3U);
+  const double steps = rig.turntable().steps_per_turn();
+  for (std::size_t i = 0; i < 3; ++i) {
+    // Whole microsteps: half of one is how far a stop may be from a third of a turn.
+    const double third = 2 * std::numbers::pi / 3 * static_cast<double>(i);
+    EXPECT_NEAR(scan.shots[i].angle, third, std::numbers::pi / steps + 1e-9);
+    EXPECT_NEAR(std::remainder(scan.shots[i].angle, 2 * std::numbers::pi / steps), 0, 1e-9);
+  }
+  EXPECT_EQ(scan.clip.max, few_snapshots().clip.max);
+  EXPECT_TRUE(scan.platform_from_sensor.isApprox(few_snapshots().platform_from_sensor));
+}
+
+TEST(RunScan, TurnsOneWayAndSeesTheSameAgain) {
+  const TemporaryFolder first;
+  const TemporaryFolder second;
+  Rig rig(rig_of("octurn-simulator://?speed=20&noise=0"));
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, first.path(), rig, {}, {}));
+  const int position = rig.turntable().position();
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, second.path(), rig, {}, {}));
+  EXPECT_EQ(rig.turntable().position(), position + rig.turntable().steps_per_turn());
+  EXPECT_TRUE(content_of(first.path() / "Scan.stl") == content_of(second.path() / "Scan.stl"));
+}
+
+TEST(RunScan, TakesOneFrameAStopForTheBasicFilter) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  ScanSettings settings = few_snapshots();
+  settings.filter = DepthFilter::basic;
+  int frames = 0;
+  ASSERT_TRUE(run_scan(settings, {}, folder.path(), rig, {},
+                       {.on_frame = [&](const DepthFrame&, double) { ++frames; }}));
+  EXPECT_EQ(frames, 3);
+}
+
+TEST(RunScan, GoesThroughItsPhasesInOrder) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  std::vector<std::pair<Phase, int>> seen;
+  ASSERT_TRUE(
+      run_scan(few_snapshots(2), {}, folder.path(), rig, {},
+               {.on_progress = [&](Phase phase, int done) { seen.emplace_back(phase, done); }}));
+  EXPECT_EQ(seen, (std::vector<std::pair<Phase, int>>{{Phase::turning, 0},
+                                                      {Phase::capturing, 0},
+                                                      {Phase::turning, 1},
+                                                      {Phase::capturing, 1},
+                                                      {Phase::building, 2}}));
+}
+
+TEST(RunScan, HasASnapshotOnTheDiskBeforeThePlatformMovesOn) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  const auto check = [&](Phase phase, int done) {
+    if (phase == Phase::turning && done > 0) {
+      const Scan scan = read_scan(folder.path());
+      EXPECT_EQ(scan.shots.size(), static_cast<std::size_t>(done));
+      read_snapshot(folder.path(), scan, scan.shots.back());
+    }
+  };
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {.on_progress = check}));
+}
+
+TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
+  for (const auto& moment :
+       {std::pair{Phase::turning, 1}, {Phase::capturing, 1}, {Phase::building, 3}}) {
+    const TemporaryFolder folder;
+    Rig rig(rig_of());
+    std::stop_source stop;
+    const auto stop_in_phase = [&](Phase now, int done) {
+      if (std::pair(now, done) == moment) {
+        stop.request_stop();
+      }
+    };
+    EXPECT_FALSE(run_scan(few_snapshots(), {}, folder.path(), rig, stop.get_token(),
+                          {.on_progress = stop_in_phase}))
+        << name_of(moment.first);
+    EXPECT_EQ(snapshots_in(folder.path()), moment.second) << name_of(moment.first);
+    EXPECT_EQ(read_scan(folder.path()).shots.size(), static_cast<std::size_t>(moment.second));
+    EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
+    // Nothing but the contract's files: no part of a model is left.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << name_of(moment.first);
+  }
+}
+
+TEST(RunScan, FailsWhenTheSensorFallsSilentAndKeepsWhatWasStored) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of("octurn-simulator://?speed=20&silent-after=60"));
+  const Error error =
+      error_thrown_by([&] { run_scan(few_snapshots(200), {}, folder.path(), rig, {}, {}); });
+  EXPECT_EQ(error.code(), "sensor-silent");
+  EXPECT_FALSE(error.hint().empty());
+  const Scan scan = read_scan(folder.path());
+  EXPECT_GE(scan.shots.size(), 1U);
+  EXPECT_EQ(snapshots_in(folder.path()), static_cast<int>(scan.shots.size()));
+}
+
+TEST(RunScan, FailsWhenTheSensorIsUnplugged) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of("octurn-simulator://?speed=20&lost-after=60"));
+  EXPECT_EQ(code_thrown_by([&] { run_scan(few_snapshots(200), {}, folder.path(), rig, {}, {}); }),
+            "sensor-lost");
+}
+
+TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  ScanSettings settings = few_snapshots();
+  settings.clip = {.min = {0.1, 0.1, 0.35}, .max = {0.12, 0.12, 0.39}};
+  EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }),
+            "model-empty");
+}
+
+/// Files of this process take no more than so many bytes, which a full disk looks like.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_ = {};
+};
+
+TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
+  for (const rlim_t bytes : {10'000U, 400'000U}) {  // no room for a snapshot; none for the model
+    const TemporaryFolder folder;
+    Rig rig(rig_of());
+    const FileSizeLimit limit(bytes);
+    const Error error =
+        error_thrown_by([&] { run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}); });
+    EXPECT_EQ(error.code(), "disk-full") << bytes;
+    EXPECT_EQ(fs::exists(folder.path() / "Scan.stl"), false);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder.path())) {
+      EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,81 @@
+#include "http/same_origin.hpp"
+
+#include <gtest/gtest.h>
+
+namespace octurn {
+namespace {
+
+const std::vector<std::string> ours{"scanner.example"};
+
+std::string code(const Request& request) {
+  const auto refused = refusal(request, ours);
+  return refused ? refused->code : "";
+}
+
+Request get(const char* host) { return {.headers = {{"Host", host}}}; }
+
+Request post(Headers headers) {
+  Request request{.method = "POST", .headers = {{"Host", "octurn.local:8080"}}};
+  request.headers.insert(request.headers.end(), headers.begin(), headers.end());
+  return request;
+}
+
+TEST(SameOrigin, AnswersUnderNamesThatNobodyElseCanOwn) {
+  for (const char* const host :
+       {"localhost", "localhost:8080", "127.0.0.1:8080", "192.168.1.5", "[::1]:8080", "[fe80::1]",
+        "octurn", "octurn.local", "OCTURN.LOCAL:80", "octurn.lan", "scanner.example",
+        "octurn.home.arpa"}) {
+    EXPECT_EQ(code(get(host)), "") << host;
+  }
+}
+
+TEST(SameOrigin, RefusesNamesThatAnotherSiteMayPointHere) {
+  for (const char* const host :
+       {"evil.example", "127.0.0.1.evil.example", "octurn.local.evil.example", "xscanner.example",
+        "evillocal.example:8080", "", ":8080", ".local", "1.2.3.4.5", "[evil.example]"}) {
+    EXPECT_EQ(code(get(host)), "wrong-host") << host;
+  }
+  EXPECT_EQ(code({}), "wrong-host");
+}
+
+TEST(SameOrigin, LetsItsOwnPageChangeThings) {
+  const std::pair<std::string, std::string> json{"Content-Type", "application/json"};
+  EXPECT_EQ(code(post({json})), "");
+  EXPECT_EQ(code(post({json, {"Origin", "http://octurn.local:8080"}})), "");
+  EXPECT_EQ(code(post({{"content-type", "Application/JSON; charset=utf-8"}})), "");
+}
+
+TEST(SameOrigin, RefusesOtherPages) {
+  for (const char* const origin :
+       {"http://evil.example", "http://octurn.local", "http://octurn.local:80801", "null", "",
+        "octurn.local:8080", "http://octurn.local:8080.evil.example"}) {
+    EXPECT_EQ(code(post({{"Content-Type", "application/json"}, {"Origin", origin}})),
+              "wrong-origin")
+        << origin;
+  }
+}
+
+TEST(SameOrigin, RefusesWhatAFormCanSend) {
+  for (const char* const type : {"text/plain", "application/x-www-form-urlencoded",
+                                 "multipart/form-data", "", "application/jsonp"}) {
+    EXPECT_EQ(code(post({{"Content-Type", type}})), "wrong-content-type") << type;
+  }
+  EXPECT_EQ(code(post({})), "wrong-content-type");
+}
+
+TEST(SameOrigin, LetsADeleteGoWithoutAType) {
+  Request request = post({});
+  request.method = "DELETE";
+  EXPECT_EQ(code(request), "");
+  request.headers.emplace_back("Origin", "http://evil.example");
+  EXPECT_EQ(code(request), "wrong-origin");
+}
+
+TEST(SameOrigin, LetsAnyPageLink) {
+  Request request = get("octurn.local");
+  request.headers.emplace_back("Origin", "http://evil.example");
+  EXPECT_EQ(code(request), "");  // it cannot read the answer, and nothing changes
+}
+
+}  // namespace
+}  // namespace octurn

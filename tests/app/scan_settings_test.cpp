@@ -1,0 +1,97 @@
+#include "scan/scan_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+ScanSettings parsed(const char* text) { return settings_from(json::parse(text), {}); }
+
+TEST(ScanSettings, TakesMillimetresAndKeepsMetres) {
+  const ScanSettings settings = parsed(R"({"leaf_size_mm": 2, "root_size_mm": 500,
+                                           "clip_mm": [-100, -90, 5, 100, 90, 300]})");
+  EXPECT_DOUBLE_EQ(settings.leaf_size, 0.002);
+  EXPECT_DOUBLE_EQ(settings.root_size, 0.5);
+  EXPECT_DOUBLE_EQ(settings.clip.min.y(), -0.09);
+  EXPECT_DOUBLE_EQ(settings.clip.max.z(), 0.3);
+}
+
+TEST(ScanSettings, KeepsTheDefaultOfAKeyThatIsNotGiven) {
+  ScanSettings defaults;
+  defaults.frames = 17;
+  const ScanSettings settings = settings_from(json{{"snapshots", 5}}, defaults);
+  EXPECT_EQ(settings.snapshots, 5);
+  EXPECT_EQ(settings.frames, 17);
+}
+
+TEST(ScanSettings, ComeBackAsTheyWereWritten) {
+  const json written = json_of(ScanSettings{});
+  EXPECT_EQ(
+      json_of(settings_from(written, parsed(R"({"snapshots": 3, "clip_mm": [0,0,0,1,1,1]})"))),
+      written);
+  EXPECT_EQ(written["leaf_size_mm"], 1.0);
+  EXPECT_EQ(written["clip_mm"], json::parse("[-140.0, -140.0, 5.0, 140.0, 140.0, 400.0]"));
+}
+
+TEST(ScanSettings, RefuseWhatIsOutOfRangeAndNameIt) {
+  const char* const wrong[] = {
+      R"({"snapshots": 0})",
+      R"({"snapshots": 201})",
+      R"({"snapshots": 2.5})",
+      R"({"snapshots": "8"})",
+      R"({"snapshots": null})",
+      R"({"filter": "kalman"})",
+      R"({"filter": 1})",
+      R"({"frames": 0})",
+      R"({"frames": 1e9})",
+      R"({"leaf_size_mm": 0})",
+      R"({"leaf_size_mm": -1})",
+      R"({"leaf_size_mm": 1001})",
+      R"({"leaf_size_mm": []})",
+      R"({"threshold_m2": 0})",
+      R"({"threshold_m2": true})",
+      R"({"root_size_mm": 0})",
+      R"({"root_size_mm": 1e300})",
+      R"({"clip_mm": [0,0,0,1,1]})",
+      R"({"clip_mm": 5})",
+      R"({"clip_mm": [0,0,0,1,1,0]})",
+      R"({"clip_mm": [0,0,0,1,1,"a"]})",
+      R"({"clip_mm": [0,0,0,1,1,1e9]})",
+      R"({"platform_from_sensor": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})",
+      R"({"platform_from_sensor": [[1,0,0,0],[0,1,0,0],[0,0,2,0],[0,0,0,1]]})",
+      R"({"platform_from_sensor": [[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]})",
+      R"({"platform_from_sensor": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]})",
+      R"({"platform_from_sensor": [1, 2, 3, 4]})",
+  };
+  for (const char* const text : wrong) {
+    const Error error = error_thrown_by([&] { parsed(text); });
+    const std::string key = json::parse(text).begin().key();
+    EXPECT_EQ(error.code(), "bad-settings") << text;
+    EXPECT_NE(std::string(error.what()).find("\"" + key + "\""), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("must be"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ScanSettings, RefuseALeafLargerThanTheRoot) {
+  EXPECT_EQ(code_thrown_by([] { parsed(R"({"root_size_mm": 100, "leaf_size_mm": 101})"); }),
+            "bad-settings");
+}
+
+TEST(ScanSettings, RefuseAKeyThatIsNone) {
+  const Error error = error_thrown_by([] { parsed(R"({"leaf_size": 1})"); });
+  EXPECT_EQ(std::string(error.what()), "\"leaf_size\": unknown key");
+  EXPECT_NE(error.hint().find("leaf_size_mm"), std::string::npos);
+}
+
+TEST(ScanSettings, RefuseWhatIsNoObject) {
+  EXPECT_EQ(code_thrown_by([] { parsed("[1]"); }), "bad-settings");
+}
+
+}  // namespace
+}  // namespace octurn

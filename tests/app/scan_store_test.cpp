@@ -1,0 +1,206 @@
+#include "scan/scan_store.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "octurn/scan_folder.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of scans, as a process that was killed would leave it when `leave` returns.
+void leave_behind(const fs::path& data, const std::function<void(const ScanStore&)>& leave) {
+  const ScanStore store(data);
+  leave(store);
+}
+
+TEST(ScanId, HasOneFormOnly) {
+  EXPECT_TRUE(is_scan_id("20261121-081500-3f2a"));
+  for (const char* const text :
+       {"", ".", "..", "../../etc/passwd", "20261121-081500-3f2", "20261121-081500-3f2a/",
+        "20261121-081500-3F2A", "2026112a-081500-3f2a", "20261121/081500-3f2a",
+        "20261121-081500-3f2a\n", "20261121-081500-3f2g"}) {
+    EXPECT_FALSE(is_scan_id(text)) << text;
+  }
+}
+
+TEST(ScanStore, GivesANewScanAnIdAndKeepsWhatWasAskedFor) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  ScanSettings settings;
+  settings.snapshots = 5;
+  const Job job = store.create(settings);
+  EXPECT_TRUE(is_scan_id(job.id)) << job.id;
+  const auto found = store.find(job.id);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(json_of(*found), json_of(job));
+  EXPECT_EQ(found->state, JobState::running);
+  EXPECT_EQ(found->settings.snapshots, 5);
+}
+
+TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  Job job = store.create({});
+  job.state = JobState::finished;
+  job.phase = Phase::done;
+  job.snapshots_done = 36;
+  job.elapsed = std::chrono::milliseconds(12345);
+  job.model = Model{.report = {.leaves = 11,
+                               .triangles = 22,
+                               .bytes = 1184,
+                               .watertight = true,
+                               .volume = 0.000123,
+                               .size = {0.12, 0.095, 0.151}},
+                    .build_time = std::chrono::milliseconds(80)};
+  store.save(job);
+  const auto found = store.find(job.id);
+  ASSERT_TRUE(found && found->model);
+  EXPECT_EQ(json_of(*found), json_of(job));
+  EXPECT_NEAR(found->model->report.volume, 0.000123, 1e-12);
+  EXPECT_EQ(store.newest_finished()->id, job.id);
+}
+
+TEST(ScanStore, ListsTheNewestFirst) {
+  const TemporaryFolder folder;
+  for (const char* const id :
+       {"20261121-081500-aaaa", "20251231-235959-ffff", "20270101-000000-0000"}) {
+    Job job{.id = id, .created = "2026-11-21T08:15:00Z"};
+    job.state = JobState::cancelled;
+    put(folder.path() / "scans" / id / "job.json", json_of(job).dump());
+  }
+  const ScanStore store(folder.path());
+  const std::vector<Job> jobs = store.list();
+  ASSERT_EQ(jobs.size(), 3U);
+  EXPECT_EQ(jobs[0].id, "20270101-000000-0000");
+  EXPECT_EQ(jobs[1].id, "20261121-081500-aaaa");
+  EXPECT_EQ(jobs[2].id, "20251231-235959-ffff");
+  EXPECT_FALSE(store.newest_finished());
+}
+
+TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots) {
+  const TemporaryFolder folder;
+  std::string id;
+  leave_behind(folder.path(), [&](const ScanStore& store) {
+    id = store.create({}).id;
+    Scan scan{.sensor_name = "test", .clip = {.min = {0, 0, 0}, .max = {1, 1, 1}}};
+    const DepthFrame frame{
+        .width = 640, .height = 480, .depth = std::vector<std::uint16_t>(640 * 480)};
+    for (int i = 0; i < 2; ++i) {
+      scan.shots.push_back({.file = shot_file(i)});
+      write_depth_png(store.folder(id) / shot_file(i), frame);
+    }
+    write_scan(store.folder(id), scan);
+    put(store.folder(id) / ".Scan.stl.abcdef", "half a model");
+    put(store.folder(id) / "snapshots" / ".002.png.abcdef", "half a snapshot");
+    put(folder.path() / "scans" / ".new-20261121-081500-aaaa" / "x", "");
+    put(folder.path() / "scans" / ".removed-20261121-081500-bbbb" / "x", "");
+  });
+
+  const ScanStore store(folder.path());
+  const auto job = store.find(id);
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->state, JobState::interrupted);
+  EXPECT_EQ(job->snapshots_done, 2);
+  EXPECT_EQ(job->failure->code, "interrupted");
+  EXPECT_TRUE(fs::exists(store.folder(id) / "snapshots" / "001.png"));
+  EXPECT_FALSE(fs::exists(store.folder(id) / ".Scan.stl.abcdef"));
+  EXPECT_FALSE(fs::exists(store.folder(id) / "snapshots" / ".002.png.abcdef"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "scans"), {}), 1);
+}
+
+TEST(ScanStore, ListsAScanWhoseRecordIsDamagedAsFailed) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  const Job job = store.create({});
+  const std::string whole = content_of(store.folder(job.id) / "job.json");
+  for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
+    put(store.folder(job.id) / "job.json", whole.substr(0, length));
+    const std::vector<Job> jobs = store.list();
+    ASSERT_EQ(jobs.size(), 1U);
+    EXPECT_EQ(jobs[0].id, job.id);
+    EXPECT_EQ(jobs[0].state, JobState::failed);
+    EXPECT_EQ(jobs[0].failure->code, "job-malformed");
+  }
+}
+
+TEST(ScanStore, ListsAScanWhoseRecordLacksAKeyAsFailed) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  const Job job = store.create({});
+  for (const char* const key : {"id", "name", "state", "phase", "created", "snapshots_done",
+                                "seconds_elapsed", "settings"}) {
+    nlohmann::json record = json_of(job);
+    record.erase(key);
+    put(store.folder(job.id) / "job.json", record.dump());
+    EXPECT_EQ(store.find(job.id)->failure->code, "job-malformed") << key;
+    record[key] = nlohmann::json::array();
+    put(store.folder(job.id) / "job.json", record.dump());
+    EXPECT_EQ(store.find(job.id)->failure->code, "job-malformed") << key;
+  }
+}
+
+TEST(ScanStore, RemovesAScanWithEverythingInIt) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  const Job job = store.create({});
+  put(store.folder(job.id) / "snapshots" / "000.png", "x");
+  store.remove(job.id);
+  EXPECT_FALSE(store.find(job.id));
+  EXPECT_TRUE(fs::is_empty(folder.path() / "scans"));
+  EXPECT_EQ(code_thrown_by([&] { store.remove(job.id); }), "no-such-scan");
+}
+
+TEST(ScanStore, NamesAScan) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  const Job job = store.create({});
+  store.rename(job.id, "Hase, groß");
+  store.save(job);  // the worker knows nothing of the name
+  EXPECT_EQ(store.find(job.id)->name, "Hase, groß");
+}
+
+TEST(ScanStore, TouchesNothingThatIsNoScan) {
+  const TemporaryFolder folder;
+  put(folder.path() / "secret" / "job.json", "{}");
+  const ScanStore store(folder.path());
+  for (const char* const id : {"../secret", "..", "", "."}) {
+    EXPECT_FALSE(store.find(id));
+    EXPECT_EQ(code_thrown_by([&] { store.remove(id); }), "no-such-scan");
+    EXPECT_EQ(code_thrown_by([&] { store.rename(id, "x"); }), "no-such-scan");
+  }
+  EXPECT_TRUE(fs::exists(folder.path() / "secret" / "job.json"));
+}
+
+TEST(ScanStore, BelongsToOneProcessAtATime) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  EXPECT_EQ(code_thrown_by([&] { ScanStore(folder.path()); }), "data-in-use");
+}
+
+TEST(ScanStore, SaysWhereItCannotWrite) {
+  const TemporaryFolder folder;
+  put(folder.path() / "file", "");
+  EXPECT_EQ(code_thrown_by([&] { ScanStore(folder.path() / "file"); }), "data-failed");
+}
+
+TEST(ScanStore, RefusesAScanThatMayNotFit) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  ScanSettings settings;
+  settings.snapshots = 2'000'000'000;  // more than any disk takes
+  const Error error = error_thrown_by([&] { store.create(settings); });
+  EXPECT_EQ(error.code(), "disk-full");
+  EXPECT_FALSE(error.hint().empty());
+  EXPECT_TRUE(store.list().empty());
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,169 @@
+#include "scan/scanner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+
+#include "octurn/scan_folder.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+ScanSettings few_snapshots(int snapshots = 3) {
+  return {.snapshots = snapshots, .frames = 2, .leaf_size = 0.004};
+}
+
+/// Waits until the status is as wanted; what it is then, wanted or not after 20 s.
+Status wait_until(const Scanner& scanner, const std::function<bool(const Status&)>& wanted) {
+  const auto deadline = std::chrono::steady_clock::now() + 20s;
+  Status status = scanner.status();
+  while (!wanted(status) && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+    status = scanner.status();
+  }
+  return status;
+}
+
+bool is_ready(const Status& status) { return status.sensor.state == DeviceStatus::State::ready; }
+
+class ScannerTest : public ::testing::Test {
+ protected:
+  static RigOptions rig() { return {.sensor_uri = "octurn-simulator://?speed=20", .speed = 20}; }
+
+  /// Scans to the end.
+  static Job scan(Scanner& scanner, const ScanSettings& settings) {
+    const auto started = scanner.start(settings);
+    EXPECT_TRUE(started);
+    const Status status = scanner.wait_until_done(20s);
+    EXPECT_FALSE(status.busy());
+    return *status.job;
+  }
+
+  TemporaryFolder folder_;
+  ScanStore store_{folder_.path()};
+};
+
+TEST_F(ScannerTest, TellsWhatItHasBeforeAnyScan) {
+  const Scanner scanner(rig(), {}, store_);
+  const Status status = wait_until(scanner, is_ready);
+  EXPECT_TRUE(is_ready(status));
+  EXPECT_NE(status.sensor.name.find("Kinect"), std::string::npos);
+  EXPECT_TRUE(status.sensor.simulated);
+  EXPECT_EQ(status.turntable.state, DeviceStatus::State::ready);
+  EXPECT_FALSE(status.job);
+}
+
+TEST_F(ScannerTest, ScansToTheEnd) {
+  Scanner scanner(rig(), {}, store_);
+  const Job job = scan(scanner, few_snapshots());
+  EXPECT_EQ(job.state, JobState::finished);
+  EXPECT_EQ(job.phase, Phase::done);
+  EXPECT_EQ(job.snapshots_done, 3);
+  ASSERT_TRUE(job.model);
+  EXPECT_TRUE(job.model->report.watertight);
+  EXPECT_EQ(std::filesystem::file_size(store_.model_file(job.id)), job.model->report.bytes);
+  const auto stored = store_.find(job.id);
+  EXPECT_EQ(stored->state, JobState::finished);
+  EXPECT_EQ(stored->model->report.triangles, job.model->report.triangles);
+}
+
+TEST_F(ScannerTest, RefusesASecondStartAndTakesTheNextOneAfterwards) {
+  Scanner scanner(rig(), {}, store_);
+  ASSERT_TRUE(scanner.start(few_snapshots()));
+  EXPECT_FALSE(scanner.start(few_snapshots()));
+  EXPECT_EQ(store_.list().size(), 1U);
+  scanner.wait_until_done(20s);
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
+}
+
+TEST_F(ScannerTest, CancelsAScanAndDoesTheNextOne) {
+  Scanner scanner(rig(), {}, store_);
+  const auto job = scanner.start(few_snapshots(200));
+  EXPECT_FALSE(scanner.cancel("20261121-081500-0000"));
+  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 2; });
+  const auto asked = std::chrono::steady_clock::now();
+  EXPECT_TRUE(scanner.cancel(job->id));
+  const Status status = scanner.wait_until_done(20s);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, 500ms);  // of which the disk may take some
+  EXPECT_EQ(status.job->state, JobState::cancelled);
+  EXPECT_EQ(store_.find(job->id)->state, JobState::cancelled);
+  EXPECT_GE(read_scan(store_.folder(job->id)).shots.size(), 2U);
+  EXPECT_FALSE(scanner.cancel(job->id));
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
+}
+
+TEST_F(ScannerTest, CountsDownWhatIsLeft) {
+  Scanner scanner(rig(), {}, store_);
+  ASSERT_TRUE(scanner.start(few_snapshots(20)));
+  EXPECT_FALSE(scanner.status().job->left);  // nothing has happened to tell it from
+  const Status early =
+      wait_until(scanner, [](const Status& s) { return s.job->snapshots_done >= 2; });
+  const Status late =
+      wait_until(scanner, [](const Status& s) { return s.job->snapshots_done >= 18; });
+  ASSERT_TRUE(early.job->left && late.job->left);
+  EXPECT_LT(*late.job->left, *early.job->left / 2);
+  EXPECT_GT(late.job->elapsed, early.job->elapsed);
+}
+
+TEST_F(ScannerTest, FailsWhenTheSensorFallsSilentAndOpensItAgainForTheNextScan) {
+  // Some seconds of frames: enough for a few snapshots, not for 200.
+  Scanner scanner({.sensor_uri = "octurn-simulator://?speed=4&silent-after=400", .speed = 20}, {},
+                  store_);
+  const Job failed = scan(scanner, few_snapshots(200));
+  EXPECT_EQ(failed.state, JobState::failed);
+  ASSERT_TRUE(failed.failure);
+  EXPECT_EQ(failed.failure->code, "sensor-silent");
+  EXPECT_EQ(scanner.status().sensor.state, DeviceStatus::State::failed);
+  EXPECT_GE(store_.find(failed.id)->snapshots_done, 1);
+  EXPECT_GE(read_scan(store_.folder(failed.id)).shots.size(), 1U);
+
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
+  EXPECT_EQ(scanner.status().sensor.state, DeviceStatus::State::ready);
+}
+
+TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
+  Scanner scanner({.sensor_uri = "/nowhere.oni", .speed = 20}, {}, store_);
+  const Status status = wait_until(scanner, [](const Status& s) {
+    return !s.sensor.message.empty() && s.sensor.message != "looking for the sensor";
+  });
+  EXPECT_EQ(status.sensor.state, DeviceStatus::State::missing);
+  EXPECT_EQ(code_thrown_by([&] { scanner.view(); }), "sensor-missing");
+  EXPECT_EQ(scan(scanner, few_snapshots()).failure->code, "sensor-missing");
+}
+
+TEST_F(ScannerTest, ShowsWhatTheSensorSeesNow) {
+  Scanner scanner(rig(), {}, store_);
+  const auto first = scanner.view();
+  EXPECT_EQ(first->frame.width, 640);
+  EXPECT_GT(std::ranges::count_if(first->frame.depth, [](auto depth) { return depth > 0; }),
+            100'000);
+  EXPECT_GT(scanner.view()->time, first->time - 1ms);
+}
+
+TEST_F(ScannerTest, ShowsWhatItSawLastDuringAScan) {
+  Scanner scanner(rig(), {}, store_);
+  ASSERT_TRUE(scanner.start(few_snapshots(50)));
+  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
+  EXPECT_EQ(scanner.view()->frame.height, 480);
+  EXPECT_TRUE(scanner.status().busy());
+}
+
+TEST_F(ScannerTest, CallsAScanInterruptedThatItsOwnEndCutsShort) {
+  std::string id;
+  {
+    Scanner scanner(rig(), {}, store_);
+    id = scanner.start(few_snapshots(200))->id;
+    wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
+  }
+  EXPECT_EQ(store_.find(id)->state, JobState::interrupted);
+  EXPECT_EQ(store_.find(id)->failure->code, "interrupted");
+  EXPECT_GE(read_scan(store_.folder(id)).shots.size(), 1U);
+}
+
+}  // namespace
+}  // namespace octurn

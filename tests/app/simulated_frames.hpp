@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/units.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "sensor/nominal_pose.hpp"
+#include "simulator/simulation.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+
+/// A frame of a Kinect v1 as tests look at it: readings computed back from depths, and the rays of
+/// pixels, by the formulas of the design and not by the simulator's code.
+struct KinectFrame {
+  DepthFrame frame = {};
+
+  double depth(int u, int v) const {  // metres
+    return metres_from_mm(frame.depth[static_cast<std::size_t>(v * 640 + u)] / 10.0);
+  }
+  bool is_seen(int u, int v) const {
+    return frame.depth[static_cast<std::size_t>(v * 640 + u)] != 0;
+  }
+};
+
+/// z = 345489 / (1089.40 - reading) mm, solved for the reading. @param depth  metres
+inline double reading_of_depth(double depth) { return 1089.40 - 345489 / mm_from_metres(depth); }
+
+/// The ray of a pixel in the optical frame, one metre deep.
+inline Eigen::Vector3d ray_of(double u, double v) {
+  return {(u - 320) / 575.8, (v - 240) / 575.8, 1};
+}
+
+/// Where a frame's pixel lies in the platform's frame at angle 0, metres.
+inline Eigen::Vector3d point_at(const KinectFrame& frame, int u, int v) {
+  return nominal_platform_from_sensor() * (frame.depth(u, v) * ray_of(u, v));
+}
+
+/// A frame that the sensor takes after its platform was turned.
+inline KinectFrame frame_at(DepthSensor& sensor, double angle) {
+  sensor.show_angle(angle);
+  const auto turned = std::chrono::steady_clock::now();
+  for (;;) {
+    TimedFrame timed = sensor.read({}).value();
+    if (timed.time >= turned) {
+      return {std::move(timed.frame)};
+    }
+  }
+}
+
+/// The same of a sensor opened for it.
+inline KinectFrame frame_of(const std::string& uri, double angle = 0) {
+  DepthSensor sensor(uri);
+  return frame_at(sensor, angle);
+}
+
+/// A sensor that sees boxes, given in millimetres.
+class BoxesOnPlatform {
+ public:
+  explicit BoxesOnPlatform(const std::vector<Eigen::AlignedBox3d>& boxes) {
+    std::string obj;
+    for (const Eigen::AlignedBox3d& box : boxes) {
+      for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+        obj += "v " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " " +
+               std::to_string(at.z()) + "\n";
+      }
+      // Corners are numbered by the bits of x, y and z.
+      obj +=
+          "f -8 -7 -5 -6\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -5 -1 -2\nf -8 -6 -2 -4\nf -7 -5 -1 "
+          "-3\n";
+    }
+    put(folder_.path() / "boxes.obj", obj);
+  }
+
+  std::string uri(double noise = 0, double speed = 1) const {
+    return simulation_uri(
+        {.mesh_file = folder_.path() / "boxes.obj", .noise = noise, .speed = speed});
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+}  // namespace octurn

@@ -1,0 +1,189 @@
+#include "octurn/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <iterator>
+#include <string>
+
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+std::ptrdiff_t files_in(const std::filesystem::path& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder), {});
+}
+
+/// Files may not grow past `bytes` while this lives, as if the disk were full.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+/// What root may do, its tests must not rely on: acts as nobody while this lives.
+class WithoutPrivileges {
+ public:
+  WithoutPrivileges() {
+    if (::geteuid() == 0) {
+      EXPECT_EQ(::seteuid(65534), 0);
+    }
+  }
+  ~WithoutPrivileges() { EXPECT_EQ(::seteuid(::getuid()), 0); }
+  WithoutPrivileges(const WithoutPrivileges&) = delete;
+  WithoutPrivileges& operator=(const WithoutPrivileges&) = delete;
+};
+
+TEST(AtomicFile, AppearsWithItsWholeContentWhenCommitted) {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.path() / "Scan.stl";
+  AtomicFile file(target);
+  file.write(bytes_of("solid "));
+  file.write(bytes_of("vase"));
+  EXPECT_FALSE(std::filesystem::exists(target));
+
+  file.commit();
+
+  EXPECT_EQ(content_of(target), "solid vase");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, OverwritesInPlaceWithoutMovingItsEnd) {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.path() / "Scan.stl";
+  AtomicFile file(target);
+  file.write(bytes_of("count=????;"));
+
+  file.write_at(6, bytes_of("1234"));
+  file.write(bytes_of("end"));
+  file.commit();
+
+  EXPECT_EQ(content_of(target), "count=1234;end");
+}
+
+TEST(AtomicFile, LeavesNothingBehindWhenNotCommitted) {
+  const TemporaryFolder folder;
+  {
+    AtomicFile file(folder.path() / "Scan.stl");
+    file.write(bytes_of("half a model"));
+    EXPECT_EQ(files_in(folder.path()), 1);
+  }
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
+TEST(AtomicFile, KeepsTheOldFileUntilTheNewOneIsCommitted) {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.path() / "Scan.stl";
+  put(target, "old");
+  AtomicFile file(target);
+  file.write(bytes_of("new"));
+  EXPECT_EQ(content_of(target), "old");
+
+  file.commit();
+
+  EXPECT_EQ(content_of(target), "new");
+}
+
+TEST(AtomicFile, LetsSeveralBeWrittenForOneTarget) {
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.path() / "Scan.stl";
+  AtomicFile first(target);
+  AtomicFile second(target);
+  first.write(bytes_of("first"));
+  second.write(bytes_of("second"));
+
+  first.commit();
+  second.commit();
+
+  EXPECT_EQ(content_of(target), "second");
+}
+
+TEST(AtomicFile, HasTheModeThatTheUserAskedFor) {
+  const TemporaryFolder folder;
+  const mode_t before = ::umask(0027);
+  write_file(folder.path() / "octurn.json", "{}");
+  ::umask(before);
+
+  struct stat status {};
+  ASSERT_EQ(::stat((folder.path() / "octurn.json").c_str(), &status), 0);
+
+  EXPECT_EQ(status.st_mode & 0777U, 0640U);
+}
+
+TEST(AtomicFile, SaysDiskFullAndLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  const std::string model(8192, 'x');
+  const SmallDisk disk(4096);
+
+  const std::string code = code_thrown_by([&] { write_file(folder.path() / "Scan.stl", model); });
+
+  EXPECT_EQ(code, "disk-full");
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
+TEST(AtomicFile, SaysDiskFullWhenOverwritingGrowsTheFile) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder.path() / "Scan.stl");
+  const SmallDisk disk(4096);
+
+  EXPECT_EQ(code_thrown_by([&] { file.write_at(4095, bytes_of("12")); }), "disk-full");
+}
+
+TEST(AtomicFile, RefusesAFolderThatIsMissing) {
+  const TemporaryFolder folder;
+
+  EXPECT_EQ(code_thrown_by([&] { AtomicFile(folder.path() / "missing" / "Scan.stl"); }),
+            "write-failed");
+}
+
+TEST(AtomicFile, RefusesAFolderThatMayNotBeWrittenTo) {
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms{0555});
+  const WithoutPrivileges nobody;
+
+  EXPECT_EQ(code_thrown_by([&] { AtomicFile(folder.path() / "Scan.stl"); }), "write-failed");
+}
+
+TEST(AtomicFile, RefusesToReplaceAFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path() / "Scan.stl");
+
+  EXPECT_EQ(code_thrown_by([&] { AtomicFile(folder.path() / "Scan.stl"); }), "write-failed");
+  EXPECT_TRUE(std::filesystem::is_directory(folder.path() / "Scan.stl"));
+}
+
+TEST(AtomicFile, RefusesToReplaceWhatIsNoFile) {
+  // As for /dev/null, which root could turn into a file for every program on the machine.
+  const TemporaryFolder folder;
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+
+  EXPECT_EQ(code_thrown_by([&] { write_file(pipe, "model"); }), "write-failed");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,112 @@
+#include "octurn/intersect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "plain_octree.hpp"
+#include "soup.hpp"
+
+namespace octurn {
+namespace {
+
+using Leaves = std::set<std::array<int, 3>>;
+
+Leaves leaves_of(const Octree& octree) {
+  Leaves leaves;
+  octree.for_each_brick([&](const Cell& cell, const Brick& brick) {
+    for (int z = 0; z < Brick::side; ++z) {
+      for (int bit = 0; bit < 64; ++bit) {
+        if (brick.layers[static_cast<std::size_t>(z)] >> bit & 1) {
+          leaves.insert({cell.x * Brick::side + bit % Brick::side,
+                         cell.y * Brick::side + bit / Brick::side, cell.z * Brick::side + z});
+        }
+      }
+    }
+  });
+  return leaves;
+}
+
+/// The most leaves that a triangle can span along an axis.
+int leaves_across(const std::array<LatticePoint, 3>& corners, int levels) {
+  int span = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+    span = std::max(span, (high - low) >> (Lattice::bits - levels));
+  }
+  return span;
+}
+
+class IntersectAtLevel : public testing::TestWithParam<int> {};
+
+TEST_P(IntersectAtLevel, FindsTheLeavesThatSeparatingAxesFind) {
+  const int levels = GetParam();
+  Soup soup(static_cast<std::uint32_t>(levels), levels);
+  std::size_t met = 0;
+  for (int i = 0; i < 400; ++i) {
+    const std::array<LatticePoint, 3> corners = soup.triangle();
+    if (leaves_across(corners, levels) > 64) {
+      continue;  // too many leaves for the plain octree
+    }
+    Octree octree(1.0, levels);
+    plain::Octree plain(levels);
+    intersect(octree, corners[0], corners[1], corners[2]);
+    plain.intersect(corners);
+    ASSERT_EQ(leaves_of(octree), plain.leaves()) << "triangle " << i;
+    met += plain.leaves().size();
+  }
+  EXPECT_GT(met, 100U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, IntersectAtLevel,
+                         testing::Values(0, 1, 2, 3, 4, 5, 6, 8, 10, 13, 16));
+
+TEST(Intersect, DoesNotDependOnTheOrderOfCorners) {
+  constexpr int levels = 6;
+  Soup soup(7, levels);
+  for (int i = 0; i < 300; ++i) {
+    const auto [a, b, c] = soup.triangle();
+    Octree one(1.0, levels);
+    Octree other(1.0, levels);
+    intersect(one, a, b, c);
+    intersect(other, c, b, a);
+    ASSERT_EQ(leaves_of(one), leaves_of(other));
+  }
+}
+
+TEST(Intersect, MeetsTheSameNodesAtACoarseLevelAsDirectly) {
+  Soup soup(11, 8);
+  Octree fine(1.0, 8);
+  Octree coarse(1.0, 5);
+  for (int i = 0; i < 60; ++i) {
+    const auto [a, b, c] = soup.triangle();
+    intersect(fine, a, b, c);
+    intersect(coarse, a, b, c);
+  }
+  EXPECT_EQ(leaves_of(fine.at_level(5)), leaves_of(coarse));
+  EXPECT_GT(coarse.leaf_count(), 100U);
+}
+
+TEST(Lattice, HasAPointWithinHalfAUnit) {
+  const Lattice lattice(1.0);
+  const Eigen::Vector3f point(0.12345F, -0.4321F, 0.98765F);
+  const auto nearest = lattice.nearest(point);
+  ASSERT_TRUE(nearest);
+  const double half_unit = 1.0 / (1 << Lattice::bits);
+  EXPECT_NEAR((*nearest)[0] * half_unit, 0.5 + 0.12345, half_unit);
+  EXPECT_NEAR((*nearest)[1] * half_unit, 0.5 - 0.4321, half_unit);
+  EXPECT_NEAR((*nearest)[2] * half_unit, 0.98765, half_unit);
+}
+
+TEST(Lattice, HasNoneForNoPointAndForOneFarOutside) {
+  const Lattice lattice(1.0);
+  EXPECT_FALSE(lattice.nearest(Eigen::Vector3f::Constant(std::nanf(""))));
+  EXPECT_FALSE(lattice.nearest({0.0F, 0.0F, 2.0F}));
+  EXPECT_FALSE(lattice.nearest({0.0F, -1.6F, 0.0F}));
+  EXPECT_TRUE(lattice.nearest({0.0F, -1.4F, 1.9F}));
+}
+
+}  // namespace
+}  // namespace octurn

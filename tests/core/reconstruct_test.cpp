@@ -1,0 +1,227 @@
+#include "octurn/reconstruct.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+#include "octurn/error.hpp"
+#include "octurn/mesh_check.hpp"
+#include "octurn/platform_pose.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
+#include "support/shared_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+const Eigen::Vector3d ball_centre{0.01, -0.005, 0.06};  // metres, platform frame
+constexpr double ball_radius = 0.05;
+
+/// A sensor 0.6 m from the platform's axis and 0.3 m above it, looking along +Y and 25 degrees
+/// down.
+Eigen::Isometry3d sensor_pose() {
+  Eigen::Matrix3d upright;  // optical X right, Y down, Z forward, in the platform's axes
+  upright << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(radians_from_degrees(-25), Eigen::Vector3d::UnitX()) * upright;
+  pose.translation() = Eigen::Vector3d(0, -0.6, 0.34);
+  return pose;
+}
+
+/// The ball as an ideal sensor of 160 x 120 samples sees it: each ray met with the sphere's
+/// equation.
+Snapshot ball_snapshot(double angle) {
+  Snapshot snapshot{.frame = {.width = 160, .height = 120, .depth = {}},
+                    .intrinsics = {.width = 160,
+                                   .height = 120,
+                                   .fx = 144,
+                                   .fy = 144,
+                                   .cx = 80,
+                                   .cy = 60,
+                                   .depth_unit = 0.0001},
+                    .object_from_sensor = object_from_sensor(sensor_pose(), angle)};
+  const Eigen::Vector3d centre = snapshot.object_from_sensor.inverse() * ball_centre;
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 0; u < 160; ++u) {
+      const Eigen::Vector3d ray((u - 80) / 144.0, (v - 60) / 144.0, 1);
+      const double along = ray.dot(centre);
+      const double square =
+          along * along - ray.squaredNorm() * (centre.squaredNorm() - ball_radius * ball_radius);
+      const double z = square > 0 ? (along - std::sqrt(square)) / ray.squaredNorm() : 0;
+      snapshot.frame.depth.push_back(static_cast<std::uint16_t>(std::lround(z / 0.0001)));
+    }
+  }
+  return snapshot;
+}
+
+SnapshotSource ball_scan(std::size_t count) {
+  return {.count = count, .read = [count](std::size_t i) {
+            return ball_snapshot(2 * std::numbers::pi * static_cast<double>(i) /
+                                 static_cast<double>(count));
+          }};
+}
+
+ReconstructOptions ball_options(double leaf_size) {
+  return {.leaf_size = leaf_size,
+          .root_size = 1.0,
+          .threshold = 0.0001,
+          .clip = {.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}},
+          .level = {},
+          .threads = 1,
+          .memory_limit = 0};
+}
+
+std::vector<Facet> surface_of(const ReconstructOptions& options, const SnapshotSource& snapshots) {
+  Reconstruction reconstruction(options);
+  reconstruction.add(snapshots);
+  std::vector<Facet> facets;
+  reconstruction.surface(snapshots, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  return facets;
+}
+
+bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
+}
+
+TEST(Reconstruction, StaysWithinALeafOfTheBall) {
+  const std::vector<Facet> facets = surface_of(ball_options(0.002), ball_scan(8));
+  ASSERT_GT(facets.size(), 10000U);
+  // A leaf is met wherever in it the surface lies; its facets reach half a leaf beyond its centre,
+  // on each axis. Triangles between samples 4 mm apart lie up to 4^2 / (8 * 50) = 0.04 mm inside.
+  const double leaf = 1.0 / 512;
+  const double slack = leaf * std::sqrt(3.0) + 0.0001;
+  for (const Facet& facet : facets) {
+    for (const auto& corner : std::array(facet.corners)) {
+      const Eigen::Vector3d metres = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
+      EXPECT_NEAR((metres - ball_centre).norm(), ball_radius, slack);
+    }
+  }
+}
+
+TEST(Reconstruction, IsClosed) {
+  MeshCheck check;
+  check.add(surface_of(ball_options(0.004), ball_scan(4)));
+  EXPECT_TRUE(check.closed());
+}
+
+TEST(Reconstruction, OfOneLevelCoarserIsThatOfTwiceTheLeafSize) {
+  ReconstructOptions coarser = ball_options(0.002);
+  coarser.level = 8;
+  EXPECT_TRUE(
+      same_bytes(surface_of(coarser, ball_scan(3)), surface_of(ball_options(0.004), ball_scan(3))));
+}
+
+TEST(Reconstruction, GivesTheSameBytesForAnyNumberOfThreads) {
+  const std::vector<Facet> alone = surface_of(ball_options(0.002), ball_scan(5));
+  for (const int threads : {2, 3, 8}) {
+    ReconstructOptions options = ball_options(0.002);
+    options.threads = threads;
+    EXPECT_TRUE(same_bytes(surface_of(options, ball_scan(5)), alone)) << threads << " threads";
+  }
+}
+
+TEST(Reconstruction, GivesTheSameBytesInSlabs) {
+  ReconstructOptions options = ball_options(0.00025);
+  const SnapshotSource snapshots = ball_scan(3);
+  const std::vector<Facet> whole = surface_of(options, snapshots);
+
+  for (const int threads : {1, 2}) {
+    std::atomic<std::size_t> reads = 0;
+    const SnapshotSource counted{.count = snapshots.count, .read = [&](std::size_t i) {
+                                   ++reads;
+                                   return snapshots.read(i);
+                                 }};
+    options.threads = threads;
+    options.memory_limit = std::size_t{17} << 20U;
+    EXPECT_TRUE(same_bytes(surface_of(options, counted), whole));
+    EXPECT_GT(reads, snapshots.count);  // it did not fit in one slab
+  }
+}
+
+TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
+  ReconstructOptions options = ball_options(0.00025);
+  options.memory_limit = std::size_t{17} << 20U;
+  const SnapshotSource snapshots = ball_scan(2);
+  Reconstruction reconstruction(options);
+  reconstruction.add(snapshots);
+  const SurfaceCount expected = reconstruction.count(snapshots);
+  std::uint64_t facets = 0;
+  const SurfaceCount count = reconstruction.surface(
+      snapshots, [&](std::span<const Facet> some) { facets += some.size(); });
+  EXPECT_EQ(facets, expected.facets);
+  EXPECT_EQ(count.facets, expected.facets);
+  EXPECT_EQ(count.leaves, expected.leaves);
+}
+
+TEST(Reconstruction, ShowsACoarsePreviewOfWhatWasSeenSoFar) {
+  Reconstruction reconstruction(ball_options(0.001));
+  reconstruction.add(ball_snapshot(0));
+  MeshCheck half;
+  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { half.add(facets); });
+  EXPECT_TRUE(half.closed());
+  EXPECT_LT(half.facets(), 3000U);
+  reconstruction.add(ball_snapshot(std::numbers::pi));
+  MeshCheck both;
+  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { both.add(facets); });
+  EXPECT_GT(both.volume_mm3(), half.volume_mm3() * 1.3);
+}
+
+TEST(Reconstruction, SaysWhatIsWrongWithItsOptions) {
+  const auto thrown_by = [](auto change) {
+    ReconstructOptions options = ball_options(0.001);
+    change(options);
+    return code_thrown_by([&] { const Reconstruction reconstruction(options); });
+  };
+  const double nan = std::nan("");
+  EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 0; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = -1; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 1.5; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 1e-6; }), "bad-settings");
+  EXPECT_EQ(thrown_by([&](auto& o) { o.leaf_size = nan; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.root_size = 0; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.threshold = 0; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.clip.min = o.clip.max; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.level = 11; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.level = -1; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.threads = 0; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.memory_limit = 1; }), "memory-limit");
+}
+
+// The figures of an independent implementation in floating point of the same technique; leaves at
+// the border of a triangle may differ.
+TEST(Reconstruction, GivesTheLeavesAndTrianglesOfAnotherImplementation) {
+  const std::filesystem::path folder = shared_folder() / "scans/bunny8";
+  if (!std::filesystem::exists(folder)) {
+    GTEST_SKIP() << folder << " is not there: set OCTURN_SHARED to the folder of scans";
+  }
+  const Scan scan = read_scan(folder);
+  const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t i) {
+                                   return read_snapshot(folder, scan, scan.shots[i]);
+                                 }};
+  struct Expected {
+    double leaf_size;
+    double leaves;
+    double facets;
+  };
+  for (const auto& [leaf_size, leaves, facets] :
+       {Expected{0.002, 27095, 248660}, {0.001, 130304, 1011032}, {0.0005, 664686, 4550412}}) {
+    ReconstructOptions options = ball_options(leaf_size);
+    options.clip = scan.clip;
+    Reconstruction reconstruction(options);
+    reconstruction.add(snapshots);
+    const SurfaceCount count = reconstruction.count(snapshots);
+    EXPECT_NEAR(static_cast<double>(count.leaves), leaves, leaves * 0.001);
+    EXPECT_NEAR(static_cast<double>(count.facets), facets, facets * 0.001);
+  }
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,103 @@
+// The page for everyone: on a phone, with a keyboard, with a screen reader, in both colour schemes.
+
+import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
+import {createRequire} from 'node:module';
+import {test} from 'node:test';
+
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, scan, startScanner} from './scanner.js';
+
+const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
+
+const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+/** What axe finds wrong, one line each. */
+async function complaints(page) {
+  await page.evaluate(axe);
+  const {violations} = await page.evaluate(() => globalThis.axe.run());
+  return violations.map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target).join(', ')}`);
+}
+
+/** By how much the page is wider than the screen, pixels. */
+const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+
+/** The states of the page, each with how to get there. */
+const states = {
+  idle: async () => {},
+  advanced: (page) => page.getByText('Advanced').click(),
+  finished: async (page, finished) => {
+    await page.goto(`${new URL('/', page.url())}#${finished.id}`);
+    await page.locator('#tools').waitFor();
+  },
+  renaming: (page) => page.getByRole('button', {name: 'Rename this scan'}).click(),
+};
+
+/** Goes through all states on one screen. */
+async function walk(scanner, browser, finished, screen, colorScheme) {
+  const {page} = await openPage(browser, scanner.url, {screen, colorScheme});
+  for (const [name, reach] of Object.entries(states)) {
+    await reach(page, finished);
+    assert.deepEqual(await complaints(page), [], name);
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `${name}-${screen}-${colorScheme}`);
+  }
+  await page.keyboard.press('Escape');
+  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
+  await page.getByRole('link', {name: 'Show its progress'}).click();
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  assert.deepEqual(await complaints(page), [], 'scanning');
+  assert.ok(await overflow(page) <= 0, 'scanning is too wide');
+  await picture(page, `scanning-${screen}-${colorScheme}`);
+  await ask(scanner, `scans/${id}/cancel`, 'POST');
+  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+  await page.context().close();
+}
+
+/** Starts a scan without touching the mouse. */
+async function startByKeyboard(scanner, browser) {
+  const {page} = await openPage(browser, scanner.url);
+  const snapshots = page.getByLabel('Snapshots a turn', {exact: true});
+  await snapshots.focus();
+  await page.keyboard.press('ControlOrMeta+a');
+  await page.keyboard.type('4');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  assert.ok(await page.getByLabel('Draft').isChecked());
+  while (!await page.getByRole('button', {name: 'Start scan'}).evaluate((button) => button === document.activeElement)) {
+    await page.keyboard.press('Tab');
+  }
+  await page.keyboard.press('Enter');
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  assert.equal(await page.evaluate(() => document.activeElement?.textContent), 'Scanning');
+  await page.getByRole('status').filter({hasText: /^The model of .* is ready\.$/}).waitFor();
+}
+
+/** Looks at a scan on a phone as if its file had `bytes`. */
+async function lookAtLarge(scanner, browser, finished, bytes) {
+  const {page} = await openPage(browser, scanner.url, {screen: 'phone'});
+  await page.route('**/api/v1/scans', async (route) => {
+    const body = await (await route.fetch()).json();
+    body.scans.find(({id}) => id === finished.id).model.bytes = bytes;
+    await route.fulfill({json: body});
+  });
+  await page.goto('about:blank');
+  await page.goto(`${scanner.url}#${finished.id}`);
+  await page.getByRole('button', {name: 'Show it (21 MB)'}).click();
+  await page.locator('#tools').waitFor();
+}
+
+test('the page is for everyone', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  const finished = await scan(scanner, draft);
+  for (const screen of ['phone', 'desktop']) {
+    for (const colorScheme of ['light', 'dark']) {
+      await t.test(`no state of it overflows a ${screen} or shuts anyone out, ${colorScheme}`,
+          () => walk(scanner, browser, finished, screen, colorScheme));
+    }
+  }
+  await t.test('the keyboard alone starts a scan, and the end of it is announced', () => startByKeyboard(scanner, browser));
+  await t.test('a phone is asked before a large model is loaded', () => lookAtLarge(scanner, browser, finished, 21e6));
+});

@@ -1,0 +1,25 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {chooseQuickScan, openBrowser, openPage} from './browser.js';
+import {startScanner} from './scanner.js';
+
+test('the page says that the scanner is gone, finds it again, and lists the scan that died with it', async (t) => {
+  const scanner = await startScanner(t);
+  const {page} = await openPage(await openBrowser(t), scanner.url);
+  await chooseQuickScan(page, 60);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
+
+  await scanner.end('SIGKILL');
+  await page.getByRole('alert').filter({hasText: 'The scanner does not answer'}).waitFor();
+  assert.equal(await page.title(), 'No answer · Octurn');
+  assert.ok(await page.getByRole('button', {name: 'Cancel'}).isDisabled());
+  await page.getByRole('button', {name: 'Try now'}).click();
+  assert.ok(await page.getByRole('button', {name: 'Try now'}).isVisible());
+
+  await scanner.restart();
+  await page.locator('#away').waitFor({state: 'hidden'});
+  await page.getByText('Scan interrupted', {exact: true}).waitFor();
+  assert.match(await page.locator('#rows').innerText(), /Interrupted[^]*\d+ of 60 snapshots kept/);
+});

@@ -1,0 +1,70 @@
+// Debian's Chromium, driven without a screen.
+
+import {mkdir} from 'node:fs/promises';
+import {join} from 'node:path';
+import {chromium} from 'playwright-core';
+
+const calm = ['--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
+const softwareWebGl = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+const noWebGl = ['--disable-gpu', '--disable-software-rasterizer', '--disable-3d-apis'];
+
+const screens = {
+  desktop: {viewport: {width: 1280, height: 860}},
+  phone: {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true},
+};
+
+/**
+ * @param {import('node:test').TestContext} t
+ * @param {{hasWebGl?: boolean}} options
+ */
+export async function openBrowser(t, {hasWebGl = true} = {}) {
+  const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: [...calm, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
+  });
+  t.after(() => browser.close());
+  return browser;
+}
+
+/**
+ * Opens the page and waits until it shows the scanner.
+ *
+ * @param {import('playwright-core').Browser} browser
+ * @param {string} url
+ * @param {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark'}} options
+ * @returns {Promise<{page: import('playwright-core').Page, faults: string[]}>}  faults: what went wrong inside so
+ *     far, errors on the console and requests to elsewhere among them
+ */
+export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light'} = {}) {
+  const context = await browser.newContext({...screens[screen], colorScheme, reducedMotion: 'reduce'});
+  const page = await context.newPage();
+  page.setDefaultTimeout(40000);
+  const faults = [];
+  page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
+  page.on('pageerror', (error) => faults.push(error.message));
+  context.on('request', (request) => {
+    const {origin, protocol} = new URL(request.url());
+    if (origin !== new URL(url).origin && protocol !== 'blob:' && protocol !== 'data:') {
+      faults.push(`request to ${request.url()}`);
+    }
+  });
+  await page.goto(url);
+  await page.locator('[data-panel=waiting]').waitFor({state: 'hidden'});
+  return {page, faults};
+}
+
+/** Sets the form so that a scan is quick. */
+export async function chooseQuickScan(page, snapshots) {
+  await page.getByLabel('Snapshots a turn', {exact: true}).fill(String(snapshots));
+  await page.getByLabel('Draft').check();
+  await page.getByLabel('Depth filter').selectOption('basic');
+}
+
+/** Keeps a picture of the page, if somebody wants them. */
+export async function picture(page, name) {
+  const where = process.env.OCTURN_PICTURES;
+  if (where) {
+    await mkdir(where, {recursive: true});
+    await page.screenshot({path: join(where, `${name}.png`), fullPage: true});
+  }
+}

@@ -1,0 +1,30 @@
+import assert from 'node:assert/strict';
+import {readdir} from 'node:fs/promises';
+import {join} from 'node:path';
+import {test} from 'node:test';
+
+import {chooseQuickScan, openBrowser, openPage} from './browser.js';
+import {ask, scanFolders, startScanner} from './scanner.js';
+
+test('a scan cancelled half way ends at once, and keeps its snapshots', async (t) => {
+  const scanner = await startScanner(t);
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url);
+  const snapshots = 60;
+  await chooseQuickScan(page, snapshots);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 5);
+  await page.getByRole('button', {name: 'Cancel'}).click();
+
+  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+  const row = page.getByRole('listitem').filter({hasText: 'Cancelled'});
+  const kept = Number(/(\d+) of 60 snapshots kept/.exec(await row.innerText())?.[1]);
+  assert.ok(kept >= 5 && kept < snapshots, `${kept} kept`);
+  const [folder] = await scanFolders(scanner);
+  assert.equal((await readdir(join(folder, 'snapshots'))).length, kept);
+  assert.equal((await ask(scanner, 'status')).scan, null);
+  assert.equal(await page.getByRole('link', {name: 'Download STL'}).count(), 0);
+
+  await page.getByRole('link', {name: 'New scan'}).click();
+  assert.ok(await page.getByRole('button', {name: 'Start scan'}).isEnabled());
+  assert.deepEqual(faults, []);
+});

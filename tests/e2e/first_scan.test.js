@@ -1,0 +1,84 @@
+import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
+import {test} from 'node:test';
+
+import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
+import {measure} from './mesh_file.js';
+import {startScanner} from './scanner.js';
+
+/** How many different colours the depth picture has, and which share of it holds a reading. */
+const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
+  const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+  return {colours: new Set(pixels).size, share: pixels.filter((pixel) => pixel >>> 24 > 0).length / pixels.length};
+});
+
+/** Which share of the view in 3D has the warm colour of the model, in front of a ground that is blue all over. */
+async function modelShare(page) {
+  const png = await page.locator('#view').screenshot();
+  return page.evaluate(async (base64) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const {data} = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    let warm = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      warm += data[i] > 60 && data[i] > data[i + 2] ? 1 : 0;
+    }
+    return 4 * warm / data.length;
+  }, png.toString('base64'));
+}
+
+/** Has the page note each number of snapshots that it shows. */
+const noteProgress = (page) => page.evaluate(() => {
+  globalThis.noted = [];
+  const number = document.getElementById('dial-done');
+  new MutationObserver(() => globalThis.noted.push(Number(number.textContent)))
+      .observe(number, {childList: true, characterData: true, subtree: true});
+});
+
+test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) => {
+  // Slow enough that the page, which asks some times a second, sees more than the beginning and the end.
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '2']});
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url);
+  assert.equal((await fetch(scanner.url)).headers.get('Content-Security-Policy').split(';')[0], `default-src 'self'`);
+
+  await page.locator('#no-picture').waitFor({state: 'hidden'});
+  const depth = await depthPicture(page);
+  assert.ok(depth.colours > 20 && depth.share > 0.5, `a depth picture, not ${JSON.stringify(depth)}`);
+  await picture(page, 'idle');
+
+  const snapshots = 8;
+  await chooseQuickScan(page, snapshots);
+  await noteProgress(page);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
+  assert.match(await page.title(), /^(\d\/8|Building) · Octurn$/);
+  await picture(page, 'scanning');
+
+  const download = page.getByRole('link', {name: 'Download STL'}).first();
+  await download.waitFor();
+  const noted = await page.evaluate(() => globalThis.noted);
+  assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
+  assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
+  assert.equal(await page.title(), 'Done · Octurn');
+
+  const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
+  assert.equal(arrived.suggestedFilename(), 'Scan.stl');
+  const mesh = measure(await readFile(await arrived.path()));
+  assert.equal(mesh.openEdges, 0);
+  assert.ok(mesh.triangles > 1000 && mesh.volume > 0, `a solid thing, not ${JSON.stringify(mesh)}`);
+  assert.ok(mesh.min[2] > -5 && mesh.max[2] < 405, 'in millimetres, on the platform, inside the scanned space');
+
+  const facts = await page.locator('#facts').innerText();
+  assert.ok(facts.includes(mesh.triangles.toLocaleString('en')), facts);
+  assert.match(facts, /Watertight\s+Yes/);
+  const sides = mesh.max.map((high, axis) => (high - mesh.min[axis]).toFixed(1));
+  assert.equal(await page.locator('#size').innerText(), `${sides.join(' × ')} mm`);
+
+  await page.locator('#tools').waitFor();
+  const share = await modelShare(page);
+  assert.ok(share > 0.02, `a model in 3D, not ${share} of the view`);
+  await picture(page, 'finished');
+  assert.deepEqual(faults, []);
+});

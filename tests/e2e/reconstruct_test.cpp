@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/program.hpp"
+#include "support/small_scan.hpp"
+#include "support/stl.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ReconstructCommand : public ::testing::Test {
+ protected:
+  ReconstructCommand() { write_small_scan(scan_, 4); }
+
+  /// `octurn reconstruct SCAN -o OUTPUT` and what follows.
+  std::vector<std::string> command(std::vector<std::string> more = {}) const {
+    std::vector<std::string> words{OCTURN_PROGRAM, "reconstruct", scan_.string(), "-o",
+                                   output_.string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  /// The files beside the output: what a failed run must not leave.
+  int files_left() const {
+    return static_cast<int>(
+        std::distance(fs::directory_iterator(output_.parent_path()), fs::directory_iterator()));
+  }
+
+  /// Fails unless the program ends with that status and one line on standard error, and leaves no
+  /// file.
+  void expect_failure(const std::vector<std::string>& words, int status, const std::string& says,
+                      std::optional<rlim_t> most_file_bytes = {}) const {
+    Program program(words, most_file_bytes);
+    EXPECT_EQ(program.wait(), status) << program.errors();
+    EXPECT_EQ(program.output(), "");
+    EXPECT_NE(program.errors().find(says), std::string::npos) << program.errors();
+    if (status == 1) {
+      EXPECT_EQ(std::ranges::count(program.errors(), '\n'), 1) << program.errors();
+    }
+    EXPECT_EQ(files_left(), 0);
+  }
+
+  TemporaryFolder folder_;
+  fs::path scan_ = folder_.path() / "scan";
+  fs::path output_ = [this] {
+    fs::create_directory(folder_.path() / "out");
+    return folder_.path() / "out" / "Scan.stl";
+  }();
+};
+
+TEST_F(ReconstructCommand, WritesAClosedModelInMillimetres) {
+  Program program(command());
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_EQ(program.output(), "");
+  EXPECT_EQ(program.errors(), "");
+  const std::string stl = content_of(output_);
+  EXPECT_GT(triangles_of_whole_stl(stl), 10'000);
+  EXPECT_EQ(open_edges(stl), 0);
+}
+
+TEST_F(ReconstructCommand, ReportsOneLineOfJson) {
+  Program program(command({"--json", "--leaf-size-mm", "2"}));
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_EQ(std::ranges::count(program.output(), '\n'), 1);
+  const auto report = nlohmann::json::parse(program.output());
+  EXPECT_EQ(report["triangles"], triangles_of_whole_stl(content_of(output_)));
+  EXPECT_EQ(report["bytes"], fs::file_size(output_));
+  EXPECT_EQ(report["watertight"], true);
+  // A square of 70 / 575.8 * 650 = 79 mm turned to 4 stops; leaves of 1.95 mm make it a plate.
+  EXPECT_NEAR(report["size_mm"][0].get<double>(), 79, 6);
+  EXPECT_NEAR(report["size_mm"][2].get<double>(), 2, 2);
+  EXPECT_EQ(report["settings"]["leaf_size_mm"], 2.0);
+  EXPECT_GT(report["peak_memory_bytes"], 1'000'000);
+  EXPECT_GT(report["seconds"]["total"], 0);
+}
+
+TEST_F(ReconstructCommand, GivesTheSameBytesToStandardOutput) {
+  Program to_file(command());
+  ASSERT_EQ(to_file.wait(), 0);
+  auto words = command({"--json"});
+  words[4] = "-";
+  Program to_output(words);
+  EXPECT_EQ(to_output.wait(), 0);
+  EXPECT_TRUE(to_output.output() == content_of(output_));
+  EXPECT_TRUE(nlohmann::json::accept(to_output.errors())) << to_output.errors();
+}
+
+TEST_F(ReconstructCommand, GivesTheSameBytesWithAnyThreadsAndMemory) {
+  Program plain(command({"--threads", "1"}));
+  ASSERT_EQ(plain.wait(), 0);
+  const std::string expected = content_of(output_);
+  Program limited(command({"--threads", "3", "--memory-limit-mb", "40"}));
+  ASSERT_EQ(limited.wait(), 0) << limited.errors();
+  EXPECT_TRUE(content_of(output_) == expected);
+}
+
+TEST_F(ReconstructCommand, TakesTheClipBoxAndTheLevelGiven) {
+  Program coarse(command({"--level", "8", "--json"}));
+  ASSERT_EQ(coarse.wait(), 0);
+  Program as_coarse(command({"--leaf-size-mm", "4", "--json"}));
+  ASSERT_EQ(as_coarse.wait(), 0);
+  EXPECT_EQ(nlohmann::json::parse(coarse.output())["triangles"],
+            nlohmann::json::parse(as_coarse.output())["triangles"]);
+  Program clipped(command({"--clip-mm", "0", "-140", "2", "140", "140", "400", "--json"}));
+  ASSERT_EQ(clipped.wait(), 0);
+  EXPECT_NEAR(nlohmann::json::parse(clipped.output())["size_mm"][0].get<double>(), 39.5, 4);
+}
+
+TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
+  expect_failure({OCTURN_PROGRAM}, 2, "subcommand");
+  expect_failure({OCTURN_PROGRAM, "levitate"}, 2, "subcommand");
+  expect_failure({OCTURN_PROGRAM, "reconstruct", scan_.string()}, 2, "--output");
+  expect_failure(command({"--leaf-size"}), 2, "--leaf-size");
+  expect_failure(command({"--leaf-size-mm", "one"}), 2, "--leaf-size-mm");
+  expect_failure(command({"--leaf-size-mm", "0"}), 2, "leaf size");
+  expect_failure(command({"--leaf-size-mm", "-1"}), 2, "leaf size");
+  expect_failure(command({"--leaf-size-mm", "nan"}), 2, "leaf size");
+  expect_failure(command({"--leaf-size-mm", "1001"}), 2, "leaf size");
+  expect_failure(command({"--root-size-mm", "0"}), 2, "root size");
+  expect_failure(command({"--threshold-m2", "0"}), 2, "threshold");
+  expect_failure(command({"--clip-mm", "1", "2", "3"}), 2, "--clip-mm");
+  expect_failure(command({"--clip-mm", "0", "0", "0", "0", "1", "1"}), 2, "clip box");
+  expect_failure(command({"--level", "99"}), 2, "level");
+  expect_failure(command({"--threads", "0"}), 2, "threads");
+}
+
+TEST_F(ReconstructCommand, EndsWith1AndOneLineForAScanThatIsBroken) {
+  expect_failure({OCTURN_PROGRAM, "reconstruct", "/nowhere", "-o", output_.string()}, 1,
+                 "/nowhere");
+  put(scan_ / "snapshots" / "001.png", content_of(scan_ / "snapshots" / "001.png").substr(0, 400));
+  expect_failure(command(), 1, "001.png");
+  fs::remove(scan_ / "snapshots" / "001.png");
+  expect_failure(command(), 1, "001.png");
+  put(scan_ / "scan.json", R"({"format": "octurn-scan", "version": 2})");
+  expect_failure(command(), 1, "version");
+}
+
+TEST_F(ReconstructCommand, EndsWith1WhereThereIsNoSurface) {
+  expect_failure(command({"--clip-mm", "-5", "-5", "300", "5", "5", "310"}), 1, "no surface");
+}
+
+TEST_F(ReconstructCommand, EndsWith1WhereItCannotWrite) {
+  auto words = command();
+  words[4] = (folder_.path() / "missing" / "Scan.stl").string();
+  expect_failure(words, 1, "missing");
+  words[4] = (folder_.path() / "out").string();
+  expect_failure(words, 1, "out");
+}
+
+TEST_F(ReconstructCommand, EndsWith1WhenTheDiskIsFull) {
+  expect_failure(command(), 1, "cannot write", 100'000);
+}
+
+TEST_F(ReconstructCommand, LeavesAnEarlierModelAloneWhenItFails) {
+  put(output_, "an earlier model");
+  Program program(command(), 100'000);
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_EQ(content_of(output_), "an earlier model");
+  EXPECT_EQ(files_left(), 1);
+}
+
+TEST_F(ReconstructCommand, RemovesThePartialFileWhenItIsInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    // So fine that writing takes seconds.
+    Program program(command({"--leaf-size-mm", "0.1"}));
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (files_left() == 0 && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+    }
+    program.send_signal(signal);
+    EXPECT_EQ(program.wait(), 1);
+    EXPECT_NE(program.errors().find("stopped"), std::string::npos) << program.errors();
+    EXPECT_EQ(files_left(), 0);
+  }
+}
+
+TEST(Octurn, TellsItsVersionAndItsUse) {
+  Program version({OCTURN_PROGRAM, "--version"});
+  EXPECT_EQ(version.wait(), 0);
+  EXPECT_EQ(version.output(), "octurn " OCTURN_VERSION "\n");
+  Program help({OCTURN_PROGRAM, "--help"});
+  EXPECT_EQ(help.wait(), 0);
+  for (const char* const command : {"serve", "scan", "reconstruct"}) {
+    EXPECT_NE(help.output().find(command), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,46 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, startScanner} from './scanner.js';
+
+test('without a sensor the page says so, and what to do', async (t) => {
+  const scanner = await startScanner(t, {rig: ['--simulate', '--sensor', 'nowhere']});
+  const {page} = await openPage(await openBrowser(t), scanner.url);
+  const {sensor} = await ask(scanner, 'status');
+  assert.notEqual(sensor.state, 'ready');
+  await page.getByRole('list', {name: 'Devices'}).getByText(/not found|failed/).first().waitFor();
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  const alert = page.getByRole('alert').filter({hasText: 'The scan did not start'});
+  await alert.waitFor();
+  assert.ok((await page.locator('#problem-hint').innerText()).length > 10);
+  await picture(page, 'no-sensor');
+  await alert.getByRole('button', {name: 'Dismiss'}).click();
+  assert.ok(await alert.isHidden());
+});
+
+test('settings that make no sense are not sent', async (t) => {
+  const scanner = await startScanner(t);
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url);
+  await page.getByText('Advanced').click();
+  await page.getByLabel('Up, to').fill('1');  // below where the space begins
+  await page.getByText('Advanced').click();
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  assert.ok(await page.getByLabel('Up, to').isVisible(), 'the field at fault is shown');
+  assert.equal(await page.evaluate(() => document.activeElement?.getAttribute('aria-label')), 'Up, to');
+  assert.deepEqual((await ask(scanner, 'scans')).scans, []);
+
+  await page.getByRole('button', {name: 'Back to the presets'}).click();
+  await page.getByLabel('Snapshots a turn', {exact: true}).fill('40');
+  await page.getByLabel('Coarse').check();
+  await page.getByLabel('Depth filter').selectOption('basic');
+  await page.getByLabel('Widest gap bridged').fill('20');
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  const {settings} = (await ask(scanner, 'scans')).scans[0];
+  assert.deepEqual({...settings, platform_from_sensor: undefined}, {
+    snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, threshold_m2: 0.0004, root_size_mm: 1000,
+    clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
+  });
+  assert.deepEqual(faults, []);
+});

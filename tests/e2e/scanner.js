@@ -1,0 +1,96 @@
+// Octurn itself, started for a test on the simulated rig, on loopback and with a folder of its own.
+
+import {spawn} from 'node:child_process';
+import {once} from 'node:events';
+import {mkdtemp, readdir, rm} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {createInterface} from 'node:readline';
+
+/** Resolves to the address that the program prints; rejects with what it said if it ends before. */
+async function address(program) {
+  let said = '';
+  for (const stream of [program.stdout, program.stderr]) {
+    stream.setEncoding('utf8').on('data', (text) => {
+      said += text;
+    });
+  }
+  for await (const line of createInterface({input: program.stdout})) {
+    const url = /http:\/\/[^ ]+/.exec(line);
+    if (url) {
+      return url[0];
+    }
+  }
+  throw new Error(`octurn ended before it served: ${said}`);
+}
+
+/**
+ * @typedef {Object} Scanner
+ * @property {string} url  of the page
+ * @property {string} data  the folder it works in
+ * @property {(signal?: NodeJS.Signals) => Promise<void>} end
+ * @property {() => Promise<void>} restart  at the same address, with the same folder
+ */
+
+/**
+ * @param {import('node:test').TestContext} t  at its end the scanner ends, and its folder goes
+ * @param {{rig?: string[]}} options  rig: the arguments that choose devices
+ * @returns {Promise<Scanner>}
+ */
+export async function startScanner(t, {rig = ['--simulate', '--simulate-speed', '8']} = {}) {
+  const path = process.env.OCTURN_PROGRAM;
+  if (!path) {
+    throw new Error('OCTURN_PROGRAM must be the path of the program octurn');
+  }
+  const data = await mkdtemp(join(tmpdir(), 'octurn-e2e-'));
+  const run = (port) => spawn(path, ['serve', ...rig, '--listen', '127.0.0.1', '--port', String(port), '--data', data]);
+  let program = run(0);
+  const scanner = {
+    url: '',
+    data,
+    end: async (signal = 'SIGTERM') => {
+      if (program.exitCode === null && program.signalCode === null) {
+        program.kill(signal);
+        await once(program, 'exit');
+      }
+    },
+    restart: async () => {
+      program = run(new URL(scanner.url).port);
+      await address(program);
+    },
+  };
+  t.after(async () => {
+    await scanner.end();
+    await rm(data, {recursive: true, force: true});
+  });
+  scanner.url = await address(program);
+  return scanner;
+}
+
+/** @returns {Promise<any>} the body of an answer of the API */
+export async function ask(scanner, path, method = 'GET', body = undefined) {
+  const response = await fetch(`${scanner.url}api/v1/${path}`,
+      {method, headers: {'Content-Type': 'application/json'}, body: body && JSON.stringify(body)});
+  if (!response.ok) {
+    throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
+  }
+  return response.status === 204 ? null : response.json();
+}
+
+/** @param {Scanner} scanner @returns {Promise<string[]>} the folders of its scans */
+export async function scanFolders(scanner) {
+  const folder = join(scanner.data, 'scans');
+  return (await readdir(folder)).map((name) => join(folder, name));
+}
+
+/** Runs a whole scan without the page. @returns {Promise<any>} as it is at its end */
+export async function scan(scanner, settings) {
+  let job = await ask(scanner, 'scans', 'POST', settings);
+  while (job.state === 'running') {
+    await new Promise((done) => {
+      setTimeout(done, 50);
+    });
+    job = await ask(scanner, `scans/${job.id}`);
+  }
+  return job;
+}

@@ -1,0 +1,67 @@
+import assert from 'node:assert/strict';
+import {basename} from 'node:path';
+import {test} from 'node:test';
+
+import {openBrowser, openPage} from './browser.js';
+import {ask, scan, scanFolders, startScanner} from './scanner.js';
+
+const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
+
+test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  const {page, faults} = await openPage(browser, scanner.url);
+  await page.getByText('No scans yet').waitFor();
+
+  const first = await scan(scanner, draft);
+  const second = await scan(scanner, draft);
+  const rows = page.locator('#rows > li');
+  await rows.nth(1).waitFor();
+  assert.ok(await page.getByText('No scans yet').isHidden());
+
+  await rows.nth(1).getByRole('link', {name: 'Untitled scan'}).click();
+  await page.getByRole('link', {name: 'Download STL'}).first().waitFor();
+  assert.equal(new URL(page.url()).hash, `#${first.id}`);
+  assert.equal(await page.locator('#download').getAttribute('href'), first.model.url);
+
+  await page.getByRole('button', {name: 'Rename this scan'}).click();
+  await page.getByLabel('Name', {exact: true}).fill('Möwe <b>1</b>');
+  await page.keyboard.press('Enter');
+  await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
+  assert.equal((await ask(scanner, `scans/${first.id}`)).name, 'Möwe <b>1</b>');
+
+  await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
+  await page.getByRole('button', {name: 'Keep it'}).click();
+  assert.equal(await rows.count(), 2);
+  await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
+  await page.getByRole('button', {name: 'Delete', exact: true}).click();
+  await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
+  await page.getByRole('heading', {name: 'New scan'}).waitFor();
+  assert.deepEqual((await scanFolders(scanner)).map((path) => basename(path)), [second.id]);
+  assert.deepEqual(faults, []);
+});
+
+test('a scan that somebody else starts is followed, and can be looked away from', async (t) => {
+  const scanner = await startScanner(t);
+  const {page} = await openPage(await openBrowser(t), scanner.url);
+  const earlier = await scan(scanner, draft);
+  await page.locator(`#rows [data-key="${earlier.id}"]`).waitFor();
+  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 100});
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  await page.goto(`${scanner.url}#${earlier.id}`);
+  await page.getByText('A scan is running.').waitFor();
+  await page.getByRole('link', {name: 'Show its progress'}).click();
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  await ask(scanner, `scans/${id}/cancel`, 'POST');
+  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+});
+
+test('where the browser has no WebGL, the page says so and the model can still be downloaded', async (t) => {
+  const scanner = await startScanner(t);
+  const {id} = await scan(scanner, draft);
+  const {page} = await openPage(await openBrowser(t, {hasWebGl: false}), `${scanner.url}#${id}`);
+  await page.getByText('This browser cannot draw in 3D').waitFor();
+  const download = page.getByRole('link', {name: 'Download STL'}).first();
+  const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
+  assert.equal(arrived.suggestedFilename(), 'Scan.stl');
+});

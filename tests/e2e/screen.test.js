@@ -1,0 +1,85 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {screenOf} from '../../web/screen.js';
+import * as states from '../../web/state.js';
+import {finished, running, status} from './examples.js';
+
+const idle = states.withStatus(states.initial, status);
+const scanning = (changes) => states.withStatus(states.initial, {...status, scan: {...running, ...changes}});
+const looking = (scan) => states.withSelected(states.withScans(idle, [scan]), scan.id);
+
+test('the panel is the form, the progress or a scan, as things are', () => {
+  assert.deepEqual([states.initial, idle, scanning({}), looking(finished)].map((state) => screenOf(state).panel),
+      ['waiting', 'form', 'progress', 'details']);
+});
+
+test('progress tells the stop, the share and the time left', () => {
+  const {progress, title} = screenOf(scanning({}));
+  assert.equal(progress.text, 'Looking at stop 10 of 36');
+  assert.equal(progress.left, 'about 45 s left');
+  assert.equal(progress.percent, 24);
+  assert.equal(title, '9/36 · Octurn');
+  assert.deepEqual(progress.steps.map(({state}) => state), ['done', 'now', 'next']);
+});
+
+test('the last stop is not the end: the model is still to be built', () => {
+  const {progress, title} = screenOf(scanning({phase: 'building', snapshots_done: 36, seconds_left: null}));
+  assert.equal(progress.text, 'Building the model');
+  assert.ok(progress.percent < 100);
+  assert.equal(title, 'Building · Octurn');
+});
+
+test('after the last snapshot the stop shown is never beyond the last', () => {
+  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Turning to stop 36 of 36');
+});
+
+test('a finished scan shows its size, its facts and its download', () => {
+  const {details, stage, title} = screenOf(looking(finished));
+  assert.equal(details.name, 'Owl');
+  assert.equal(details.size, '120.1 × 94.9 × 151.0 mm');
+  const facts = Object.fromEntries(details.facts.map(({label, text}) => [label, text]));
+  assert.equal(facts.Triangles, '1,011,032');
+  assert.equal(facts.Volume, '97.1 cm³');
+  assert.equal(facts.Watertight, 'Yes, ready to slice');
+  assert.equal(facts.Snapshots, '36 of 36, average of 10');
+  assert.deepEqual(details.download, {url: finished.model.url, bytes: '51 MB'});
+  assert.equal(stage.shows, 'model');
+  assert.equal(title, 'Done · Octurn');
+});
+
+test('a model with open edges is not called ready', () => {
+  const open = {...finished, model: {...finished.model, watertight: false}};
+  const fact = screenOf(looking(open)).details.facts.find(({label}) => label === 'Watertight');
+  assert.equal(fact.tone, 'warn');
+  assert.match(fact.text, /^No/);
+});
+
+test('a scan without a model says why, and what of it is kept', () => {
+  const error = {code: 'sensor-silent', detail: 'no frame for 2000 ms', hint: 'Check the cable'};
+  const failed = {...running, id: 'bad', state: 'failed', error};
+  const {details, rows, stage} = screenOf(looking(failed));
+  assert.deepEqual(details.trouble, {tone: 'bad', title: 'Scan failed', detail: 'No frame for 2000 ms.', hint: 'Check the cable.'});
+  assert.equal(details.download, null);
+  assert.equal(rows[0].about, '9 of 36 snapshots kept');
+  assert.equal(stage.shows, 'camera');
+});
+
+test('while the scanner is away the page keeps what it knew, and says so', () => {
+  const {isAway, title, panel, stage} = screenOf(states.withoutAnswer(states.withoutAnswer(scanning({}))));
+  assert.deepEqual({isAway, title, panel, isLive: stage.isLive}, {isAway: true, title: 'No answer · Octurn', panel: 'progress', isLive: false});
+});
+
+test('a missing sensor is told before a scan is tried', () => {
+  const sensor = {state: 'missing', name: '', simulated: false, message: 'no sensor: is it plugged in?'};
+  const {faults, devices, stage} = screenOf(states.withStatus(states.initial, {...status, sensor}));
+  assert.deepEqual(faults, ['No sensor: is it plugged in?']);
+  assert.deepEqual(devices.map(({tone}) => tone), ['bad', 'good']);
+  assert.equal(stage.isLive, false);
+});
+
+test('progress is announced four times a turn, not at each stop', () => {
+  const said = Array.from({length: 37}, (_, done) => screenOf(scanning({snapshots_done: done})).announcement);
+  assert.equal(new Set(said).size, 5);
+  assert.equal(said[9], '25 percent of the snapshots taken.');
+});

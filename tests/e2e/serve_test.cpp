@@ -1,0 +1,428 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/http_client.hpp"
+#include "support/program.hpp"
+#include "support/stl.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+json parsed(const Reply& reply) { return json::parse(reply.body, nullptr, false); }
+
+/// `octurn serve` on the simulated rig, much faster than life, on a free port of this machine.
+class Daemon {
+ public:
+  explicit Daemon(const fs::path& folder, std::vector<std::string> more = {},
+                  std::optional<rlim_t> most_file_bytes = {})
+      : program_(command(folder, std::move(more)), most_file_bytes) {
+    const std::string line = program_.read_line();  // "Octurn is at http://127.0.0.1:41234/"
+    const std::size_t colon = line.rfind(':');
+    port_ = colon == std::string::npos ? 0 : std::stoi(line.substr(colon + 1));
+    EXPECT_GT(port_, 0) << line;
+  }
+
+  static std::vector<std::string> command(const fs::path& folder,
+                                          std::vector<std::string> more = {}, int port = 0) {
+    put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
+    std::vector<std::string> words{
+        OCTURN_PROGRAM,  "serve",     "--simulate",  "--simulate-speed",   "20",
+        "--listen",      "127.0.0.1", "--port",      std::to_string(port), "--data",
+        folder / "data", "--web",     folder / "web"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  int port() const { return port_; }
+  Program& program() { return program_; }
+
+  Reply get(const std::string& path, const Headers& headers = {}) const {
+    return request(port_, "GET", path, "", headers);
+  }
+  Reply post(const std::string& path, const std::string& body = "{}") const {
+    return request(port_, "POST", path, body);
+  }
+  json status() const { return parsed(get("/api/v1/status")); }
+
+  /// Starts a scan. @return its path
+  std::string start(const std::string& settings) const {
+    const Reply reply = post("/api/v1/scans", settings);
+    EXPECT_EQ(reply.status, 202) << reply.body;
+    return reply.header("Location");
+  }
+
+  /// Waits until a scan is as wanted; what it is then, wanted or not after 20 s.
+  json wait_until(const std::string& scan, const std::function<bool(const json&)>& wanted) const {
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    json now = parsed(get(scan));
+    while (!wanted(now) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+      now = parsed(get(scan));
+    }
+    return now;
+  }
+  json wait_until_done(const std::string& scan) const {
+    return wait_until(scan, [](const json& now) { return now["state"] != "running"; });
+  }
+
+ private:
+  Program program_;
+  int port_ = 0;
+};
+
+const std::string quick = R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 4})";
+const std::string endless = R"({"snapshots": 200, "frames": 2, "leaf_size_mm": 4})";
+
+bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
+
+TEST(Serve, ScansAndGivesAClosedModel) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(R"({"snapshots": 8, "frames": 3, "leaf_size_mm": 2})");
+  const json done = daemon.wait_until_done(scan);
+  ASSERT_EQ(done["state"], "finished") << done;
+  EXPECT_EQ(done["phase"], "done");
+  EXPECT_EQ(done["snapshots_done"], 8);
+  EXPECT_EQ(done["model"]["watertight"], true);
+
+  const Reply model = daemon.get(done["model"]["url"]);
+  EXPECT_EQ(model.status, 200);
+  EXPECT_EQ(model.header("Content-Type"), "model/stl");
+  EXPECT_EQ(triangles_of_whole_stl(model.body), done["model"]["triangles"]);
+  EXPECT_EQ(open_edges(model.body), 0);
+  EXPECT_TRUE(daemon.get("/Scan.stl").body == model.body);
+  EXPECT_EQ(daemon.status()["newest"], done["id"]);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], done);
+
+  // The command gives the same bytes from the scan that was stored.
+  Program again({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / done["id"], "-o",
+                 "-", "--leaf-size-mm", "2"});
+  EXPECT_EQ(again.wait(), 0);
+  EXPECT_TRUE(again.output() == model.body);
+}
+
+TEST(Serve, SendsPartsOfAModelThatPutTogetherAreTheWhole) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  ASSERT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
+  const Reply whole = daemon.get("/Scan.stl");
+  const std::string tag = whole.header("ETag");
+  std::string together;
+  const std::size_t half = whole.body.size() / 2;
+  for (const std::string& part :
+       {"bytes=0-" + std::to_string(half - 1), "bytes=" + std::to_string(half) + "-"}) {
+    const Reply reply = daemon.get("/Scan.stl", {{"Range", part}, {"If-Range", tag}});
+    EXPECT_EQ(reply.status, 206);
+    together += reply.body;
+  }
+  EXPECT_TRUE(together == whole.body);
+  EXPECT_EQ(daemon.get("/Scan.stl", {{"If-None-Match", tag}}).status, 304);
+  EXPECT_EQ(daemon.get("/Scan.stl", {{"Range", "bytes=99999999999-"}}).status, 416);
+  const Reply head = request(daemon.port(), "HEAD", "/Scan.stl");
+  EXPECT_EQ(head.header("Content-Length"), std::to_string(whole.body.size()));
+  EXPECT_EQ(head.body, "");
+}
+
+TEST(Serve, RefusesASecondStart) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(endless);
+  const Reply second = daemon.post("/api/v1/scans", quick);
+  EXPECT_EQ(second.status, 409);
+  EXPECT_EQ(second.header("Content-Type"), "application/problem+json");
+  EXPECT_EQ(parsed(second)["code"], "busy");
+  EXPECT_FALSE(parsed(second)["hint"].get<std::string>().empty());
+  EXPECT_EQ(request(daemon.port(), "DELETE", scan).status, 409);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"].size(), 1U);
+}
+
+TEST(Serve, CancelsAScanWhereverItIs) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  for (const char* const phase : {"starting", "turning", "capturing"}) {
+    const std::string scan = daemon.start(endless);
+    daemon.wait_until(scan, [&](const json& now) {
+      return now["phase"] == phase || std::string(phase) == "starting";
+    });
+    EXPECT_EQ(daemon.post(scan + "/cancel", "").status, 202) << phase;
+    const json done = daemon.wait_until_done(scan);
+    EXPECT_EQ(done["state"], "cancelled") << phase;
+    EXPECT_EQ(parsed(daemon.get(scan + "/Scan.stl"))["code"], "no-model");
+    const Reply again = daemon.post(scan + "/cancel", "");
+    EXPECT_EQ(again.status, 409);
+    EXPECT_EQ(parsed(again)["code"], "not-running");
+  }
+  EXPECT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
+}
+
+TEST(Serve, CancelsAScanWhileItBuilds) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan =  // a model of hundreds of megabytes, which takes a while
+      daemon.start(R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2})");
+  const json building = daemon.wait_until(scan, [](const json& now) {
+    return now["phase"] == "building" || now["state"] != "running";
+  });
+  ASSERT_EQ(building["phase"], "building") << building;
+  EXPECT_EQ(daemon.post(scan + "/cancel", "").status, 202);
+  const json done = daemon.wait_until_done(scan);
+  EXPECT_EQ(done["state"], "cancelled");
+  EXPECT_EQ(done["snapshots_done"], 3);
+  const fs::path scan_folder = folder.path() / "data" / "scans" / done["id"];
+  EXPECT_FALSE(fs::exists(scan_folder / "Scan.stl"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(scan_folder), {}), 3);  // job, scan, snapshots
+}
+
+TEST(Serve, NamesAndDeletesAScan) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(quick);
+  daemon.wait_until_done(scan);
+  const Reply named = request(daemon.port(), "PATCH", scan, R"({"name": "Hase"})");
+  EXPECT_EQ(named.status, 200);
+  EXPECT_EQ(parsed(named)["name"], "Hase");
+  EXPECT_NE(daemon.get(scan + "/Scan.stl").header("Content-Disposition").find("Hase.stl"),
+            std::string::npos);
+  for (const char* const body : {R"({"name": 5})", R"({"nom": "x"})", R"({"name": "a\nb"})", "",
+                                 "[]", "{", R"({"name": "\ud800"})"}) {
+    EXPECT_EQ(request(daemon.port(), "PATCH", scan, body).status, 400) << body;
+  }
+  EXPECT_EQ(parsed(daemon.get(scan))["name"], "Hase");
+
+  EXPECT_EQ(request(daemon.port(), "DELETE", scan).status, 204);
+  EXPECT_EQ(daemon.get(scan).status, 404);
+  EXPECT_EQ(daemon.get("/Scan.stl").status, 404);
+  EXPECT_TRUE(fs::is_empty(folder.path() / "data" / "scans"));
+}
+
+TEST(Serve, ChangesNothingForASettingThatIsWrong) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  for (const char* const body :
+       {R"({"snapshots": 0})", R"({"leaf_size_mm": "fine"})", R"({"speed": 1})", "[]", "nonsense",
+        R"({"snapshots": 1e999})", "\xff\xfe"}) {
+    const Reply reply = daemon.post("/api/v1/scans", body);
+    EXPECT_EQ(reply.status, 400) << body;
+    EXPECT_EQ(reply.header("Content-Type"), "application/problem+json");
+  }
+  const std::string deep(60'000, '[');
+  EXPECT_EQ(daemon.post("/api/v1/scans", deep).status, 400);
+  EXPECT_EQ(daemon.status()["scan"], nullptr);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+}
+
+TEST(Serve, ServesThePageAndNothingBesideIt) {
+  const TemporaryFolder folder;
+  put(folder.path() / "secret.txt", "treasure");
+  const Daemon daemon(folder.path());
+  const Reply page = daemon.get("/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.header("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(daemon.get("/", {{"If-None-Match", page.header("ETag")}}).status, 304);
+  for (const char* const path :
+       {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/%2e%2e%2fsecret.txt",
+        "//secret.txt", "/web/../../secret.txt", "/..\\secret.txt", "/api/v1/scans/..%2f..%2fweb",
+        "/api/v1/scans/%2e%2e", "/api/v1/scans/../../web",
+        "/api/v1/scans/20261121-081500-3f2a/../../../web/index.html",
+        "/api/v1/scans/..%2f..%2f/Scan.stl", "/api/v1/scans//Scan.stl", "/api/v1/", "/api"}) {
+    const Reply reply = daemon.get(path);
+    EXPECT_TRUE(reply.status == 404 || reply.status == 400) << path << " " << reply.status;
+    EXPECT_EQ(reply.body.find("treasure"), std::string::npos);
+  }
+}
+
+TEST(Serve, RefusesOtherSites) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const auto post = [&](const Headers& headers) {
+    return request(daemon.port(), "POST", "/api/v1/scans", quick, headers).status;
+  };
+  EXPECT_EQ(post({{"Origin", "http://evil.example"}}), 403);
+  EXPECT_EQ(post({{"Origin", "null"}}), 403);
+  const std::string form =
+      "POST /api/v1/scans HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/plain\r\n"
+      "Content-Length: 2\r\n\r\n{}";
+  EXPECT_EQ(reply_to(daemon.port(), form).status, 415);
+  const std::string rebound = "GET /api/v1/status HTTP/1.1\r\nHost: evil.example\r\n\r\n";
+  EXPECT_EQ(reply_to(daemon.port(), rebound).status, 421);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+  EXPECT_EQ(post({{"Origin", "http://localhost:" + std::to_string(daemon.port())}}), 202);
+}
+
+TEST(Serve, SaysWhatAPathTakes) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const Reply wrong = request(daemon.port(), "PUT", "/api/v1/scans");
+  EXPECT_EQ(wrong.status, 405);
+  EXPECT_EQ(wrong.header("Allow"), "GET, HEAD, POST");
+  EXPECT_EQ(request(daemon.port(), "DELETE", "/api/v1/status").status, 405);
+  EXPECT_EQ(request(daemon.port(), "POST", "/").status, 404);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans/20261121-081500-3f2a"))["code"], "no-such-scan");
+  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 36);
+}
+
+TEST(Serve, ShowsWhatTheSensorSees) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const Reply picture = daemon.get("/api/v1/preview/depth.png");
+  EXPECT_EQ(picture.status, 200) << picture.body;
+  EXPECT_EQ(picture.header("Content-Type"), "image/png");
+  EXPECT_EQ(picture.body.substr(1, 3), "PNG");
+}
+
+TEST(Serve, SaysThatThereIsNoSensor) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path(), {"--sensor", "/nowhere.oni"});
+  for (const Reply& reply :
+       {daemon.get("/api/v1/preview/depth.png"), daemon.post("/api/v1/scans", quick)}) {
+    EXPECT_EQ(reply.status, 503);
+    EXPECT_EQ(parsed(reply)["code"], "sensor-missing");
+    EXPECT_FALSE(parsed(reply)["hint"].get<std::string>().empty());
+  }
+  EXPECT_EQ(daemon.status()["sensor"]["state"], "missing");
+}
+
+TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
+  const TemporaryFolder folder;
+  std::string scan;
+  {
+    Daemon daemon(folder.path());
+    scan = daemon.start(endless);
+    daemon.wait_until(scan, has_two_snapshots);
+    daemon.program().send_signal(SIGKILL);
+    EXPECT_EQ(daemon.program().wait(), -SIGKILL);
+  }
+  const Daemon daemon(folder.path());
+  const json left = parsed(daemon.get(scan));
+  EXPECT_EQ(left["state"], "interrupted");
+  EXPECT_GE(left["snapshots_done"], 2);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0]["state"], "interrupted");
+  Program reconstruct({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / left["id"],
+                       "-o", folder.path() / "Scan.stl"});
+  EXPECT_EQ(reconstruct.wait(), 0) << reconstruct.errors();
+  EXPECT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
+}
+
+TEST(Serve, EndsAtOnceAndKeepsTheSnapshots) {
+  const TemporaryFolder folder;
+  std::string scan;
+  {
+    Daemon daemon(folder.path());
+    scan = daemon.start(endless);
+    daemon.wait_until(scan, has_two_snapshots);
+    const auto asked = std::chrono::steady_clock::now();
+    daemon.program().send_signal(SIGTERM);
+    EXPECT_EQ(daemon.program().wait(), 0);
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, 2s);
+  }
+  EXPECT_EQ(parsed(Daemon(folder.path()).get(scan))["state"], "interrupted");
+}
+
+TEST(Serve, FailsAScanWhenTheDiskIsFullAndGoesOn) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path(), {}, 500'000);  // takes snapshots, but no model
+  const json done = daemon.wait_until_done(daemon.start(R"({"snapshots": 3, "frames": 2})"));
+  EXPECT_EQ(done["state"], "failed");
+  EXPECT_EQ(done["error"]["code"], "disk-full");
+  EXPECT_FALSE(done["error"]["hint"].get<std::string>().empty());
+  EXPECT_EQ(done["snapshots_done"], 3);
+  EXPECT_EQ(daemon.status()["scan"], nullptr);
+}
+
+TEST(Serve, KeepsToOneDaemonForAFolderAndForAPort) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  Program same_data(Daemon::command(folder.path()));
+  EXPECT_EQ(same_data.wait(), 1);
+  EXPECT_NE(same_data.errors().find("another octurn"), std::string::npos) << same_data.errors();
+
+  const TemporaryFolder other;
+  Program same_port(Daemon::command(other.path(), {}, daemon.port()));
+  EXPECT_EQ(same_port.wait(), 1);
+  EXPECT_NE(same_port.errors().find("cannot listen on 127.0.0.1"), std::string::npos);
+  EXPECT_NE(same_port.errors().find("--port"), std::string::npos);
+}
+
+TEST(Serve, SaysWhatIsWrongBeforeItStarts) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json", R"({"scan": {"leaf_size_mm": 0}})");
+  Program bad_config(Daemon::command(folder.path(), {"--config", folder.path() / "octurn.json"}));
+  EXPECT_EQ(bad_config.wait(), 1);
+  EXPECT_NE(bad_config.errors().find("scan.leaf_size_mm"), std::string::npos);
+
+  Program no_hardware({OCTURN_PROGRAM, "serve", "--port", "0", "--data", folder.path() / "data"});
+  EXPECT_EQ(no_hardware.wait(), 1);
+  EXPECT_NE(no_hardware.errors().find("--simulate"), std::string::npos);
+
+  Program bad_port(Daemon::command(folder.path(), {}, 70000));
+  EXPECT_EQ(bad_port.wait(), 2);
+}
+
+TEST(Serve, UsesItsConfiguration) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json",
+      R"({"scan": {"snapshots": 5}, "host_names": ["scan.example"]})");
+  const Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
+  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 5);
+  const std::string named = "GET /api/v1/status HTTP/1.1\r\nHost: scan.example\r\n\r\n";
+  EXPECT_EQ(reply_to(daemon.port(), named).status, 200);
+}
+
+TEST(ScanCommand, ScansAndWritesTheModel) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> command{OCTURN_PROGRAM,
+                                         "scan",
+                                         "--simulate",
+                                         "--simulate-speed",
+                                         "20",
+                                         "--data",
+                                         folder.path() / "data",
+                                         "-o",
+                                         folder.path() / "Scan.stl",
+                                         "--snapshots",
+                                         "3",
+                                         "--frames",
+                                         "2",
+                                         "--leaf-size-mm",
+                                         "4"};
+  Program program(command);
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  const std::string stl = content_of(folder.path() / "Scan.stl");
+  EXPECT_GT(triangles_of_whole_stl(stl), 1000);
+  EXPECT_EQ(open_edges(stl), 0);
+}
+
+TEST(ScanCommand, StopsWhenItIsInterrupted) {
+  const TemporaryFolder folder;
+  Program program({OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "-o",
+                   folder.path() / "Scan.stl"});
+  while (!fs::exists(folder.path() / "data" / "scans")) {
+    std::this_thread::yield();
+  }
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(program.errors().find("stopped"), std::string::npos) << program.errors();
+  EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
+}
+
+TEST(ScanCommand, RefusesSettingsThatAreWrong) {
+  const TemporaryFolder folder;
+  Program program(
+      {OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "--snapshots", "0"});
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_NE(program.errors().find("snapshots"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder.path() / "data"));
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,72 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import * as states from '../../web/state.js';
+import {finished, running, status} from './examples.js';
+
+const {initial} = states;
+const scanning = states.withStatus(initial, {...status, scan: running});
+
+test('a running scan is in the list as the status tells it', () => {
+  const later = states.withStatus(scanning, {...status, scan: {...running, snapshots_done: 10}});
+  assert.deepEqual(later.scans.map(({id, snapshots_done}) => `${id} ${snapshots_done}`), ['run 10']);
+});
+
+test('a scan that ends while it is looked at stays in view, with its model', () => {
+  const ended = states.withStatus(scanning, {...status, newest: 'run'});
+  assert.equal(ended.selected, 'run');
+  assert.equal(ended.stage, 'model');
+});
+
+test('a scan that ends while another is looked at does not take its place', () => {
+  const elsewhere = states.withSelected(states.withScan(scanning, finished), 'done');
+  assert.equal(states.withStatus(elsewhere, status).selected, 'done');
+});
+
+test('the running scan is looked at by looking at nothing else', () => {
+  assert.equal(states.withSelected(scanning, 'run').selected, null);
+});
+
+test('the list is stale when a scan came or ended, and fresh once it is read', () => {
+  assert.ok(states.isListStale(scanning));
+  const listed = states.withScans(scanning, [running]);
+  assert.ok(!states.isListStale(listed));
+  assert.ok(!states.isListStale(states.withStatus(listed, {...status, scan: {...running, snapshots_done: 30}})));
+  assert.ok(states.isListStale(states.withStatus(listed, {...status, newest: 'run'})));
+});
+
+test('a scan that is no longer there is no longer looked at', () => {
+  const looking = states.withSelected(states.withScans(states.withStatus(initial, status), [finished]), 'done');
+  assert.equal(states.withScans(looking, []).selected, null);
+  assert.equal(states.withoutScan(looking, 'done').selected, null);
+  assert.equal(states.withoutScan(looking, 'other').selected, 'done');
+});
+
+test('one unanswered request is an accident, two mean that the scanner is away, an answer ends it', () => {
+  const once = states.withoutAnswer(scanning);
+  const twice = states.withoutAnswer(once);
+  assert.deepEqual([once, twice, states.withStatus(twice, status)].map(states.isAway), [false, true, false]);
+});
+
+test('it asks twice a second while a scan runs, and ever more slowly while nobody answers', () => {
+  assert.ok(states.pause(scanning) <= 500);
+  assert.ok(states.pause(states.withStatus(initial, status)) <= 1000);
+  const pauses = [];
+  for (let state = states.withoutAnswer(scanning); pauses.length < 8; state = states.withoutAnswer(state)) {
+    pauses.push(states.pause(state));
+  }
+  assert.deepEqual(pauses, [...pauses].sort((a, b) => a - b));
+  assert.equal(pauses.at(-1), 8000);
+});
+
+test('a phone does not load 50 MB unasked, a desktop does', () => {
+  assert.deepEqual([true, false].map((isHandheld) => states.loadsUnasked(50e6, isHandheld)), [false, true]);
+});
+
+test('what is asked for clears the problem of what was asked before', () => {
+  const problem = {title: 'The scan did not start', detail: '', hint: ''};
+  const asking = states.withPending(states.withProblem(initial, problem));
+  assert.equal(asking.problem, null);
+  assert.equal(asking.isPending, true);
+  assert.equal(states.withProblem(states.withAnswer(asking), problem).isPending, false);
+});

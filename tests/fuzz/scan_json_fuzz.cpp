@@ -1,0 +1,47 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "octurn/error.hpp"
+#include "octurn/scan_folder.hpp"
+
+// Whatever the text, it is refused by an Error of one line, or it is a scan that keeps what its
+// header promises.
+
+namespace {
+
+void require(bool promise) {
+  if (!promise) {
+    std::abort();
+  }
+}
+
+void check(const octurn::Scan& scan) {
+  const octurn::Intrinsics& lens = scan.intrinsics;
+  require(lens.width > 0 && lens.height > 0);
+  require(lens.fx > 0 && lens.fy > 0 && lens.depth_unit > 0);
+  const Eigen::Matrix3d rotation = scan.platform_from_sensor.linear();
+  require(std::abs(rotation.determinant() - 1.0) < 1e-3);
+  require((scan.clip.min.array() < scan.clip.max.array()).all());
+  require(!scan.shots.empty());
+  for (const octurn::Shot& shot : scan.shots) {
+    require(std::isfinite(shot.angle));
+    const std::filesystem::path there =
+        ("/scan" / std::filesystem::path(shot.file)).lexically_normal();
+    require(there.string().starts_with("/scan/") && there.has_filename());
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    check(octurn::parse_scan({reinterpret_cast<const char*>(data), size}));
+  } catch (const octurn::Error& error) {
+    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+  }
+  return 0;
+}

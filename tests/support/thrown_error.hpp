@@ -1,0 +1,30 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+
+/// The Error that `action` throws, whose message has to be one line. Without one the test fails,
+/// and the Error returned has no code.
+template <typename Action>
+Error error_thrown_by(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error;
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return Error("", "nothing was thrown");
+}
+
+template <typename Action>
+std::string code_thrown_by(const Action& action) {
+  return error_thrown_by(action).code();
+}
+
+}  // namespace octurn

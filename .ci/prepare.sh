@@ -1,0 +1,68 @@
+# shellcheck shell=sh
+# Read by ./run and ./test, from the top of the repository: gets the machine ready to build.
+
+say() { printf '%s\n' "octurn: $*"; }
+
+fail() {
+  printf '%s\n' "octurn: $*" >&2
+  exit 1
+}
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "packages are missing; become root or install sudo, or run: apt-get install $missing"
+  fi
+}
+
+# missing_packages SECTION...: prints the packages of these sections of .ci/packages that are not here.
+missing_packages() {
+  for section in "$@"; do
+    sed -n "/^\[$section\]/,/^\[/s/^[a-z0-9]/&/p" .ci/packages
+  done | while read -r package command; do
+    command=${command#(}
+    command=${command%)}
+    if [ -n "$command" ] && command -v "$command" >/dev/null; then
+      continue
+    fi
+    state=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null) || state=
+    [ "$state" = "ii " ] || printf '%s ' "$package"
+  done
+}
+
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -o DPkg::Lock::Timeout=300 "$@" \
+    >>build/packages.log 2>&1 </dev/null
+}
+
+# install_packages SECTION...: installs what is missing; without the network if nothing is.
+install_packages() {
+  command -v dpkg-query >/dev/null || fail "this needs Debian or one of its relatives"
+  missing=$(missing_packages "$@")
+  [ -n "$missing" ] || return 0
+  say "installing Debian packages (log in build/packages.log): $missing"
+  mkdir -p build
+  : >build/packages.log
+  # shellcheck disable=SC2086 # a list of names
+  apt_get install --no-install-recommends $missing || {
+    say "updating the package lists first"
+    apt_get update && apt_get install --no-install-recommends $missing
+  } || {
+    tail -n 20 build/packages.log >&2
+    fail "apt-get could not install: $missing"
+  }
+}
+
+# build PRESET: configures and builds build/PRESET.
+build() {
+  say "building build/$1"
+  mkdir -p build
+  if ! cmake --preset "$1" >"build/$1.log" 2>&1; then
+    cat "build/$1.log" >&2
+    return 1
+  fi
+  cmake --build --preset "$1" -j "$(nproc)"
+}

@@ -97,7 +97,7 @@ TEST(ScanStore, ListsScansOfTheSameSecondInTheirOrder) {
 
 TEST(ScanStore, PutsANewScanFirstAlthoughTheClockHasGoneBack) {
   const TemporaryFolder folder;
-  for (const char* const id : {"20991231-235959-fffe", "20991231-235959-ffff"}) {
+  for (const char* const id : {"20991231-235959-c34e", "20991231-235959-c34f"}) {
     put(folder.path() / "scans" / id / "job.json", json_of(Job{.id = id}).dump());
   }
   const ScanStore store(folder.path());

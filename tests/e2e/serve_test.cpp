@@ -24,8 +24,8 @@ json parsed(const Reply& reply) { return json::parse(reply.body, nullptr, false)
 class Daemon {
  public:
   explicit Daemon(const fs::path& folder, std::vector<std::string> more = {},
-                  std::optional<rlim_t> most_file_bytes = {})
-      : program_(command(folder, std::move(more)), most_file_bytes) {
+                  const ProgramLimits& limits = {})
+      : program_(command(folder, std::move(more)), limits) {
     const std::string line = program_.read_line();  // "Octurn is at http://127.0.0.1:41234/"
     const std::size_t colon = line.rfind(':');
     port_ = colon == std::string::npos ? 0 : std::stoi(line.substr(colon + 1));
@@ -330,7 +330,7 @@ TEST(Serve, EndsAtOnceAndKeepsTheSnapshots) {
 
 TEST(Serve, FailsAScanWhenTheDiskIsFullAndGoesOn) {
   const TemporaryFolder folder;
-  const Daemon daemon(folder.path(), {}, 500'000);  // takes snapshots, but no model
+  const Daemon daemon(folder.path(), {}, {.file_bytes = 500'000});  // takes snapshots, but no model
   const json done = daemon.wait_until_done(daemon.start(R"({"snapshots": 3, "frames": 2})"));
   EXPECT_EQ(done["state"], "failed");
   EXPECT_EQ(done["error"]["code"], "disk-full");

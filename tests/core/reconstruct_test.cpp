@@ -115,15 +115,24 @@ TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
 
 TEST(Reconstruction, ShowsACoarsePreviewOfWhatWasSeenSoFar) {
   Reconstruction reconstruction(ball_options(0.001));
+  const auto preview = [&](std::uint64_t most_facets) {
+    MeshCheck check;
+    reconstruction.preview(0.008, most_facets,
+                           [&](std::span<const Facet> facets) { check.add(facets); });
+    return check;
+  };
   reconstruction.add(ball_snapshot(0));
-  MeshCheck half;
-  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { half.add(facets); });
+  const MeshCheck half = preview(1'000'000);
   EXPECT_TRUE(half.closed());
   EXPECT_LT(half.facets(), 3000U);
   reconstruction.add(ball_snapshot(std::numbers::pi));
-  MeshCheck both;
-  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { both.add(facets); });
+  const MeshCheck both = preview(1'000'000);
   EXPECT_GT(both.volume_mm3(), half.volume_mm3() * 1.3);
+
+  const MeshCheck coarser = preview(both.facets() - 1);
+  EXPECT_TRUE(coarser.closed());
+  EXPECT_LT(coarser.facets(), both.facets() / 2);  // a level coarser is about a quarter
+  EXPECT_GT(coarser.facets(), both.facets() / 8);
 }
 
 TEST(Reconstruction, SaysWhatIsWrongWithItsOptions) {

@@ -5,6 +5,7 @@
 
 #include "support/ball_scan.hpp"
 #include "support/checksum.hpp"
+#include "support/daemon.hpp"
 #include "support/program.hpp"
 #include "support/shared_folder.hpp"
 #include "support/small_scan.hpp"
@@ -114,6 +115,37 @@ TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
     EXPECT_EQ(allowed.status, 0) << allowed.errors;
     EXPECT_LT(allowed.peak_bytes, enough * mb);
   }
+}
+
+/// The most memory that a process has had resident so far, bytes.
+std::size_t peak_memory(const Program& program) {
+  const std::string status = content_of("/proc/" + std::to_string(program.process()) + "/status");
+  return std::stoul(status.substr(status.find("VmHWM:") + 6)) * 1024;
+}
+
+/// How much more memory than for coarse models a daemon takes for those of 0.1 mm: one that is
+/// counted for a download, and one that is scanned until it would be written.
+std::size_t memory_for_fine_models(const std::string& config) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json", config);
+  Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
+  const std::string scan = daemon.start(R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 4})");
+  EXPECT_EQ(daemon.wait_until_done(scan)["state"], "finished");
+  const std::size_t before = peak_memory(daemon.program());
+  const Reply counted = request(daemon.port(), "HEAD", scan + "/Scan.stl?leaf_size_mm=0.1");
+  EXPECT_EQ(counted.status, 200) << counted.header("Content-Length");
+  const std::string fine = daemon.start(R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 0.1})");
+  daemon.wait_until(fine, [](const nlohmann::json& now) {
+    return now["phase"] != "turning" && now["phase"] != "capturing" && now["phase"] != "starting";
+  });
+  daemon.post(fine + "/cancel", "");
+  EXPECT_EQ(daemon.wait_until_done(fine)["snapshots_done"], 12);
+  return peak_memory(daemon.program()) - before;
+}
+
+// Without a limit it takes 37 MB, so that a daemon which ignored it would fail here.
+TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
+  EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
 }
 
 class SharedBunny : public ::testing::Test {

@@ -65,6 +65,8 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  pid_t process() const { return process_; }
+
   void send_signal(int signal) const { ::kill(process_, signal); }
 
   /// The next line of its standard output; empty at the end, or if none comes for 20 s.

@@ -197,7 +197,7 @@ export function screenOf(state) {
       hasChoice: has3D,
       model: hasModel ? chosen?.model ?? null : null,
       growing,
-      name: chosen ? nameOf(chosen) : growing ? 'Growing with each snapshot' : '',
+      name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
       sensor: state.status?.sensor.name ?? '',
       isReachable: !isAway(state),
       isLive: state.status?.sensor.state === 'ready' && !isAway(state),

@@ -172,6 +172,8 @@ export function screenOf(state) {
   const chosen = scanOf(state, state.selected);
   const panel = !state.status ? 'waiting' : chosen ? 'details' : scan ? 'progress' : 'form';
   const hasModel = panel === 'details' && Boolean(chosen?.model);
+  const growing = panel === 'progress' && scan ? scan.preview : null;
+  const has3D = hasModel || growing !== null;
   const devices = state.status ? [deviceOf('sensor', state.status.sensor), deviceOf('turntable', state.status.turntable)] : [];
   return {
     title: titleOf(state),
@@ -191,10 +193,11 @@ export function screenOf(state) {
     },
     faults: panel === 'form' ? devices.map(({message}) => message).filter(Boolean) : [],
     stage: {
-      shows: hasModel ? state.stage : 'camera',
-      hasChoice: hasModel,
+      shows: has3D ? state.stage : 'camera',
+      hasChoice: has3D,
       model: hasModel ? chosen?.model ?? null : null,
-      name: chosen ? nameOf(chosen) : '',
+      growing,
+      name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
       sensor: state.status?.sensor.name ?? '',
       isReachable: !isAway(state),
       isLive: state.status?.sensor.state === 'ready' && !isAway(state),

@@ -68,6 +68,52 @@ async function load(model) {
   }
 }
 
+/** @type {Stage['growing']} what of a running scan is shown, or was asked for last */
+let grown = null;
+/** @type {AbortController | null} of the request for it */
+let growth = null;
+
+/**
+ * Shows what a running scan has seen. While one mesh is on its way, no other is asked for.
+ * @param {NonNullable<Stage['growing']>} growing
+ */
+async function grow(growing) {
+  const isFirst = grown?.url !== growing.url;
+  if (growth || (!isFirst && grown?.snapshots === growing.snapshots)) {
+    return;
+  }
+  grown = growing;
+  growth = new AbortController();
+  const {signal} = growth;
+  try {
+    viewer ??= await openViewer();
+    const mesh = await readStl(await api.growing(growing.url, signal));
+    if (!signal.aborted) {
+      viewer.show(mesh, {isFirst});
+      if (isFirst) {
+        note('');
+        viewer.turn(!isStill);
+      }
+    }
+  } catch {
+    grown = isFirst ? null : grown;  // the next snapshot brings another mesh, and the end of the scan its model
+  }
+  if (!signal.aborted) {
+    growth = null;
+  }
+}
+
+/** @param {Stage} stage */
+function setGrowing({growing, shows}) {
+  if (growing && shows === 'model') {
+    grow(growing);
+  } else if (!growing) {
+    growth?.abort();
+    growth = null;
+    grown = null;
+  }
+}
+
 /** @param {Model | null} model */
 function setModel(model) {
   if ((model?.url ?? null) === current) {
@@ -101,6 +147,7 @@ export function renderStage(stage) {
   show(element('model'), stage.shows === 'model');
   setText(element('live-text'), stage.shows === 'model' ? stage.name :
       [stage.isScanning ? 'Scanning' : stage.isLive ? 'Live depth' : 'No picture', stage.sensor].filter(Boolean).join(' · '));
+  setGrowing(stage);
   setModel(stage.model);
 }
 

@@ -74,6 +74,7 @@ export class Viewer {
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
   #model = null;
+  #isAimed = false;  // by hand
   #isFrameDue = false;
   #drawnAt = 0;
 
@@ -93,7 +94,10 @@ export class Viewer {
     this.#controls.enableDamping = true;
     this.#controls.autoRotateSpeed = 1.6;
     this.#controls.addEventListener('change', () => this.#draw());
-    this.#controls.addEventListener('start', () => this.turn(false));
+    this.#controls.addEventListener('start', () => {
+      this.#isAimed = true;
+      this.turn(false);
+    });
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
@@ -111,8 +115,12 @@ export class Viewer {
     }
   }
 
-  /** @param {StlMesh} mesh  its positions are given away: they live on in the GPU only */
-  show({positions, min, max}) {
+  /**
+   * @param {StlMesh} mesh  its positions are given away: they live on in the GPU only
+   * @param {{isFirst?: boolean}} [growth]  a mesh that is not the first of its object leaves the eye where somebody put it
+   */
+  show({positions, min, max}, {isFirst = true} = {}) {
+    const isTurning = this.#controls.autoRotate;
     this.clear();
     const geometry = new BufferGeometry();
     const attribute = new BufferAttribute(positions, 3);
@@ -126,7 +134,14 @@ export class Viewer {
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
     this.#resize();
-    this.reset();
+    if (isFirst) {
+      this.reset();
+      return;
+    }
+    this.turn(isTurning);
+    if (!this.#isAimed) {
+      this.#aim(this.#camera.position.clone().sub(this.#controls.target).normalize());
+    }
   }
 
   /** Gives the GPU's memory back. */
@@ -142,13 +157,18 @@ export class Viewer {
 
   /** Looks at the whole model, a little from above, from where the sensor stands. */
   reset() {
-    if (!this.#model) {
-      return;
+    if (this.#model) {
+      this.#isAimed = false;
+      this.#aim(firstSight);
     }
+  }
+
+  /** Looks at the whole model. @param {Vector3} sight  from it to the eye, of length 1 */
+  #aim(sight) {
     const {center, radius} = this.#model.geometry.boundingSphere;
     const narrow = Math.min(1, this.#camera.aspect);
     const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
-    this.#camera.position.copy(center).addScaledVector(firstSight, distance);
+    this.#camera.position.copy(center).addScaledVector(sight, distance);
     this.#camera.near = distance / 100;
     this.#camera.far = distance * 20;
     this.#camera.updateProjectionMatrix();
@@ -216,6 +236,7 @@ export class Viewer {
     const move = moves[event.key];
     if (move && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
+      this.#isAimed = true;
       this.turn(false);
       move();
       this.#draw();

@@ -81,7 +81,10 @@ LeafLayers leaf_layers(const BrickLayers& slab) {
 
 // Nodes of a coarser level are found directly: the lattice makes that the same (see `intersect`).
 Intersection::Intersection(const ReconstructOptions& options)
-    : options_(checked(options)), octree_(octree_for(options)), slab_(all_layers(octree_)) {
+    : options_(checked(options)),
+      wanted_threads_(options.threads),
+      octree_(octree_for(options)),
+      slab_(all_layers(octree_)) {
   options_.threads = thread_count(options);
 }
 
@@ -118,10 +121,11 @@ void Intersection::keep_what_fits(Octree& octree, BrickLayers& slab) const {
   if (slab.end - slab.low <= 1) {
     const Eigen::Vector3d sides = (options_.clip.max - options_.clip.min) / octree.leaf_side();
     const double most = 2 * (sides.x() / Brick::side + 2) * (sides.y() / Brick::side + 2);
-    const auto enough = static_cast<std::size_t>(most * 2 * sizeof(Brick));
+    const auto layers = static_cast<std::size_t>(most * 2 * sizeof(Brick));  // and their nodes
+    const auto threads = static_cast<std::size_t>(wanted_threads_);
+    const std::size_t enough = program_bytes + threads * thread_bytes + (threads + 1) * layers;
     throw Error("memory-limit", "memory limit: one layer of the octree does not fit",
-                "Allow " + mb_text(program_bytes + 2 * (thread_bytes + enough)) +
-                    ", or choose a larger leaf size.");
+                "Allow " + mb_text(enough) + ", or choose a larger leaf size.");
   }
   std::size_t kept = bricks.front();
   int end = slab.low + 1;
@@ -210,10 +214,10 @@ SurfaceCount Intersection::count(const SnapshotSource& snapshots) {
   return count;
 }
 
-void Intersection::preview(double leaf_size, const FacetSink& sink) const {
+void Intersection::preview(double leaf_size, std::uint64_t most_facets,
+                           const FacetSink& sink) const {
   const int level = std::min(Octree::level_of(octree_.side(), leaf_size), octree_.levels());
-  const Octree coarse = octree_.at_level(level);
-  isosurface(coarse, all_layers(coarse), 1, sink);
+  coarse_isosurface(octree_.at_level(level), most_facets, sink);
 }
 
 }  // namespace octurn

@@ -27,7 +27,10 @@ class LayerOfCells {
  public:
   LayerOfCells(const Octree& octree, int layer) : octree_(octree) {
     for (int up = 0; up < 2; ++up) {
-      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick&) {
+      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick& leaves) {
+        if (!reaches(leaves, up)) {
+          return;
+        }
         for (int corner = 0; corner < 4; ++corner) {
           add({brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
         }
@@ -38,16 +41,21 @@ class LayerOfCells {
   const std::vector<CellBrick>& cells() const { return cells_; }
 
  private:
+  /// Whether a brick has leaves that are corners in this layer: of those above it only the lowest
+  /// are. The others may be missing, where the layer is the last of a slab, and must not matter.
+  static bool reaches(const Brick& leaves, int up) { return up == 0 || leaves.layers[0] != 0; }
+
   /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
   void add(const Cell& position, int corner) {
     CellBrick cell{.position = position, .bricks = {}};
     for (int i = 0; i < 8; ++i) {
       const Brick* brick =
           octree_.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
-      if (brick != nullptr && i < corner) {
+      const bool counts = brick != nullptr && reaches(*brick, i >> 2);
+      if (counts && i < corner) {
         return;
       }
-      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
+      cell.bricks[static_cast<std::size_t>(i)] = counts ? brick : &no_leaves;
     }
     cells_.push_back(cell);
   }
@@ -188,6 +196,13 @@ std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
     }
   });
   return count;
+}
+
+void coarse_isosurface(Octree octree, std::uint64_t most_facets, const FacetSink& sink) {
+  while (octree.levels() > 0 && count_facets(octree, all_layers(octree)) > most_facets) {
+    octree = octree.at_level(octree.levels() - 1);
+  }
+  isosurface(octree, all_layers(octree), 1, sink);
 }
 
 }  // namespace octurn

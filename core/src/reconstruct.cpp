@@ -30,8 +30,9 @@ SurfaceCount Reconstruction::count(const SnapshotSource& snapshots) {
   return std::visit([&](auto& method) { return method.count(snapshots); }, method_);
 }
 
-void Reconstruction::preview(double leaf_size, const FacetSink& sink) const {
-  std::visit([&](const auto& method) { method.preview(leaf_size, sink); }, method_);
+void Reconstruction::preview(double leaf_size, std::uint64_t most_facets,
+                             const FacetSink& sink) const {
+  std::visit([&](const auto& method) { method.preview(leaf_size, most_facets, sink); }, method_);
 }
 
 }  // namespace octurn

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fork_join.hpp"
@@ -179,7 +180,7 @@ SurfaceCount Solid::count(const SnapshotSource& snapshots) const {
   return surface(snapshots, [](std::span<const Facet>) {});
 }
 
-void Solid::preview(double leaf_size, const FacetSink& sink) const {
+void Solid::preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const {
   const int level = std::min(Octree::level_of(field_.side(), leaf_size), field_.levels());
   const int finer = field_.levels() - level;
   const FilledField filled(field_, foot());
@@ -198,7 +199,7 @@ void Solid::preview(double leaf_size, const FacetSink& sink) const {
       }
     }
   }
-  isosurface(coarse, all_layers(coarse), 1, sink);
+  coarse_isosurface(std::move(coarse), most_facets, sink);
 }
 
 }  // namespace octurn

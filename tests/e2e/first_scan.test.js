@@ -50,10 +50,16 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const snapshots = 8;
   await chooseQuickScan(page, snapshots);
   await noteProgress(page);
+  const growth = [];  // bytes of each mesh of what was seen so far
+  page.on('response', (response) => response.url().endsWith('/preview.stl') && response.status() === 200 &&
+      growth.push(Number(response.headers()['content-length'])));
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
   assert.match(await page.title(), /^(\d\/8|Building) · Octurn$/);
+  await page.locator('#tools').waitFor();
+  const grown = await modelShare(page);
+  assert.ok(grown > 0.005, `what was seen so far in 3D, not ${grown} of the view`);
   await picture(page, 'scanning');
 
   const download = page.getByRole('link', {name: 'Download STL'}).first();
@@ -62,6 +68,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
   assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
   assert.equal(await page.title(), 'Done · Octurn');
+  assert.ok(growth.length >= 2 && growth.at(-1) > growth[0], `a model that grows, not ${growth}`);
 
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.equal(arrived.suggestedFilename(), 'Scan.stl');

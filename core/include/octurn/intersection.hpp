@@ -34,9 +34,10 @@ class Intersection {
   /// What `surface` would give, without making it: a moment's work if there is one slab.
   SurfaceCount count(const SnapshotSource& snapshots);
 
-  /// The surface of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres. Of several slabs it shows the one at hand.
-  void preview(double leaf_size, const FacetSink& sink) const;
+  /// The surface of what was seen so far, on the first level whose nodes are at or below
+  /// `leaf_size` (metres), or on the finest above it that has no more than `most_facets`.
+  /// Of several slabs it shows the one at hand.
+  void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
   void see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
@@ -47,6 +48,7 @@ class Intersection {
   void for_each_slab(const SnapshotSource& snapshots, Visit visit);
 
   ReconstructOptions options_;
+  int wanted_threads_;  // of which the memory limit leaves as many as the options say
   Octree octree_;
   BrickLayers slab_ = {};  // the octree holds these, and the lowest leaves of the layer after them
 };

@@ -30,9 +30,9 @@ class Reconstruction {
   /// What `surface` would give.
   SurfaceCount count(const SnapshotSource& snapshots);
 
-  /// The surface of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres.
-  void preview(double leaf_size, const FacetSink& sink) const;
+  /// The surface of what was seen so far, on the first level whose nodes are at or below
+  /// `leaf_size` (metres), or on the finest above it that has no more than `most_facets`.
+  void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
   std::variant<Intersection, Solid> method_;

@@ -39,7 +39,7 @@ class Solid {
 
   /// The part made of what was seen so far, on a level whose nodes are at or below `leaf_size`,
   /// metres.
-  void preview(double leaf_size, const FacetSink& sink) const;
+  void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
   int foot() const;

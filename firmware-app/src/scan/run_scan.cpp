@@ -109,9 +109,11 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
     if (adding.valid()) {
       adding.get();
     }
-    adding = std::async(std::launch::async, [&reconstruction, added = std::move(snapshot)] {
-      reconstruction.add(added);
-    });
+    adding = std::async(std::launch::async,
+                        [&reconstruction, &observer, done, added = std::move(snapshot)] {
+                          reconstruction.add(added);
+                          observer.on_added(reconstruction, done);
+                        });
   }
 
   observer.on_progress(Phase::building, done);

@@ -50,33 +50,39 @@ TEST(DepthSensor, HasTheIntrinsicsOfAKinect) {
   EXPECT_EQ(intrinsics.depth_unit, 0.0001);
 }
 
-TEST(DepthSensor, StampsThirtyFramesASecondByTheSteadyClock) {
-  DepthSensor sensor("octurn-simulator://");
+/// The times between frames, from the shortest, at so many times the speed of life.
+std::vector<steady_clock::duration> gaps_between_frames(int frames, const std::string& speed) {
+  DepthSensor sensor("octurn-simulator://?speed=" + speed);
   std::vector<steady_clock::duration> gaps;
-  const auto before = steady_clock::now();
   auto last = sensor.read({})->time;
-  EXPECT_GT(last, before);
-  for (int i = 0; i < 31; ++i) {
+  for (int i = 1; i < frames; ++i) {
     const auto time = sensor.read({})->time;
     gaps.push_back(time - last);
     last = time;
   }
-  EXPECT_LE(last, steady_clock::now());
-
   std::ranges::sort(gaps);
-  EXPECT_GT(gaps.front(), milliseconds(0));
-  EXPECT_NEAR(std::chrono::duration<double>(gaps[15]).count(), 1.0 / 30, 0.005);
+  return gaps;
 }
 
-TEST(DepthSensor, IsFasterThanLifeIfTold) {
-  DepthSensor sensor("octurn-simulator://?speed=4");
+TEST(DepthSensor, StampsFramesByTheSteadyClock) {
+  DepthSensor sensor("octurn-simulator://");
+  const auto before = steady_clock::now();
   const auto first = sensor.read({})->time;
-  for (int i = 0; i < 29; ++i) {
-    sensor.read({});
-  }
-  const auto last = sensor.read({})->time;
+  const auto second = sensor.read({})->time;
+  EXPECT_GT(first, before);
+  EXPECT_GT(second, first);
+  EXPECT_LE(second, steady_clock::now());
+}
 
-  EXPECT_LT(last - first, milliseconds(700));  // 250 ms, or 1 s in life
+// A busy machine makes gaps longer, and a late frame is not made up for: only the middle one has a
+// lower bound.
+TEST(DepthSensor, SendsThirtyFramesASecondAtMost) {
+  EXPECT_GT(gaps_between_frames(32, "1")[15], milliseconds(31));
+}
+
+TEST(DepthSensor, IsSlowerOrFasterThanLifeIfTold) {
+  EXPECT_GT(gaps_between_frames(4, "0.25")[1], milliseconds(125));  // 133 ms, 33 in life
+  EXPECT_LT(gaps_between_frames(4, "100")[1], milliseconds(125));
 }
 
 TEST(DepthSensor, ReadsNothingWhenStopped) {

@@ -85,6 +85,27 @@ TEST(ScanStore, ListsTheNewestFirst) {
   EXPECT_FALSE(store.newest_finished());
 }
 
+TEST(ScanStore, ListsScansOfTheSameSecondInTheirOrder) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  for (int i = 0; i < 20; ++i) {
+    const Job job = store.create({});
+    EXPECT_EQ(store.list().front().id, job.id);
+  }
+  EXPECT_EQ(store.list().size(), 20U);
+}
+
+TEST(ScanStore, PutsANewScanFirstAlthoughTheClockHasGoneBack) {
+  const TemporaryFolder folder;
+  for (const char* const id : {"20991231-235959-c34e", "20991231-235959-c34f"}) {
+    put(folder.path() / "scans" / id / "job.json", json_of(Job{.id = id}).dump());
+  }
+  const ScanStore store(folder.path());
+  const Job job = store.create({});
+  EXPECT_EQ(job.id, "21000101-000000-0000");
+  EXPECT_EQ(job.created, "2100-01-01T00:00:00Z");
+}
+
 TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots) {
   const TemporaryFolder folder;
   std::string id;

@@ -111,8 +111,8 @@ TEST_F(ScannerTest, CountsDownWhatIsLeft) {
 }
 
 TEST_F(ScannerTest, FailsWhenTheSensorFallsSilentAndOpensItAgainForTheNextScan) {
-  // Some seconds of frames: enough for a few snapshots, not for 200.
-  Scanner scanner({.sensor_uri = "octurn-simulator://?speed=4&silent-after=400", .speed = 20}, {},
+  // Frames for a few snapshots, not for 200.
+  Scanner scanner({.sensor_uri = "octurn-simulator://?speed=4&silent-after=100", .speed = 20}, {},
                   store_);
   const Job failed = scan(scanner, few_snapshots(200));
   EXPECT_EQ(failed.state, JobState::failed);

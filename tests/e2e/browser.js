@@ -38,7 +38,7 @@ export async function openBrowser(t, {hasWebGl = true} = {}) {
 export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light'} = {}) {
   const context = await browser.newContext({...screens[screen], colorScheme, reducedMotion: 'reduce'});
   const page = await context.newPage();
-  page.setDefaultTimeout(40000);
+  page.setDefaultTimeout(120000); // on a busy machine every picture takes its time
   const faults = [];
   page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
   page.on('pageerror', (error) => faults.push(error.message));

@@ -19,24 +19,26 @@ ReconstructOptions clipped(ReconstructOptions options, const Box& clip) {
 }  // namespace
 
 ModelStream::ModelStream(const std::filesystem::path& folder, ReconstructOptions options,
-                         std::unique_ptr<Scanner::Leave> leave) try
+                         std::unique_ptr<Scanner::Leave> leave)
     : leave_(std::move(leave)),
       scan_(read_scan(folder)),
-      snapshots_{.count = scan_.shots.size(), .read = [
-                   this, folder
-                 ](std::size_t shot){if (leave_->stop().stop_requested()){throw Ended{}
-  ;
-}  // namespace octurn
-return read_snapshot(folder, scan_, scan_.shots[shot]);
-}
-}
-, reconstruction_(clipped(std::move(options), scan_.clip)) {
-  reconstruction_.add(snapshots_);
-  count_ = reconstruction_.count(snapshots_);
+      snapshots_{.count = scan_.shots.size(),
+                 .read = [this, folder](std::size_t shot) { return snapshot(folder, shot); }},
+      reconstruction_(clipped(std::move(options), scan_.clip)) {
+  try {
+    reconstruction_.add(snapshots_);
+    count_ = reconstruction_.count(snapshots_);
+  } catch (const Ended&) {
+    throw Error("busy", "a scan has started", "Wait for its end.");
+  }
   expect_facets(count_);
 }
-catch (const Ended&) {
-  throw Error("busy", "a scan has started", "Wait for its end.");
+
+Snapshot ModelStream::snapshot(const std::filesystem::path& folder, std::size_t shot) const {
+  if (leave_->stop().stop_requested()) {
+    throw Ended{};
+  }
+  return read_snapshot(folder, scan_, scan_.shots[shot]);
 }
 
 std::uint64_t ModelStream::bytes() const { return stl_bytes(count_.facets); }

@@ -19,9 +19,8 @@ class ModelStream {
   /// Reads the snapshots, and counts what the model will have.
   ///
   /// @param options  but for the clip box, which is the scan's
-  /// @throws Error  if a snapshot is damaged, the model is empty or does not fit into memory;
-  /// "busy"
-  ///                if a scan starts meanwhile
+  /// @throws Error  if a snapshot is damaged, the model is empty or does not fit into memory
+  /// @throws Error "busy"  if a scan starts meanwhile
   ModelStream(const std::filesystem::path& folder, ReconstructOptions options,
               std::unique_ptr<Scanner::Leave> leave);
   ~ModelStream() = default;
@@ -34,6 +33,8 @@ class ModelStream {
   void send(const std::function<bool(std::span<const std::byte>)>& sink);
 
  private:
+  Snapshot snapshot(const std::filesystem::path& folder, std::size_t shot) const;
+
   std::unique_ptr<Scanner::Leave> leave_;
   Scan scan_;
   SnapshotSource snapshots_;

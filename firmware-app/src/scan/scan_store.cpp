@@ -7,11 +7,12 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <random>
+#include <ratio>
 #include <system_error>
 #include <utility>
 
@@ -26,7 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view id_form = "00000000-000000-xxxx";  // date, time of day (UTC), chance
+// Date and time of day (UTC), and how far into the second, in steps of 20 us. So ids sort by time.
+constexpr std::string_view id_form = "00000000-000000-xxxx";
+using Moment = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::ratio<1, 50000>>>;
 
 // Folders in the making, and on their way out, begin with a dot: they are not listed, and the next
 // start clears them away.
@@ -37,20 +40,29 @@ constexpr std::string_view removed = ".removed-";
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
 constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
 
-std::string formatted(std::time_t time, const char* format) {
+std::string formatted(Moment moment, const char* format) {
+  const std::time_t time =
+      std::chrono::system_clock::to_time_t(std::chrono::floor<std::chrono::seconds>(moment));
   std::tm utc{};
   ::gmtime_r(&time, &utc);
   std::array<char, 32> text{};
   return {text.data(), std::strftime(text.data(), text.size(), format, &utc)};
 }
 
-std::string four_hex_digits() {
-  std::random_device chance;
-  std::string digits;
-  for (int i = 0; i < 4; ++i) {
-    digits += "0123456789abcdef"[chance() % 16];
+std::string id_of(Moment moment) {
+  auto fraction = (moment - std::chrono::floor<std::chrono::seconds>(moment)).count();
+  std::string digits(4, '0');
+  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, fraction >>= 4) {
+    *digit = "0123456789abcdef"[fraction & 0xf];
   }
-  return digits;
+  return formatted(moment, "%Y%m%d-%H%M%S-") + digits;
+}
+
+Moment moment_of(const std::string& id) {
+  std::tm utc{};
+  const char* const fraction = ::strptime(id.c_str(), "%Y%m%d-%H%M%S-", &utc);
+  return Moment(std::chrono::seconds(::timegm(&utc))) +
+         Moment::duration(fraction == nullptr ? 0 : std::strtol(fraction, nullptr, 16));
 }
 
 [[noreturn]] void fail(const fs::path& path, const std::string& doing, std::error_code reason) {
@@ -127,11 +139,12 @@ Job ScanStore::create(const ScanSettings& settings) const {
                     std::to_string(settings.snapshots) + " snapshots needs " + mb(needed),
                 "Delete scans that are no longer needed.");
   }
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  Job job{.created = formatted(now, "%Y-%m-%dT%H:%M:%SZ"), .settings = settings};
-  do {
-    job.id = formatted(now, "%Y%m%d-%H%M%S-") + four_hex_digits();
-  } while (fs::exists(folder(job.id)));
+  // A Pi has no clock of its own: after a power cut the time may have gone back.
+  auto now = std::chrono::floor<Moment::duration>(std::chrono::system_clock::now());
+  if (const std::vector<std::string> ids = ids_newest_first(); !ids.empty()) {
+    now = std::max(now, moment_of(ids.front()) + Moment::duration(1));
+  }
+  Job job{.id = id_of(now), .created = formatted(now, "%Y-%m-%dT%H:%M:%SZ"), .settings = settings};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
   std::error_code error;

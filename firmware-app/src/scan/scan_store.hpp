@@ -28,7 +28,8 @@ class ScanStore {
   /// @throws Error "data-in-use" if another process holds it; if it cannot be made or written to
   explicit ScanStore(std::filesystem::path data);
 
-  /// Makes the folder of a new scan, in state running.
+  /// Makes the folder of a new scan, in state running. Its id comes after every other's, even where
+  /// the clock has gone back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
   Job create(const ScanSettings& settings) const;
 

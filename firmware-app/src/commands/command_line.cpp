@@ -97,7 +97,18 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
                   "the model, binary STL in millimetres; - is standard output")
       ->type_name("FILE")
       ->required();
+  command
+      .add_option("--method", arguments.method,
+                  "intersection: what was seen, as it was seen (the default); "
+                  "solid: one closed, filled, smooth part")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"intersection", "solid"}));
   add_model_options(command, arguments, "the scan's");
+  command
+      .add_option("--max-error-mm", arguments.max_error_mm,
+                  "solid: what fewer triangles may cost (0.04); 0 keeps them all")
+      ->type_name("MM")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--level", arguments.level, "surface of a coarser level; 0 is the root")
       ->type_name("N");
   command.add_option("--threads", arguments.threads, "threads to work on (all cores)")

@@ -58,6 +58,8 @@ void scan(const ScanArguments& arguments);
 struct ReconstructArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};  ///< "-" is standard output
+  std::string method = "intersection";
+  std::optional<double> max_error_mm = {};
   std::optional<double> leaf_size_mm = {};
   std::optional<double> root_size_mm = {};
   std::optional<double> threshold_m2 = {};

@@ -230,8 +230,9 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer)
   mg_init_data init{.callbacks = &callbacks,
                     .user_data = &server_->service,
                     .configuration_options = settings.data()};
-  unsigned code = 0;
-  mg_error_data error{.code = &code, .text = reason.data(), .text_buffer_size = reason.size()};
+  mg_error_data error{};  // what else it holds changes with civetweb's version
+  error.text = reason.data();
+  error.text_buffer_size = reason.size();
   server_->context = mg_start2(&init, &error);
   if (server_->context == nullptr) {
     mg_exit_library();

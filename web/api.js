@@ -5,6 +5,7 @@
  * @property {number} snapshots
  * @property {'basic' | 'average' | 'average-discard'} filter
  * @property {number} frames
+ * @property {'solid' | 'intersection'} method
  * @property {number} leaf_size_mm
  * @property {number} threshold_m2
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
@@ -18,6 +19,8 @@
  * @property {number} volume_cm3
  * @property {number[]} size_mm
  * @property {number} seconds
+ * @property {number | null} parts
+ * @property {number | null} filled_share  of the surface's area, that nobody saw
  *
  * @typedef {Object} Scan
  * @property {string} id

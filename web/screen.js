@@ -8,6 +8,8 @@ import {isAway, running, scanOf} from './state.js';
 /** @typedef {import('./api.js').Device} Device */
 /** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
 
+const methods = {solid: 'solid', intersection: 'by intersection'};
+
 const filters = {'basic': 'unfiltered', 'average': 'average', 'average-discard': 'strict average'};
 
 /** @type {Record<Scan['state'], {tone: Tone, text: string}>} */
@@ -95,8 +97,10 @@ function factsOf(scan) {
     {label: 'Triangles', text: format.number(model.triangles)},
     model.watertight ? {label: 'Watertight', text: 'Yes, ready to slice', tone: 'good'} :
         {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
+    ...(model.filled_share === null ? [] :
+      [{label: 'Seen', text: `${Math.round(100 * (1 - model.filled_share))} % of the surface, the rest is filled in`}]),
     {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
-    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${format.number(model.leaves)} leaves`},
+    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`},
     ...capture,
   ];
 }

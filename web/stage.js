@@ -57,6 +57,7 @@ async function load(model) {
   try {
     const mesh = await readStl(await api.model(model.url, signal), (progress) => note('Loading the model', {progress}));
     if (!signal.aborted) {
+      show(element('filled'), mesh.filled !== null);
       viewer.show(mesh);
       viewer.turn(!isStill);
       note('');
@@ -89,6 +90,7 @@ async function grow(growing) {
     viewer ??= await openViewer();
     const mesh = await readStl(await api.growing(growing.url, signal));
     if (!signal.aborted) {
+      show(element('filled'), mesh.filled !== null);
       viewer.show(mesh, {isFirst});
       if (isFirst) {
         note('');
@@ -156,6 +158,11 @@ export function prepareStage() {
   element('load-model').addEventListener('click', () => wanted && load(wanted));
   element('reset-view').addEventListener('click', () => viewer?.reset());
   element('turn').addEventListener('click', () => viewer?.turn(element('turn').getAttribute('aria-pressed') !== 'true'));
+  element('filled').addEventListener('click', () => {
+    const isShown = element('filled').getAttribute('aria-pressed') !== 'true';
+    pressed('filled', isShown);
+    viewer?.showFilled(isShown);
+  });
   element('edges').addEventListener('click', () => {
     const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
     pressed('edges', areShown);

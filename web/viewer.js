@@ -9,6 +9,7 @@ import {
 
 const clay = 0xd8d2c4;
 const edgeColour = new Color(0x0e5a66);
+const filledColour = new Color(0xd9913f);
 const ringStep = 50;   // millimetres between the platform's rings
 const keyTurn = Math.PI / 24;  // radians
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
@@ -16,16 +17,28 @@ const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
 /**
  * Flat-shaded clay that can show its triangles. Each triangle has its own three vertices, in order, so that a vertex's number
  * tells its corner, and a pixel's distance from the nearest side comes from interpolating the corners: no further buffers.
- * @param {{value: number}} strength  of the edges: 0 hides them
+ * @param {{edges: {value: number}, filled: {value: number}}} strengths  of the edges, and of the colour of what was filled in: 0 hides them
  */
-function clayMaterial(strength) {
+function clayMaterial({edges, filled}) {
   const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true});
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, {edgeStrength: strength, edgeColour: {value: edgeColour}});
-    shader.vertexShader = `varying vec3 vCorner;\n${shader.vertexShader}`.replace('void main() {', `void main() {
+    Object.assign(shader.uniforms, {
+      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour},
+    });
+    shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\n${shader.vertexShader}`
+        .replace('void main() {', `void main() {
+      vFilled = filled;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
-    shader.fragmentShader = `varying vec3 vCorner;\nuniform float edgeStrength;\nuniform vec3 edgeColour;\n${shader.fragmentShader}`
+    shader.fragmentShader = `varying vec3 vCorner;
+varying float vFilled;
+uniform float edgeStrength;
+uniform vec3 edgeColour;
+uniform float filledStrength;
+uniform vec3 filledColour;
+${shader.fragmentShader}`
+        .replace('#include <color_fragment>', `#include <color_fragment>
+      diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
         .replace('#include <opaque_fragment>', `
       vec3 perPixel = fwidth(vCorner);
       vec3 inside = smoothstep(perPixel * 0.4, perPixel * 1.4, vCorner);
@@ -70,6 +83,7 @@ export class Viewer {
   #camera = new PerspectiveCamera(32);
   #scene = new Scene();
   #edges = {value: 0};
+  #filled = {value: 0};
   #controls;
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
@@ -119,7 +133,7 @@ export class Viewer {
    * @param {StlMesh} mesh  its positions are given away: they live on in the GPU only
    * @param {{isFirst?: boolean}} [growth]  a mesh that is not the first of its object leaves the eye where somebody put it
    */
-  show({positions, min, max}, {isFirst = true} = {}) {
+  show({positions, filled, min, max}, {isFirst = true} = {}) {
     const isTurning = this.#controls.autoRotate;
     this.clear();
     const geometry = new BufferGeometry();
@@ -128,9 +142,12 @@ export class Viewer {
       attribute.array = /** @type {any} */ (null);
     });
     geometry.setAttribute('position', attribute);
+    if (filled) {  // where it is missing, WebGL reads 0
+      geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
+    }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
-    this.#model = new Mesh(geometry, clayMaterial(this.#edges));
+    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled}));
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
     this.#resize();
@@ -191,6 +208,12 @@ export class Viewer {
   /** @param {boolean} areShown */
   showEdges(areShown) {
     this.#edges.value = areShown ? 0.75 : 0;
+    this.#draw();
+  }
+
+  /** @param {boolean} isShown  by a colour of its own */
+  showFilled(isShown) {
+    this.#filled.value = isShown ? 0.85 : 0;
     this.#draw();
   }
 

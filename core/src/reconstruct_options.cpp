@@ -23,6 +23,19 @@ std::string mm_text(double metres) {
 
 }  // namespace
 
+std::string_view name_of(Method method) {
+  return method == Method::solid ? "solid" : "intersection";
+}
+
+std::optional<Method> method_named(std::string_view name) {
+  for (const Method method : {Method::intersection, Method::solid}) {
+    if (name_of(method) == name) {
+      return method;
+    }
+  }
+  return std::nullopt;
+}
+
 int checked_levels(const ReconstructOptions& options) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
   const double finest = options.root_size / (1 << Octree::max_levels);

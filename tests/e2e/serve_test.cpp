@@ -21,10 +21,14 @@ using namespace std::chrono_literals;
 
 bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
 
-TEST(Serve, ScansAndGivesAClosedModel) {
+class ServeByMethod : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(R"({"snapshots": 8, "frames": 3, "leaf_size_mm": 2})");
+  const std::string method = GetParam();
+  const std::string scan = daemon.start(
+      json{{"snapshots", 8}, {"frames", 3}, {"leaf_size_mm", 2}, {"method", method}}.dump());
   const json done = daemon.wait_until_done(scan);
   ASSERT_EQ(done["state"], "finished") << done;
   EXPECT_EQ(done["phase"], "done");
@@ -42,10 +46,13 @@ TEST(Serve, ScansAndGivesAClosedModel) {
 
   // The command gives the same bytes from the scan that was stored.
   Program again({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / done["id"], "-o",
-                 "-", "--leaf-size-mm", "2"});
+                 "-", "--leaf-size-mm", "2", "--method", method});
   EXPECT_EQ(again.wait(), 0);
   EXPECT_TRUE(again.output() == model.body);
+  EXPECT_EQ(done["model"]["parts"], method == "solid" ? json(1) : json(nullptr));
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, ServeByMethod, ::testing::Values("solid", "intersection"));
 
 TEST(Serve, SendsPartsOfAModelThatPutTogetherAreTheWhole) {
   const TemporaryFolder folder;
@@ -105,7 +112,8 @@ TEST(Serve, CancelsAScanWhileItBuilds) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
   const std::string scan =  // a model of hundreds of megabytes, which takes a while
-      daemon.start(R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2})");
+      daemon.start(
+          R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2, "method": "intersection"})");
   const json building = daemon.wait_until(scan, [](const json& now) {
     return now["phase"] == "building" || now["state"] != "running";
   });

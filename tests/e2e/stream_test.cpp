@@ -50,10 +50,13 @@ TEST(Preview, ShowsWhatAScanHasSeenSoFar) {
   EXPECT_EQ(parsed(daemon.get(scan + "/preview.stl"))["code"], "no-preview");
 }
 
+const std::string quick_shell =
+    R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 4, "method": "intersection"})";
+
 TEST(ModelStream, IsMadeWhileItIsDownloaded) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(quick);
+  const std::string scan = daemon.start(quick_shell);
   const json done = daemon.wait_until_done(scan);
   ASSERT_EQ(done["state"], "finished");
   const fs::path stored = folder.path() / "data" / "scans" / done["id"];
@@ -88,7 +91,7 @@ TEST(ModelStream, IsMadeWhileItIsDownloaded) {
 TEST(ModelStream, RefusesParametersThatAreWrong) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(quick);
+  const std::string scan = daemon.start(quick_shell);
   ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   for (const char* const query :
        {"leaf_size_mm", "leaf_size_mm=", "leaf_size_mm=fine", "leaf_size_mm=0", "leaf_size_mm=-1",
@@ -114,7 +117,7 @@ FileDescriptor begin_download(const Daemon& daemon, const std::string& scan) {
 TEST(ModelStream, IsOneAtATimeAndNoneDuringAScan) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(quick);
+  const std::string scan = daemon.start(quick_shell);
   ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   const auto wanted = [&] { return daemon.get(scan + "/Scan.stl?leaf_size_mm=4"); };
   {
@@ -141,10 +144,10 @@ TEST(ModelStream, IsOneAtATimeAndNoneDuringAScan) {
 TEST(ModelStream, EndsForAScanThatStarts) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(quick);
+  const std::string scan = daemon.start(quick_shell);
   ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   const FileDescriptor download = begin_download(daemon, scan);
-  const std::string other = daemon.start(quick);
+  const std::string other = daemon.start(quick_shell);
   const Reply cut = reply_from(receive_all(download));
   EXPECT_LT(cut.body.size(), std::stoull(cut.header("Content-Length")));
   EXPECT_EQ(daemon.wait_until_done(other)["state"], "finished");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 
 #include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
@@ -15,6 +16,12 @@ enum class Method {
   intersection,  ///< every leaf that something was seen in, hollow (Bennett 2014)
   solid,         ///< one closed part, averaged and filled, on a flat foot
 };
+
+/// Its name in settings and files: "intersection", "solid".
+std::string_view name_of(Method method);
+
+/// The method of that name, if there is one.
+std::optional<Method> method_named(std::string_view name);
 
 /// How snapshots become a model.
 struct ReconstructOptions {

@@ -35,6 +35,8 @@ void serve(const ServeArguments& arguments);
 
 /// What a command line says about a scan, in the units of its options.
 struct SettingsArguments {
+  std::optional<std::string> method = {};
+  std::optional<double> max_error_mm = {};
   std::optional<int> snapshots = {};
   std::optional<std::string> filter = {};
   std::optional<int> frames = {};

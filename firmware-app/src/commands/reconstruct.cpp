@@ -65,7 +65,7 @@ void expect_options_of_method(const ReconstructArguments& arguments) {
 ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan& scan) {
   expect_options_of_method(arguments);
   ReconstructOptions options{
-      .method = arguments.method == "solid" ? Method::solid : Method::intersection,
+      .method = method_named(arguments.method).value_or(Method::intersection),
       .clip = scan.clip,
       .level = arguments.level};
   if (arguments.max_error_mm) {
@@ -96,7 +96,7 @@ Json settings_of(const ReconstructOptions& options) {
     }
   }
   const bool solid = options.method == Method::solid;
-  Json settings{{"method", solid ? "solid" : "intersection"},
+  Json settings{{"method", name_of(options.method)},
                 {"leaf_size_mm", mm_from_metres(options.leaf_size)},
                 {"root_size_mm", mm_from_metres(options.root_size)}};
   if (solid) {

@@ -13,7 +13,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto view_patience = 15s;     // a sensor takes 1 to 2 s to its first frame, on a busy machine more
+constexpr auto view_patience =
+    15s;  // a sensor takes 1 to 2 s to its first frame, on a busy machine more
 constexpr auto view_interest = 5s;      // frames are read for that long after someone asked
 constexpr auto fresh = 200ms;           // a view of that age shows what is there now
 constexpr auto retry_interval = 2s;     // between attempts to open a sensor that did not work

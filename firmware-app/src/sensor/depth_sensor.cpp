@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "kinect/kinect_device.hpp"
+#include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "simulator/simulation.hpp"
@@ -22,12 +24,9 @@ using std::chrono::steady_clock;
 constexpr std::chrono::milliseconds patience = std::chrono::milliseconds(33);
 constexpr std::chrono::milliseconds longest_silence = std::chrono::milliseconds(2000);
 
-constexpr std::string_view kinect_scheme = "kinect://";  // of Octurn's driver; alone, any Kinect
-
 constexpr const char* missing_hint =
     "Check that the sensor has its own power supply, that its USB plug sits firmly, and that its "
-    "light "
-    "is on.";
+    "light is on.";
 
 constexpr const char* simulation_hint =
     "Check the simulator's settings, and that its mesh is an STL or OBJ file in millimetres.";
@@ -139,6 +138,18 @@ Intrinsics intrinsics_of(const openni::VideoStream& stream) {
           .depth_unit = format->unit};
 }
 
+/// A Kinect for Windows sees nothing nearer than 0.8 m unless it is in near mode, and a rig is
+/// smaller.
+void prepare_kinect(openni::Device& device) {
+  if (device.isPropertySupported(near_mode_property)) {
+    expect_ok(device.setProperty(near_mode_property, OniBool{TRUE}), "set its near mode");
+  }
+  if (std::string_view(device.getDeviceInfo().getUri()).starts_with(kinect_scheme) &&
+      !device.isPropertySupported(tilt_property)) {
+    log::info("sensor", "this Kinect tells no tilt: its model needs firmware for that");
+  }
+}
+
 DepthFrame copy_of(const openni::VideoFrameRef& frame) {
   DepthFrame copy = {.width = frame.getWidth(), .height = frame.getHeight()};
   const auto row = static_cast<std::size_t>(copy.width);
@@ -203,6 +214,7 @@ DepthSensor::DepthSensor(const std::string& uri) {
   device_->name = device_->device.getDeviceInfo().getName();
   device_->keeps_steady_time = is_octurns(device_->device.getDeviceInfo().getUri());
   device_->is_simulated = device_->device.isPropertySupported(platform_angle_property);
+  prepare_kinect(device_->device);
   expect_ok(stream.start(), "start its depth stream");
 }
 
@@ -231,6 +243,14 @@ std::optional<TimedFrame> DepthSensor::read(const std::stop_token& stop) {
     }
   }
   return std::nullopt;
+}
+
+std::optional<Tilt> DepthSensor::tilt() const {
+  Tilt tilt;
+  int size = sizeof tilt;
+  return device_->device.getProperty(tilt_property, &tilt, &size) == openni::STATUS_OK
+             ? std::optional(tilt)
+             : std::nullopt;
 }
 
 void DepthSensor::show_angle(double angle) {

@@ -8,6 +8,7 @@
 
 #include "octurn/depth_frame.hpp"
 #include "octurn/intrinsics.hpp"
+#include "sensor/tilt.hpp"
 
 namespace octurn {
 
@@ -39,6 +40,9 @@ class DepthSensor {
   /// Waits for the next frame; nothing if stopped before it came.
   /// @throws Error "sensor-silent" if none comes for 2 s, "sensor-lost" if the device is gone
   std::optional<TimedFrame> read(const std::stop_token& stop);
+
+  /// How it stands, by its accelerometer; nothing if it has none that can be read.
+  std::optional<Tilt> tilt() const;
 
   /// Tells a simulated sensor where its turntable stands. Others pass it over.
   /// @param angle  of the platform, radians, counter-clockwise seen from above

@@ -6,14 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
-#include <thread>
+#include <span>
 
 #include "emulation/kinect_on_desk.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/units.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "support/shared_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -258,6 +260,46 @@ TEST(KinectDriver, EndsItsTrafficWhenItIsClosed) {
     EXPECT_TRUE(desk->depth_on);
   }
   EXPECT_FALSE(desk->depth_on);
+}
+
+/// The readings from which a real Kinect's whole millimetres, cut off and not rounded, have come.
+Readings readings_of(const DepthFrame& frame_mm) {
+  Readings readings(pixels, 2047);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (frame_mm.depth[i] != 0) {
+      const double reading = std::ceil(1089.408 - 345489.4 / frame_mm.depth[i] - 0.02);
+      readings[i] = static_cast<std::uint16_t>(reading);
+    }
+  }
+  return readings;
+}
+
+TEST(KinectDriver, GivesRealFramesAsTheyAre) {
+  const fs::path folder = shared_folder() / "reference" / "real-depth";
+  if (!fs::exists(folder)) {
+    GTEST_SKIP() << "needs frames of real Kinects in " << folder;
+  }
+  int frames = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    // The others are of a unit whose parameters are not known.
+    if (!entry.path().filename().string().starts_with("learn")) {
+      continue;
+    }
+    const std::string png = content_of(entry.path());
+    const DepthFrame real =
+        decode_depth_png(entry.path().string(), std::as_bytes(std::span(png)), 640, 480);
+    const KinectOnDesk desk({readings_of(real)});
+    DepthSensor sensor("kinect://");
+    const DepthFrame frame = next_frame(sensor);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      // Tenths round up to the next millimetre where the depth is within half a tenth of it.
+      ASSERT_GE(frame.depth[i], 10 * real.depth[i]) << entry.path() << " " << i;
+      ASSERT_LE(frame.depth[i], 10 * real.depth[i] + (real.depth[i] == 0 ? 0 : 10))
+          << entry.path() << " " << i;
+    }
+    ++frames;
+  }
+  EXPECT_GT(frames, 0);
 }
 
 TEST(KinectDriver, RefusesAUriThatIsNone) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -175,11 +176,16 @@ TEST_P(KinectModels, GiveDepthWithoutFirmwareButNoTilt) {
   EXPECT_EQ(desk->near_mode, GetParam() == KinectModel::for_windows);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, KinectModels,
-                         testing::Values(KinectModel::k1414, KinectModel::k1473,
-                                         KinectModel::for_windows));
+INSTANTIATE_TEST_SUITE_P(
+    Kinect, KinectModels,
+    testing::Values(KinectModel::k1414, KinectModel::k1473, KinectModel::for_windows),
+    [](const testing::TestParamInfo<KinectModel>& info) {
+      constexpr std::array<const char*, 3> names = {"1414", "1473", "ForWindows"};
+      return names.at(static_cast<std::size_t>(info.param));
+    });
 
 struct Loss {
+  const char* name = "";
   int first = 0;
   int packets = 0;
   int cut = -1;
@@ -206,14 +212,18 @@ TEST_P(KinectLosses, LetNoPixelOfADamagedFrameArrive) {
   EXPECT_GT(desk->frames_damaged, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, KinectLosses,
-                         testing::Values(Loss{.first = 0, .packets = 1},
-                                         Loss{.first = 100, .packets = 3},
-                                         Loss{.first = 241, .packets = 1},
-                                         Loss{.first = 240, .packets = 4},  // and 2 of the next
-                                         Loss{.first = 100, .packets = 50},
-                                         Loss{.first = 200, .packets = 60}, Loss{.cut = 0},
-                                         Loss{.cut = 120}, Loss{.cut = 241}));
+INSTANTIATE_TEST_SUITE_P(
+    Kinect, KinectLosses,
+    testing::Values(Loss{.name = "OfTheFirstPacket", .first = 0, .packets = 1},
+                    Loss{.name = "OfThreePackets", .first = 100, .packets = 3},
+                    Loss{.name = "OfTheLastPacket", .first = 241, .packets = 1},
+                    Loss{.name = "IntoTheNextFrame", .first = 240, .packets = 4},
+                    Loss{.name = "OfManyPackets", .first = 100, .packets = 50},
+                    Loss{.name = "OfManyPacketsIntoTheNextFrame", .first = 200, .packets = 60},
+                    Loss{.name = "OfHalfTheFirstPacket", .cut = 0},
+                    Loss{.name = "OfHalfAPacket", .cut = 120},
+                    Loss{.name = "OfHalfTheLastPacket", .cut = 241}),
+    [](const testing::TestParamInfo<Loss>& info) { return info.param.name; });
 
 TEST(KinectDriver, IsLostWhenUnpluggedAndFoundWhenPluggedInAgain) {
   KinectOnDesk desk(plain_frames(2));

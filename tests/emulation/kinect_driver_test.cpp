@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -165,41 +164,37 @@ TEST(KinectDriver, FollowsItsTilt) {
   EXPECT_NEAR(sensor.tilt()->pitch, std::numbers::pi / 4, 1e-9);
 }
 
-class KinectModels : public testing::TestWithParam<KinectModel> {};
-
-TEST_P(KinectModels, GiveDepthWithoutFirmwareButNoTilt) {
+void expect_depth_without_firmware(KinectModel model) {
   KinectOnDesk desk({frame_of(700)});
-  desk->model = GetParam();
+  desk->model = model;
   DepthSensor sensor("kinect://");
   EXPECT_EQ(next_frame(sensor).depth[0], std::lround(depth_of(700)));
-  EXPECT_EQ(sensor.tilt().has_value(), GetParam() == KinectModel::k1414);
-  EXPECT_EQ(desk->near_mode, GetParam() == KinectModel::for_windows);
+  EXPECT_EQ(sensor.tilt().has_value(), model == KinectModel::k1414);
+  EXPECT_EQ(desk->near_mode, model == KinectModel::for_windows);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinect, KinectModels,
-    testing::Values(KinectModel::k1414, KinectModel::k1473, KinectModel::for_windows),
-    [](const testing::TestParamInfo<KinectModel>& info) {
-      constexpr std::array<const char*, 3> names = {"1414", "1473", "ForWindows"};
-      return names.at(static_cast<std::size_t>(info.param));
-    });
+TEST(KinectDriver, TakesModel1414) { expect_depth_without_firmware(KinectModel::k1414); }
+
+TEST(KinectDriver, TakesModel1473WithoutTilt) { expect_depth_without_firmware(KinectModel::k1473); }
+
+TEST(KinectDriver, TakesAKinectForWindowsInNearModeWithoutTilt) {
+  expect_depth_without_firmware(KinectModel::for_windows);
+}
 
 struct Loss {
-  const char* name = "";
   int first = 0;
   int packets = 0;
   int cut = -1;
 };
 
-class KinectLosses : public testing::TestWithParam<Loss> {};
-
-TEST_P(KinectLosses, LetNoPixelOfADamagedFrameArrive) {
-  KinectOnDesk desk(plain_frames(90));  // three, of which one is damaged, thirty times
+/// Of three frames one is damaged so, thirty times.
+void expect_no_damaged_pixel(const Loss& loss) {
+  KinectOnDesk desk(plain_frames(90));
   desk->speed = 2;
   desk->loss_period = 3;
-  desk->first_lost = GetParam().first;
-  desk->lost_packets = GetParam().packets;
-  desk->cut_packet = GetParam().cut;
+  desk->first_lost = loss.first;
+  desk->lost_packets = loss.packets;
+  desk->cut_packet = loss.cut;
   DepthSensor sensor("kinect://");
   for (int i = 0; i < 8; ++i) {
     const DepthFrame frame = next_frame(sensor);
@@ -212,18 +207,39 @@ TEST_P(KinectLosses, LetNoPixelOfADamagedFrameArrive) {
   EXPECT_GT(desk->frames_damaged, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinect, KinectLosses,
-    testing::Values(Loss{.name = "OfTheFirstPacket", .first = 0, .packets = 1},
-                    Loss{.name = "OfThreePackets", .first = 100, .packets = 3},
-                    Loss{.name = "OfTheLastPacket", .first = 241, .packets = 1},
-                    Loss{.name = "IntoTheNextFrame", .first = 240, .packets = 4},
-                    Loss{.name = "OfManyPackets", .first = 100, .packets = 50},
-                    Loss{.name = "OfManyPacketsIntoTheNextFrame", .first = 200, .packets = 60},
-                    Loss{.name = "OfHalfTheFirstPacket", .cut = 0},
-                    Loss{.name = "OfHalfAPacket", .cut = 120},
-                    Loss{.name = "OfHalfTheLastPacket", .cut = 241}),
-    [](const testing::TestParamInfo<Loss>& info) { return info.param.name; });
+TEST(KinectDriver, DropsFramesWithALostPacket) {
+  expect_no_damaged_pixel({.first = 100, .packets = 1});
+}
+
+TEST(KinectDriver, DropsFramesWithSomeLostPackets) {
+  expect_no_damaged_pixel({.first = 100, .packets = 3});
+}
+
+TEST(KinectDriver, DropsFramesWithALostBeginning) {
+  expect_no_damaged_pixel({.first = 0, .packets = 1});
+}
+
+TEST(KinectDriver, DropsFramesWithALostEnd) {
+  expect_no_damaged_pixel({.first = 241, .packets = 1});
+}
+
+TEST(KinectDriver, DropsFramesWithALossIntoTheNextFrame) {
+  expect_no_damaged_pixel({.first = 240, .packets = 4});
+}
+
+TEST(KinectDriver, DropsFramesWithManyLostPackets) {
+  expect_no_damaged_pixel({.first = 100, .packets = 50});
+}
+
+TEST(KinectDriver, DropsFramesWithAGreatLossIntoTheNextFrame) {
+  expect_no_damaged_pixel({.first = 200, .packets = 60});
+}
+
+TEST(KinectDriver, DropsFramesWithAShortPacket) { expect_no_damaged_pixel({.cut = 120}); }
+
+TEST(KinectDriver, DropsFramesWithAShortFirstPacket) { expect_no_damaged_pixel({.cut = 0}); }
+
+TEST(KinectDriver, DropsFramesWithAShortLastPacket) { expect_no_damaged_pixel({.cut = 241}); }
 
 TEST(KinectDriver, IsLostWhenUnpluggedAndFoundWhenPluggedInAgain) {
   KinectOnDesk desk(plain_frames(2));

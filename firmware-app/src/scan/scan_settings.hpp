@@ -14,14 +14,19 @@ namespace octurn {
 /// One for each processor.
 int available_threads();
 
+/// Half of the machine's memory, bytes: the rest is for the system and its buffers.
+std::size_t half_of_memory();
+
 /// What one scan is made with.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
   DepthFilter filter = DepthFilter::average;
-  int frames = 10;            ///< at each stop, for the filters that merge
+  int frames = 10;  ///< at each stop, for the filters that merge
+  Method method = Method::solid;
   double leaf_size = 0.001;   ///< metres
-  double threshold = 0.0001;  ///< square metres, of a triangle's longest side
-  double root_size = 1.0;     ///< metres
+  double threshold = 0.0001;  ///< square metres, of a triangle's longest side; intersection
+  double max_error = ReconstructOptions{}.max_error;  ///< metres; solid
+  double root_size = 1.0;                             ///< metres
   /// Metres, platform frame. Below 5 mm lies what a Kinect v1 sees of the platform, with its noise.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_sensor();
@@ -30,7 +35,7 @@ struct ScanSettings {
 /// What a reconstruction may use of this machine. No byte of a model depends on it.
 struct Limits {
   int threads = available_threads();
-  std::size_t memory_bytes = 0;  ///< that the whole process may take; 0 is no limit
+  std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
 /// The settings of the reconstruction among them.

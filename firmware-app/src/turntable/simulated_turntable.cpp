@@ -73,6 +73,7 @@ bool SimulatedTurntable::move_to(int position, std::stop_token stop) {
       return false;
     }
   }
+  stand_at(position);  // also after no move at all
   const double settle_time = duration<double>(motion_.settle_time).count();
   return wait_until(steady_clock::now() + real_time(settle_time), stop);
 }

@@ -5,6 +5,7 @@
  * @property {number} snapshots
  * @property {'basic' | 'average' | 'average-discard'} filter
  * @property {number} frames
+ * @property {'solid' | 'intersection'} method
  * @property {number} leaf_size_mm
  * @property {number} threshold_m2
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
@@ -18,6 +19,8 @@
  * @property {number} volume_cm3
  * @property {number[]} size_mm
  * @property {number} seconds
+ * @property {number | null} parts
+ * @property {number | null} filled_share  of the surface's area, that nobody saw
  *
  * @typedef {Object} Scan
  * @property {string} id
@@ -32,6 +35,7 @@
  * @property {Settings} settings
  * @property {{code: string, detail: string, hint: string} | null} error
  * @property {Model | null} model
+ * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device
  * @property {'ready' | 'missing' | 'failed'} state
@@ -149,6 +153,18 @@ export const remove = (id) => request(scan(id), {method: 'DELETE', headers: {'Co
 
 /** @returns {Promise<Blob>} what the sensor sees now, as a PNG */
 export const preview = async () => (await request('preview/depth.png')).blob();
+
+/**
+ * What a running scan has seen so far, as a coarse mesh.
+ *
+ * @param {string} url
+ * @param {AbortSignal} signal
+ * @returns {Promise<ReadableStream<Uint8Array>>}
+ */
+export async function growing(url, signal) {
+  const {body} = await request(url, {signal, cache: 'no-cache'});
+  return /** @type {ReadableStream<Uint8Array>} */ (body);
+}
 
 /**
  * A finished model, as it arrives. It may take minutes, and the browser may keep it.

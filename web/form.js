@@ -8,10 +8,14 @@ import {explain, formOf, leafChoices, settingsOf, stepText} from './settings.js'
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
 
+const chosenMethod = () => part(element('methods'), 'input:checked').value;
+
 function explainFields() {
   const snapshots = Number(element('snapshots').value);
   setText(element('snapshots-step'), snapshots > 0 ? stepText(snapshots) : '');
+  setText(element('method-text'), explain(chosenMethod()));
   setText(element('filter-text'), explain(element('filter').value));
+  element('gap').disabled = chosenMethod() === 'solid';
   element('frames').disabled = element('filter').value === 'basic';
 }
 
@@ -26,6 +30,9 @@ function fill(settings) {
   clipFields().forEach((field, index) => {
     field.value = String(form.clip_mm[index]);
   });
+  for (const radio of element('methods').querySelectorAll('input')) {
+    radio.checked = radio.value === form.method;
+  }
   for (const radio of element('leaves').querySelectorAll('input')) {
     radio.checked = Number(radio.value) === form.leaf_size_mm;
   }
@@ -55,6 +62,7 @@ function checkClip() {
 /** @returns {Partial<Settings>} as the fields stand */
 export const chosenSettings = () => settingsOf({
   snapshots: Number(element('snapshots').value),
+  method: chosenMethod(),
   leaf_size_mm: Number(part(element('leaves'), 'input:checked').value),
   filter: element('filter').value,
   frames: Number(element('frames').value),

@@ -8,6 +8,8 @@ import {isAway, running, scanOf} from './state.js';
 /** @typedef {import('./api.js').Device} Device */
 /** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
 
+const methods = {solid: 'solid', intersection: 'by intersection'};
+
 const filters = {'basic': 'unfiltered', 'average': 'average', 'average-discard': 'strict average'};
 
 /** @type {Record<Scan['state'], {tone: Tone, text: string}>} */
@@ -95,8 +97,10 @@ function factsOf(scan) {
     {label: 'Triangles', text: format.number(model.triangles)},
     model.watertight ? {label: 'Watertight', text: 'Yes, ready to slice', tone: 'good'} :
         {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
+    ...(model.filled_share === null ? [] :
+      [{label: 'Seen', text: `${Math.round(100 * (1 - model.filled_share))} % of the surface, the rest is filled in`}]),
     {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
-    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${format.number(model.leaves)} leaves`},
+    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`},
     ...capture,
   ];
 }
@@ -172,6 +176,8 @@ export function screenOf(state) {
   const chosen = scanOf(state, state.selected);
   const panel = !state.status ? 'waiting' : chosen ? 'details' : scan ? 'progress' : 'form';
   const hasModel = panel === 'details' && Boolean(chosen?.model);
+  const growing = panel === 'progress' && scan ? scan.preview : null;
+  const has3D = hasModel || growing !== null;
   const devices = state.status ? [deviceOf('sensor', state.status.sensor), deviceOf('turntable', state.status.turntable)] : [];
   return {
     title: titleOf(state),
@@ -191,10 +197,11 @@ export function screenOf(state) {
     },
     faults: panel === 'form' ? devices.map(({message}) => message).filter(Boolean) : [],
     stage: {
-      shows: hasModel ? state.stage : 'camera',
-      hasChoice: hasModel,
+      shows: has3D ? state.stage : 'camera',
+      hasChoice: has3D,
       model: hasModel ? chosen?.model ?? null : null,
-      name: chosen ? nameOf(chosen) : '',
+      growing,
+      name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
       sensor: state.status?.sensor.name ?? '',
       isReachable: !isAway(state),
       isLive: state.status?.sensor.state === 'ready' && !isAway(state),

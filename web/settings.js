@@ -25,11 +25,13 @@ export function leafChoices(preset) {
 const explanations = {
   'basic': 'One depth picture at each stop. Quickest, and the noisiest.',
   'average': 'The mean of several pictures. Smooth surfaces, small holes filled.',
+  'solid': 'One closed part on a flat foot, smooth, filled in where nothing was seen: made to be printed.',
+  'intersection': 'A thin shell around every reading, as it was seen, nothing smoothed or filled in.',
   'average-discard': 'The mean, but only where every picture saw something. Cleanest edges, more holes.',
 };
 
-/** @param {Settings['filter']} filter */
-export const explain = (filter) => explanations[filter];
+/** @param {Settings['filter'] | Settings['method']} choice */
+export const explain = (choice) => explanations[choice];
 
 const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
 const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrecision(6));
@@ -40,17 +42,18 @@ const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrec
  * @property {number} leaf_size_mm
  * @property {Settings['filter']} filter
  * @property {number} frames
+ * @property {Settings['method']} method
  * @property {number} gap_mm  the longest edge between neighbouring readings
  * @property {number[]} clip_mm
  */
 
 /** @param {Settings} settings @returns {Form} */
-export const formOf = ({snapshots, leaf_size_mm, filter, frames, threshold_m2, clip_mm}) =>
-    ({snapshots, leaf_size_mm, filter, frames, gap_mm: gap(threshold_m2), clip_mm});
+export const formOf = ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2, clip_mm}) =>
+    ({snapshots, method, leaf_size_mm, filter, frames, gap_mm: gap(threshold_m2), clip_mm});
 
 /** @param {Form} form @returns {Partial<Settings>} */
-export const settingsOf = ({snapshots, leaf_size_mm, filter, frames, gap_mm, clip_mm}) =>
-    ({snapshots, leaf_size_mm, filter, frames, threshold_m2: threshold(gap_mm), clip_mm});
+export const settingsOf = ({snapshots, method, leaf_size_mm, filter, frames, gap_mm, clip_mm}) =>
+    ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2: threshold(gap_mm), clip_mm});
 
 /**
  * Angle between two stops.

@@ -57,6 +57,7 @@ async function load(model) {
   try {
     const mesh = await readStl(await api.model(model.url, signal), (progress) => note('Loading the model', {progress}));
     if (!signal.aborted) {
+      show(element('filled'), mesh.filled !== null);
       viewer.show(mesh);
       viewer.turn(!isStill);
       note('');
@@ -65,6 +66,53 @@ async function load(model) {
     if (!signal.aborted) {
       note(format.sentence(error instanceof Error ? error.message : String(error)), {button: 'Try again'});
     }
+  }
+}
+
+/** @type {Stage['growing']} what of a running scan is shown, or was asked for last */
+let grown = null;
+/** @type {AbortController | null} of the request for it */
+let growth = null;
+
+/**
+ * Shows what a running scan has seen. While one mesh is on its way, no other is asked for.
+ * @param {NonNullable<Stage['growing']>} growing
+ */
+async function grow(growing) {
+  const isFirst = grown?.url !== growing.url;
+  if (growth || (!isFirst && grown?.snapshots === growing.snapshots)) {
+    return;
+  }
+  grown = growing;
+  growth = new AbortController();
+  const {signal} = growth;
+  try {
+    viewer ??= await openViewer();
+    const mesh = await readStl(await api.growing(growing.url, signal));
+    if (!signal.aborted) {
+      show(element('filled'), mesh.filled !== null);
+      viewer.show(mesh, {isFirst});
+      if (isFirst) {
+        note('');
+        viewer.turn(!isStill);
+      }
+    }
+  } catch {
+    grown = isFirst ? null : grown;  // the next snapshot brings another mesh, and the end of the scan its model
+  }
+  if (!signal.aborted) {
+    growth = null;
+  }
+}
+
+/** @param {Stage} stage */
+function setGrowing({growing, shows}) {
+  if (growing && shows === 'model') {
+    grow(growing);
+  } else if (!growing) {
+    growth?.abort();
+    growth = null;
+    grown = null;
   }
 }
 
@@ -101,6 +149,7 @@ export function renderStage(stage) {
   show(element('model'), stage.shows === 'model');
   setText(element('live-text'), stage.shows === 'model' ? stage.name :
       [stage.isScanning ? 'Scanning' : stage.isLive ? 'Live depth' : 'No picture', stage.sensor].filter(Boolean).join(' · '));
+  setGrowing(stage);
   setModel(stage.model);
 }
 
@@ -109,6 +158,11 @@ export function prepareStage() {
   element('load-model').addEventListener('click', () => wanted && load(wanted));
   element('reset-view').addEventListener('click', () => viewer?.reset());
   element('turn').addEventListener('click', () => viewer?.turn(element('turn').getAttribute('aria-pressed') !== 'true'));
+  element('filled').addEventListener('click', () => {
+    const isShown = element('filled').getAttribute('aria-pressed') !== 'true';
+    pressed('filled', isShown);
+    viewer?.showFilled(isShown);
+  });
   element('edges').addEventListener('click', () => {
     const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
     pressed('edges', areShown);

@@ -4,10 +4,13 @@ const headerBytes = 84;
 const recordBytes = 50;  // normal, three corners, two bytes of attributes
 const cornersAt = 12;
 const cornersBytes = 36;
+const attributesAt = 48;
+const filledIn = 1;
 
 /**
  * @typedef {Object} Mesh
  * @property {Float32Array} positions  nine numbers for each triangle, as in the file: millimetres
+ * @property {Uint8Array | null} filled  for each corner 255 if the surface was not seen there but filled in; null if all was seen
  * @property {number[]} min
  * @property {number[]} max
  */
@@ -35,6 +38,8 @@ export async function readStl(chunks, onProgress = () => {}) {
   const record = new Uint8Array(recordBytes);
   /** @type {Uint8Array | undefined} */
   let corners;
+  /** @type {Uint8Array | null} */
+  let filled = null;
   let bytes = 0;   // read so far
   let total = headerBytes;
   for await (const chunk of chunks) {
@@ -60,6 +65,10 @@ export async function readStl(chunks, onProgress = () => {}) {
       } else {
         const triangle = (bytes - headerBytes) / recordBytes - 1;
         corners?.set(record.subarray(cornersAt, cornersAt + cornersBytes), triangle * cornersBytes);
+        if (record[attributesAt] === filledIn) {
+          filled ??= new Uint8Array(corners.length / 12);
+          filled.fill(255, triangle * 3, triangle * 3 + 3);
+        }
       }
     }
     if (corners) {
@@ -73,5 +82,5 @@ export async function readStl(chunks, onProgress = () => {}) {
     throw new Error('The model is empty');
   }
   const positions = new Float32Array(corners.buffer);  // every machine with WebGL is little-endian
-  return {positions, ...bounds(positions)};
+  return {positions, filled, ...bounds(positions)};
 }

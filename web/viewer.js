@@ -9,6 +9,7 @@ import {
 
 const clay = 0xd8d2c4;
 const edgeColour = new Color(0x0e5a66);
+const filledColour = new Color(0xd9913f);
 const ringStep = 50;   // millimetres between the platform's rings
 const keyTurn = Math.PI / 24;  // radians
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
@@ -16,16 +17,28 @@ const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
 /**
  * Flat-shaded clay that can show its triangles. Each triangle has its own three vertices, in order, so that a vertex's number
  * tells its corner, and a pixel's distance from the nearest side comes from interpolating the corners: no further buffers.
- * @param {{value: number}} strength  of the edges: 0 hides them
+ * @param {{edges: {value: number}, filled: {value: number}}} strengths  of the edges, and of the colour of what was filled in: 0 hides them
  */
-function clayMaterial(strength) {
+function clayMaterial({edges, filled}) {
   const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true});
   material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, {edgeStrength: strength, edgeColour: {value: edgeColour}});
-    shader.vertexShader = `varying vec3 vCorner;\n${shader.vertexShader}`.replace('void main() {', `void main() {
+    Object.assign(shader.uniforms, {
+      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour},
+    });
+    shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\n${shader.vertexShader}`
+        .replace('void main() {', `void main() {
+      vFilled = filled;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
-    shader.fragmentShader = `varying vec3 vCorner;\nuniform float edgeStrength;\nuniform vec3 edgeColour;\n${shader.fragmentShader}`
+    shader.fragmentShader = `varying vec3 vCorner;
+varying float vFilled;
+uniform float edgeStrength;
+uniform vec3 edgeColour;
+uniform float filledStrength;
+uniform vec3 filledColour;
+${shader.fragmentShader}`
+        .replace('#include <color_fragment>', `#include <color_fragment>
+      diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
         .replace('#include <opaque_fragment>', `
       vec3 perPixel = fwidth(vCorner);
       vec3 inside = smoothstep(perPixel * 0.4, perPixel * 1.4, vCorner);
@@ -70,10 +83,12 @@ export class Viewer {
   #camera = new PerspectiveCamera(32);
   #scene = new Scene();
   #edges = {value: 0};
+  #filled = {value: 0};
   #controls;
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
   #model = null;
+  #isAimed = false;  // by hand
   #isFrameDue = false;
   #drawnAt = 0;
 
@@ -93,7 +108,10 @@ export class Viewer {
     this.#controls.enableDamping = true;
     this.#controls.autoRotateSpeed = 1.6;
     this.#controls.addEventListener('change', () => this.#draw());
-    this.#controls.addEventListener('start', () => this.turn(false));
+    this.#controls.addEventListener('start', () => {
+      this.#isAimed = true;
+      this.turn(false);
+    });
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
@@ -111,8 +129,12 @@ export class Viewer {
     }
   }
 
-  /** @param {StlMesh} mesh  its positions are given away: they live on in the GPU only */
-  show({positions, min, max}) {
+  /**
+   * @param {StlMesh} mesh  its positions are given away: they live on in the GPU only
+   * @param {{isFirst?: boolean}} [growth]  a mesh that is not the first of its object leaves the eye where somebody put it
+   */
+  show({positions, filled, min, max}, {isFirst = true} = {}) {
+    const isTurning = this.#controls.autoRotate;
     this.clear();
     const geometry = new BufferGeometry();
     const attribute = new BufferAttribute(positions, 3);
@@ -120,13 +142,23 @@ export class Viewer {
       attribute.array = /** @type {any} */ (null);
     });
     geometry.setAttribute('position', attribute);
+    if (filled) {  // where it is missing, WebGL reads 0
+      geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
+    }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
-    this.#model = new Mesh(geometry, clayMaterial(this.#edges));
+    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled}));
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
     this.#resize();
-    this.reset();
+    if (isFirst) {
+      this.reset();
+      return;
+    }
+    this.turn(isTurning);
+    if (!this.#isAimed) {
+      this.#aim(this.#camera.position.clone().sub(this.#controls.target).normalize());
+    }
   }
 
   /** Gives the GPU's memory back. */
@@ -142,13 +174,18 @@ export class Viewer {
 
   /** Looks at the whole model, a little from above, from where the sensor stands. */
   reset() {
-    if (!this.#model) {
-      return;
+    if (this.#model) {
+      this.#isAimed = false;
+      this.#aim(firstSight);
     }
+  }
+
+  /** Looks at the whole model. @param {Vector3} sight  from it to the eye, of length 1 */
+  #aim(sight) {
     const {center, radius} = this.#model.geometry.boundingSphere;
     const narrow = Math.min(1, this.#camera.aspect);
     const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
-    this.#camera.position.copy(center).addScaledVector(firstSight, distance);
+    this.#camera.position.copy(center).addScaledVector(sight, distance);
     this.#camera.near = distance / 100;
     this.#camera.far = distance * 20;
     this.#camera.updateProjectionMatrix();
@@ -171,6 +208,12 @@ export class Viewer {
   /** @param {boolean} areShown */
   showEdges(areShown) {
     this.#edges.value = areShown ? 0.75 : 0;
+    this.#draw();
+  }
+
+  /** @param {boolean} isShown  by a colour of its own */
+  showFilled(isShown) {
+    this.#filled.value = isShown ? 0.85 : 0;
     this.#draw();
   }
 
@@ -216,6 +259,7 @@ export class Viewer {
     const move = moves[event.key];
     if (move && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();
+      this.#isAimed = true;
       this.turn(false);
       move();
       this.#draw();

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <condition_variable>
-#include <mutex>
-#include <optional>
 #include <vector>
 
 #include "fork_join.hpp"
+#include "in_order.hpp"
 #include "octurn/units.hpp"
 #include "tetrahedra.hpp"
 
@@ -29,7 +27,10 @@ class LayerOfCells {
  public:
   LayerOfCells(const Octree& octree, int layer) : octree_(octree) {
     for (int up = 0; up < 2; ++up) {
-      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick&) {
+      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick& leaves) {
+        if (!reaches(leaves, up)) {
+          return;
+        }
         for (int corner = 0; corner < 4; ++corner) {
           add({brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
         }
@@ -40,16 +41,21 @@ class LayerOfCells {
   const std::vector<CellBrick>& cells() const { return cells_; }
 
  private:
+  /// Whether a brick has leaves that are corners in this layer: of those above it only the lowest
+  /// are. The others may be missing, where the layer is the last of a slab, and must not matter.
+  static bool reaches(const Brick& leaves, int up) { return up == 0 || leaves.layers[0] != 0; }
+
   /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
   void add(const Cell& position, int corner) {
     CellBrick cell{.position = position, .bricks = {}};
     for (int i = 0; i < 8; ++i) {
       const Brick* brick =
           octree_.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
-      if (brick != nullptr && i < corner) {
+      const bool counts = brick != nullptr && reaches(*brick, i >> 2);
+      if (counts && i < corner) {
         return;
       }
-      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
+      cell.bricks[static_cast<std::size_t>(i)] = counts ? brick : &no_leaves;
     }
     cells_.push_back(cell);
   }
@@ -145,48 +151,6 @@ void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Face
   });
 }
 
-/// Lets threads take chunks of work in any order, and hand them in one by one, from first to last.
-class InOrder {
- public:
-  explicit InOrder(std::size_t count) : count_(count) {}
-
-  /// The next chunk that nobody has taken; nothing when all are taken, or one has failed.
-  std::optional<std::size_t> take() {
-    const std::lock_guard lock(mutex_);
-    return taken_ < count_ && !failed_ ? std::optional(taken_++) : std::nullopt;
-  }
-
-  /// Calls `hand_in` when all chunks before this one were handed in. Not, if one has failed.
-  template <typename HandIn>
-  void in_turn(std::size_t chunk, HandIn hand_in) {
-    std::unique_lock lock(mutex_);
-    moved_on_.wait(lock, [&] { return next_ == chunk || failed_; });
-    if (failed_) {
-      return;
-    }
-    lock.unlock();  // only the thread whose turn it is gets here
-    try {
-      hand_in();
-    } catch (...) {
-      lock.lock();
-      failed_ = true;
-      moved_on_.notify_all();
-      throw;
-    }
-    lock.lock();
-    ++next_;
-    moved_on_.notify_all();
-  }
-
- private:
-  std::size_t count_;
-  std::mutex mutex_ = {};  // guards what follows
-  std::condition_variable moved_on_ = {};
-  std::size_t taken_ = 0;
-  std::size_t next_ = 0;
-  bool failed_ = false;
-};
-
 /// Calls `visit` for the layers of pseudo-voxels that begin in `layers`, and for those that begin
 /// one leaf below the root.
 template <typename Visit>
@@ -205,14 +169,19 @@ void isosurface(const Octree& octree, const BrickLayers& layers, int threads,
     InOrder chunks((cells.size() + chunk_size - 1) / chunk_size);
     fork_join(cells.size() > chunk_size ? threads : 1, [&](int) {
       std::vector<Facet> facets;
-      while (const auto chunk = chunks.take()) {
-        facets.clear();
-        const std::size_t first = *chunk * chunk_size;
-        for (const CellBrick& cell :
-             cells.subspan(first, std::min(chunk_size, cells.size() - first))) {
-          append_facets(octree, cell, facets);
+      try {
+        while (const auto chunk = chunks.take()) {
+          facets.clear();
+          const std::size_t first = *chunk * chunk_size;
+          for (const CellBrick& cell :
+               cells.subspan(first, std::min(chunk_size, cells.size() - first))) {
+            append_facets(octree, cell, facets);
+          }
+          chunks.in_turn(*chunk, [&] { sink(facets); });
         }
-        chunks.in_turn(*chunk, [&] { sink(facets); });
+      } catch (...) {
+        chunks.fail();
+        throw;
       }
     });
   });
@@ -227,6 +196,13 @@ std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
     }
   });
   return count;
+}
+
+void coarse_isosurface(Octree octree, std::uint64_t most_facets, const FacetSink& sink) {
+  while (octree.levels() > 0 && count_facets(octree, all_layers(octree)) > most_facets) {
+    octree = octree.at_level(octree.levels() - 1);
+  }
+  isosurface(octree, all_layers(octree), 1, sink);
 }
 
 }  // namespace octurn

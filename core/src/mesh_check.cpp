@@ -46,6 +46,9 @@ void MeshCheck::add(std::span<const Facet> facets) {
       bounds_mm_.min = bounds_mm_.min.cwiseMin(points[i]);
       bounds_mm_.max = bounds_mm_.max.cwiseMax(points[i]);
     }
+    const double area = (points[1] - points[0]).cross(points[2] - points[0]).norm();
+    area_ += area;
+    filled_area_ += facet.attributes == filled_in ? area : 0;
     six_volumes_ += points[0].dot(points[1].cross(points[2]));
   }
 }

@@ -25,6 +25,8 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
   return {.leaves = count.leaves,
           .triangles = count.facets,
           .bytes = stl_bytes(count.facets),
+          .parts = count.parts,
+          .filled_share = check.filled_share(),
           .watertight = check.closed(),
           .volume = m3_from_mm3(check.volume_mm3()),
           .size = {metres_from_mm(size_mm.x()), metres_from_mm(size_mm.y()),

@@ -24,6 +24,16 @@ std::array<std::byte, 84> stl_header(std::uint64_t facets) {
   return header;
 }
 
+std::string stl_text(std::span<const Facet> facets) {
+  const auto header = stl_header(facets.size());
+  const std::span<const std::byte> bytes = std::as_bytes(facets);
+  std::string text;
+  text.reserve(header.size() + bytes.size());
+  text.append(reinterpret_cast<const char*>(header.data()), header.size());
+  text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return text;
+}
+
 StlFile::StlFile(std::filesystem::path target) : file_(std::move(target)) {
   file_.write(stl_header(0));
 }

@@ -186,8 +186,10 @@ TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
     const TemporaryFolder folder;
     Rig rig(rig_of());
     const FileSizeLimit limit(bytes);
+    ScanSettings settings = few_snapshots();
+    settings.method = Method::intersection;  // whose model is the larger one
     const Error error =
-        error_thrown_by([&] { run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}); });
+        error_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); });
     EXPECT_EQ(error.code(), "disk-full") << bytes;
     EXPECT_EQ(fs::exists(folder.path() / "Scan.stl"), false);
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder.path())) {

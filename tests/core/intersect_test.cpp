@@ -2,42 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "comparison.hpp"
 #include "plain_octree.hpp"
 #include "soup.hpp"
 
 namespace octurn {
 namespace {
-
-using Leaves = std::set<std::array<int, 3>>;
-
-Leaves leaves_of(const Octree& octree) {
-  Leaves leaves;
-  octree.for_each_brick([&](const Cell& cell, const Brick& brick) {
-    for (int z = 0; z < Brick::side; ++z) {
-      for (int bit = 0; bit < 64; ++bit) {
-        if (brick.layers[static_cast<std::size_t>(z)] >> bit & 1) {
-          leaves.insert({cell.x * Brick::side + bit % Brick::side,
-                         cell.y * Brick::side + bit / Brick::side, cell.z * Brick::side + z});
-        }
-      }
-    }
-  });
-  return leaves;
-}
-
-/// The most leaves that a triangle can span along an axis.
-int leaves_across(const std::array<LatticePoint, 3>& corners, int levels) {
-  int span = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-    span = std::max(span, (high - low) >> (Lattice::bits - levels));
-  }
-  return span;
-}
 
 class IntersectAtLevel : public testing::TestWithParam<int> {};
 

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
 
+#include "comparison.hpp"
 #include "octurn/mesh_check.hpp"
 #include "plain_octree.hpp"
 #include "soup.hpp"
@@ -14,36 +14,6 @@
 
 namespace octurn {
 namespace {
-
-std::vector<Facet> surface_of(const Octree& octree) {
-  std::vector<Facet> facets;
-  isosurface(octree, all_layers(octree), 1, [&](std::span<const Facet> some) {
-    facets.insert(facets.end(), some.begin(), some.end());
-  });
-  return facets;
-}
-
-/// The facets as the plain implementation gives them: in half leaves, sorted.
-std::vector<plain::Triangle> in_half_leaves(const Octree& octree,
-                                            const std::vector<Facet>& facets) {
-  std::vector<plain::Triangle> triangles;
-  const double half_leaf_mm = octree.leaf_side() * 500;
-  const double corner_mm = octree.side() * 500;
-  for (const Facet& facet : facets) {
-    const auto corners = facet.corners;
-    plain::Triangle triangle{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double mm = static_cast<double>(corners[i][axis]) + (axis < 2 ? corner_mm : 0.0);
-        triangle[i][axis] = static_cast<int>(std::lround(mm / half_leaf_mm));
-      }
-    }
-    std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
-    triangles.push_back(triangle);
-  }
-  std::ranges::sort(triangles);
-  return triangles;
-}
 
 struct RandomLeaves {
   Octree octree;

@@ -11,67 +11,19 @@
 
 #include "octurn/error.hpp"
 #include "octurn/mesh_check.hpp"
-#include "octurn/platform_pose.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/units.hpp"
+#include "support/ball_scan.hpp"
 #include "support/shared_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
 
-const Eigen::Vector3d ball_centre{0.01, -0.005, 0.06};  // metres, platform frame
-constexpr double ball_radius = 0.05;
-
-/// A sensor 0.6 m from the platform's axis and 0.3 m above it, looking along +Y and 25 degrees
-/// down.
-Eigen::Isometry3d sensor_pose() {
-  Eigen::Matrix3d upright;  // optical X right, Y down, Z forward, in the platform's axes
-  upright << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(radians_from_degrees(-25), Eigen::Vector3d::UnitX()) * upright;
-  pose.translation() = Eigen::Vector3d(0, -0.6, 0.34);
-  return pose;
-}
-
-/// The ball as an ideal sensor of 160 x 120 samples sees it: each ray met with the sphere's
-/// equation.
-Snapshot ball_snapshot(double angle) {
-  Snapshot snapshot{.frame = {.width = 160, .height = 120, .depth = {}},
-                    .intrinsics = {.width = 160,
-                                   .height = 120,
-                                   .fx = 144,
-                                   .fy = 144,
-                                   .cx = 80,
-                                   .cy = 60,
-                                   .depth_unit = 0.0001},
-                    .object_from_sensor = object_from_sensor(sensor_pose(), angle)};
-  const Eigen::Vector3d centre = snapshot.object_from_sensor.inverse() * ball_centre;
-  for (int v = 0; v < 120; ++v) {
-    for (int u = 0; u < 160; ++u) {
-      const Eigen::Vector3d ray((u - 80) / 144.0, (v - 60) / 144.0, 1);
-      const double along = ray.dot(centre);
-      const double square =
-          along * along - ray.squaredNorm() * (centre.squaredNorm() - ball_radius * ball_radius);
-      const double z = square > 0 ? (along - std::sqrt(square)) / ray.squaredNorm() : 0;
-      snapshot.frame.depth.push_back(static_cast<std::uint16_t>(std::lround(z / 0.0001)));
-    }
-  }
-  return snapshot;
-}
-
-SnapshotSource ball_scan(std::size_t count) {
-  return {.count = count, .read = [count](std::size_t i) {
-            return ball_snapshot(2 * std::numbers::pi * static_cast<double>(i) /
-                                 static_cast<double>(count));
-          }};
-}
-
 ReconstructOptions ball_options(double leaf_size) {
   return {.leaf_size = leaf_size,
           .root_size = 1.0,
           .threshold = 0.0001,
-          .clip = {.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}},
+          .clip = ball_clip,
           .level = {},
           .threads = 1,
           .memory_limit = 0};
@@ -163,15 +115,24 @@ TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
 
 TEST(Reconstruction, ShowsACoarsePreviewOfWhatWasSeenSoFar) {
   Reconstruction reconstruction(ball_options(0.001));
+  const auto preview = [&](std::uint64_t most_facets) {
+    MeshCheck check;
+    reconstruction.preview(0.008, most_facets,
+                           [&](std::span<const Facet> facets) { check.add(facets); });
+    return check;
+  };
   reconstruction.add(ball_snapshot(0));
-  MeshCheck half;
-  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { half.add(facets); });
+  const MeshCheck half = preview(1'000'000);
   EXPECT_TRUE(half.closed());
   EXPECT_LT(half.facets(), 3000U);
   reconstruction.add(ball_snapshot(std::numbers::pi));
-  MeshCheck both;
-  reconstruction.preview(0.008, [&](std::span<const Facet> facets) { both.add(facets); });
+  const MeshCheck both = preview(1'000'000);
   EXPECT_GT(both.volume_mm3(), half.volume_mm3() * 1.3);
+
+  const MeshCheck coarser = preview(both.facets() - 1);
+  EXPECT_TRUE(coarser.closed());
+  EXPECT_LT(coarser.facets(), both.facets() / 2);  // a level coarser is about a quarter
+  EXPECT_GT(coarser.facets(), both.facets() / 8);
 }
 
 TEST(Reconstruction, SaysWhatIsWrongWithItsOptions) {

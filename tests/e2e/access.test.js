@@ -43,7 +43,7 @@ async function walk(scanner, browser, finished, screen, colorScheme) {
     await picture(page, `${name}-${screen}-${colorScheme}`);
   }
   await page.keyboard.press('Escape');
-  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
+  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200, filter: 'average', frames: 30});
   await page.getByRole('link', {name: 'Show its progress'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   assert.deepEqual(await complaints(page), [], 'scanning');

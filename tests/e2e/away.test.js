@@ -2,12 +2,12 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage} from './browser.js';
-import {startScanner} from './scanner.js';
+import {lifelike, startScanner} from './scanner.js';
 
 test('the page says that the scanner is gone, finds it again, and lists the scan that died with it', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, lifelike);
   const {page} = await openPage(await openBrowser(t), scanner.url);
-  await chooseQuickScan(page, 60);
+  await chooseQuickScan(page, 200);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
 
@@ -21,5 +21,5 @@ test('the page says that the scanner is gone, finds it again, and lists the scan
   await scanner.restart();
   await page.locator('#away').waitFor({state: 'hidden'});
   await page.getByText('Scan interrupted', {exact: true}).waitFor();
-  assert.match(await page.locator('#rows').innerText(), /Interrupted[^]*\d+ of 60 snapshots kept/);
+  assert.match(await page.locator('#rows').innerText(), /Interrupted[^]*\d+ of 200 snapshots kept/);
 });

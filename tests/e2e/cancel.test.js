@@ -4,12 +4,12 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage} from './browser.js';
-import {ask, scanFolders, startScanner} from './scanner.js';
+import {ask, lifelike, scanFolders, startScanner} from './scanner.js';
 
 test('a scan cancelled half way ends at once, and keeps its snapshots', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, lifelike);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
-  const snapshots = 60;
+  const snapshots = 200;
   await chooseQuickScan(page, snapshots);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 5);
@@ -17,7 +17,7 @@ test('a scan cancelled half way ends at once, and keeps its snapshots', async (t
 
   await page.getByText('Scan cancelled', {exact: true}).waitFor();
   const row = page.getByRole('listitem').filter({hasText: 'Cancelled'});
-  const kept = Number(/(\d+) of 60 snapshots kept/.exec(await row.innerText())?.[1]);
+  const kept = Number(/(\d+) of 200 snapshots kept/.exec(await row.innerText())?.[1]);
   assert.ok(kept >= 5 && kept < snapshots, `${kept} kept`);
   const [folder] = await scanFolders(scanner);
   assert.equal((await readdir(join(folder, 'snapshots'))).length, kept);

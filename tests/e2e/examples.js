@@ -1,7 +1,8 @@
 // Answers of the scanner, as web/API.md describes them, for tests without one.
 
 export const settings = {
-  snapshots: 36, filter: 'average', frames: 10, leaf_size_mm: 1, threshold_m2: 0.0001, clip_mm: [-140, -140, 5, 140, 140, 400],
+  snapshots: 36, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 1, threshold_m2: 0.0001,
+  clip_mm: [-140, -140, 5, 140, 140, 400],
 };
 
 const device = {state: 'ready', name: 'Kinect v1', simulated: false, message: ''};
@@ -10,13 +11,13 @@ export const status = {version: '0.1.0', sensor: device, turntable: {...device, 
 
 export const running = {
   id: 'run', name: '', state: 'running', phase: 'capturing', created: '2026-11-21T08:15:00Z', snapshots_done: 9,
-  snapshots_total: 36, seconds_elapsed: 12.3, seconds_left: 40.1, settings, error: null, model: null,
+  snapshots_total: 36, seconds_elapsed: 12.3, seconds_left: 40.1, settings, error: null, model: null, preview: null,
 };
 
 export const finished = {
   ...running, id: 'done', name: 'Owl', state: 'finished', phase: 'done', snapshots_done: 36, seconds_left: null,
   model: {
     url: '/api/v1/scans/done/Scan.stl', bytes: 50551684, triangles: 1011032, leaves: 130304, watertight: true, volume_cm3: 97.12,
-    size_mm: [120.12, 94.9, 151], seconds: 0.08,
+    size_mm: [120.12, 94.9, 151], seconds: 0.08, parts: 1, filled_share: 0.21,
   },
 };

@@ -4,7 +4,7 @@ import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
 import {measure} from './mesh_file.js';
-import {startScanner} from './scanner.js';
+import {lifelike, startScanner} from './scanner.js';
 
 /** How many different colours the depth picture has, and which share of it holds a reading. */
 const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
@@ -38,7 +38,7 @@ const noteProgress = (page) => page.evaluate(() => {
 
 test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) => {
   // Slow enough that the page, which asks some times a second, sees more than the beginning and the end.
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '2']});
+  const scanner = await startScanner(t, lifelike);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   assert.equal((await fetch(scanner.url)).headers.get('Content-Security-Policy').split(';')[0], `default-src 'self'`);
 
@@ -50,10 +50,16 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const snapshots = 8;
   await chooseQuickScan(page, snapshots);
   await noteProgress(page);
+  const growth = [];  // bytes of each mesh of what was seen so far
+  page.on('response', (response) => response.url().endsWith('/preview.stl') && response.status() === 200 &&
+      growth.push(Number(response.headers()['content-length'])));
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
   assert.match(await page.title(), /^(\d\/8|Building) · Octurn$/);
+  await page.locator('#tools').waitFor();
+  const grown = await modelShare(page);
+  assert.ok(grown > 0.005, `what was seen so far in 3D, not ${grown} of the view`);
   await picture(page, 'scanning');
 
   const download = page.getByRole('link', {name: 'Download STL'}).first();
@@ -62,6 +68,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
   assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
   assert.equal(await page.title(), 'Done · Octurn');
+  assert.ok(new Set(growth).size >= 2, `a model in the making, not ${growth}`);
 
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.equal(arrived.suggestedFilename(), 'Scan.stl');

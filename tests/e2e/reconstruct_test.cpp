@@ -37,8 +37,8 @@ class ReconstructCommand : public ::testing::Test {
   /// Fails unless the program ends with that status and one line on standard error, and leaves no
   /// file.
   void expect_failure(const std::vector<std::string>& words, int status, const std::string& says,
-                      std::optional<rlim_t> most_file_bytes = {}) const {
-    Program program(words, most_file_bytes);
+                      const ProgramLimits& limits = {}) const {
+    Program program(words, limits);
     EXPECT_EQ(program.wait(), status) << program.errors();
     EXPECT_EQ(program.output(), "");
     EXPECT_NE(program.errors().find(says), std::string::npos) << program.errors();
@@ -156,12 +156,12 @@ TEST_F(ReconstructCommand, EndsWith1WhereItCannotWrite) {
 }
 
 TEST_F(ReconstructCommand, EndsWith1WhenTheDiskIsFull) {
-  expect_failure(command(), 1, "cannot write", 100'000);
+  expect_failure(command(), 1, "cannot write", {.file_bytes = 100'000});
 }
 
 TEST_F(ReconstructCommand, LeavesAnEarlierModelAloneWhenItFails) {
   put(output_, "an earlier model");
-  Program program(command(), 100'000);
+  Program program(command(), {.file_bytes = 100'000});
   EXPECT_EQ(program.wait(), 1);
   EXPECT_EQ(content_of(output_), "an earlier model");
   EXPECT_EQ(files_left(), 1);

@@ -34,13 +34,14 @@ test('settings that make no sense are not sent', async (t) => {
   await page.getByLabel('Snapshots a turn', {exact: true}).fill('40');
   await page.getByLabel('Coarse').check();
   await page.getByLabel('Depth filter').selectOption('basic');
+  await page.getByLabel('Intersection').check();
   await page.getByLabel('Widest gap bridged').fill('20');
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   const {settings} = (await ask(scanner, 'scans')).scans[0];
   assert.deepEqual({...settings, platform_from_sensor: undefined}, {
-    snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, threshold_m2: 0.0004, root_size_mm: 1000,
-    clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
+    snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, method: 'intersection', max_error_mm: 0.04,
+    threshold_m2: 0.0004, root_size_mm: 1000, clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
   });
   assert.deepEqual(faults, []);
 });

@@ -32,6 +32,9 @@ async function address(program) {
  * @property {() => Promise<void>} restart  at the same address, with the same folder
  */
 
+/** As fast as life: a scan lasts longer than a browser on a busy machine takes to look at it. */
+export const lifelike = {rig: ['--simulate']};
+
 /**
  * @param {import('node:test').TestContext} t  at its end the scanner ends, and its folder goes
  * @param {{rig?: string[]}} options  rig: the arguments that choose devices

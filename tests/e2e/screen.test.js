@@ -9,6 +9,16 @@ const idle = states.withStatus(states.initial, status);
 const scanning = (changes) => states.withStatus(states.initial, {...status, scan: {...running, ...changes}});
 const looking = (scan) => states.withSelected(states.withScans(idle, [scan]), scan.id);
 
+test('what a running scan has seen is shown in 3D from its first snapshot on', () => {
+  const preview = {url: '/api/v1/scans/run/preview.stl', snapshots: 3};
+  const first = screenOf(scanning({})).stage;
+  assert.deepEqual([first.growing, first.shows, first.hasChoice], [null, 'camera', false]);
+  const later = screenOf(states.withSelected(scanning({preview}), null)).stage;
+  assert.equal(later.growing, preview);
+  assert.deepEqual([later.shows, later.hasChoice, later.model], ['model', true, null]);
+  assert.equal(screenOf(looking(finished)).stage.growing, null);
+});
+
 test('the panel is the form, the progress or a scan, as things are', () => {
   assert.deepEqual([states.initial, idle, scanning({}), looking(finished)].map((state) => screenOf(state).panel),
       ['waiting', 'form', 'progress', 'details']);

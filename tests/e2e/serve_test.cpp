@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "support/daemon.hpp"
 #include "support/http_client.hpp"
 #include "support/program.hpp"
 #include "support/stl.hpp"
@@ -19,79 +20,16 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using namespace std::chrono_literals;
 
-json parsed(const Reply& reply) { return json::parse(reply.body, nullptr, false); }
-
-/// `octurn serve` on the simulated rig, much faster than life, on a free port of this machine.
-class Daemon {
- public:
-  explicit Daemon(const fs::path& folder, std::vector<std::string> more = {},
-                  std::optional<rlim_t> most_file_bytes = {})
-      : Daemon(command(folder, std::move(more)), most_file_bytes) {}
-  explicit Daemon(std::vector<std::string> command, std::optional<rlim_t> most_file_bytes = {})
-      : program_(std::move(command), most_file_bytes) {
-    const std::string line = program_.read_line();  // "Octurn is at http://127.0.0.1:41234/"
-    const std::size_t colon = line.rfind(':');
-    port_ = colon == std::string::npos ? 0 : std::stoi(line.substr(colon + 1));
-    EXPECT_GT(port_, 0) << line;
-  }
-
-  static std::vector<std::string> command(const fs::path& folder,
-                                          std::vector<std::string> more = {}, int port = 0) {
-    put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
-    std::vector<std::string> words{
-        OCTURN_PROGRAM,  "serve",     "--simulate",  "--simulate-speed",   "20",
-        "--listen",      "127.0.0.1", "--port",      std::to_string(port), "--data",
-        folder / "data", "--web",     folder / "web"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-
-  int port() const { return port_; }
-  Program& program() { return program_; }
-
-  Reply get(const std::string& path, const Headers& headers = {}) const {
-    return request(port_, "GET", path, "", headers);
-  }
-  Reply post(const std::string& path, const std::string& body = "{}") const {
-    return request(port_, "POST", path, body);
-  }
-  json status() const { return parsed(get("/api/v1/status")); }
-
-  /// Starts a scan. @return its path
-  std::string start(const std::string& settings) const {
-    const Reply reply = post("/api/v1/scans", settings);
-    EXPECT_EQ(reply.status, 202) << reply.body;
-    return reply.header("Location");
-  }
-
-  /// Waits until a scan is as wanted; what it is then, wanted or not after 20 s.
-  json wait_until(const std::string& scan, const std::function<bool(const json&)>& wanted) const {
-    const auto deadline = std::chrono::steady_clock::now() + 20s;
-    json now = parsed(get(scan));
-    while (!wanted(now) && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::yield();
-      now = parsed(get(scan));
-    }
-    return now;
-  }
-  json wait_until_done(const std::string& scan) const {
-    return wait_until(scan, [](const json& now) { return now["state"] != "running"; });
-  }
-
- private:
-  Program program_;
-  int port_ = 0;
-};
-
-const std::string quick = R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 4})";
-const std::string endless = R"({"snapshots": 200, "frames": 2, "leaf_size_mm": 4})";
-
 bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
 
-TEST(Serve, ScansAndGivesAClosedModel) {
+class ServeByMethod : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan = daemon.start(R"({"snapshots": 8, "frames": 3, "leaf_size_mm": 2})");
+  const std::string method = GetParam();
+  const std::string scan = daemon.start(
+      json{{"snapshots", 8}, {"frames", 3}, {"leaf_size_mm", 2}, {"method", method}}.dump());
   const json done = daemon.wait_until_done(scan);
   ASSERT_EQ(done["state"], "finished") << done;
   EXPECT_EQ(done["phase"], "done");
@@ -109,10 +47,13 @@ TEST(Serve, ScansAndGivesAClosedModel) {
 
   // The command gives the same bytes from the scan that was stored.
   Program again({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / done["id"], "-o",
-                 "-", "--leaf-size-mm", "2"});
+                 "-", "--leaf-size-mm", "2", "--method", method});
   EXPECT_EQ(again.wait(), 0);
   EXPECT_TRUE(again.output() == model.body);
+  EXPECT_EQ(done["model"]["parts"], method == "solid" ? json(1) : json(nullptr));
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, ServeByMethod, ::testing::Values("solid", "intersection"));
 
 TEST(Serve, SendsPartsOfAModelThatPutTogetherAreTheWhole) {
   const TemporaryFolder folder;
@@ -172,7 +113,8 @@ TEST(Serve, CancelsAScanWhileItBuilds) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
   const std::string scan =  // a model of hundreds of megabytes, which takes a while
-      daemon.start(R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2})");
+      daemon.start(
+          R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2, "method": "intersection"})");
   const json building = daemon.wait_until(scan, [](const json& now) {
     return now["phase"] == "building" || now["state"] != "running";
   });
@@ -350,7 +292,7 @@ TEST(Serve, EndsAtOnceAndKeepsTheSnapshots) {
 
 TEST(Serve, FailsAScanWhenTheDiskIsFullAndGoesOn) {
   const TemporaryFolder folder;
-  const Daemon daemon(folder.path(), {}, 500'000);  // takes snapshots, but no model
+  const Daemon daemon(folder.path(), {}, {.file_bytes = 500'000});  // takes snapshots, but no model
   const json done = daemon.wait_until_done(daemon.start(R"({"snapshots": 3, "frames": 2})"));
   EXPECT_EQ(done["state"], "failed");
   EXPECT_EQ(done["error"]["code"], "disk-full");

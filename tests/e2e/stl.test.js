@@ -25,6 +25,13 @@ test('the positions are those of the file, however it arrives', async () => {
   }
 });
 
+test('corners of triangles that were filled in are marked', async () => {
+  const marked = Buffer.from(file);
+  marked[84 + 50 + 48] = 1;  // the attributes of the second triangle
+  assert.equal((await readStl(inPieces(file, 7))).filled, null);
+  assert.deepEqual([...(await readStl(inPieces(marked, 7))).filled ?? []], [0, 0, 0, 255, 255, 255, 0, 0, 0]);
+});
+
 test('every file cut short is refused', async () => {
   for (let length = 0; length < file.length; ++length) {
     await assert.rejects(readStl(inPieces(file.subarray(0, length), 64)), /cut short/, `${length} bytes`);

@@ -23,12 +23,18 @@
 
 namespace octurn {
 
+/// What the kernel holds a program to.
+struct ProgramLimits {
+  std::optional<rlim_t> file_bytes = {};  ///< of each file it writes: a disk that is full
+  std::optional<rlim_t> data_bytes = {};  ///< of private memory, touched or not, all threads'
+                                          ///< stacks but the first one's included
+};
+
 /// A program that a test has started, with its two outputs. Killed, if it still runs, when the test
 /// ends.
 class Program {
  public:
-  /// @param most_file_bytes  a limit on the size of the files it writes: a disk that is full
-  explicit Program(std::vector<std::string> command, std::optional<rlim_t> most_file_bytes = {}) {
+  explicit Program(std::vector<std::string> command, const ProgramLimits& limits = {}) {
     std::array<FileDescriptor, 2> out = make_pipe();
     std::array<FileDescriptor, 2> error = make_pipe();
     std::vector<char*> arguments;
@@ -40,11 +46,9 @@ class Program {
     if (process_ == 0) {
       ::dup2(out[1].number(), STDOUT_FILENO);
       ::dup2(error[1].number(), STDERR_FILENO);
-      if (most_file_bytes) {
-        ::signal(SIGXFSZ, SIG_IGN);
-        const rlimit limit{.rlim_cur = *most_file_bytes, .rlim_max = *most_file_bytes};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-      }
+      ::signal(SIGXFSZ, SIG_IGN);
+      set_limit(RLIMIT_FSIZE, limits.file_bytes);
+      set_limit(RLIMIT_DATA, limits.data_bytes);
       ::execv(arguments[0], arguments.data());
       ::_exit(127);
     }
@@ -60,6 +64,8 @@ class Program {
   }
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
+
+  pid_t process() const { return process_; }
 
   void send_signal(int signal) const { ::kill(process_, signal); }
 
@@ -79,9 +85,15 @@ class Program {
 
   /// Waits for its end. @return its exit status, or minus the signal that ended it
   int wait() {
-    read_to_end();
+    return wait([&](std::string_view part) { output_ += part; });
+  }
+
+  /// The same, with its output handed on piece by piece, and kept nowhere.
+  template <typename Sink>
+  int wait(Sink output) {
+    read_to_end(output);
     int status = 0;
-    ::waitpid(std::exchange(process_, -1), &status, 0);
+    ::wait4(std::exchange(process_, -1), &status, 0, &usage_);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
 
@@ -89,7 +101,20 @@ class Program {
   const std::string& output() const { return output_; }
   const std::string& errors() const { return errors_; }
 
+  /// The most memory that was resident, after `wait`, as `time -v` tells it. The kernel counts from
+  /// the fork, so it is not less than what the test itself had then.
+  std::size_t peak_memory_bytes() const {
+    return static_cast<std::size_t>(usage_.ru_maxrss) * 1024;  // Linux counts in kilobytes
+  }
+
  private:
+  static void set_limit(int resource, const std::optional<rlim_t>& most) {
+    if (most) {
+      const rlimit limit{.rlim_cur = *most, .rlim_max = *most};
+      ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+    }
+  }
+
   static std::array<FileDescriptor, 2> make_pipe() {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -98,11 +123,11 @@ class Program {
     return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
   }
 
-  void read_to_end() {
+  template <typename Sink>
+  void read_to_end(Sink& output) {
     std::array<pollfd, 2> ready{pollfd{.fd = out_.number(), .events = POLLIN, .revents = 0},
                                 pollfd{.fd = error_.number(), .events = POLLIN, .revents = 0}};
-    std::array<std::string*, 2> texts{&output_, &errors_};
-    std::array<char, 4096> part{};
+    std::vector<char> part(std::size_t{64} * 1024);
     while (ready[0].fd >= 0 || ready[1].fd >= 0) {
       ::poll(ready.data(), ready.size(), -1);
       for (std::size_t i = 0; i < ready.size(); ++i) {
@@ -112,8 +137,11 @@ class Program {
         const ssize_t got = ::read(ready[i].fd, part.data(), part.size());
         if (got <= 0) {
           ready[i].fd = -1;
+        } else if (const std::string_view text(part.data(), static_cast<std::size_t>(got));
+                   i == 0) {
+          output(text);
         } else {
-          texts[i]->append(part.data(), static_cast<std::size_t>(got));
+          errors_ += text;
         }
       }
     }
@@ -124,6 +152,7 @@ class Program {
   FileDescriptor error_ = {};
   std::string output_ = {};
   std::string errors_ = {};
+  rusage usage_ = {};
 };
 
 }  // namespace octurn

@@ -20,4 +20,8 @@ static_assert(sizeof(Facet) == 50);
 static_assert(std::endian::native == std::endian::little,
               "facets are written as they lie in memory");
 
+/// The attributes of a facet where nobody saw the surface, and it was filled in. Slicers pass over
+/// it.
+constexpr std::uint16_t filled_in = 1;
+
 }  // namespace octurn

@@ -39,6 +39,10 @@ inline BrickLayers all_layers(const Octree& octree) {
 void isosurface(const Octree& octree, const BrickLayers& layers, int threads,
                 const FacetSink& sink);
 
+/// The surface of the octree's leaves, or of the finest level above that has no more than
+/// `most_facets`.
+void coarse_isosurface(Octree octree, std::uint64_t most_facets, const FacetSink& sink);
+
 /// The number of facets that `isosurface` gives, without making them.
 std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers);
 

@@ -25,6 +25,9 @@ class MeshCheck {
   /// Cubic millimetres, by the divergence theorem; right only if the surface is closed.
   double volume_mm3() const { return six_volumes_ / 6; }
 
+  /// The share of the surface's area in facets that are marked as filled in.
+  double filled_share() const { return area_ > 0 ? filled_area_ / area_ : 0; }
+
   /// The box around all corners, millimetres.
   const Box& bounds_mm() const { return bounds_mm_; }
 
@@ -32,6 +35,8 @@ class MeshCheck {
   std::uint64_t facets_ = 0;
   std::uint64_t edges_ = 0;
   double six_volumes_ = 0;
+  double area_ = 0;  // both areas twice, mm2
+  double filled_area_ = 0;
   Box bounds_mm_ = {};
 };
 

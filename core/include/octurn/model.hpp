@@ -16,6 +16,8 @@ struct ModelReport {
   std::uint64_t leaves = 0;
   std::uint64_t triangles = 0;
   std::uint64_t bytes = 0;
+  std::uint64_t parts = 0;                         ///< 0: not counted
+  double filled_share = 0;                         ///< of the surface's area, that nobody saw
   bool watertight = false;                         ///< every edge met by its opposite, as checked
   double volume = 0.0;                             ///< cubic metres
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the box around it

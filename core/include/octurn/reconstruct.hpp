@@ -1,82 +1,41 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <optional>
 #include <stop_token>
+#include <variant>
 
-#include "octurn/box.hpp"
-#include "octurn/isosurface.hpp"
-#include "octurn/octree.hpp"
-#include "octurn/snapshot.hpp"
+#include "octurn/intersection.hpp"
+#include "octurn/reconstruct_options.hpp"
+#include "octurn/solid.hpp"
 
 namespace octurn {
 
-/// How snapshots become a model by voxel octree intersection.
-struct ReconstructOptions {
-  double leaf_size = 0.001;   ///< metres: leaves are the first level at or below it
-  double root_size = 1.0;     ///< metres, side of the root cube
-  double threshold = 0.0001;  ///< square metres: triangles with a longer side, squared, are none
-  Box clip = {};              ///< metres, platform frame
-  std::optional<int> level = {};  ///< surface of this coarser level, the root's being 0
-  int threads = 1;                ///< the model's bytes do not depend on it
-  std::size_t memory_limit = 0;   ///< bytes that the whole process may take; 0 is no limit
-};
-
-/// Snapshots that can be read, and read again, by several threads at once.
-struct SnapshotSource {
-  std::size_t count = 0;
-  std::function<Snapshot(std::size_t)> read = {};
-};
-
-/// The size of a surface.
-struct SurfaceCount {
-  std::uint64_t leaves = 0;
-  std::uint64_t facets = 0;
-};
-
-/// A model in the making by voxel octree intersection: snapshots are added, then its surface is
-/// asked for.
-///
-/// Where the octree does not fit in the memory limit, it keeps as many of its lowest layers as do:
-/// a slab. The surface is then made slab by slab, and for each the snapshots are read again.
-/// Neither slabs nor threads change a byte of it.
+/// A model in the making, by the method that the options name: snapshots are added, then its
+/// surface is asked for.
 class Reconstruction {
  public:
   /// @throws Error "bad-settings"  that says which option is out of its range
   /// @throws Error "memory-limit"  that says what limit would do
   explicit Reconstruction(const ReconstructOptions& options);
 
-  /// Depth -> world points -> clip -> triangles -> octree.
-  /// @throws Error "memory-limit"  if not even the smallest slab fits
+  /// @throws Error "memory-limit"  if what was seen does not fit
   void add(const Snapshot& snapshot);
 
   /// The same for all of them, on as many threads as the options say. Ends early if stopped.
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {});
 
-  /// Octree -> isosurface, streamed. What `sink` throws ends it.
-  /// @param snapshots  those that were added, to be read again if there are several slabs
+  /// The surface, streamed. What `sink` throws ends it.
+  /// @param snapshots  those that were added, to be read again if not all fitted in memory
   SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink);
 
-  /// What `surface` would give, without making it: a moment's work if there is one slab.
+  /// What `surface` would give.
   SurfaceCount count(const SnapshotSource& snapshots);
 
-  /// The surface of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres. Of several slabs it shows the one at hand.
-  void preview(double leaf_size, const FacetSink& sink) const;
+  /// The surface of what was seen so far, on the first level whose nodes are at or below
+  /// `leaf_size` (metres), or on the finest above it that has no more than `most_facets`.
+  void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
-  void see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
-  void keep_what_fits(Octree& octree, BrickLayers& slab) const;
-  void merge(Octree& other);
-  void begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots);
-  template <typename Visit>
-  void for_each_slab(const SnapshotSource& snapshots, Visit visit);
-
-  ReconstructOptions options_;
-  Octree octree_;
-  BrickLayers slab_ = {};  // the octree holds these, and the lowest leaves of the layer after them
+  std::variant<Intersection, Solid> method_;
 };
 
 }  // namespace octurn

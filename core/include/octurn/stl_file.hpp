@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "octurn/atomic_file.hpp"
 #include "octurn/facet.hpp"
@@ -15,6 +18,9 @@ constexpr std::uint64_t stl_bytes(std::uint64_t facets) { return 84 + 50 * facet
 /// The first 84 bytes of a binary STL.
 /// @throws Error "model-too-large"  if there are more facets than the format can count
 std::array<std::byte, 84> stl_header(std::uint64_t facets);
+
+/// A binary STL, whole in memory.
+std::string stl_text(std::span<const Facet> facets);
 
 /// A binary STL that appears whole or not at all.
 class StlFile {

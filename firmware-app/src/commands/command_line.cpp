@@ -53,6 +53,23 @@ void add_model_options(CLI::App& command, Arguments& arguments, const char* clip
       ->type_name("X0 Y0 Z0 X1 Y1 Z1");
 }
 
+/// The same for what chooses the method.
+template <typename Arguments>
+void add_method_options(CLI::App& command, Arguments& arguments, const std::string& usual) {
+  command
+      .add_option(
+          "--method", arguments.method,
+          "solid: one closed, filled, smooth part; intersection: a shell of what was seen (" +
+              usual + ")")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"intersection", "solid"}));
+  command
+      .add_option("--max-error-mm", arguments.max_error_mm,
+                  "solid: what fewer triangles may cost (0.04); 0 keeps them all")
+      ->type_name("MM")
+      ->check(CLI::NonNegativeNumber);
+}
+
 void add_serve(CLI::App& program, ServeArguments& arguments) {
   CLI::App& command = *program.add_subcommand("serve", "the daemon: page, API, scans");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
@@ -82,6 +99,7 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
                   "how frames become one: basic, average or average-discard (average)")
       ->type_name("NAME");
   command.add_option("--frames", settings.frames, "frames at each stop (10)")->type_name("N");
+  add_method_options(command, settings, "solid");
   add_model_options(command, settings, "-140 -140 5 140 140 400");
   command.callback([&arguments, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
@@ -97,6 +115,7 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
                   "the model, binary STL in millimetres; - is standard output")
       ->type_name("FILE")
       ->required();
+  add_method_options(command, arguments, "intersection");
   add_model_options(command, arguments, "the scan's");
   command.add_option("--level", arguments.level, "surface of a coarser level; 0 is the root")
       ->type_name("N");

@@ -35,6 +35,8 @@ void serve(const ServeArguments& arguments);
 
 /// What a command line says about a scan, in the units of its options.
 struct SettingsArguments {
+  std::optional<std::string> method = {};
+  std::optional<double> max_error_mm = {};
   std::optional<int> snapshots = {};
   std::optional<std::string> filter = {};
   std::optional<int> frames = {};
@@ -58,6 +60,8 @@ void scan(const ScanArguments& arguments);
 struct ReconstructArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};  ///< "-" is standard output
+  std::string method = "intersection";
+  std::optional<double> max_error_mm = {};
   std::optional<double> leaf_size_mm = {};
   std::optional<double> root_size_mm = {};
   std::optional<double> threshold_m2 = {};

@@ -44,8 +44,33 @@ Box box_of(const std::array<double, 6>& mm) {
   return {.min = point(0), .max = point(3)};
 }
 
+/// @throws Error "bad-settings"  that names an option which the method does not have
+void expect_options_of_method(const ReconstructArguments& arguments) {
+  const auto refuse = [&](const char* option) {
+    throw Error("bad-settings",
+                std::string(option) + ": the method " + arguments.method + " has none");
+  };
+  if (arguments.method == "solid") {
+    if (arguments.level) {
+      refuse("--level");
+    }
+    if (arguments.threshold_m2) {
+      refuse("--threshold-m2");
+    }
+  } else if (arguments.max_error_mm) {
+    refuse("--max-error-mm");
+  }
+}
+
 ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan& scan) {
-  ReconstructOptions options{.clip = scan.clip, .level = arguments.level};
+  expect_options_of_method(arguments);
+  ReconstructOptions options{
+      .method = method_named(arguments.method).value_or(Method::intersection),
+      .clip = scan.clip,
+      .level = arguments.level};
+  if (arguments.max_error_mm) {
+    options.max_error = metres_from_mm(*arguments.max_error_mm);
+  }
   if (arguments.leaf_size_mm) {
     options.leaf_size = metres_from_mm(*arguments.leaf_size_mm);
   }
@@ -63,35 +88,53 @@ ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan&
   return options;
 }
 
+Json settings_of(const ReconstructOptions& options) {
+  Json clip = Json::array();
+  for (const Eigen::Vector3d& corner : {options.clip.min, options.clip.max}) {
+    for (const double metres : corner) {
+      clip.push_back(mm_from_metres(metres));
+    }
+  }
+  const bool solid = options.method == Method::solid;
+  Json settings{{"method", name_of(options.method)},
+                {"leaf_size_mm", mm_from_metres(options.leaf_size)},
+                {"root_size_mm", mm_from_metres(options.root_size)}};
+  if (solid) {
+    settings["max_error_mm"] = mm_from_metres(options.max_error);
+  } else {
+    settings["threshold_m2"] = options.threshold;
+  }
+  settings["clip_mm"] = clip;
+  if (!solid) {
+    settings["level"] = options.level ? Json(*options.level) : Json(nullptr);
+  }
+  settings["threads"] = options.threads;
+  settings["memory_limit_mb"] = mb_from_bytes(static_cast<double>(options.memory_limit));
+  return settings;
+}
+
 Json json_of(const ModelReport& report, const ReconstructOptions& options, const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
   };
-  Json clip = mm(options.clip.min);
-  for (const auto& value : mm(options.clip.max)) {
-    clip.push_back(value);
+  Json json{{"leaves", report.leaves},
+            {"triangles", report.triangles},
+            {"bytes", report.bytes},
+            {"watertight", report.watertight},
+            {"volume_cm3", cm3_from_m3(report.volume)},
+            {"size_mm", mm(report.size)}};
+  if (options.method == Method::solid) {
+    json["parts"] = report.parts;
+    json["seen_share"] = 1 - report.filled_share;
+    json["filled_share"] = report.filled_share;
   }
-  return {{"leaves", report.leaves},
-          {"triangles", report.triangles},
-          {"bytes", report.bytes},
-          {"watertight", report.watertight},
-          {"volume_cm3", cm3_from_m3(report.volume)},
-          {"size_mm", mm(report.size)},
-          {"peak_memory_bytes", peak_memory_bytes()},
-          {"seconds",
-           {{"snapshots", seconds(times.snapshots)},
-            {"surface", seconds(times.surface)},
-            {"total", seconds(times.snapshots + times.surface)}}},
-          {"settings",
-           {{"method", "intersection"},
-            {"leaf_size_mm", mm_from_metres(options.leaf_size)},
-            {"root_size_mm", mm_from_metres(options.root_size)},
-            {"threshold_m2", options.threshold},
-            {"clip_mm", clip},
-            {"level", options.level ? Json(*options.level) : Json(nullptr)},
-            {"threads", options.threads},
-            {"memory_limit_mb", mb_from_bytes(static_cast<double>(options.memory_limit))}}}};
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["seconds"] = {{"snapshots", seconds(times.snapshots)},
+                     {"surface", seconds(times.surface)},
+                     {"total", seconds(times.snapshots + times.surface)}};
+  json["settings"] = settings_of(options);
+  return json;
 }
 
 [[noreturn]] void stopped() {

@@ -25,6 +25,8 @@ json json_of(const SettingsArguments& given) {
       body[key] = *value;
     }
   };
+  add("method", given.method);
+  add("max_error_mm", given.max_error_mm);
   add("snapshots", given.snapshots);
   add("filter", given.filter);
   add("frames", given.frames);

@@ -33,7 +33,8 @@ void serve(const ServeArguments& arguments) {
   const Page page(arguments.web ? *arguments.web : page_folder());
   const ScanStore store(arguments.data.value_or(config.data));
   Scanner scanner(rig, config.limits, store);
-  Api api(scanner, store, page, {.defaults = config.scan, .host_names = config.host_names});
+  Api api(scanner, store, page,
+          {.defaults = config.scan, .limits = config.limits, .host_names = config.host_names});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;

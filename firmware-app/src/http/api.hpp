@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@ namespace octurn {
 
 struct ApiOptions {
   ScanSettings defaults = {};                ///< for what a start does not say
+  Limits limits = {};                        ///< of models that are made while they are sent
   std::vector<std::string> host_names = {};  ///< that the page may be opened by, besides local ones
 };
 
@@ -41,6 +43,11 @@ class Api {
   Response remove(const Request& request, std::string_view id);
   Response cancel(const Request& request, std::string_view id);
   Response model(const Request& request, std::string_view id);
+  Response made_model(const Request& request, const Job& job);
+  Response surface_so_far(const Request& request, std::string_view id);
+
+  /// A scan as web/API.md has it.
+  nlohmann::json described(const Job& job) const;
 
   /// The scan of that id as it is now. @throws Error "no-such-scan"
   Job find(std::string_view id) const;

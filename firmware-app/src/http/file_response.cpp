@@ -86,6 +86,10 @@ std::string percent_encoded(std::string_view text) {
 
 }  // namespace
 
+std::string attachment(std::string_view name) {
+  return "attachment; filename=\"Scan.stl\"; filename*=UTF-8''" + percent_encoded(name);
+}
+
 bool has_tag(std::string_view list, std::string_view tag) {
   if (list == "*") {
     return true;
@@ -125,9 +129,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
     return response;
   }
   headers.emplace_back("Content-Type", content_type);
-  headers.emplace_back(
-      "Content-Disposition",
-      "attachment; filename=\"Scan.stl\"; filename*=UTF-8''" + percent_encoded(name));
+  headers.emplace_back("Content-Disposition", attachment(name));
   if (wanted.kind == RangeRequest::Kind::whole) {
     return {.headers = std::move(headers), .body = FileSlice{std::move(descriptor), 0, size}};
   }

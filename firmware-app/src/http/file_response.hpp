@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "http/message.hpp"
 
@@ -14,6 +15,9 @@ namespace octurn {
 /// @throws Error "no-model" if there is no such file, "changed", "bad-range"
 Response file_response(const Request& request, const std::filesystem::path& file,
                        const std::string& content_type, const std::string& name);
+
+/// The value of a Content-Disposition that has a browser save a file under that name (RFC 6266).
+std::string attachment(std::string_view name);
 
 /// Whether a list of entity tags, as in If-None-Match, contains `tag` or is "*".
 bool has_tag(std::string_view list, std::string_view tag);

@@ -53,6 +53,9 @@ std::uint64_t length_of(const Response& response) {
   if (const auto* slice = std::get_if<FileSlice>(&response.body)) {
     return slice->length;
   }
+  if (const auto* stream = std::get_if<ByteStream>(&response.body)) {
+    return stream->length;
+  }
   return std::get<std::string>(response.body).size();
 }
 
@@ -95,20 +98,38 @@ void send_slice(mg_connection* connection, const FileSlice& slice) {
   }
 }
 
-void send(mg_connection* connection, std::string_view method, const Response& response) {
-  std::string head = head_of(response);
+void send_stream(mg_connection* connection, ByteStream& stream) {
+  stream.make([&](std::span<const std::byte> bytes) {
+    bool sent = true;
+    for (; sent && !bytes.empty(); bytes = bytes.subspan(std::min(chunk, bytes.size()))) {
+      const std::size_t size = std::min(chunk, bytes.size());
+      sent = write(connection, {reinterpret_cast<const char*>(bytes.data()), size});
+    }
+    return sent;
+  });
+}
+
+void send(mg_connection* connection, std::string_view method, Response response) {
+  const std::string head = head_of(response);
   const auto* text = std::get_if<std::string>(&response.body);
+  const auto* slice = std::get_if<FileSlice>(&response.body);
   if (method == "HEAD") {
     write(connection, head);
   } else if (text != nullptr) {
     write(connection, head + *text);
-  } else if (write(connection, head)) {
-    send_slice(connection, std::get<FileSlice>(response.body));
+  } else if (!write(connection, head)) {
+    return;
+  } else if (slice != nullptr) {
+    send_slice(connection, *slice);
+  } else {
+    send_stream(connection, std::get<ByteStream>(response.body));
   }
 }
 
 Request head_from(const mg_request_info& info) {
-  Request request{.method = info.request_method, .path = info.local_uri ? info.local_uri : ""};
+  Request request{.method = info.request_method,
+                  .path = info.local_uri ? info.local_uri : "",
+                  .query = info.query_string ? info.query_string : ""};
   for (int i = 0; i < info.num_headers; ++i) {
     const mg_header& header = info.http_headers[i];
     request.headers.emplace_back(header.name, header.value);
@@ -157,8 +178,9 @@ int answer_request(mg_connection* connection) noexcept {
                                   " bytes, and comes without delay",
                         .hint = "Send the settings only."});
   }
-  send(connection, request.method, response);
-  return response.status;
+  const int status = response.status;
+  send(connection, request.method, std::move(response));
+  return status;
 }
 
 /// Errors that civetweb finds itself: heads that are malformed, too large or too slow.
@@ -208,8 +230,9 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer)
   mg_init_data init{.callbacks = &callbacks,
                     .user_data = &server_->service,
                     .configuration_options = settings.data()};
-  unsigned code = 0;
-  mg_error_data error{.code = &code, .text = reason.data(), .text_buffer_size = reason.size()};
+  mg_error_data error{};  // what else it holds changes with civetweb's version
+  error.text = reason.data();
+  error.text_buffer_size = reason.size();
   server_->context = mg_start2(&init, &error);
   if (server_->context == nullptr) {
     mg_exit_library();

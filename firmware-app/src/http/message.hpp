@@ -1,8 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,6 +30,7 @@ inline bool same_token(std::string_view a, std::string_view b) {
 struct Request {
   std::string method = "GET";
   std::string path = "/";  ///< decoded, without the query
+  std::string query = {};  ///< what follows the "?", as it came
   Headers headers = {};
   std::string body = {};
 
@@ -46,12 +51,23 @@ struct FileSlice {
   std::uint64_t length = 0;
 };
 
+/// Takes bytes. @return false if nobody wants more of them
+using ByteSink = std::function<bool(std::span<const std::byte>)>;
+
+/// A body that is made while it is sent.
+struct ByteStream {
+  std::uint64_t length = 0;
+  /// Hands over all of it, in order, unless told to end. Throws nothing. For one call; a
+  /// packaged_task, since a std::function would have to be copyable.
+  std::packaged_task<void(const ByteSink&)> make = {};
+};
+
 /// An answer. The server adds Content-Length and what every answer has, and leaves the body out
 /// where the request was HEAD.
 struct Response {
   int status = 200;
   Headers headers = {};
-  std::variant<std::string, FileSlice> body = {};
+  std::variant<std::string, FileSlice, ByteStream> body = {};
 };
 
 }  // namespace octurn

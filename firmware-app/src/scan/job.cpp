@@ -39,7 +39,9 @@ double rounded(double value) { return std::round(value * 1000) / 1000; }
 
 json json_of(const Model& model, const std::string& id) {
   const ModelReport& report = model.report;
-  return {{"url", "/api/v1/scans/" + id + "/Scan.stl"},
+  return {{"parts", report.parts == 0 ? json(nullptr) : json(report.parts)},
+          {"filled_share", report.parts == 0 ? json(nullptr) : json(rounded(report.filled_share))},
+          {"url", "/api/v1/scans/" + id + "/Scan.stl"},
           {"bytes", report.bytes},
           {"triangles", report.triangles},
           {"leaves", report.leaves},
@@ -62,6 +64,12 @@ double number(JsonObject& keys, std::string_view key, double largest) {
 
 std::uint64_t count(JsonObject& keys, std::string_view key) {
   return static_cast<std::uint64_t>(number(keys, key, most_whole));
+}
+
+/// Of what not every method counts.
+double number_or_none(JsonObject& keys, std::string_view key, double largest) {
+  const json* value = keys.find(key);
+  return value == nullptr || value->is_null() ? 0 : number(keys, key, largest);
 }
 
 std::string text(JsonObject& keys, std::string_view key) {
@@ -93,12 +101,15 @@ std::optional<Model> model_from(const json* object) {
     return std::nullopt;
   }
   JsonObject keys(*object, "job-malformed", "model");
-  Model model{.report = {.leaves = count(keys, "leaves"),
-                         .triangles = count(keys, "triangles"),
-                         .bytes = count(keys, "bytes"),
-                         .watertight = keys.flag("watertight").value_or(false),
-                         .volume = m3_from_cm3(number(keys, "volume_cm3", most))},
-              .build_time = Seconds(number(keys, "seconds", most))};
+  Model model{
+      .report = {.leaves = count(keys, "leaves"),
+                 .triangles = count(keys, "triangles"),
+                 .bytes = count(keys, "bytes"),
+                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
+                 .filled_share = number_or_none(keys, "filled_share", 1),
+                 .watertight = keys.flag("watertight").value_or(false),
+                 .volume = m3_from_cm3(number(keys, "volume_cm3", most))},
+      .build_time = Seconds(number(keys, "seconds", most))};
   const json* size = keys.find("size_mm");
   if (size == nullptr || !size->is_array() || size->size() != 3 ||
       !std::ranges::all_of(*size, [](const json& side) { return side.is_number(); })) {

@@ -109,8 +109,11 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
     if (adding.valid()) {
       adding.get();
     }
-    adding = std::async(std::launch::async, [&reconstruction, added = std::move(snapshot)] {
+    adding = std::async(std::launch::async, [&, done, added = std::move(snapshot)] {
       reconstruction.add(added);
+      if (done < settings.snapshots) {  // then comes the model itself
+        observer.on_added(reconstruction, done);
+      }
     });
   }
 

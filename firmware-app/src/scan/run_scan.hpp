@@ -10,11 +10,14 @@
 
 namespace octurn {
 
-/// Told what a scan is doing, on the thread that runs it.
+/// Told what a scan is doing, on the thread that runs it; `on_added` on that which adds snapshots,
+/// while the platform turns.
 struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
   std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
                                                                                 double) {};
+  std::function<void(const Reconstruction& seen, int snapshots)> on_added =
+      [](const Reconstruction&, int) {};
 };
 
 /// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.

@@ -18,6 +18,7 @@ constexpr int most_snapshots = 200;    // the full steps of a turn of the coarse
 constexpr int most_frames = 100;       // 3 s at 30 frames a second: more does not lower the noise
 constexpr double farthest_mm = 10000;  // no depth sensor of this kind sees farther
 constexpr double largest_root_mm = 5000;
+constexpr double most_error_mm = 10;
 constexpr double finest_leaf_mm =
     0.1;  // the octree has 16 levels, which at the largest root is 0.08
 
@@ -77,10 +78,12 @@ int available_threads() {
 }
 
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {
-  return {.leaf_size = settings.leaf_size,
+  return {.method = settings.method,
+          .leaf_size = settings.leaf_size,
           .root_size = settings.root_size,
           .threshold = settings.threshold,
           .clip = settings.clip,
+          .max_error = settings.max_error,
           .threads = limits.threads,
           .memory_limit = limits.memory_bytes};
 }
@@ -100,7 +103,9 @@ json json_of(const ScanSettings& settings) {
   return {{"snapshots", settings.snapshots},
           {"filter", name_of(settings.filter)},
           {"frames", settings.frames},
+          {"method", name_of(settings.method)},
           {"leaf_size_mm", whole_mm(settings.leaf_size)},
+          {"max_error_mm", whole_mm(settings.max_error)},
           {"threshold_m2", settings.threshold},
           {"root_size_mm", whole_mm(settings.root_size)},
           {"clip_mm", clip},
@@ -122,6 +127,17 @@ ScanSettings settings_from(const json& object, const ScanSettings& defaults,
       keys.refuse("filter", *filter, "\"basic\", \"average\" or \"average-discard\"");
     }
     settings.filter = *named;
+  }
+  if (const json* method = keys.find("method")) {
+    const auto named =
+        method->is_string() ? method_named(method->get<std::string>()) : std::nullopt;
+    if (!named) {
+      keys.refuse("method", *method, "\"solid\" or \"intersection\"");
+    }
+    settings.method = *named;
+  }
+  if (const auto mm = keys.number("max_error_mm", 0, most_error_mm)) {
+    settings.max_error = metres_from_mm(*mm);
   }
   if (const auto mm = keys.number("root_size_mm", 10, largest_root_mm)) {
     settings.root_size = metres_from_mm(*mm);

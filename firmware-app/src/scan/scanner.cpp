@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "log.hpp"
+#include "octurn/stl_file.hpp"
 #include "scan/run_scan.hpp"
 
 namespace octurn {
@@ -18,6 +19,10 @@ constexpr auto view_interest = 5s;      // frames are read for that long after s
 constexpr auto fresh = 200ms;           // a view of that age shows what is there now
 constexpr auto retry_interval = 2s;     // between attempts to open a sensor that did not work
 constexpr auto open_without_use = 30s;  // then the sensor is closed: its light and traffic end
+
+// A preview is sent after every snapshot: at most 3 MB, and of leaves as fine as a screen shows.
+constexpr double preview_leaf_size = 0.004;  // metres
+constexpr std::uint64_t most_preview_facets = 60'000;
 
 DeviceStatus::State state_for(const std::string& code) {
   return code.ends_with("-missing") ? DeviceStatus::State::missing : DeviceStatus::State::failed;
@@ -49,6 +54,10 @@ std::optional<Job> Scanner::start(const ScanSettings& settings) {
     status.job_started = Clock::now();
     status.job_end.reset();
   });
+  preview_.set({.id = job.id});
+  if (leave_) {
+    leave_->request_stop();
+  }
   wake_.notify_all();
   return job;
 }
@@ -60,6 +69,29 @@ bool Scanner::cancel(std::string_view id) {
   }
   order_->cancel.request_stop();
   return true;
+}
+
+std::unique_ptr<Scanner::Leave> Scanner::leave_to_reconstruct() {
+  const std::lock_guard lock(mutex_);
+  if (order_ || leave_ || worker_.get_stop_token().stop_requested()) {
+    return nullptr;
+  }
+  leave_.emplace();
+  return std::make_unique<Leave>(*this, leave_->get_token());
+}
+
+void Scanner::take_leave_back() {
+  const std::lock_guard lock(mutex_);
+  leave_.reset();
+  wake_.notify_all();
+}
+
+void Scanner::request_stop() {
+  worker_.request_stop();
+  const std::lock_guard lock(mutex_);
+  if (leave_) {
+    leave_->request_stop();
+  }
 }
 
 Status Scanner::status() const {
@@ -164,17 +196,24 @@ void Scanner::run_order(Rig& rig, const std::stop_token& stop) {
     cancel = order_->cancel;
   }
   const std::stop_callback end_with_the_daemon(stop, [&] { cancel.request_stop(); });
+  {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, cancel.get_token(), [&] { return !leave_; });
+  }
   log::info("scanner",
             "scan " + job.id + " started, snapshots=" + std::to_string(job.settings.snapshots));
   look_for_turntable(rig);  // whose lines may have become free since
   try {
-    job.model = run_scan(job.settings, limits_, store_.folder(job.id), rig, cancel.get_token(),
-                         {.on_progress = [&](Phase phase, int done) { report(phase, done); },
-                          .on_frame =
-                              [&](const DepthFrame& frame, double depth_unit) {
-                                set_view(frame, depth_unit);
-                                set_sensor_ready(rig.sensor().name());
-                              }});
+    job.model =
+        run_scan(job.settings, limits_, store_.folder(job.id), rig, cancel.get_token(),
+                 {.on_progress = [&](Phase phase, int done) { report(phase, done); },
+                  .on_frame =
+                      [&](const DepthFrame& frame, double depth_unit) {
+                        set_view(frame, depth_unit);
+                        set_sensor_ready(rig.sensor().name());
+                      },
+                  .on_added = [&](const Reconstruction& seen,
+                                  int snapshots) { set_preview(job.id, seen, snapshots); }});
     job.state = job.model ? JobState::finished : JobState::cancelled;
     if (!job.model && stop.stop_requested()) {
       job.state = JobState::interrupted;
@@ -239,6 +278,16 @@ void Scanner::finish(Job job) {
 
 void Scanner::set_view(const DepthFrame& frame, double depth_unit) {
   view_.set({.time = Clock::now(), .frame = frame, .depth_unit = depth_unit});
+}
+
+void Scanner::set_preview(const std::string& id, const Reconstruction& seen, int snapshots) {
+  std::vector<Facet> facets;
+  seen.preview(preview_leaf_size, most_preview_facets, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  if (!facets.empty()) {
+    preview_.set({.id = id, .snapshots = snapshots, .stl = stl_text(facets)});
+  }
 }
 
 void Scanner::set_sensor_ready(const std::string& name) {

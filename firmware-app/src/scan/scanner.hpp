@@ -44,8 +44,15 @@ struct View {
   std::optional<Failure> failure = {};
 };
 
-/// Runs one scan at a time on a worker of its own, which alone touches sensor, turntable and
-/// octree. Everything else here may be called from any thread.
+/// A coarse mesh of what the scan that was started last has seen so far.
+struct Preview {
+  std::string id = {};  ///< of the scan
+  int snapshots = 0;    ///< that it shows; 0 if there is nothing to show yet
+  std::string stl = {};
+};
+
+/// Runs one scan at a time on a worker of its own, which alone touches sensor, turntable and the
+/// scan's octree. Everything else here may be called from any thread.
 class Scanner {
  public:
   Scanner(RigOptions rig, const Limits& limits, const ScanStore& store);
@@ -69,8 +76,31 @@ class Scanner {
   /// @throws Error "sensor-..."  if it sees nothing
   std::shared_ptr<const View> view();
 
-  /// Asks the worker to end. The destructor does the same, and waits for it.
-  void request_stop() { worker_.request_stop(); }
+  std::shared_ptr<const Preview> preview() const { return preview_.get(); }
+
+  /// Leave to reconstruct outside of a scan, for as long as it lives. There is one, as memory is
+  /// for one octree. A scan that starts asks for it back, and waits until it has it.
+  class Leave {
+   public:
+    explicit Leave(Scanner& scanner, std::stop_token stop)
+        : scanner_(scanner), stop_(std::move(stop)) {}
+    ~Leave() { scanner_.take_leave_back(); }
+    Leave(const Leave&) = delete;
+    Leave& operator=(const Leave&) = delete;
+
+    const std::stop_token& stop() const { return stop_; }
+
+   private:
+    Scanner& scanner_;
+    std::stop_token stop_;
+  };
+
+  /// @return nothing while a scan runs, or somebody has leave already
+  std::unique_ptr<Leave> leave_to_reconstruct();
+
+  /// Asks the worker to end, and whoever has leave. The destructor does the same, and waits for the
+  /// worker.
+  void request_stop();
 
  private:
   struct Order {
@@ -91,15 +121,19 @@ class Scanner {
   void set_turntable_ready();
   void set_device_failed(const Failure& failure);
   void set_view(const DepthFrame& frame, double depth_unit);
+  void set_preview(const std::string& id, const Reconstruction& seen, int snapshots);
+  void take_leave_back();
 
   RigOptions rig_options_;
   Limits limits_;
   const ScanStore& store_;
   Latest<Status> status_;
   Latest<View> view_;
-  mutable std::mutex mutex_;  // guards order_ and view_wanted_until_
+  Latest<Preview> preview_;
+  mutable std::mutex mutex_;  // guards order_, leave_ and view_wanted_until_
   std::condition_variable_any wake_;
-  std::optional<Order> order_;  // the one job slot: full while a scan waits or runs
+  std::optional<Order> order_;             // the one job slot: full while a scan waits or runs
+  std::optional<std::stop_source> leave_;  // full while somebody has leave
   std::chrono::steady_clock::time_point view_wanted_until_ = {};
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <vector>
+
+#include "octurn/distance_field.hpp"
+#include "octurn/leaf_set.hpp"
+
+namespace octurn {
+
+/// A distance field with a value everywhere: what no snapshot saw is filled in smoothly.
+///
+/// A leaf is *seen* if it lies near a surface that enough was seen of, *free* if it was seen
+/// through, else *unknown*. The unknown takes a harmonic function between the others, on the
+/// field's cells. Below the foot each layer is as the foot's, and the model ends on the platform's
+/// plane.
+class FilledField {
+ public:
+  /// @param field  must outlive this
+  /// @param foot   the lowest layer of leaves that counts; those below take its values
+  FilledField(const DistanceField& field, int foot);
+
+  /// The box of leaves outside which there is nothing: from `low` up to but without `end`.
+  const Cell& low() const { return low_; }
+  const Cell& end() const { return end_; }
+
+  double leaf_side() const { return field_.leaf_side(); }
+  double centre(int leaf, std::size_t axis) const { return field_.centre(leaf, axis); }
+
+  /// Half a leaf's side in ticks.
+  float half_leaf() const {
+    return static_cast<float>(field_.leaf_side() / 2 / field_.truncation() * DistanceField::ticks);
+  }
+
+  struct Value {
+    float distance = 0;  // ticks, positive outside
+    bool seen = false;
+  };
+
+  /// At the centre of a leaf of that box, or of one below it.
+  Value at(const Cell& leaf) const;
+
+  /// The leaves of that box at which the distance is negative, but for those on its sides and top.
+  LeafSet inside() const;
+
+ private:
+  struct Grid {
+    Cell size = {};
+    std::vector<float> values = {};
+    std::vector<char> known = {};
+    std::size_t index(int x, int y, int z) const {
+      return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size.y) +
+              static_cast<std::size_t>(y)) *
+                 static_cast<std::size_t>(size.x) +
+             static_cast<std::size_t>(x);
+    }
+  };
+
+  bool seen(const FieldBrick& brick, std::size_t sample, int free) const;
+  void find_box();
+  void classify();
+  void classify(const Cell& cell, std::size_t index);
+  static void spread(Grid& fine);
+  void relax();
+  float interpolated(const Cell& leaf) const;
+  enum class Side { inside, outside, both };
+  Side side_of(const Cell& brick) const;
+
+  const DistanceField& field_;
+  int foot_;
+  Cell low_ = {};
+  Cell end_ = {};
+  Cell low_cell_ = {};
+  Grid grid_ = {};
+};
+
+}  // namespace octurn

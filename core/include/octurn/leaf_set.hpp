@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octurn/octree.hpp"
+
+namespace octurn {
+
+/// A set of leaves in a box of the lattice, a bit for each, in rows along x.
+class LeafSet {
+ public:
+  /// From `low` up to but without `end`.
+  LeafSet(const Cell& low, const Cell& end);
+
+  const Cell& low() const { return low_; }
+  const Cell& size() const { return size_; }
+  std::size_t words_a_row() const { return words_; }
+
+  /// A row of the box, counted from `low`; bits past its end are 0.
+  std::span<std::uint64_t> row(int y, int z) { return {&bits_[first_word(y, z)], words_}; }
+  std::span<const std::uint64_t> row(int y, int z) const {
+    return {&bits_[first_word(y, z)], words_};
+  }
+
+  /// Counted from `low`; false outside the box.
+  bool contains(int x, int y, int z) const {
+    return x >= 0 && y >= 0 && z >= 0 && x < size_.x && y < size_.y && z < size_.z &&
+           (row(y, z)[static_cast<std::size_t>(x) / 64] >> (x % 64) & 1) != 0;
+  }
+
+  std::uint64_t count() const;
+
+  /// Keeps the one part that stands on the platform: of those in the lowest layer of the box the
+  /// largest, or the largest of all if none is. Leaves of a part meet in faces.
+  void keep_part();
+
+  /// How many parts there are.
+  std::uint64_t count_parts() const;
+
+  /// Adds what no way leads to from outside the box, through faces and edges of leaves.
+  void fill_cavities();
+
+ private:
+  std::size_t first_word(int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) +
+            static_cast<std::size_t>(y)) *
+           words_;
+  }
+
+  Cell low_;
+  Cell size_;
+  std::size_t words_;
+  std::vector<std::uint64_t> bits_ = {};
+};
+
+}  // namespace octurn

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "octurn/box.hpp"
+#include "octurn/intrinsics.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+
+/// What one pixel says about space, in the sensor's frame, metres.
+struct Sight {
+  std::array<float, 3> normal = {};  // of the surface's tangent plane, towards the sensor
+  float offset = 0;                  // normal . point + offset = distance to that plane
+  float weight = 0;                  // of that surface; 0: there is none
+  float free_z = 0;                  // up to which the ray is free; 0: nothing is known
+};
+
+/// A snapshot, conditioned to be fused: noise is smoothed where the surface lets it, each reading
+/// has a weight that says how far it can be trusted, and doubtful ones are left out.
+class Sighting {
+ public:
+  /// @param clip  metres, platform frame: what lies outside makes no surface
+  Sighting(const Snapshot& snapshot, const Box& clip);
+
+  const Intrinsics& lens() const { return lens_; }
+  const Eigen::Isometry3d& sensor_from_object() const { return sensor_from_object_; }
+
+  /// @param u,v  in the image
+  const Sight& at(int u, int v) const {
+    return sights_[static_cast<std::size_t>(v) * static_cast<std::size_t>(lens_.width) +
+                   static_cast<std::size_t>(u)];
+  }
+
+  /// Bounds to what a rectangle of pixels says.
+  struct Range {
+    float least = 0;  // of `free_z`: 0 if there is nothing known of some, or they are no pixels
+    float greatest = 0;
+    float nearest_surface = 0;  // z of the pixels with a weight; more than the farthest: none
+    float farthest_surface = 0;
+  };
+  Range range(int u0, int v0, int u1, int v1) const;
+
+ private:
+  void build_pyramid();
+
+  struct Level {
+    int width = 0;
+    int height = 0;
+    std::vector<Range> ranges = {};
+  };
+
+  Intrinsics lens_;
+  Eigen::Isometry3d sensor_from_object_;
+  std::vector<Sight> sights_ = {};
+  std::vector<Level> pyramid_ = {};  // level i has texels of 4 << i pixels
+};
+
+}  // namespace octurn

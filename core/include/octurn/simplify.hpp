@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "octurn/isosurface.hpp"
+#include "octurn/marching_cubes.hpp"
+
+namespace octurn {
+
+/// Makes a mesh of fewer triangles while it streams by from below, in bounded memory.
+///
+/// Edges are collapsed where the surface stays within an error of the planes that it came from
+/// (Garland and Heckbert 1997), the cheapest first, if the mesh stays manifold (the link condition,
+/// Dey et al. 1999) and no triangle turns over. That is done in a window that moves up: what lies
+/// well below its upper end is handed on, the rest waits for what comes.
+class Simplifier {
+ public:
+  /// @param max_error  millimetres, above 0
+  /// @param margin     millimetres below the upper end of a window that wait for the next
+  Simplifier(double max_error, double margin, FacetSink sink);
+
+  void add(const MeshPiece& piece);
+
+  /// Hands on the rest.
+  void finish();
+
+ private:
+  using Point = std::array<double, 3>;
+
+  /// The sum of squared distances to planes, weighted by area, as a symmetric matrix.
+  struct Quadric {
+    std::array<double, 10> terms = {};
+    double area = 0;
+  };
+
+  struct Vertex {
+    std::array<float, 3> position = {};
+    bool seen = false;
+    bool fixed = false;  // the surface around it is not all here
+    Quadric quadric = {};
+  };
+
+  struct Collapse {
+    double cost = 0;
+    std::uint32_t kept = 0;
+    std::uint32_t gone = 0;
+    std::array<float, 3> position = {};
+  };
+
+  void add_quadrics(std::size_t first_triangle);
+  void simplify();
+  void index_corners();
+  void list_collapses(double limit);
+  Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
+  bool may_collapse(const Collapse& collapse);
+  bool turns_over(const Collapse& collapse, std::uint32_t around, std::uint32_t other) const;
+  void apply(const Collapse& collapse);
+  void drop_collapsed();
+  void hand_on(float end);
+
+  std::span<const std::uint32_t> triangles_of(std::uint32_t vertex) const {
+    return {&corners_[first_corner_[vertex]], first_corner_[vertex + 1] - first_corner_[vertex]};
+  }
+
+  double max_error_;
+  double margin_;
+  FacetSink sink_;
+  std::vector<Vertex> vertices_ = {};
+  std::vector<MeshTriangle> triangles_ = {};
+  std::size_t fresh_ = 0;                  // triangles since the last pass
+  std::uint32_t first_name_ = 0;           // of the vertices of the last two pieces
+  std::vector<std::uint32_t> names_ = {};  // where those are in the window
+  std::uint32_t last_piece_ = 0;           // name of its first vertex
+  std::vector<std::uint32_t> first_corner_ = {};
+  std::vector<std::uint32_t> corners_ = {};  // triangles at each vertex
+  std::vector<Collapse> collapses_ = {};
+  std::vector<char> touched_ = {};  // vertices, in this pass
+  std::vector<Facet> facets_ = {};
+};
+
+}  // namespace octurn

@@ -1,0 +1,331 @@
+#include "octurn/filled_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octurn {
+namespace {
+
+// What a sample needs to count as seen: of one good reading a tenth, and no less than the snapshots
+// that saw through.
+constexpr float least_weight = 0.1F;
+
+// The distance of free space where the unknown is filled in. Less would leave more of what no
+// snapshot saw to the model.
+constexpr float free_distance = 0.8F * DistanceField::ticks;
+
+constexpr int sweeps = 10;  // of the harmonic fill: there and back, after a first guess
+
+}  // namespace
+
+FilledField::FilledField(const DistanceField& field, int foot) : field_(field), foot_(foot) {
+  find_box();
+  classify();
+  spread(grid_);
+  relax();
+}
+
+void FilledField::find_box() {
+  const Cell& size = field_.size();
+  Cell first = size;
+  Cell last{-1, -1, -1};
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        if (field_.find({x, y, z}) != nullptr) {
+          first = {std::min(first.x, x), std::min(first.y, y), std::min(first.z, z)};
+          last = {std::max(last.x, x), std::max(last.y, y), std::max(last.z, z)};
+        }
+      }
+    }
+  }
+  if (last.x < 0) {
+    return;
+  }
+  // One brick around what was seen; the first layer of bricks is below the platform.
+  first = {first.x - 1, first.y - 1, 1};
+  last = {last.x + 1, last.y + 1, std::min(last.z + 1, size.z - 1)};
+  const auto leaf = [](int brick, int low) { return (brick + low) * Brick::side; };
+  low_ = {leaf(first.x, field_.low().x), leaf(first.y, field_.low().y),
+          leaf(first.z, field_.low().z)};
+  end_ = {leaf(last.x + 1, field_.low().x), leaf(last.y + 1, field_.low().y),
+          leaf(last.z + 1, field_.low().z)};
+  const int a_brick = field_.cells_a_brick();
+  low_cell_ = {first.x * a_brick, first.y * a_brick, first.z * a_brick};
+  grid_.size = {(last.x + 1 - first.x) * a_brick, (last.y + 1 - first.y) * a_brick,
+                (last.z + 1 - first.z) * a_brick};
+}
+
+bool FilledField::seen(const FieldBrick& brick, std::size_t sample, int free) const {
+  const float w = static_cast<float>(brick.weight[sample]) / DistanceField::weight_ticks;
+  return w >= least_weight && w >= static_cast<float>(free);
+}
+
+void FilledField::classify() {
+  const auto count = grid_.index(0, 0, grid_.size.z);
+  grid_.values.resize(count);
+  grid_.known.resize(count);
+  std::size_t index = 0;
+  for (int z = 0; z < grid_.size.z; ++z) {
+    for (int y = 0; y < grid_.size.y; ++y) {
+      for (int x = 0; x < grid_.size.x; ++x, ++index) {
+        classify({low_cell_.x + x, low_cell_.y + y, low_cell_.z + z}, index);
+      }
+    }
+  }
+}
+
+void FilledField::classify(const Cell& cell, std::size_t index) {
+  const int a_brick = field_.cells_a_brick();
+  const int leaves = field_.cell_leaves();
+  const Cell position{cell.x / a_brick, cell.y / a_brick, cell.z / a_brick};
+  const int free = field_.free_cell(cell);
+  const Cell& size = field_.size();
+  if (position.x == 0 || position.y == 0 || position.x == size.x - 1 || position.y == size.y - 1 ||
+      position.z == size.z - 1) {
+    grid_.values[index] = free_distance;
+    grid_.known[index] = 1;
+    return;
+  }
+  int seen_count = 0;
+  int free_count = 0;
+  float sum = 0;
+  if (const FieldBrick* brick = field_.find(position)) {
+    for (int z = 0; z < leaves; ++z) {
+      for (int y = 0; y < leaves; ++y) {
+        for (int x = 0; x < leaves; ++x) {
+          const int bz = cell.z % a_brick * leaves + z;
+          if ((position.z + field_.low().z) * Brick::side + bz < foot_) {
+            continue;
+          }
+          const auto sample = static_cast<std::size_t>(
+              cell.x % a_brick * leaves + x + (cell.y % a_brick * leaves + y) * Brick::side +
+              bz * Brick::side * Brick::side);
+          const int through = free + brick->free[sample];
+          if (seen(*brick, sample, through)) {
+            ++seen_count;
+            sum += std::min(static_cast<float>(brick->distance[sample]), free_distance);
+          } else if (through > 0) {
+            ++free_count;
+            sum += free_distance;
+          }
+        }
+      }
+    }
+  } else if (free > 0) {
+    grid_.values[index] = free_distance;
+    grid_.known[index] = 1;
+    return;
+  }
+  const int known = seen_count + free_count;
+  if (known * 4 >= leaves * leaves * leaves) {
+    grid_.values[index] = sum / static_cast<float>(known);
+    grid_.known[index] = 1;
+  }
+}
+
+/// Gives the unknown a first guess: the mean of what is known in ever larger cubes.
+void FilledField::spread(Grid& fine) {
+  if (fine.values.size() < 2 || std::ranges::all_of(fine.known, [](char k) { return k != 0; })) {
+    return;
+  }
+  Grid coarse{.size = {(fine.size.x + 1) / 2, (fine.size.y + 1) / 2, (fine.size.z + 1) / 2},
+              .values = {},
+              .known = {}};
+  const auto count = coarse.index(0, 0, coarse.size.z);
+  coarse.values.resize(count);
+  coarse.known.resize(count);
+  std::vector<int> counts(count);
+  const auto for_each = [&](auto visit) {
+    std::size_t index = 0;
+    for (int z = 0; z < fine.size.z; ++z) {
+      for (int y = 0; y < fine.size.y; ++y) {
+        for (int x = 0; x < fine.size.x; ++x, ++index) {
+          visit(index, coarse.index(x / 2, y / 2, z / 2));
+        }
+      }
+    }
+  };
+  for_each([&](std::size_t from, std::size_t to) {
+    if (fine.known[from] != 0) {
+      coarse.values[to] += fine.values[from];
+      ++counts[to];
+    }
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    if (counts[i] > 0) {
+      coarse.values[i] /= static_cast<float>(counts[i]);
+      coarse.known[i] = 1;
+    }
+  }
+  spread(coarse);
+  for_each([&](std::size_t to, std::size_t from) {
+    if (fine.known[to] == 0) {
+      fine.values[to] = coarse.values[from];
+    }
+  });
+}
+
+/// Gauss-Seidel sweeps of Laplace's equation, there and back.
+void FilledField::relax() {
+  const Cell& size = grid_.size;
+  std::vector<float>& values = grid_.values;
+  const auto relax_at = [&](int x, int y, int z) {
+    const std::size_t i = grid_.index(x, y, z);
+    if (grid_.known[i] != 0) {
+      return;
+    }
+    // At the box's sides the value beyond is that within.
+    const float sum = values[x > 0 ? i - 1 : i] + values[x + 1 < size.x ? i + 1 : i] +
+                      values[y > 0 ? grid_.index(x, y - 1, z) : i] +
+                      values[y + 1 < size.y ? grid_.index(x, y + 1, z) : i] +
+                      values[z > 0 ? grid_.index(x, y, z - 1) : i] +
+                      values[z + 1 < size.z ? grid_.index(x, y, z + 1) : i];
+    values[i] = sum / 6;
+  };
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+          relax_at(x, y, z);
+        }
+      }
+    }
+    for (int z = size.z - 1; z >= 0; --z) {
+      for (int y = size.y - 1; y >= 0; --y) {
+        for (int x = size.x - 1; x >= 0; --x) {
+          relax_at(x, y, z);
+        }
+      }
+    }
+  }
+}
+
+float FilledField::interpolated(const Cell& leaf) const {
+  const auto leaves = static_cast<float>(field_.cell_leaves());
+  const auto split = [&](int at, int count, int& first, float& part) {
+    const float cells = (static_cast<float>(at) + 0.5F) / leaves - 0.5F;
+    const float whole = std::clamp(std::floor(cells), 0.0F, static_cast<float>(count - 2));
+    first = static_cast<int>(whole);
+    part = std::clamp(cells - whole, 0.0F, 1.0F);
+  };
+  int x = 0;
+  int y = 0;
+  int z = 0;
+  float px = 0;
+  float py = 0;
+  float pz = 0;
+  split(leaf.x - low_.x, grid_.size.x, x, px);
+  split(leaf.y - low_.y, grid_.size.y, y, py);
+  split(leaf.z - low_.z, grid_.size.z, z, pz);
+  const auto mix = [](float a, float b, float part) { return a + (b - a) * part; };
+  const auto row = [&](int dy, int dz) {
+    const float* pair = &grid_.values[grid_.index(x, y + dy, z + dz)];
+    return mix(pair[0], pair[1], px);
+  };
+  return mix(mix(row(0, 0), row(1, 0), py), mix(row(0, 1), row(1, 1), py), pz);
+}
+
+FilledField::Value FilledField::at(const Cell& leaf) const {
+  const Cell above{leaf.x, leaf.y, std::max(leaf.z, foot_)};
+  const Cell& low = field_.low();
+  const Cell position{(above.x >> 3) - low.x, (above.y >> 3) - low.y, (above.z >> 3) - low.z};
+  const int a_brick = field_.cells_a_brick();
+  const int leaves = field_.cell_leaves();
+  const Cell cell{above.x / leaves - low.x * a_brick, above.y / leaves - low.y * a_brick,
+                  above.z / leaves - low.z * a_brick};
+  Value value;
+  bool known = false;
+  const int free = field_.free_cell(cell);
+  if (const FieldBrick* brick = field_.find(position)) {
+    const auto sample =
+        static_cast<std::size_t>((above.x & 7) | (above.y & 7) << 3 | (above.z & 7) << 6);
+    const int through = free + brick->free[sample];
+    if (seen(*brick, sample, through)) {
+      value = {static_cast<float>(brick->distance[sample]), true};
+      known = true;
+    } else if (through > 0) {
+      value.distance = DistanceField::ticks;
+      known = true;
+    }
+  } else if (free > 0) {
+    value.distance = DistanceField::ticks;
+    known = true;
+  }
+  if (!known) {
+    value.distance = interpolated(above);
+  }
+  // The model is what lies above the platform.
+  const auto below = static_cast<float>(-(leaf.z + 0.5) * field_.leaf_side() / field_.truncation() *
+                                        DistanceField::ticks);
+  if (below > value.distance) {
+    value = {below, false};
+  }
+  return value;
+}
+
+/// The side of the surface that a brick, counted from the box's lowest corner, lies on, as far as
+/// its cells and those around it tell.
+FilledField::Side FilledField::side_of(const Cell& brick) const {
+  const int a_brick = field_.cells_a_brick();
+  const Cell first{brick.x * a_brick, brick.y * a_brick, brick.z * a_brick};
+  const Cell in_field{low_cell_.x / a_brick + brick.x, low_cell_.y / a_brick + brick.y,
+                      low_cell_.z / a_brick + brick.z};
+  if (field_.find(in_field) != nullptr || brick.z == 0) {
+    return Side::both;
+  }
+  bool any_inside = false;
+  bool any_outside = false;
+  const auto around = [&](int at, int size) {
+    return std::pair(std::max(at - 1, 0), std::min(at + a_brick, size - 1));
+  };
+  const auto [x0, x1] = around(first.x, grid_.size.x);
+  const auto [y0, y1] = around(first.y, grid_.size.y);
+  const auto [z0, z1] = around(first.z, grid_.size.z);
+  for (int z = z0; z <= z1; ++z) {
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        (grid_.values[grid_.index(x, y, z)] < 0 ? any_inside : any_outside) = true;
+      }
+    }
+  }
+  if (any_inside && any_outside) {
+    return Side::both;
+  }
+  // A cell that was seen through is outside, whatever is around it.
+  return any_outside ? Side::outside : Side::inside;
+}
+
+LeafSet FilledField::inside() const {
+  LeafSet set(low_, end_);
+  const Cell& size = set.size();
+  std::vector<Side> sides_;
+  for (int z = 0; z < size.z / 8; ++z)
+    for (int y = 0; y < size.y / 8; ++y)
+      for (int x = 0; x < size.x / 8; ++x) sides_.push_back(side_of({x, y, z}));
+  for (int z = 0; z + 1 < size.z; ++z) {
+    for (int y = 1; y + 1 < size.y; ++y) {
+      const auto row = set.row(y, z);
+      for (int brick = 0; brick * Brick::side < size.x; ++brick) {
+        const Side side =
+            sides_[static_cast<std::size_t>(brick) +
+                   static_cast<std::size_t>(size.x / 8) *
+                       (static_cast<std::size_t>(y / 8) +
+                        static_cast<std::size_t>(z / 8) * static_cast<std::size_t>(size.y / 8))];
+        std::uint64_t bits = side == Side::inside ? 0xff : 0;
+        if (side == Side::both) {
+          for (int x = 0; x < Brick::side; ++x) {
+            const Cell leaf{low_.x + brick * Brick::side + x, low_.y + y, low_.z + z};
+            bits |= (at(leaf).distance < 0 ? std::uint64_t{1} : 0) << x;
+          }
+        }
+        row[static_cast<std::size_t>(brick) / 8] |= bits << (brick % 8 * Brick::side);
+      }
+      row.front() &= ~std::uint64_t{1};
+      row[static_cast<std::size_t>(size.x - 1) / 64] &= ~(std::uint64_t{1} << (size.x - 1) % 64);
+    }
+  }
+  return set;
+}
+
+}  // namespace octurn

@@ -1,0 +1,287 @@
+#include "octurn/fuse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace octurn {
+namespace {
+
+class Fusion {
+ public:
+  Fusion(DistanceField& field, const Sighting& sighting)
+      : field_(field),
+        sighting_(sighting),
+        leaf_(static_cast<float>(field.leaf_side())),
+        truncation_(static_cast<float>(field.truncation())),
+        fx_(static_cast<float>(sighting.lens().fx)),
+        fy_(static_cast<float>(sighting.lens().fy)),
+        cx_(static_cast<float>(sighting.lens().cx)),
+        cy_(static_cast<float>(sighting.lens().cy)) {
+    const Eigen::Matrix3f rotation = sighting.sensor_from_object().linear().cast<float>();
+    const Eigen::Vector3d origin(
+        field.centre(field.low().x * Brick::side, 0) - field.leaf_side() / 2,
+        field.centre(field.low().y * Brick::side, 1) - field.leaf_side() / 2,
+        field.centre(field.low().z * Brick::side, 2) - field.leaf_side() / 2);
+    const Eigen::Vector3f start = (sighting.sensor_from_object() * origin).cast<float>();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      origin_[i] = start[axis];
+      reach_[i] = 0;
+      for (std::size_t j = 0; j < 3; ++j) {
+        step_[j][i] = rotation(axis, static_cast<Eigen::Index>(j)) * leaf_;
+        reach_[i] += std::abs(step_[j][i]) / 2;
+      }
+    }
+  }
+
+  void run() {
+    const Cell& size = field_.size();
+    for (int z = 0; z < size.z; z += largest_node) {
+      for (int y = 0; y < size.y; y += largest_node) {
+        for (int x = 0; x < size.x; x += largest_node) {
+          descend({x, y, z}, largest_node);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr int largest_node = 8;  // bricks
+
+  using Point = std::array<float, 3>;
+  enum class Verdict { nothing, free, mixed, surface };  // mixed: free in part, no surface near
+
+  /// In the sensor's frame, from leaves counted from the field's lowest corner.
+  Point point(float x, float y, float z) const {
+    Point p{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i] = origin_[i] + x * step_[0][i] + y * step_[1][i] + z * step_[2][i];
+    }
+    return p;
+  }
+
+  /// What the snapshot says of a cube of leaves, as far as its bounds tell.
+  Verdict look(const Cell& low, int leaves) const {
+    const float half = 0.5F * static_cast<float>(leaves);
+    const Point middle = point(static_cast<float>(low.x) + half, static_cast<float>(low.y) + half,
+                               static_cast<float>(low.z) + half);
+    const auto side = static_cast<float>(leaves);
+    const float near = middle[2] - reach_[2] * side;
+    const float far = middle[2] + reach_[2] * side;
+    if (far <= nearest_z) {
+      return Verdict::nothing;
+    }
+    if (near <= nearest_z) {
+      return Verdict::surface;
+    }
+    const auto low_pixel = [&](std::size_t axis, float focal, float centre) {
+      const float edge = middle[axis] - reach_[axis] * side;
+      return pixel(edge / (edge < 0 ? near : far) * focal + centre);
+    };
+    const auto high_pixel = [&](std::size_t axis, float focal, float centre) {
+      const float edge = middle[axis] + reach_[axis] * side;
+      return pixel(edge / (edge < 0 ? far : near) * focal + centre);
+    };
+    const int u0 = low_pixel(0, fx_, cx_);
+    const int u1 = high_pixel(0, fx_, cx_);
+    const int v0 = low_pixel(1, fy_, cy_);
+    const int v1 = high_pixel(1, fy_, cy_);
+    if (u1 < 0 || v1 < 0 || u0 >= sighting_.lens().width || v0 >= sighting_.lens().height) {
+      return Verdict::nothing;
+    }
+    const Sighting::Range range = sighting_.range(u0, v0, u1, v1);
+    if (near > range.greatest + deepest_behind * truncation_) {
+      return Verdict::nothing;
+    }
+    if (far < range.least - free_margin * truncation_) {
+      return Verdict::free;
+    }
+    const bool near_surface = near <= range.farthest_surface + deepest_behind * truncation_ &&
+                              far >= range.nearest_surface - deepest_behind * truncation_;
+    return near_surface ? Verdict::surface : Verdict::mixed;
+  }
+
+  /// The nearest pixel, -1 or less if it is before the first; huge numbers are cut.
+  static int pixel(float at) {
+    return static_cast<int>(std::floor(std::clamp(at, -10000.0F, 20000.0F) + 0.5F));
+  }
+
+  void descend(const Cell& brick, int bricks) {
+    const Cell& size = field_.size();
+    if (brick.x >= size.x || brick.y >= size.y || brick.z >= size.z) {
+      return;
+    }
+    switch (look({brick.x * Brick::side, brick.y * Brick::side, brick.z * Brick::side},
+                 bricks * Brick::side)) {
+      case Verdict::nothing:
+        return;
+      case Verdict::free:
+        count_free(brick, bricks);
+        return;
+      case Verdict::mixed:
+      case Verdict::surface:
+        break;
+    }
+    if (bricks == 1) {
+      enter(brick);
+      return;
+    }
+    const int half = bricks / 2;
+    for (int child = 0; child < 8; ++child) {
+      descend({brick.x + (child & 1) * half, brick.y + (child >> 1 & 1) * half,
+               brick.z + (child >> 2) * half},
+              half);
+    }
+  }
+
+  void count_free(const Cell& brick, int bricks) {
+    const int a_brick = field_.cells_a_brick();
+    const Cell& size = field_.size();
+    const int end_x = std::min(brick.x + bricks, size.x) * a_brick;
+    const int end_y = std::min(brick.y + bricks, size.y) * a_brick;
+    const int end_z = std::min(brick.z + bricks, size.z) * a_brick;
+    for (int z = brick.z * a_brick; z < end_z; ++z) {
+      for (int y = brick.y * a_brick; y < end_y; ++y) {
+        for (int x = brick.x * a_brick; x < end_x; ++x) {
+          count(field_.free_cell({x, y, z}));
+        }
+      }
+    }
+  }
+
+  static void count(std::uint8_t& counter) {
+    counter = static_cast<std::uint8_t>(counter + (counter < 255 ? 1 : 0));
+  }
+
+  bool is_border(const Cell& brick) const {
+    const Cell& size = field_.size();
+    return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == size.x - 1 ||
+           brick.y == size.y - 1 || brick.z == size.z - 1;
+  }
+
+  void enter(const Cell& brick) {
+    if (is_border(brick)) {
+      return;
+    }
+    const int a_brick = field_.cells_a_brick();
+    const int leaves = field_.cell_leaves();
+    FieldBrick* samples = const_cast<FieldBrick*>(field_.find(brick));
+    for (int z = 0; z < a_brick; ++z) {
+      for (int y = 0; y < a_brick; ++y) {
+        for (int x = 0; x < a_brick; ++x) {
+          const Cell cell{brick.x * a_brick + x, brick.y * a_brick + y, brick.z * a_brick + z};
+          const Verdict verdict = look({cell.x * leaves, cell.y * leaves, cell.z * leaves}, leaves);
+          if (verdict == Verdict::free) {
+            count(field_.free_cell(cell));
+          } else if (verdict == Verdict::surface) {
+            enter_cell(brick, cell, samples);
+          }
+        }
+      }
+    }
+  }
+
+  /// Looks at each sample of a cell.
+  void enter_cell(const Cell& brick, const Cell& cell, FieldBrick*& samples) {
+    const int leaves = field_.cell_leaves();
+    std::array<std::uint16_t, FieldBrick::samples> through;
+    std::size_t seen_through = 0;
+    for (int z = 0; z < leaves; ++z) {
+      for (int y = 0; y < leaves; ++y) {
+        const Cell leaf{cell.x * leaves, cell.y * leaves + y, cell.z * leaves + z};
+        Point p = point(static_cast<float>(leaf.x) + 0.5F, static_cast<float>(leaf.y) + 0.5F,
+                        static_cast<float>(leaf.z) + 0.5F);
+        int index = leaf.x % Brick::side + leaf.y % Brick::side * Brick::side +
+                    leaf.z % Brick::side * Brick::side * Brick::side;
+        for (int x = 0; x < leaves; ++x, ++index) {
+          if (look_at(p, brick, static_cast<std::size_t>(index), samples)) {
+            through[seen_through++] = static_cast<std::uint16_t>(index);
+          }
+          for (std::size_t i = 0; i < 3; ++i) {
+            p[i] += step_[0][i];
+          }
+        }
+      }
+    }
+    if (seen_through == static_cast<std::size_t>(leaves * leaves * leaves)) {
+      count(field_.free_cell(cell));
+    } else if (samples != nullptr) {
+      for (std::size_t i = 0; i < seen_through; ++i) {
+        count(samples->free[through[i]]);
+      }
+    }
+  }
+
+  /// @return whether the sample at `p` was seen through
+  bool look_at(const Point& p, const Cell& brick, std::size_t index, FieldBrick*& samples) {
+    if (p[2] <= nearest_z) {
+      return false;
+    }
+    const float nearness = 1.0F / p[2];
+    const int u = pixel(p[0] * nearness * fx_ + cx_);
+    const int v = pixel(p[1] * nearness * fy_ + cy_);
+    if (u < 0 || v < 0 || u >= sighting_.lens().width || v >= sighting_.lens().height) {
+      return false;
+    }
+    const Sight& sight = sighting_.at(u, v);
+    if (sight.weight == 0) {
+      return p[2] < sight.free_z - free_margin * truncation_;
+    }
+    const float distance =
+        sight.normal[0] * p[0] + sight.normal[1] * p[1] + sight.normal[2] * p[2] + sight.offset;
+    if (distance >= truncation_) {
+      return p[2] < sight.free_z - truncation_;
+    }
+    if (distance > -truncation_ && p[2] < sight.free_z + deepest_behind * truncation_) {
+      if (samples == nullptr) {
+        samples = &field_.make(brick);
+      }
+      average(*samples, index, distance, sight.weight);
+    }
+    return false;
+  }
+
+  /// Behind a surface its distance counts less and less, so that it does not speak for the other
+  /// side of a thin part: in full up to one leaf, then falling to nothing at the truncation. (A
+  /// plate of 3 mm came out 15 % too thick by a linear fall, 1.5 % by a cubic one.)
+  void average(FieldBrick& samples, std::size_t index, float distance, float weight) const {
+    constexpr float most = std::numeric_limits<std::uint16_t>::max();
+    const float behind = std::max(0.0F, -distance - leaf_);
+    const float near = std::max(0.0F, 1 - behind / (truncation_ - leaf_));
+    const float trust = near * near * near;
+    const float added =
+        std::floor(weight * trust * static_cast<float>(DistanceField::weight_ticks) + 0.5F);
+    if (added <= 0) {
+      return;
+    }
+    const float had = samples.weight[index];
+    const float ticks = distance / truncation_ * static_cast<float>(DistanceField::ticks);
+    const float mean =
+        (static_cast<float>(samples.distance[index]) * had + ticks * added) / (had + added);
+    samples.distance[index] = static_cast<std::int16_t>(std::floor(mean + 0.5F));
+    samples.weight[index] = static_cast<std::uint16_t>(std::min(had + added, most));
+  }
+
+  static constexpr float nearest_z = 0.05F;      // metres: nearer than any depth sensor sees
+  static constexpr float deepest_behind = 2.5F;  // truncations along the ray, at grazing angles
+  static constexpr float free_margin = 1.5F;     // truncations along the ray
+
+  DistanceField& field_;
+  const Sighting& sighting_;
+  float leaf_;
+  float truncation_;
+  float fx_;
+  float fy_;
+  float cx_;
+  float cy_;
+  Point origin_ = {};               // the field's lowest corner, sensor's frame
+  std::array<Point, 3> step_ = {};  // over one leaf along each axis
+  Point reach_ = {};                // of a leaf from its centre, along the sensor's axes
+};
+
+}  // namespace
+
+void fuse(DistanceField& field, const Sighting& sighting) { Fusion(field, sighting).run(); }
+
+}  // namespace octurn

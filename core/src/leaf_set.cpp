@@ -1,0 +1,204 @@
+#include "octurn/leaf_set.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace octurn {
+namespace {
+
+/// Leaves of one row that follow each other: from `first` up to but without `end`.
+struct Run {
+  int first = 0;
+  int end = 0;
+  std::uint32_t parent = 0;
+};
+
+/// The connected components of a set or of its complement, as runs joined by union and find.
+class Components {
+ public:
+  enum class Of { leaves, gaps };
+
+  Components(const LeafSet& set, Of of) : set_(set), of_(of) {
+    const Cell& size = set.size();
+    first_.reserve(static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) + 1);
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) {
+        first_.push_back(static_cast<std::uint32_t>(runs_.size()));
+        add_row(y, z);
+        join_row(y, z);
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(runs_.size()));
+  }
+
+  std::uint32_t root(std::uint32_t run) {
+    while (runs_[run].parent != run) {
+      runs_[run].parent = runs_[runs_[run].parent].parent;
+      run = runs_[run].parent;
+    }
+    return run;
+  }
+
+  std::size_t count() const { return runs_.size(); }
+
+  /// Calls `visit(y, z, index, run)` for all of them.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    const Cell& size = set_.size();
+    std::size_t row = 0;
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y, ++row) {
+        for (std::uint32_t i = first_[row]; i < first_[row + 1]; ++i) {
+          visit(y, z, i, runs_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  void add_row(int y, int z) {
+    const auto row = set_.row(y, z);
+    const std::uint64_t flip = of_ == Of::gaps ? ~std::uint64_t{0} : 0;
+    const auto next = [&](int from, std::uint64_t invert) {
+      std::size_t word = static_cast<std::size_t>(from) / 64;
+      if (from >= set_.size().x) {
+        return set_.size().x;
+      }
+      std::uint64_t bits = (row[word] ^ flip ^ invert) >> (from % 64) << (from % 64);
+      while (bits == 0) {
+        if (++word == row.size()) {
+          return set_.size().x;
+        }
+        bits = row[word] ^ flip ^ invert;
+      }
+      return std::min(static_cast<int>(word) * 64 + std::countr_zero(bits), set_.size().x);
+    };
+    for (int x = next(0, 0); x < set_.size().x;) {
+      const int end = next(x, ~std::uint64_t{0});
+      runs_.push_back({x, end, static_cast<std::uint32_t>(runs_.size())});
+      x = next(end, 0);
+    }
+  }
+
+  void join_row(int y, int z) {
+    // Gaps also meet across edges: those of one plane a leaf apart, those of two planes above
+    // another.
+    const int reach = of_ == Of::gaps ? 1 : 0;
+    if (y > 0) {
+      join(y - 1, z, reach);
+    }
+    if (z > 0) {
+      join(y, z - 1, reach);
+      if (of_ == Of::gaps && y > 0) {
+        join(y - 1, z - 1, 0);
+      }
+      if (of_ == Of::gaps && y + 1 < set_.size().y) {
+        join(y + 1, z - 1, 0);
+      }
+    }
+  }
+
+  /// Joins the runs of the last row with those of an earlier one that come within `reach`.
+  void join(int y, int z, int reach) {
+    const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(set_.size().y) +
+                     static_cast<std::size_t>(y);
+    std::uint32_t other = first_[row];
+    const std::uint32_t others = first_[row + 1];
+    for (std::uint32_t i = first_.back(); i < runs_.size(); ++i) {
+      while (other < others && runs_[other].end + reach <= runs_[i].first) {
+        ++other;
+      }
+      for (std::uint32_t j = other; j < others && runs_[j].first < runs_[i].end + reach; ++j) {
+        const std::uint32_t a = root(i);
+        const std::uint32_t b = root(j);
+        runs_[std::max(a, b)].parent = std::min(a, b);
+      }
+    }
+  }
+
+  const LeafSet& set_;
+  Of of_;
+  std::vector<Run> runs_ = {};
+  std::vector<std::uint32_t> first_ = {};  // run of each row
+};
+
+/// Sets or clears the bits of a run.
+void assign(std::span<std::uint64_t> row, const Run& run, bool value) {
+  for (int x = run.first; x < run.end;) {
+    const int next = std::min((x / 64 + 1) * 64, run.end);
+    const std::uint64_t ones =
+        next - x == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (next - x)) - 1;
+    std::uint64_t& word = row[static_cast<std::size_t>(x) / 64];
+    word = value ? word | ones << (x % 64) : word & ~(ones << (x % 64));
+    x = next;
+  }
+}
+
+}  // namespace
+
+LeafSet::LeafSet(const Cell& low, const Cell& end)
+    : low_(low),
+      size_{end.x - low.x, end.y - low.y, end.z - low.z},
+      words_((static_cast<std::size_t>(size_.x) + 63) / 64),
+      bits_(words_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z)) {}
+
+std::uint64_t LeafSet::count() const {
+  std::uint64_t count = 0;
+  for (const std::uint64_t word : bits_) {
+    count += static_cast<std::uint64_t>(std::popcount(word));
+  }
+  return count;
+}
+
+void LeafSet::keep_part() {
+  Components parts(*this, Components::Of::leaves);
+  if (parts.count() == 0) {
+    return;
+  }
+  std::vector<std::uint64_t> volumes(parts.count());
+  std::vector<char> stands(parts.count());
+  parts.for_each([&](int, int z, std::uint32_t i, const Run& run) {
+    const std::uint32_t part = parts.root(i);
+    volumes[part] += static_cast<std::uint64_t>(run.end - run.first);
+    stands[part] = static_cast<char>(stands[part] | (z == 0 ? 1 : 0));
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < volumes.size(); ++i) {
+    if (std::pair(stands[i], volumes[i]) > std::pair(stands[kept], volumes[kept])) {
+      kept = i;
+    }
+  }
+  parts.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    if (parts.root(i) != kept) {
+      assign(row(y, z), run, false);
+    }
+  });
+}
+
+std::uint64_t LeafSet::count_parts() const {
+  Components parts(*this, Components::Of::leaves);
+  std::uint64_t count = 0;
+  parts.for_each(
+      [&](int, int, std::uint32_t i, const Run&) { count += parts.root(i) == i ? 1 : 0; });
+  return count;
+}
+
+void LeafSet::fill_cavities() {
+  Components gaps(*this, Components::Of::gaps);
+  std::vector<char> outside(gaps.count());
+  const auto at_border = [&](int y, int z, const Run& run) {
+    return run.first == 0 || run.end == size_.x || y == 0 || y == size_.y - 1 || z == 0 ||
+           z == size_.z - 1;
+  };
+  gaps.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    char& mark = outside[gaps.root(i)];
+    mark = static_cast<char>(mark | (at_border(y, z, run) ? 1 : 0));
+  });
+  gaps.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    if (outside[gaps.root(i)] == 0) {
+      assign(row(y, z), run, true);
+    }
+  });
+}
+
+}  // namespace octurn

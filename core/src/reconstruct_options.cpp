@@ -1,0 +1,60 @@
+#include "octurn/reconstruct_options.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "octurn/error.hpp"
+#include "octurn/octree.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error("bad-settings", what); }
+
+std::string mm_text(double metres) {
+  std::string text = std::to_string(mm_from_metres(metres));
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') {
+    text.pop_back();
+  }
+  return text + " mm";
+}
+
+}  // namespace
+
+std::string_view name_of(Method method) {
+  return method == Method::solid ? "solid" : "intersection";
+}
+
+std::optional<Method> method_named(std::string_view name) {
+  for (const Method method : {Method::intersection, Method::solid}) {
+    if (name_of(method) == name) {
+      return method;
+    }
+  }
+  return std::nullopt;
+}
+
+int checked_levels(const ReconstructOptions& options) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  const double finest = options.root_size / (1 << Octree::max_levels);
+  if (!positive(options.root_size)) {
+    refuse("root size: must be above 0");
+  }
+  if (!positive(options.leaf_size) || options.leaf_size > options.root_size ||
+      options.leaf_size < finest) {
+    refuse("leaf size: must be from " + mm_text(finest) + " to the root's " +
+           mm_text(options.root_size));
+  }
+  if (!options.clip.min.allFinite() || !options.clip.max.allFinite() ||
+      (options.clip.min.array() >= options.clip.max.array()).any()) {
+    refuse("clip box: its minimum must be below its maximum on each axis");
+  }
+  if (options.threads < 1) {
+    refuse("threads: must be at least 1");
+  }
+  return Octree::level_of(options.root_size, options.leaf_size);
+}
+
+}  // namespace octurn

@@ -1,0 +1,364 @@
+#include "octurn/simplify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace octurn {
+namespace {
+
+constexpr int passes = 12;
+constexpr std::size_t window_triangles = 60'000;
+constexpr double least_edge_mm = 0.036;  // slicers meld vertices that are closer
+constexpr double least_turn = 0.5;       // cosine between a triangle's normals before and after
+
+using Vector = std::array<double, 3>;
+
+Vector vector_of(const std::array<float, 3>& position) {
+  return {static_cast<double>(position[0]), static_cast<double>(position[1]),
+          static_cast<double>(position[2])};
+}
+
+Vector operator-(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector normal_of(const Vector& a, const Vector& b, const Vector& c) { return cross(b - a, c - a); }
+
+}  // namespace
+
+Simplifier::Simplifier(double max_error, double margin, FacetSink sink)
+    : max_error_(max_error), margin_(margin), sink_(std::move(sink)) {}
+
+void Simplifier::add(const MeshPiece& piece) {
+  // Only the vertices of the last piece may be met again.
+  names_.erase(names_.begin(), names_.begin() + (last_piece_ - first_name_));
+  first_name_ = last_piece_;
+  for (const std::uint32_t name : names_) {
+    vertices_[name].fixed = false;
+  }
+  last_piece_ = first_name_ + static_cast<std::uint32_t>(names_.size());
+  for (const MeshVertex& vertex : piece.vertices) {
+    names_.push_back(static_cast<std::uint32_t>(vertices_.size()));
+    vertices_.push_back(
+        {.position = vertex.position, .seen = vertex.seen, .fixed = true, .quadric = {}});
+  }
+  const std::size_t first = triangles_.size();
+  for (const MeshTriangle& triangle : piece.triangles) {
+    triangles_.push_back({names_[triangle[0] - first_name_], names_[triangle[1] - first_name_],
+                          names_[triangle[2] - first_name_]});
+  }
+  add_quadrics(first);
+  fresh_ += piece.triangles.size();
+  if (fresh_ >= window_triangles) {
+    simplify();
+    float top = 0;
+    for (const std::uint32_t name : names_) {
+      top = std::max(top, vertices_[name].position[2]);
+    }
+    hand_on(top - static_cast<float>(margin_));
+    fresh_ = 0;
+  }
+}
+
+void Simplifier::finish() {
+  for (const std::uint32_t name : names_) {
+    vertices_[name].fixed = false;
+  }
+  names_.clear();
+  simplify();
+  hand_on(std::numeric_limits<float>::max());
+}
+
+void Simplifier::add_quadrics(std::size_t first_triangle) {
+  for (std::size_t i = first_triangle; i < triangles_.size(); ++i) {
+    const MeshTriangle& triangle = triangles_[i];
+    const Vector a = vector_of(vertices_[triangle[0]].position);
+    const Vector normal = normal_of(a, vector_of(vertices_[triangle[1]].position),
+                                    vector_of(vertices_[triangle[2]].position));
+    const double twice_area = std::sqrt(dot(normal, normal));
+    if (twice_area == 0) {
+      continue;
+    }
+    const Vector n{normal[0] / twice_area, normal[1] / twice_area, normal[2] / twice_area};
+    const double d = -dot(n, a);
+    const double area = twice_area / 2;
+    const std::array terms{n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2],
+                           n[2] * n[2], n[0] * d,    n[1] * d,    n[2] * d,    d * d};
+    for (const std::uint32_t corner : triangle) {
+      Quadric& quadric = vertices_[corner].quadric;
+      for (std::size_t term = 0; term < terms.size(); ++term) {
+        quadric.terms[term] += area * terms[term];
+      }
+      quadric.area += area;
+    }
+  }
+}
+
+void Simplifier::simplify() {
+  // The limit rises, so that what costs little goes first, all over the window.
+  for (int pass = 0; pass < passes; ++pass) {
+    const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
+    const double error = max_error_ * share;
+    index_corners();
+    list_collapses(error * error);
+    touched_.assign(vertices_.size(), 0);
+    std::size_t done = 0;
+    for (const Collapse& collapse : collapses_) {
+      if (touched_[collapse.kept] == 0 && touched_[collapse.gone] == 0 && may_collapse(collapse)) {
+        apply(collapse);
+        ++done;
+      }
+    }
+    drop_collapsed();
+    if (done == 0 && share == 1.0) {
+      break;
+    }
+  }
+}
+
+void Simplifier::index_corners() {
+  first_corner_.assign(vertices_.size() + 1, 0);
+  for (const MeshTriangle& triangle : triangles_) {
+    for (const std::uint32_t corner : triangle) {
+      ++first_corner_[corner + 1];
+    }
+  }
+  for (std::size_t i = 1; i < first_corner_.size(); ++i) {
+    first_corner_[i] += first_corner_[i - 1];
+  }
+  corners_.resize(3 * triangles_.size());
+  std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    for (const std::uint32_t corner : triangles_[i]) {
+      corners_[next[corner]++] = static_cast<std::uint32_t>(i);
+    }
+  }
+}
+
+void Simplifier::list_collapses(double limit) {
+  collapses_.clear();
+  for (const MeshTriangle& triangle : triangles_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = triangle[i];
+      const std::uint32_t b = triangle[(i + 1) % 3];
+      // Each edge is met once in either direction.
+      if (a < b && !vertices_[a].fixed && !vertices_[b].fixed) {
+        const Collapse collapse = collapse_of(a, b);
+        if (collapse.cost <= limit) {
+          collapses_.push_back(collapse);
+        }
+      }
+    }
+  }
+  std::ranges::sort(collapses_, [](const Collapse& a, const Collapse& b) {
+    return std::pair(a.cost, std::pair(a.kept, a.gone)) <
+           std::pair(b.cost, std::pair(b.kept, b.gone));
+  });
+}
+
+/// The collapse of an edge to where the squared distance to its planes is least.
+Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) const {
+  Quadric sum = vertices_[a].quadric;
+  for (std::size_t i = 0; i < sum.terms.size(); ++i) {
+    sum.terms[i] += vertices_[b].quadric.terms[i];
+  }
+  sum.area += vertices_[b].quadric.area;
+  const auto& [xx, xy, xz, yy, yz, zz, xd, yd, zd, dd] = sum.terms;
+  const auto cost_at = [&sum](const Vector& p) {
+    const auto& t = sum.terms;
+    return p[0] * (t[0] * p[0] + 2 * (t[1] * p[1] + t[2] * p[2] + t[6])) +
+           p[1] * (t[3] * p[1] + 2 * (t[4] * p[2] + t[7])) + p[2] * (t[5] * p[2] + 2 * t[8]) + t[9];
+  };
+  const Vector from = vector_of(vertices_[a].position);
+  const Vector to = vector_of(vertices_[b].position);
+  const Vector middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
+  // The foot stays on the platform.
+  const bool stands = from[2] == 0 || to[2] == 0;
+  // Along directions that the planes leave open, the middle of the edge.
+  const double hold = 1e-3 * sum.area;
+  const double axx = xx + hold;
+  const double ayy = yy + hold;
+  const double azz = zz + hold;
+  const double bx = hold * middle[0] - xd;
+  const double by = hold * middle[1] - yd;
+  const double bz = hold * middle[2] - zd;
+  Vector best = middle;
+  if (stands) {
+    const double det = axx * ayy - xy * xy;
+    best = {(bx * ayy - by * xy) / det, (by * axx - bx * xy) / det, 0.0};
+  } else {
+    const double c0 = ayy * azz - yz * yz;
+    const double c1 = xz * yz - xy * azz;
+    const double c2 = xy * yz - xz * ayy;
+    const double det = axx * c0 + xy * c1 + xz * c2;
+    best = {(bx * c0 + by * c1 + bz * c2) / det,
+            (bx * c1 + by * (axx * azz - xz * xz) + bz * (xy * xz - axx * yz)) / det,
+            (bx * c2 + by * (xy * xz - axx * yz) + bz * (axx * ayy - xy * xy)) / det};
+  }
+  Collapse collapse{.cost = 0,
+                    .kept = a,
+                    .gone = b,
+                    .position = {static_cast<float>(best[0]), static_cast<float>(best[1]),
+                                 static_cast<float>(best[2])}};
+  collapse.cost = std::max(0.0, cost_at(vector_of(collapse.position)) / sum.area);
+  return collapse;
+}
+
+bool Simplifier::may_collapse(const Collapse& collapse) {
+  const auto& [cost, a, b, position] = collapse;
+  const auto around_a = triangles_of(a);
+  const auto around_b = triangles_of(b);
+  // The link condition: the ends have just the two neighbours in common that face the edge.
+  int common = 0;
+  for (const std::uint32_t i : around_a) {
+    for (const std::uint32_t corner : triangles_[i]) {
+      if (corner == a || corner == b) {
+        continue;
+      }
+      // Each neighbour of `a` is met in two triangles: counted in the one it follows `a` in.
+      const MeshTriangle& triangle = triangles_[i];
+      const bool follows = (triangle[0] == a && triangle[1] == corner) ||
+                           (triangle[1] == a && triangle[2] == corner) ||
+                           (triangle[2] == a && triangle[0] == corner);
+      if (follows && std::ranges::any_of(around_b, [&](std::uint32_t j) {
+            const MeshTriangle& other = triangles_[j];
+            return other[0] == corner || other[1] == corner || other[2] == corner;
+          })) {
+        ++common;
+      }
+    }
+  }
+  return common == 2 && around_a.size() + around_b.size() > 6 + 2 && !turns_over(collapse, a, b) &&
+         !turns_over(collapse, b, a);
+}
+
+/// Whether a triangle around one end, but not the other, would turn over or shrink to a sliver.
+bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
+                            std::uint32_t other) const {
+  const Vector to = vector_of(collapse.position);
+  for (const std::uint32_t i : triangles_of(around)) {
+    const MeshTriangle& triangle = triangles_[i];
+    if (triangle[0] == other || triangle[1] == other || triangle[2] == other) {
+      continue;
+    }
+    std::array<Vector, 3> before;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      before[corner] = vector_of(vertices_[triangle[corner]].position);
+    }
+    std::array<Vector, 3> after = before;
+    double longest = 0;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      if (triangle[corner] == around) {
+        after[corner] = to;
+      }
+    }
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Vector side = after[(corner + 1) % 3] - after[corner];
+      const double square = dot(side, side);
+      if (square < least_edge_mm * least_edge_mm) {
+        return true;
+      }
+      longest = std::max(longest, square);
+    }
+    const Vector was = normal_of(before[0], before[1], before[2]);
+    const Vector is = normal_of(after[0], after[1], after[2]);
+    const double along = dot(was, is);
+    const double square = dot(is, is);
+    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * square) {
+      return true;
+    }
+    // A height below a slicer's grain, or a twentieth of the longest side.
+    const double height = square / longest;
+    if (height < least_edge_mm * least_edge_mm || height < longest / 400) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Simplifier::apply(const Collapse& collapse) {
+  for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
+    for (const std::uint32_t i : triangles_of(end)) {
+      for (const std::uint32_t corner : triangles_[i]) {
+        touched_[corner] = 1;
+      }
+    }
+  }
+  for (const std::uint32_t i : triangles_of(collapse.gone)) {
+    std::ranges::replace(triangles_[i], collapse.gone, collapse.kept);
+  }
+  Vertex& kept = vertices_[collapse.kept];
+  const Vertex& gone = vertices_[collapse.gone];
+  kept.position = collapse.position;
+  kept.seen = kept.quadric.area >= gone.quadric.area ? kept.seen : gone.seen;
+  for (std::size_t i = 0; i < kept.quadric.terms.size(); ++i) {
+    kept.quadric.terms[i] += gone.quadric.terms[i];
+  }
+  kept.quadric.area += gone.quadric.area;
+}
+
+void Simplifier::drop_collapsed() {
+  std::erase_if(triangles_, [](const MeshTriangle& triangle) {
+    return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+  });
+}
+
+/// Hands on the triangles that lie below `end` as a whole, and forgets the vertices that are no
+/// longer needed.
+void Simplifier::hand_on(float end) {
+  facets_.clear();
+  std::vector<char> handed(vertices_.size());
+  std::size_t left = 0;
+  for (const MeshTriangle& triangle : triangles_) {
+    const bool keep = std::ranges::any_of(
+        triangle, [&](std::uint32_t corner) { return vertices_[corner].position[2] >= end; });
+    if (keep) {
+      triangles_[left++] = triangle;
+      continue;
+    }
+    std::array<MeshVertex, 3> corners{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vertex& vertex = vertices_[triangle[i]];
+      corners[i] = {.position = vertex.position, .seen = vertex.seen};
+      handed[triangle[i]] = 1;
+    }
+    facets_.push_back(facet_of(corners));
+  }
+  triangles_.resize(left);
+  if (!facets_.empty()) {
+    sink_(facets_);
+  }
+  std::vector<std::uint32_t> moved(vertices_.size(), std::numeric_limits<std::uint32_t>::max());
+  std::uint32_t next = 0;
+  const auto keep = [&](std::uint32_t vertex) { moved[vertex] = 0; };
+  for (const MeshTriangle& triangle : triangles_) {
+    std::ranges::for_each(triangle, keep);
+  }
+  std::ranges::for_each(names_, keep);
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    if (moved[i] == 0) {
+      vertices_[i].fixed = vertices_[i].fixed || handed[i] != 0;
+      moved[i] = next;
+      vertices_[next++] = vertices_[i];
+    }
+  }
+  vertices_.resize(next);
+  for (MeshTriangle& triangle : triangles_) {
+    for (std::uint32_t& corner : triangle) {
+      corner = moved[corner];
+    }
+  }
+  for (std::uint32_t& name : names_) {
+    name = moved[name];
+  }
+}
+
+}  // namespace octurn

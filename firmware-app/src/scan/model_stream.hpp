@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "octurn/reconstruct.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/scanner.hpp"
+
+namespace octurn {
+
+/// A model made from a stored scan while it is sent: it needs no disk, and of memory no more than
+/// the options say.
+class ModelStream {
+ public:
+  /// Reads the snapshots, and counts what the model will have.
+  ///
+  /// @param options  but for the clip box, which is the scan's
+  /// @throws Error  if a snapshot is damaged, the model is empty or does not fit into memory
+  /// @throws Error "busy"  if a scan starts meanwhile
+  ModelStream(const std::filesystem::path& folder, ReconstructOptions options,
+              std::unique_ptr<Scanner::Leave> leave);
+  ~ModelStream() = default;
+  ModelStream(const ModelStream&) = delete;
+  ModelStream& operator=(const ModelStream&) = delete;
+
+  std::uint64_t bytes() const;
+
+  /// Hands the STL over, once. Ends early if `sink` returns false or a scan starts.
+  void send(const std::function<bool(std::span<const std::byte>)>& sink);
+
+ private:
+  Snapshot snapshot(const std::filesystem::path& folder, std::size_t shot) const;
+
+  std::unique_ptr<Scanner::Leave> leave_;
+  Scan scan_;
+  SnapshotSource snapshots_;
+  Reconstruction reconstruction_;
+  SurfaceCount count_ = {};
+};
+
+}  // namespace octurn

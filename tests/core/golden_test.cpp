@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "octurn/reconstruct.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/stl_file.hpp"
+#include "support/checksum.hpp"
+
+// Small scans whose models are known to the last byte: on every processor, by every compiler and
+// with every number of threads the same.
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Golden {
+  std::string scan = {};
+  double leaf_size = 0.001;  // metres
+  std::optional<int> level = {};
+  std::uint64_t facets = 0;
+  std::uint64_t checksum = 0;  // of the whole STL file
+};
+
+/// GoogleTest puts this into the names of tests.
+void PrintTo(const Golden& golden, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+  *out << golden.scan;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+class GoldenScan : public testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenScan, GivesTheSameFile) {
+  const Golden& golden = GetParam();
+  const fs::path folder = fs::path(OCTURN_GOLDEN) / golden.scan;
+  const Scan scan = read_scan(folder);
+  const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t i) {
+                                   return read_snapshot(folder, scan, scan.shots[i]);
+                                 }};
+  for (const int threads : {1, 2}) {
+    Reconstruction reconstruction({.leaf_size = golden.leaf_size,
+                                   .clip = scan.clip,
+                                   .level = golden.level,
+                                   .threads = threads});
+    reconstruction.add(snapshots);
+    const SurfaceCount count = reconstruction.count(snapshots);
+    EXPECT_EQ(count.facets, golden.facets);
+    Checksum stl;
+    const auto header = stl_header(count.facets);
+    stl.add(text_of(header));
+    reconstruction.surface(
+        snapshots, [&](std::span<const Facet> facets) { stl.add(text_of(std::as_bytes(facets))); });
+    EXPECT_EQ(stl.sum(), golden.checksum);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Golden, GoldenScan,
+    testing::Values(Golden{"figure_scan", 0.004, {}, 35444, 0x17bd0167601e9706U},
+                    Golden{"figure_scan", 0.002, {}, 135152, 0xffb242a7b612b7edU},
+                    Golden{"figure_scan", 0.001, 7, 8992, 0xf1a326bd52c41826U},
+                    Golden{"tower_scan", 0.002, {}, 87336, 0xb64d3c95e521210bU},
+                    Golden{"tower_scan", 0.001, {}, 348860, 0x343286fd1d4d3509U},
+                    Golden{"tower_scan", 0.0005, 8, 21608, 0x21cb0ba7ab681d39U}),
+    [](const testing::TestParamInfo<Golden>& named) {
+      const int leaf_um = static_cast<int>(named.param.leaf_size * 1e6);
+      return named.param.scan + "_" + std::to_string(leaf_um) + "um" +
+             (named.param.level ? "_level_" + std::to_string(*named.param.level) : "");
+    });
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+#include "support/ball_scan.hpp"
+#include "support/checksum.hpp"
+#include "support/daemon.hpp"
+#include "support/program.hpp"
+#include "support/shared_folder.hpp"
+#include "support/small_scan.hpp"
+#include "support/temporary_folder.hpp"
+
+// `octurn reconstruct --memory-limit-mb N` keeps its promise: the kernel gives it no more memory
+// than that, and what it had resident in the end was less.
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t mb = std::size_t{1} << 20U;
+
+std::vector<std::string> command(const fs::path& scan, const std::string& leaf_size_mm,
+                                 std::vector<std::string> more = {}) {
+  std::vector<std::string> words{OCTURN_PROGRAM,   "reconstruct", scan.string(), "-o", "-",
+                                 "--leaf-size-mm", leaf_size_mm};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+struct Outcome {
+  int status = 0;
+  std::string errors = {};
+  std::size_t peak_bytes = 0;
+  Checksum model = {};
+};
+
+Outcome outcome_of(const std::vector<std::string>& words, const ProgramLimits& limits = {}) {
+  Program program(words, limits);
+  Outcome outcome;
+  outcome.status = program.wait([&](std::string_view part) { outcome.model.add(part); });
+  outcome.errors = program.errors();
+  outcome.peak_bytes = program.peak_memory_bytes();
+  return outcome;
+}
+
+/// What comes out under a limit that the program is told, and that the kernel holds it to.
+Outcome limited(const fs::path& scan, const std::string& leaf_size_mm, std::size_t limit_mb) {
+  return outcome_of(command(scan, leaf_size_mm,
+                            {"--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}),
+                    {.data_bytes = limit_mb * mb});
+}
+
+/// The number of megabytes that an error says to allow.
+std::size_t allowed_mb(const std::string& errors) {
+  const std::size_t at = errors.find("Allow");
+  const std::size_t digit = errors.find_first_of("0123456789", at);
+  return digit == std::string::npos ? 0 : std::stoul(errors.substr(digit));
+}
+
+TEST(Memory, StaysBelowItsLimitWithTheSameBytes) {
+  const TemporaryFolder folder;
+  write_ball_scan(folder.path(), 6);
+  const Outcome free = outcome_of(command(folder.path(), "0.25"));
+  ASSERT_EQ(free.status, 0) << free.errors;
+  EXPECT_GT(free.model.bytes(), 50 * mb);
+  for (const std::size_t limit_mb : {17U, 24U}) {
+    const Outcome tight = limited(folder.path(), "0.25", limit_mb);
+    EXPECT_EQ(tight.status, 0) << tight.errors;
+    EXPECT_LT(tight.peak_bytes, limit_mb * mb);
+    EXPECT_EQ(tight.model, free.model);
+  }
+}
+
+TEST(Memory, IsSharedByTheThreads) {
+  const TemporaryFolder folder;
+  write_ball_scan(folder.path(), 6);
+  const Outcome alone = outcome_of(command(folder.path(), "0.5", {"--threads", "1"}));
+  const Outcome several =
+      outcome_of(command(folder.path(), "0.5", {"--threads", "4", "--memory-limit-mb", "36"}));
+  EXPECT_EQ(several.status, 0) << several.errors;
+  EXPECT_LT(several.peak_bytes, 36 * mb);
+  EXPECT_EQ(several.model, alone.model);
+}
+
+TEST(Memory, SaysHowMuchItNeedsAtLeast) {
+  const TemporaryFolder folder;
+  write_small_scan(folder.path(), 2);
+  const Outcome refused = limited(folder.path(), "4", 12);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_EQ(refused.model.bytes(), 0U);
+  const std::size_t enough = allowed_mb(refused.errors);
+  ASSERT_GT(enough, 12U) << refused.errors;
+  const Outcome allowed = limited(folder.path(), "4", enough);
+  EXPECT_EQ(allowed.status, 0) << allowed.errors;
+  EXPECT_LT(allowed.peak_bytes, enough * mb);
+}
+
+// A plate that lies flat: all its leaves are in one or two layers, which cannot be divided.
+TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
+  const TemporaryFolder folder;
+  write_small_scan(folder.path(), 2);
+  for (const char* const threads : {"1", "2"}) {
+    const auto words = [&](std::size_t limit_mb) {
+      return command(folder.path(), "0.125",
+                     {"--threads", threads, "--memory-limit-mb", std::to_string(limit_mb)});
+    };
+    const Outcome refused = outcome_of(words(17));
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.model.bytes(), 0U);
+    const std::size_t enough = allowed_mb(refused.errors);
+    ASSERT_GT(enough, 17U) << refused.errors;
+    const Outcome allowed = outcome_of(words(enough));
+    EXPECT_EQ(allowed.status, 0) << allowed.errors;
+    EXPECT_LT(allowed.peak_bytes, enough * mb);
+  }
+}
+
+/// The most memory that a process has had resident so far, bytes.
+std::size_t peak_memory(const Program& program) {
+  const std::string status = content_of("/proc/" + std::to_string(program.process()) + "/status");
+  return std::stoul(status.substr(status.find("VmHWM:") + 6)) * 1024;
+}
+
+/// How much more memory than for coarse models a daemon takes for those of 0.1 mm: one that is
+/// counted for a download, and one that is scanned until it would be written.
+std::size_t memory_for_fine_models(const std::string& config) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json", config);
+  Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
+  const std::string scan = daemon.start(
+      R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 4, "method": "intersection"})");
+  EXPECT_EQ(daemon.wait_until_done(scan)["state"], "finished");
+  const std::size_t before = peak_memory(daemon.program());
+  const Reply counted = request(daemon.port(), "HEAD", scan + "/Scan.stl?leaf_size_mm=0.1");
+  EXPECT_EQ(counted.status, 200) << counted.header("Content-Length");
+  const std::string fine = daemon.start(
+      R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 0.1, "method": "intersection"})");
+  daemon.wait_until(fine, [](const nlohmann::json& now) {
+    return now["phase"] != "turning" && now["phase"] != "capturing" && now["phase"] != "starting";
+  });
+  daemon.post(fine + "/cancel", "");
+  EXPECT_EQ(daemon.wait_until_done(fine)["snapshots_done"], 12);
+  return peak_memory(daemon.program()) - before;
+}
+
+// Without a limit it takes 37 MB, so that a daemon which ignored it would fail here.
+TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
+  EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
+}
+
+class SharedBunny : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(scan_)) {
+      GTEST_SKIP() << scan_ << " is not there: set OCTURN_SHARED to the folder of scans";
+    }
+  }
+  fs::path scan_ = shared_folder() / "scans/bunny8";
+};
+
+TEST_F(SharedBunny, StaysBelow64MbAtAnEighthOfAMillimetre) {
+  const Outcome fine = limited(scan_, "0.125", 64);
+  EXPECT_EQ(fine.status, 0) << fine.errors;
+  EXPECT_LT(fine.peak_bytes, 64 * mb);
+  EXPECT_GT(fine.model.bytes(), 84 + 50 * std::uint64_t{100'000'000});
+}
+
+TEST_F(SharedBunny, StaysBelow24MbAtHalfAMillimetreWithTheSameBytes) {
+  const Outcome free = outcome_of(command(scan_, "0.5"));
+  const Outcome tight = limited(scan_, "0.5", 24);
+  EXPECT_EQ(tight.status, 0) << tight.errors;
+  EXPECT_LT(tight.peak_bytes, 24 * mb);
+  EXPECT_EQ(tight.model, free.model);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "core/comparison.hpp"
+#include "core/plain_octree.hpp"
+#include "core/surface.hpp"
+
+// Whatever the triangles, tiny or huge, without area, on the borders of leaves or outside the root:
+// the octree has the leaves of the plain one, at every level and by any slabs, its surface is the
+// plain one's, and it is closed and manifold. That holds without exception, also where leaves touch
+// along an edge or at a corner only: between two such leaves and the two empty ones beside them the
+// tetrahedra always decide the same way, so that no edge gets four facets and no vertex two fans.
+
+namespace {
+
+using namespace octurn;
+
+constexpr int most_triangles = 12;
+constexpr int most_leaves_across = 40;  // of a triangle; the plain octree is slow
+constexpr std::size_t most_leaves = 3000;
+
+void require(bool promise) {
+  if (!promise) {
+    std::abort();
+  }
+}
+
+/// Numbers from the input's bytes; zeros when they are used up.
+class Bytes {
+ public:
+  explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  bool empty() const { return bytes_.empty(); }
+
+  std::uint32_t take(std::size_t count) {
+    std::uint32_t value = 0;
+    for (; count > 0 && !bytes_.empty(); --count) {
+      value = value << 8U | bytes_.front();
+      bytes_ = bytes_.subspan(1);
+    }
+    return value;
+  }
+
+  /// From low to high, both included.
+  int between(int low, int high, std::size_t count) {
+    return low + static_cast<int>(take(count) % static_cast<std::uint32_t>(high - low + 1));
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+constexpr int root = 1 << Lattice::bits;
+using Corners = std::array<LatticePoint, 3>;
+
+std::int32_t in_reach(int at) { return std::clamp(at, -root, 2 * root - 1) | 1; }
+
+/// Corners anywhere that the lattice reaches, or as offsets from the first, in units or in leaves.
+Corners lattice_triangle(Bytes& bytes, int levels, int kind) {
+  const int leaf = 1 << (Lattice::bits - levels);
+  Corners corners{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::int32_t& at = corners[i][axis];
+      if (kind == 0 || i == 0) {
+        at = in_reach(bytes.between(-root, 2 * root - 1, 3));
+      } else if (kind == 1) {
+        at = in_reach(corners[0][axis] + bytes.between(-128, 127, 1));
+      } else {  // beside a face of a leaf, on this side or that
+        const int offset = bytes.between(-128, 127, 1);
+        at = in_reach((corners[0][axis] / leaf + offset / 4) * leaf - offset % 2);
+      }
+    }
+  }
+  return corners;
+}
+
+/// Corners of any bits, as metres: huge, infinite and no numbers among them.
+std::optional<Corners> metre_triangle(Bytes& bytes, const Lattice& lattice) {
+  Corners corners{};
+  for (LatticePoint& corner : corners) {
+    const auto metres = [&] { return std::bit_cast<float>(bytes.take(4)); };
+    const float x = metres();
+    const float y = metres();
+    const auto nearest = lattice.nearest({x, y, metres()});
+    if (!nearest) {
+      return std::nullopt;
+    }
+    corner = *nearest;
+  }
+  return corners;
+}
+
+std::vector<Corners> soup_from(Bytes& bytes, int levels) {
+  std::vector<Corners> soup;
+  const Lattice lattice(1.0);
+  for (int i = 0; i < most_triangles && !bytes.empty(); ++i) {
+    const int kind = bytes.between(0, 3, 1);
+    const std::optional<Corners> corners =
+        kind == 3 ? metre_triangle(bytes, lattice) : lattice_triangle(bytes, levels, kind);
+    if (corners && leaves_across(*corners, levels) <= most_leaves_across) {
+      soup.push_back(*corners);
+    }
+  }
+  return soup;
+}
+
+/// The surface of one range of layers after the other, each from an octree that holds no more.
+std::vector<Facet> surface_by_slabs(const std::vector<Corners>& soup, int levels, int height) {
+  std::vector<Facet> facets;
+  const int top = all_layers(Octree(1.0, levels)).end;
+  for (int low = 0; low < top; low += height) {
+    const BrickLayers slab{.low = low, .end = std::min(top, low + height)};
+    Octree octree(1.0, levels);
+    for (const auto& [a, b, c] : soup) {
+      intersect(octree, a, b, c, {.low = low * Brick::side, .high = slab.end * Brick::side});
+    }
+    isosurface(octree, slab, 1, [&](std::span<const Facet> some) {
+      facets.insert(facets.end(), some.begin(), some.end());
+    });
+  }
+  return facets;
+}
+
+bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Bytes bytes(std::span(data, size));
+  const int levels = bytes.between(0, Octree::max_levels, 1);
+  const int coarser = bytes.between(0, levels, 1);
+  const std::vector<Corners> soup = soup_from(bytes, levels);
+
+  Octree octree(1.0, levels);
+  plain::Octree plain(levels);
+  for (const Corners& corners : soup) {
+    intersect(octree, corners[0], corners[1], corners[2]);
+    plain.intersect(corners);
+  }
+  require(leaves_of(octree) == plain.leaves());
+  require(octree.leaf_count() == plain.leaves().size());
+  require(leaves_of(octree.at_level(coarser)) == plain.nodes(coarser));
+  if (plain.leaves().size() > most_leaves) {
+    return 0;
+  }
+  const std::vector<Facet> facets = surface_of(octree);
+  require(in_half_leaves(octree, facets) == plain::isosurface(plain.leaves()));
+  require(count_facets(octree, all_layers(octree)) == facets.size());
+  const Topology topology = topology_of(facets);
+  require(topology.closed && topology.manifold);
+  if (levels <= 8) {
+    require(same_bytes(surface_by_slabs(soup, levels, 1 + coarser), facets));
+  }
+  return 0;
+}

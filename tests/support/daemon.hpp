@@ -1,0 +1,90 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "support/http_client.hpp"
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+
+inline nlohmann::json parsed(const Reply& reply) {
+  return nlohmann::json::parse(reply.body, nullptr, false);
+}
+
+/// `octurn serve` on the simulated rig, much faster than life, on a free port of this machine.
+class Daemon {
+ public:
+  explicit Daemon(const std::filesystem::path& folder, std::vector<std::string> more = {},
+                  const ProgramLimits& limits = {})
+      : Daemon(command(folder, std::move(more)), limits) {}
+  explicit Daemon(std::vector<std::string> command, const ProgramLimits& limits = {})
+      : program_(std::move(command), limits) {
+    const std::string line = program_.read_line();  // "Octurn is at http://127.0.0.1:41234/"
+    const std::size_t colon = line.rfind(':');
+    port_ = colon == std::string::npos ? 0 : std::stoi(line.substr(colon + 1));
+    EXPECT_GT(port_, 0) << line;
+  }
+
+  static std::vector<std::string> command(const std::filesystem::path& folder,
+                                          std::vector<std::string> more = {}, int port = 0) {
+    put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
+    std::vector<std::string> words{
+        OCTURN_PROGRAM,  "serve",     "--simulate",  "--simulate-speed",   "20",
+        "--listen",      "127.0.0.1", "--port",      std::to_string(port), "--data",
+        folder / "data", "--web",     folder / "web"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  int port() const { return port_; }
+  Program& program() { return program_; }
+
+  Reply get(const std::string& path, const Headers& headers = {}) const {
+    return request(port_, "GET", path, "", headers);
+  }
+  Reply post(const std::string& path, const std::string& body = "{}") const {
+    return request(port_, "POST", path, body);
+  }
+  nlohmann::json status() const { return parsed(get("/api/v1/status")); }
+
+  /// Starts a scan. @return its path
+  std::string start(const std::string& settings) const {
+    const Reply reply = post("/api/v1/scans", settings);
+    EXPECT_EQ(reply.status, 202) << reply.body;
+    return reply.header("Location");
+  }
+
+  /// Waits until a scan is as wanted; what it is then, wanted or not after 20 s.
+  nlohmann::json wait_until(const std::string& scan,
+                            const std::function<bool(const nlohmann::json&)>& wanted) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    nlohmann::json now = parsed(get(scan));
+    while (!wanted(now) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+      now = parsed(get(scan));
+    }
+    return now;
+  }
+  nlohmann::json wait_until_done(const std::string& scan) const {
+    return wait_until(scan, [](const nlohmann::json& now) { return now["state"] != "running"; });
+  }
+
+ private:
+  Program program_;
+  int port_ = 0;
+};
+
+inline const std::string quick = R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 4})";
+inline const std::string endless = R"({"snapshots": 200, "frames": 2, "leaf_size_mm": 4})";
+
+}  // namespace octurn

@@ -86,7 +86,7 @@ TEST(StepperSettings, NameTheKeyThatIsWrong) {
       {"gear_ratio", 0.001},     {"reversed", 1},
       {"speed_steps_per_s", 0},  {"start_speed_steps_per_s", 801},
       {"ramp_steps_per_s2", 0},  {"settle_ms", -1},
-      {"idle_release_s", 0},     {"take_up_steps", 801},
+      {"idle_release_s", 9},     {"take_up_steps", 801},
       {"steps_line", "GPIO17"}};
   for (const auto& [key, value] : wrong) {
     const Error error = error_thrown_by([&, key = key, value = value] {

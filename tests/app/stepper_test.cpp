@@ -102,6 +102,14 @@ TEST_F(StepperTest, NeverDoesAnythingByItself) {
   EXPECT_EQ(recording_.changes(), "");
 }
 
+TEST_F(StepperTest, DoesNotEvenSwitchOnForWhatIsStoppedAlready) {
+  std::stop_source stop;
+  stop.request_stop();
+  Stepper stepper(fast, recorder());
+  EXPECT_FALSE(stepper.move_to(1, stop.get_token()));
+  EXPECT_EQ(recording_.changes(), "");
+}
+
 TEST_F(StepperTest, LetsGoWhenAsked) {
   Stepper stepper(fast, recorder());
   stepper.move_to(1, {});

@@ -22,6 +22,9 @@ class GpioChip {
  public:
   explicit GpioChip(const std::filesystem::path& device);
   GpioChip(GpioChip&& other) noexcept;
+  GpioChip& operator=(GpioChip&& other) noexcept;
+  GpioChip(const GpioChip&) = delete;
+  GpioChip& operator=(const GpioChip&) = delete;
   ~GpioChip();
 
   std::string label() const;

@@ -44,6 +44,7 @@ GpioChip::GpioChip(const std::filesystem::path& device) : handles_(std::make_uni
 }
 
 GpioChip::GpioChip(GpioChip&& other) noexcept = default;
+GpioChip& GpioChip::operator=(GpioChip&& other) noexcept = default;
 GpioChip::~GpioChip() = default;
 
 std::string GpioChip::label() const {

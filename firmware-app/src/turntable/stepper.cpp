@@ -54,6 +54,9 @@ Stepper::Stepper(const StepperSettings& settings, SetLine set_line)
       worker_([this](const std::stop_token& end) { work(end); }) {}
 
 bool Stepper::move_to(int position, std::stop_token stop) {
+  if (stop.stop_requested()) {
+    return false;
+  }
   Order order{.target = position, .stop = std::move(stop)};
   std::unique_lock lock(mutex_);
   order_ = &order;

@@ -31,6 +31,7 @@ constexpr double greatest_ratio = 1000;
 constexpr double slowest = 40;
 constexpr double fastest = 5000;
 constexpr double steepest_ramp = 1e6;
+constexpr int least_idle_s = 10;  // a stop of a scan takes 3 s, with the most frames
 
 /// The keys of what `lines_of` gives, in its order.
 constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_line",
@@ -96,7 +97,7 @@ void read_motion(JsonObject& keys, StepperSettings& settings) {
   if (const auto ms = keys.whole_number("settle_ms", 0, 10'000)) {
     settings.settle_time = milliseconds(*ms);
   }
-  if (const auto seconds = keys.whole_number("idle_release_s", 1, 24 * 3600)) {
+  if (const auto seconds = keys.whole_number("idle_release_s", least_idle_s, 24 * 3600)) {
     settings.idle_release = std::chrono::seconds(*seconds);
   }
 }

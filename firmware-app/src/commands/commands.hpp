@@ -18,8 +18,8 @@ struct RigArguments {
   std::string sensor_uri = {};  ///< of a DepthSensor, in place of the simulated one
 };
 
-/// @throws Error "no-turntable"  without --simulate
-RigOptions rig_options(const RigArguments& arguments);
+/// @param stepper  of the real turntable, which is used without --simulate
+RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
 
 struct ServeArguments {
   RigArguments rig = {};

@@ -59,6 +59,7 @@ void scan(const ScanArguments& arguments);
 
 struct RecordArguments {
   RigArguments rig = {};
+  std::optional<std::filesystem::path> config_file = {};
   std::filesystem::path output = {};
   int snapshots = 36;  ///< stops in a turn
   int frames = 10;     ///< at each stop

@@ -32,6 +32,22 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 
 Vector normal_of(const Vector& a, const Vector& b, const Vector& c) { return cross(b - a, c - a); }
 
+/// Whether a side or a height is below a slicer's grain, or a height below a twentieth of the
+/// longest side.
+bool is_sliver(const std::array<Vector, 3>& corners) {
+  constexpr double least_square = least_edge_mm * least_edge_mm;
+  double longest = 0;
+  double shortest = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector side = corners[(i + 1) % 3] - corners[i];
+    longest = std::max(longest, dot(side, side));
+    shortest = std::min(shortest, dot(side, side));
+  }
+  const Vector normal = normal_of(corners[0], corners[1], corners[2]);
+  const double height = dot(normal, normal) / longest;
+  return shortest < least_square || height < least_square || height < longest / 400;
+}
+
 /// Whether a triangle's edge was collapsed.
 bool is_gone(const MeshTriangle& triangle) {
   return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
@@ -261,30 +277,16 @@ bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
       before[corner] = vector_of(vertices_[triangle[corner]].position);
     }
     std::array<Vector, 3> after = before;
-    double longest = 0;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       if (triangle[corner] == around) {
         after[corner] = to;
       }
     }
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vector side = after[(corner + 1) % 3] - after[corner];
-      const double square = dot(side, side);
-      if (square < least_edge_mm * least_edge_mm) {
-        return true;
-      }
-      longest = std::max(longest, square);
-    }
     const Vector was = normal_of(before[0], before[1], before[2]);
     const Vector is = normal_of(after[0], after[1], after[2]);
     const double along = dot(was, is);
-    const double square = dot(is, is);
-    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * square) {
-      return true;
-    }
-    // A height below a slicer's grain, or a twentieth of the longest side.
-    const double height = square / longest;
-    if (height < least_edge_mm * least_edge_mm || height < longest / 400) {
+    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * dot(is, is) ||
+        is_sliver(after)) {
       return true;
     }
   }

@@ -48,6 +48,9 @@ Config config_from(const json& object) {
   if (const json* scan = keys.find("scan")) {
     config.scan = settings_from(*scan, config.scan, "scan");
   }
+  if (const json* turntable = keys.find("turntable")) {
+    config.turntable = stepper_settings_from(*turntable);
+  }
   keys.refuse_unread();
   return config;
 }

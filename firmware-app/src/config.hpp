@@ -6,6 +6,7 @@
 
 #include "http/http_server.hpp"
 #include "scan/scan_settings.hpp"
+#include "turntable/stepper_settings.hpp"
 
 namespace octurn {
 
@@ -16,6 +17,7 @@ struct Config {
   std::filesystem::path data = "/var/lib/octurn";
   Limits limits = {};      ///< of reconstruction
   ScanSettings scan = {};  ///< what a scan uses for settings that its start does not give
+  StepperSettings turntable = {};
 };
 
 /// The file that is read unless another is named; it need not exist.
@@ -23,7 +25,7 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 
 /// Reads a configuration:
 /// `{"listen": "0.0.0.0", "port": 8080, "host_names": [], "data": "/var/lib/octurn", "scan":
-/// {...}}`.
+/// {...}, "turntable": {...}}`. docs/settings.md has them all.
 ///
 /// @throws Error "bad-config" that names file and key, its value and what is allowed; also for a
 /// key

@@ -18,7 +18,8 @@ TEST(Config, ReadsEveryKey) {
   const Config config =
       config_of(R"({"listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"],
                                       "data": "/srv/scans", "threads": 2, "memory_limit_mb": 64,
-                                      "scan": {"snapshots": 12}})");
+                                      "scan": {"snapshots": 12},
+                                      "turntable": {"microsteps": 8}})");
   EXPECT_EQ(config.http.address, "127.0.0.1");
   EXPECT_EQ(config.http.port, 80);
   EXPECT_EQ(config.host_names, std::vector<std::string>{"octurn.example"});
@@ -26,6 +27,7 @@ TEST(Config, ReadsEveryKey) {
   EXPECT_EQ(config.limits.threads, 2);
   EXPECT_EQ(config.limits.memory_bytes, 64U << 20U);
   EXPECT_EQ(config.scan.snapshots, 12);
+  EXPECT_EQ(config.turntable.microsteps, 8);
 }
 
 TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {
@@ -48,9 +50,13 @@ TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {
 }
 
 TEST(Config, NamesASettingByWhereItStands) {
-  const Error error = error_thrown_by([] { config_of(R"({"scan": {"frames": 0}})"); });
-  EXPECT_NE(std::string(error.what()).find("\"scan.frames\" is 0"), std::string::npos)
-      << error.what();
+  const Error scan = error_thrown_by([] { config_of(R"({"scan": {"frames": 0}})"); });
+  EXPECT_NE(std::string(scan.what()).find("\"scan.frames\" is 0"), std::string::npos)
+      << scan.what();
+  const Error turntable = error_thrown_by([] { config_of(R"({"turntable": {"microsteps": 5}})"); });
+  EXPECT_NE(std::string(turntable.what()).find("octurn.json: \"turntable.microsteps\" is 5"),
+            std::string::npos)
+      << turntable.what();
 }
 
 TEST(Config, RefusesWhatIsNoJson) {

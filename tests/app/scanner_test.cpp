@@ -136,6 +136,19 @@ TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
   EXPECT_EQ(scan(scanner, few_snapshots()).failure->code, "sensor-missing");
 }
 
+TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {
+  if (std::filesystem::exists("/dev/gpiochip0")) {
+    GTEST_SKIP() << "this machine has GPIO lines, which something may hang on";
+  }
+  Scanner scanner({.sensor_uri = "octurn-simulator://", .stepper = StepperSettings{}}, {}, store_);
+  const Status status = wait_until(scanner, is_ready);
+  EXPECT_TRUE(is_ready(status));
+  EXPECT_EQ(status.turntable.state, DeviceStatus::State::missing);
+  EXPECT_FALSE(status.turntable.simulated);
+  EXPECT_NE(status.turntable.message.find("GPIO"), std::string::npos) << status.turntable.message;
+  EXPECT_EQ(scan(scanner, few_snapshots()).failure->code, "turntable-missing");
+}
+
 TEST_F(ScannerTest, ShowsWhatTheSensorSeesNow) {
   Scanner scanner(rig(), {}, store_);
   const auto first = scanner.view();

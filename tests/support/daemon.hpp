@@ -26,7 +26,9 @@ class Daemon {
  public:
   explicit Daemon(const std::filesystem::path& folder, std::vector<std::string> more = {},
                   const ProgramLimits& limits = {})
-      : program_(command(folder, std::move(more)), limits) {
+      : Daemon(command(folder, std::move(more)), limits) {}
+  explicit Daemon(std::vector<std::string> command, const ProgramLimits& limits = {})
+      : program_(std::move(command), limits) {
     const std::string line = program_.read_line();  // "Octurn is at http://127.0.0.1:41234/"
     const std::size_t colon = line.rfind(':');
     port_ = colon == std::string::npos ? 0 : std::stoi(line.substr(colon + 1));

@@ -30,12 +30,16 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
   return simulate;
 }
 
-void add_config_options(CLI::App& command, std::optional<std::filesystem::path>& config_file,
-                        std::optional<std::filesystem::path>& data) {
+void add_config_option(CLI::App& command, std::optional<std::filesystem::path>& config_file) {
   command
       .add_option("--config", config_file,
                   std::string("settings (") + default_config_file + ", if it is there)")
       ->type_name("FILE");
+}
+
+void add_config_options(CLI::App& command, std::optional<std::filesystem::path>& config_file,
+                        std::optional<std::filesystem::path>& data) {
+  add_config_option(command, config_file);
   command.add_option("--data", data, "folder of the scans (/var/lib/octurn)")->type_name("DIR");
 }
 
@@ -114,6 +118,7 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
   CLI::App& command = *program.add_subcommand(
       "record", "what the sensor sees in a turn, to be replayed by --sensor");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_config_option(command, arguments.config_file);
   command
       .add_option("-o,--output", arguments.output,
                   "folder for the recording, which must not exist yet")

@@ -18,8 +18,8 @@ struct RigArguments {
   std::string sensor_uri = {};  ///< of a DepthSensor, in place of the simulated one
 };
 
-/// @throws Error "no-turntable"  without --simulate
-RigOptions rig_options(const RigArguments& arguments);
+/// @param stepper  of the real turntable, which is used without --simulate
+RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
 
 struct ServeArguments {
   RigArguments rig = {};
@@ -59,6 +59,7 @@ void scan(const ScanArguments& arguments);
 
 struct RecordArguments {
   RigArguments rig = {};
+  std::optional<std::filesystem::path> config_file = {};
   std::filesystem::path output = {};
   int snapshots = 36;  ///< stops in a turn
   int frames = 10;     ///< at each stop

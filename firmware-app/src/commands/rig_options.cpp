@@ -1,13 +1,11 @@
 #include "commands/commands.hpp"
-#include "octurn/error.hpp"
 #include "simulator/simulation.hpp"
 
 namespace octurn {
 
-RigOptions rig_options(const RigArguments& arguments) {
+RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper) {
   if (!arguments.simulate) {
-    throw Error("no-turntable", "this version drives the simulated turntable only",
-                "Add --simulate.");
+    return {.sensor_uri = arguments.sensor_uri, .stepper = stepper};
   }
   const std::string simulated =
       simulation_uri({.mesh_file = arguments.mesh_file, .speed = arguments.speed});

@@ -73,7 +73,7 @@ void scan(const ScanArguments& arguments) {
   const Config config = arguments.config_file ? read_config(*arguments.config_file)
                                               : read_config_if_there(default_config_file);
   const ScanSettings settings = settings_from(json_of(arguments.settings), config.scan);
-  const RigOptions rig = rig_options(arguments.rig);
+  const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
 
   const Interruption interruption;

@@ -27,7 +27,7 @@ void serve(const ServeArguments& arguments) {
                                         : read_config_if_there(default_config_file);
   config.http.address = arguments.address.value_or(config.http.address);
   config.http.port = arguments.port.value_or(config.http.port);
-  const RigOptions rig = rig_options(arguments.rig);
+  const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
 
   const Page page(arguments.web ? *arguments.web : page_folder());

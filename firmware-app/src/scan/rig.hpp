@@ -1,17 +1,20 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sensor/depth_sensor.hpp"
+#include "turntable/stepper_settings.hpp"
 #include "turntable/turntable.hpp"
 
 namespace octurn {
 
-/// What to scan with. This version drives the simulated turntable only.
+/// What to scan with.
 struct RigOptions {
-  std::string sensor_uri = {};  ///< for OpenNI2
-  double speed = 1.0;           ///< of the simulated turntable, relative to life
+  std::string sensor_uri = {};                  ///< for OpenNI2
+  double speed = 1.0;                           ///< of the simulated turntable, relative to life
+  std::optional<StepperSettings> stepper = {};  ///< of the real turntable; none: it is simulated
 };
 
 bool is_simulated_sensor(const std::string& uri);
@@ -30,11 +33,17 @@ class Rig {
   /// Closes the sensor, which ends its light and its traffic; the next use opens it again.
   void close_sensor() { sensor_.reset(); }
 
-  Turntable& turntable() { return *turntable_; }
+  /// Takes hold of the turntable's lines if it has not yet.
+  /// @throws Error "turntable-missing" or "turntable-failed"
+  Turntable& turntable();
+
+  /// Lets go of the platform, if it is held.
+  void release_turntable();
 
  private:
   RigOptions options_;
-  std::unique_ptr<Turntable> turntable_;
+  std::unique_ptr<GpioLines> lines_;
+  std::unique_ptr<Turntable> turntable_;  // drives lines_: ends before them
   std::unique_ptr<DepthSensor> sensor_;
 };
 

@@ -25,7 +25,7 @@ constexpr double preview_leaf_size = 0.004;  // metres
 constexpr std::uint64_t most_preview_facets = 60'000;
 
 DeviceStatus::State state_for(const std::string& code) {
-  return code == "sensor-missing" ? DeviceStatus::State::missing : DeviceStatus::State::failed;
+  return code.ends_with("-missing") ? DeviceStatus::State::missing : DeviceStatus::State::failed;
 }
 
 }  // namespace
@@ -35,8 +35,9 @@ Scanner::Scanner(RigOptions rig, const Limits& limits, const ScanStore& store)
   status_.update([&](Status& status) {
     status.sensor.simulated = is_simulated_sensor(rig_options_.sensor_uri);
     status.sensor.message = "looking for the sensor";
-    status.turntable = {
-        .state = DeviceStatus::State::ready, .name = "simulated turntable", .simulated = true};
+    status.turntable.simulated = !rig_options_.stepper;
+    status.turntable.name = status.turntable.simulated ? "simulated turntable" : "stepper";
+    status.turntable.message = "looking for the turntable";
   });
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
@@ -135,7 +136,8 @@ std::shared_ptr<const View> Scanner::view() {
 
 void Scanner::work(const std::stop_token& stop) {
   Rig rig(rig_options_);
-  look(rig, stop);  // so that the status tells what is there
+  look_for_turntable(rig);  // so that the status tells what is there
+  look(rig, stop);
   while (!stop.stop_requested()) {
     switch (wait_for_demand(stop)) {
       case Demand::scan:
@@ -176,6 +178,15 @@ void Scanner::look(Rig& rig, const std::stop_token& stop) {
   }
 }
 
+void Scanner::look_for_turntable(Rig& rig) {
+  try {
+    rig.turntable();
+    set_turntable_ready();
+  } catch (const Error& error) {
+    set_device_failed(failure_of(error));
+  }
+}
+
 void Scanner::run_order(Rig& rig, const std::stop_token& stop) {
   Job job;
   std::stop_source cancel;
@@ -191,6 +202,7 @@ void Scanner::run_order(Rig& rig, const std::stop_token& stop) {
   }
   log::info("scanner",
             "scan " + job.id + " started, snapshots=" + std::to_string(job.settings.snapshots));
+  look_for_turntable(rig);  // whose lines may have become free since
   try {
     job.model =
         run_scan(job.settings, limits_, store_.folder(job.id), rig, cancel.get_token(),
@@ -219,8 +231,16 @@ void Scanner::run_order(Rig& rig, const std::stop_token& stop) {
     job.failure =
         Failure{.code = "internal", .detail = error.what(), .hint = "Please report this."};
   }
-  rig.turntable().release();
+  let_go(rig);
   finish(std::move(job));
+}
+
+void Scanner::let_go(Rig& rig) {
+  try {
+    rig.release_turntable();
+  } catch (const Error& error) {
+    set_device_failed(failure_of(error));
+  }
 }
 
 void Scanner::report(Phase phase, int snapshots_done) {
@@ -279,6 +299,17 @@ void Scanner::set_sensor_ready(const std::string& name) {
     status.sensor.state = DeviceStatus::State::ready;
     status.sensor.name = name;
     status.sensor.message.clear();
+  });
+}
+
+void Scanner::set_turntable_ready() {
+  if (status_.get()->turntable.state == DeviceStatus::State::ready) {
+    return;
+  }
+  log::info("scanner", "turntable ready: " + status_.get()->turntable.name);
+  status_.update([&](Status& status) {
+    status.turntable.state = DeviceStatus::State::ready;
+    status.turntable.message.clear();
   });
 }
 

@@ -112,10 +112,13 @@ class Scanner {
   void work(const std::stop_token& stop);
   Demand wait_for_demand(const std::stop_token& stop);
   void look(Rig& rig, const std::stop_token& stop);
+  void look_for_turntable(Rig& rig);
   void run_order(Rig& rig, const std::stop_token& stop);
+  void let_go(Rig& rig);
   void report(Phase phase, int snapshots_done);
   void finish(Job job);
   void set_sensor_ready(const std::string& name);
+  void set_turntable_ready();
   void set_device_failed(const Failure& failure);
   void set_view(const DepthFrame& frame, double depth_unit);
   void set_preview(const std::string& id, const Reconstruction& seen, int snapshots);

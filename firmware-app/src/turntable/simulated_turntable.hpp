@@ -5,18 +5,10 @@
 #include <functional>
 #include <mutex>
 
+#include "turntable/motion.hpp"
 #include "turntable/turntable.hpp"
 
 namespace octurn {
-
-/// How a turntable moves: from rest it gains speed evenly, and loses it again before it stops.
-struct Motion {
-  int steps_per_turn = 800;             // quarter steps of a 1.8 degree motor
-  double start_steps_per_second = 200;  // a stepper can start at once at this speed
-  double top_steps_per_second = 800;
-  double ramp_steps_per_second2 = 2000;
-  std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
-};
 
 /// A turntable that takes the time of a real one. What turns is whoever listens to it.
 class SimulatedTurntable final : public Turntable {

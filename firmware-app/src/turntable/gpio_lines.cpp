@@ -1,0 +1,93 @@
+#include "turntable/gpio_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* user = "octurn";
+
+/// What the kernel calls the chip behind the header: of a Pi 3 and older, a Pi 4, and a Pi 5. The
+/// number of its device differs from kernel to kernel.
+constexpr std::array<const char*, 3> header_labels = {"pinctrl-bcm2835", "pinctrl-bcm2711",
+                                                      "pinctrl-rp1"};
+
+std::vector<fs::path> chip_devices() {
+  std::vector<fs::path> devices;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/dev")) {
+    if (entry.path().filename().string().starts_with("gpiochip")) {
+      devices.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(devices);
+  return devices;
+}
+
+GpioChip header_chip() {
+  std::string others;
+  for (const fs::path& device : chip_devices()) {
+    try {
+      GpioChip chip(device);
+      const std::string label = chip.label();
+      if (std::ranges::find(header_labels, label) != header_labels.end()) {
+        return chip;
+      }
+      others += (others.empty() ? "" : ", ") + label;
+    } catch (const std::system_error& error) {
+      throw Error("turntable-failed", device.string() + " cannot be used: " + error.what(),
+                  "Let this user use GPIO: sudo adduser $USER gpio, and log in again.");
+    }
+  }
+  throw Error("turntable-missing",
+              "this machine has no GPIO header of a Raspberry Pi" +
+                  (others.empty() ? "" : ", only " + others),
+              "Run this on a Raspberry Pi whose kernel knows its GPIO chip, or add --simulate.");
+}
+
+unsigned free_line(const GpioChip& chip, const std::string& name) {
+  const std::optional<unsigned> offset = chip.offset_of(name);
+  if (!offset) {
+    throw Error("turntable-failed", "the GPIO header has no line " + name,
+                "Correct the turntable's lines in octurn.json; they are called GPIO2 to GPIO27.");
+  }
+  if (const std::optional<std::string> other = chip.user_of(*offset)) {
+    throw Error("turntable-failed", "line " + name + " is in use by " + *other,
+                *other == user ? "End the other Octurn first."
+                               : "End what uses it, or choose another line in octurn.json.");
+  }
+  return *offset;
+}
+
+}  // namespace
+
+GpioLines::GpioLines(std::vector<NamedLine> lines)
+    : lines_(std::move(lines)), chip_(header_chip()) {
+  try {
+    std::vector<OutputLine> outputs;
+    for (const NamedLine& line : lines_) {
+      outputs.push_back({.offset = free_line(chip_, line.name), .high = line.high});
+    }
+    chip_.drive(outputs, user);
+  } catch (const std::system_error& error) {
+    throw Error("turntable-failed", std::string("the GPIO lines cannot be driven: ") + error.what(),
+                "End other programs that use GPIO, and retry.");
+  }
+}
+
+void GpioLines::set(std::size_t line, bool high) {
+  try {
+    chip_.set(line, high);
+  } catch (const std::system_error& error) {
+    throw Error("turntable-failed", "line " + lines_[line].name + " cannot be set: " + error.what(),
+                "Start Octurn again.");
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "turntable/gpio_chip.hpp"
+
+namespace octurn {
+
+/// A line of the GPIO header by the kernel's name for it, and its level until it is set.
+struct NamedLine {
+  std::string name = {};  ///< "GPIO17", as the pins are called in the Pi's own papers
+  bool high = false;
+};
+
+/// Lines of a Raspberry Pi's GPIO header that this program drives as long as this lives: released
+/// lines become inputs again.
+class GpioLines {
+ public:
+  /// @throws Error "turntable-missing"  if this machine has no such header
+  /// @throws Error "turntable-failed"   if a line is not there, or somebody else's, or may not be
+  ///                                    used: names line and user
+  explicit GpioLines(std::vector<NamedLine> lines);
+
+  /// @param line  as counted in what was given
+  /// @throws Error "turntable-failed"
+  void set(std::size_t line, bool high);
+
+ private:
+  std::vector<NamedLine> lines_;
+  GpioChip chip_;
+};
+
+}  // namespace octurn

@@ -1,0 +1,52 @@
+#include "turntable/pulse_train.hpp"
+
+#include <algorithm>
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+// The A4988 needs 1 us (datasheet, figure 1); long wires and level shifters may want more.
+constexpr auto shortest_level = 20us;
+
+// A wake-up takes up to a tenth of a millisecond on a Pi. From here on the motor feels it: half a
+// millisecond more than 1.25 takes a quarter of the speed.
+constexpr auto late_after = 500us;
+
+}  // namespace
+
+PulseTrain::PulseTrain(const Motion& motion, int steps, Time start)
+    : pace_(motion, steps), risen_(start) {
+  plan_rise(start);
+}
+
+void PulseTrain::done(Time time) {
+  if (!next_->high) {
+    plan_rise(time);
+    return;
+  }
+  const auto delay = time - planned_rise_;
+  if (delay > late_after) {
+    ++late_.count;
+    late_.longest = std::max(late_.longest, delay);
+    pace_.slowed_to(duration<double>(time - risen_).count());
+  }
+  risen_ = time;
+  next_ = Change{.high = false, .due = time + shortest_level};
+}
+
+/// @param low_since  when the line fell, or the beginning
+void PulseTrain::plan_rise(Time low_since) {
+  if (pace_.steps_left() == 0) {
+    next_.reset();
+    return;
+  }
+  planned_rise_ =
+      risen_ + std::chrono::ceil<steady_clock::duration>(duration<double>(pace_.next_step()));
+  next_ = Change{.high = true, .due = std::max(planned_rise_, low_since + shortest_level)};
+}
+
+}  // namespace octurn

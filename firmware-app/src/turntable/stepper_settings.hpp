@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "turntable/gpio_lines.hpp"
+#include "turntable/motion.hpp"
+
+namespace octurn {
+
+/// How the stepper is wired and what it turns. `docs/settings.md` explains each of them.
+struct StepperSettings {
+  std::string step_line = "GPIO17";
+  std::string direction_line = "GPIO27";
+  std::string enable_line = "GPIO5";  ///< pulled up while the Pi boots, as GPIO0 to 8 are
+  std::vector<std::string> microstep_lines = {};  ///< MS1, MS2 and MS3; none: they are wired
+  int microsteps = 4;                             ///< of a full step: 1, 2, 4, 8 or 16
+  int full_steps = 200;                           ///< of a turn of the motor
+  double gear_ratio = 1;                          ///< turns of the motor for one of the platform
+  bool reversed = false;                          ///< DIR high turns the platform clockwise
+  double speed_steps_per_second = 800;
+  double start_speed_steps_per_second = 200;
+  double ramp_steps_per_second2 = 2000;
+  std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
+  std::chrono::milliseconds idle_release = std::chrono::seconds(60);
+  int take_up_steps = 0;  ///< against the play of gears
+};
+
+/// Settings from the object "turntable" of octurn.json, each key with its unit.
+/// @throws Error "bad-config"  that names the key, its value and what is allowed; also for a key
+///                             that is none
+StepperSettings stepper_settings_from(const nlohmann::json& object);
+
+/// With steps of the platform's turn: the whole number that is nearest.
+Motion motion_of(const StepperSettings& settings);
+
+/// The lines in the order of `Stepper::Line`, then MS1 to MS3; the motor is off.
+std::vector<NamedLine> lines_of(const StepperSettings& settings);
+
+}  // namespace octurn

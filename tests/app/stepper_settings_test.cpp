@@ -1,0 +1,103 @@
+#include "turntable/stepper_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+std::string levels_of(const StepperSettings& settings) {
+  std::string levels;
+  for (const NamedLine& line : lines_of(settings)) {
+    levels += line.name + (line.high ? "=H " : "=L ");
+  }
+  return levels;
+}
+
+TEST(StepperSettings, AreReadFromEveryKey) {
+  const StepperSettings settings =
+      stepper_settings_from({{"step_line", "GPIO20"},
+                             {"direction_line", "GPIO21"},
+                             {"enable_line", "GPIO6"},
+                             {"microstep_lines", {"GPIO22", "GPIO23", "GPIO24"}},
+                             {"microsteps", 16},
+                             {"full_steps", 400},
+                             {"gear_ratio", 2.5},
+                             {"reversed", true},
+                             {"speed_steps_per_s", 1000},
+                             {"start_speed_steps_per_s", 100},
+                             {"ramp_steps_per_s2", 500},
+                             {"settle_ms", 150},
+                             {"idle_release_s", 10},
+                             {"take_up_steps", 32}});
+  EXPECT_EQ(levels_of(settings), "GPIO20=L GPIO21=L GPIO6=H GPIO22=H GPIO23=H GPIO24=H ");
+  EXPECT_TRUE(settings.reversed);
+  EXPECT_EQ(settings.idle_release, 10s);
+  EXPECT_EQ(settings.take_up_steps, 32);
+  const Motion motion = motion_of(settings);
+  EXPECT_EQ(motion.steps_per_turn, 400 * 16 * 5 / 2);
+  EXPECT_EQ(motion.start_steps_per_second, 100);
+  EXPECT_EQ(motion.top_steps_per_second, 1000);
+  EXPECT_EQ(motion.ramp_steps_per_second2, 500);
+  EXPECT_EQ(motion.settle_time, 150ms);
+}
+
+TEST(StepperSettings, AreQuarterStepsOfACommonMotorWhereNothingIsSaid) {
+  const StepperSettings settings = stepper_settings_from(json::object());
+  EXPECT_EQ(motion_of(settings).steps_per_turn, 800);
+  EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H ");
+}
+
+TEST(StepperSettings, SetMicrostepsAsTheDatasheetHasThem) {
+  // A4988 datasheet, table 1: MS1, MS2, MS3.
+  for (const auto& [microsteps, levels] :
+       std::vector<std::pair<int, std::string>>{{1, "a=L b=L c=L "},
+                                                {2, "a=H b=L c=L "},
+                                                {4, "a=L b=H c=L "},
+                                                {8, "a=H b=H c=L "},
+                                                {16, "a=H b=H c=H "}}) {
+    const StepperSettings settings{.microstep_lines = {"a", "b", "c"}, .microsteps = microsteps};
+    EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H " + levels);
+  }
+}
+
+TEST(StepperSettings, RoundATurnToWholeSteps) {
+  EXPECT_EQ(motion_of({.gear_ratio = 60.0 / 17}).steps_per_turn, 2824);  // 2823.53
+}
+
+TEST(StepperSettings, StartNoFasterThanTheyGo) {
+  EXPECT_EQ(motion_of(stepper_settings_from({{"speed_steps_per_s", 60}})).start_steps_per_second,
+            60);
+}
+
+TEST(StepperSettings, NameTheKeyThatIsWrong) {
+  const std::vector<std::pair<const char*, json>> wrong = {
+      {"step_line", 17},         {"direction_line", "GPIO17"},
+      {"enable_line", "GPIO27"}, {"microstep_lines", {"GPIO22"}},
+      {"microstep_lines", "a"},  {"microstep_lines", {"GPIO22", "GPIO23", "GPIO22"}},
+      {"microsteps", 3},         {"microsteps", 32},
+      {"full_steps", 0},         {"gear_ratio", 0},
+      {"gear_ratio", 0.001},     {"reversed", 1},
+      {"speed_steps_per_s", 0},  {"start_speed_steps_per_s", 801},
+      {"ramp_steps_per_s2", 0},  {"settle_ms", -1},
+      {"idle_release_s", 9},     {"take_up_steps", 801},
+      {"steps_line", "GPIO17"}};
+  for (const auto& [key, value] : wrong) {
+    const Error error = error_thrown_by([&, key = key, value = value] {
+      stepper_settings_from({{key, value}});
+    });
+    EXPECT_EQ(error.code(), "bad-config");
+    EXPECT_NE(std::string(error.what()).find(std::string("\"turntable.") + key + "\""),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace octurn

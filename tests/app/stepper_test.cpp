@@ -1,0 +1,233 @@
+#include "turntable/stepper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "octurn/error.hpp"
+#include "scan/plan.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// What a driver saw of its lines: E and e for ENABLE high and low, D and d for DIR, S and s for
+/// STEP.
+class Recording {
+ public:
+  void set(Stepper::Line line, bool high) {
+    constexpr std::string_view low_letters = "sde";
+    constexpr std::string_view high_letters = "SDE";
+    const std::lock_guard lock(mutex_);
+    changes_ += (high ? high_letters : low_letters)[static_cast<std::size_t>(line)];
+    changed_.notify_all();
+  }
+
+  std::string changes() const {
+    const std::lock_guard lock(mutex_);
+    return changes_;
+  }
+
+  int pulses() const {
+    const std::string all = changes();
+    return static_cast<int>(std::ranges::count(all, 'S'));
+  }
+
+  /// Waits for that end of the recording, 20 s at most. @return whether it came
+  bool wait_for_end(std::string_view end) const {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 20s, [&] { return changes_.ends_with(end); });
+  }
+
+ private:
+  mutable std::mutex mutex_;  // guards changes_
+  mutable std::condition_variable changed_;
+  std::string changes_ = {};
+};
+
+const StepperSettings fast = {.speed_steps_per_second = 5000,
+                              .start_speed_steps_per_second = 5000,
+                              .ramp_steps_per_second2 = 1e6,
+                              .settle_time = 0ms};
+
+class StepperTest : public ::testing::Test {
+ protected:
+  Stepper::SetLine recorder() {
+    return [this](Stepper::Line line, bool high) { recording_.set(line, high); };
+  }
+
+  Recording recording_;
+};
+
+TEST_F(StepperTest, SwitchesOnChoosesItsDirectionAndOnlyThenSteps) {
+  Stepper stepper(fast, recorder());
+  EXPECT_TRUE(stepper.move_to(3, {}));
+  EXPECT_EQ(recording_.changes(), "eDSsSsSs");
+  EXPECT_EQ(stepper.position(), 3);
+
+  EXPECT_TRUE(stepper.move_to(1, {}));
+  EXPECT_EQ(recording_.changes(), "eDSsSsSsdSsSs");
+  EXPECT_EQ(stepper.position(), 1);
+}
+
+TEST_F(StepperTest, TurnsTheOtherWayRoundIfItIsReversed) {
+  StepperSettings settings = fast;
+  settings.reversed = true;
+  Stepper stepper(settings, recorder());
+  EXPECT_TRUE(stepper.move_to(1, {}));
+  EXPECT_EQ(recording_.changes(), "edSs");
+}
+
+TEST_F(StepperTest, MakesATurnOfExactly800Steps) {
+  Stepper stepper(fast, recorder());
+  for (const int stops : {7, 36}) {
+    for (const int position : stop_positions(stepper.position(), stepper.steps_per_turn(), stops)) {
+      ASSERT_TRUE(stepper.move_to(position, {}));
+    }
+    ASSERT_TRUE(stepper.move_to(stop_positions(stepper.position(), 800, 1)[0], {}));
+    EXPECT_EQ(stepper.position() % 800, 0);
+    EXPECT_EQ(recording_.pulses(), stepper.position());
+  }
+  EXPECT_EQ(stepper.position(), 1600);
+}
+
+TEST_F(StepperTest, NeverDoesAnythingByItself) {
+  {
+    Stepper stepper(fast, recorder());
+    stepper.release();
+  }
+  EXPECT_EQ(recording_.changes(), "");
+}
+
+TEST_F(StepperTest, DoesNotEvenSwitchOnForWhatIsStoppedAlready) {
+  std::stop_source stop;
+  stop.request_stop();
+  Stepper stepper(fast, recorder());
+  EXPECT_FALSE(stepper.move_to(1, stop.get_token()));
+  EXPECT_EQ(recording_.changes(), "");
+}
+
+TEST_F(StepperTest, LetsGoWhenAsked) {
+  Stepper stepper(fast, recorder());
+  stepper.move_to(1, {});
+  stepper.release();
+  stepper.release();
+  EXPECT_EQ(recording_.changes(), "eDSsE");
+  stepper.move_to(2, {});
+  EXPECT_EQ(recording_.changes(), "eDSsEeDSs");
+}
+
+TEST_F(StepperTest, LetsGoAtItsEnd) {
+  Stepper(fast, recorder()).move_to(1, {});
+  EXPECT_EQ(recording_.changes(), "eDSsE");
+}
+
+TEST_F(StepperTest, LetsGoAfterAWhile) {
+  StepperSettings settings = fast;
+  settings.idle_release = 1ms;
+  Stepper stepper(settings, recorder());
+  stepper.move_to(1, {});
+  EXPECT_TRUE(recording_.wait_for_end("E"));
+  EXPECT_EQ(recording_.changes(), "eDSsE");
+}
+
+TEST_F(StepperTest, StopsBeforeTheNextStep) {
+  std::stop_source stop;
+  Stepper stepper(fast, [&](Stepper::Line line, bool high) {
+    recording_.set(line, high);
+    if (recording_.pulses() == 40) {
+      stop.request_stop();
+    }
+  });
+  EXPECT_FALSE(stepper.move_to(800, stop.get_token()));
+  EXPECT_EQ(stepper.position(), 40);
+  EXPECT_EQ(recording_.pulses(), 40);
+  EXPECT_EQ(recording_.changes().back(), 's');
+
+  EXPECT_FALSE(stepper.move_to(800, stop.get_token()));  // which is still stopped
+  EXPECT_EQ(recording_.pulses(), 40);
+  EXPECT_TRUE(stepper.move_to(41, {}));
+  EXPECT_EQ(recording_.pulses(), 41);
+}
+
+TEST_F(StepperTest, StopsWhileItSettles) {
+  StepperSettings settings = fast;
+  settings.settle_time = 1h;
+  std::stop_source stop;
+  Stepper stepper(settings, recorder());
+  std::jthread stopper([&] {
+    recording_.wait_for_end("Ss");
+    stop.request_stop();
+  });
+  EXPECT_FALSE(stepper.move_to(1, stop.get_token()));
+  EXPECT_EQ(stepper.position(), 1);
+}
+
+TEST_F(StepperTest, ReturnsOnlyWhenItHasSettled) {
+  StepperSettings settings = fast;
+  settings.settle_time = 150ms;
+  Stepper stepper(settings, recorder());
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(stepper.move_to(1, {}));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 150ms);
+}
+
+TEST_F(StepperTest, TakesUpThePlayOfItsGears) {
+  StepperSettings settings = fast;
+  settings.take_up_steps = 2;
+  Stepper stepper(settings, recorder());
+  stepper.move_to(0, {});
+  EXPECT_EQ(recording_.changes(), "edSsSsDSsSs");  // nobody knows on which side the gears touch
+  stepper.move_to(1, {});
+  EXPECT_EQ(recording_.changes(), "edSsSsDSsSsDSs");  // which is the way that it came
+  stepper.move_to(0, {});
+  EXPECT_EQ(recording_.changes(), "edSsSsDSsSsDSsdSsSsSsDSsSs");
+  EXPECT_EQ(stepper.position(), 0);
+}
+
+TEST(WayTo, ReachesEveryTargetCounterClockwise) {
+  using Way = std::vector<int>;
+  const Standing taken_up = {.position = 100, .play_taken_up = true};
+  const Standing loose = {.position = 100, .play_taken_up = false};
+  EXPECT_EQ(way_to(120, taken_up, 8), Way{120});
+  EXPECT_EQ(way_to(100, taken_up, 8), Way{100});
+  EXPECT_EQ(way_to(80, taken_up, 8), (Way{72, 80}));
+  EXPECT_EQ(way_to(120, loose, 8), (Way{92, 120}));
+  EXPECT_EQ(way_to(80, loose, 0), Way{80});
+}
+
+TEST_F(StepperTest, TellsOfALineThatFailsAndGoesOnAfterwards) {
+  bool broken = true;
+  Stepper stepper(fast, [&](Stepper::Line line, bool high) {
+    if (broken && recording_.pulses() == 5) {
+      throw Error("turntable-failed", "line GPIO17 cannot be set");
+    }
+    recording_.set(line, high);
+  });
+  EXPECT_EQ(code_thrown_by([&] { stepper.move_to(10, {}); }), "turntable-failed");
+  EXPECT_EQ(stepper.position(), 5);
+  EXPECT_EQ(code_thrown_by([&] { stepper.release(); }), "turntable-failed");
+
+  broken = false;
+  EXPECT_TRUE(stepper.move_to(10, {}));
+  EXPECT_EQ(recording_.pulses(), 10);
+}
+
+TEST_F(StepperTest, CountsLatePulses) {
+  // The line takes as long to rise as a busy system takes to come back to this program.
+  Stepper stepper(fast, [&](Stepper::Line line, bool high) {
+    if (line == Stepper::Line::step && high) {
+      std::this_thread::sleep_for(2ms);
+    }
+    recording_.set(line, high);
+  });
+  stepper.move_to(10, {});
+  EXPECT_EQ(stepper.late().count, 10);
+  EXPECT_GE(stepper.late().longest, 2ms);
+}
+
+}  // namespace
+}  // namespace octurn

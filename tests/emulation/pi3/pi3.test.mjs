@@ -1,0 +1,141 @@
+// What the emulated Pi made of its GPIO lines, as its kernel traced them and as QEMU saw the registers.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+
+const folder = process.env.OCTURN_PI3;
+const base = 512; // the number of the header's first line, for Debian 13's kernel
+const step = 17;
+const direction = 27;
+const enable = 5;
+const lines = [enable, step, 22, 23, 24, direction];
+
+const consoleText = readFileSync(`${folder}/console.log`, 'latin1').replaceAll('\r', '');
+
+/** One run of stepper_check: what it said, and what the kernel saw: {time, line, level} or {time, mark}. */
+function run(name) {
+  const all = consoleText.split(`BEGIN ${name}\n`)[1].split(`END ${name}\n`)[0].trim().split('\n');
+  const said = [];
+  const events = [];
+  for (const text of all) {
+    const [, time, line, level] = /^([0-9.]+) ([0-9]+) ([01])$/.exec(text) ?? [];
+    const [, markTime, mark] = /^([0-9.]+) ([A-Z]+)$/.exec(text) ?? [];
+    if (time) events.push({ time: Number(time), line: Number(line) - base, level: Number(level) });
+    else if (mark) events.push({ time: Number(markTime), mark });
+    else said.push(text);
+  }
+  return { said: said.join('\n'), events };
+}
+
+const names = ['turn', 'turns', 'cancel', 'kill', 'busy', 'burdened'];
+const runs = Object.fromEntries(names.map((name) => [name, run(name)]));
+
+const rises = (events) => events.filter(({ line, level }) => line === step && level === 1);
+const levels = (events, wanted) => events.filter(({ line }) => line === wanted).map(({ level }) => level).join('');
+
+test('a turn is 800 pulses', () => {
+  assert.match(runs.turn.said, /arrived at 800/);
+  assert.equal(rises(runs.turn.events).length, 800);
+});
+
+test('there, back, and two turns of it are as many pulses as it is steps', () => {
+  assert.match(runs.turns.said, /arrived at 1600/);
+  const byDirection = { 0: 0, 1: 0 };
+  let now = 0;
+  for (const { line, level } of runs.turns.events) {
+    if (line === direction) now = level;
+    if (line === step && level === 1) byDirection[now] += 1;
+  }
+  assert.deepEqual(byDirection, { 1: 800 + 214 + 686, 0: 100 });
+});
+
+test('the motor is on, and its direction set, before the first pulse, and it is off after the last', () => {
+  const { events } = runs.turn;
+  const [first] = rises(events);
+  const last = rises(events).at(-1);
+  const on = events.find(({ line, level }) => line === enable && level === 0);
+  const off = events.filter(({ line, level }) => line === enable && level === 1).at(-1);
+  const chosen = events.filter(({ line }) => line === direction).at(-1);
+  assert.ok(on.time < first.time && off.time > last.time);
+  assert.ok(first.time - chosen.time > 200e-9); // the A4988's set-up time
+  assert.equal(chosen.level, 1);
+  assert.equal(levels(events, enable), '101'); // off from the moment that the line is driven
+  assert.equal([22, 23, 24].map((line) => levels(events, line)).join(''), '010'); // quarter steps
+});
+
+test('each level lasts 1 us or more', () => {
+  for (const { events } of Object.values(runs)) {
+    const changes = events.filter(({ line }) => line === step);
+    for (let i = 1; i < changes.length; ++i) {
+      assert.ok(changes[i].time - changes[i - 1].time >= 1e-6, `at ${changes[i].time}`);
+    }
+  }
+});
+
+test('pulses are never nearer to each other than at full speed, however late the one before was', () => {
+  const { said, events } = runs.burdened;
+  assert.match(said, /no real-time priority/);
+  assert.ok(Number(/late pulses: ([0-9]+)/.exec(said)[1]) > 0, said);
+  for (const run of Object.values(runs)) {
+    const pulses = rises(run.events);
+    for (let i = 1; i < pulses.length; ++i) {
+      const gap = pulses[i].time - pulses[i - 1].time;
+      assert.ok(gap >= 1 / 800 - 2e-6, `${gap} s at ${pulses[i].time}`); // the trace has whole microseconds
+    }
+  }
+  assert.equal(rises(events).length, 800);
+});
+
+test('a stop request ends the move within one step, and the position is known', () => {
+  const { said, events } = runs.cancel;
+  const stopped = Number(/stopped at ([0-9]+)/.exec(said)[1]);
+  const asked = events.findIndex(({ mark }) => mark === 'TERM');
+  assert.ok(stopped > 0 && stopped < 800);
+  assert.equal(rises(events).length, stopped);
+  assert.ok(asked > 0 && rises(events.slice(asked)).length <= 1);
+  assert.equal(levels(events, enable), '101');
+});
+
+test('lines that somebody else has are refused by name', () => {
+  assert.match(runs.busy.said, /turntable-failed: line GPIO17 is in use by octurn/);
+  assert.equal(rises(runs.busy.events).length, 400);
+});
+
+/** What was written to the GPIO registers of our lines: {line, level}, or {line, input}. */
+function registerWrites() {
+  const writes = [];
+  const functions = new Map();
+  for (const text of readFileSync(`${folder}/registers.log`, 'latin1').trim().split('\n')) {
+    const [, address, value] = /addr 0x([0-9a-f]+) value 0x([0-9a-f]+) /.exec(text);
+    const register = parseInt(address, 16) - 0x3f200000;
+    const bits = parseInt(value, 16);
+    for (const line of lines) {
+      // BCM2835 peripherals, 6.1: GPFSELn has three bits for each of ten lines; GPSET0 and GPCLR0 one.
+      if (register === 4 * Math.floor(line / 10)) {
+        const now = (bits >>> (3 * (line % 10))) & 7;
+        if (now === 0 && functions.get(line) === 1) writes.push({ line, input: true });
+        functions.set(line, now);
+      } else if ((register === 0x1c || register === 0x28) && (bits >>> line) & 1) {
+        writes.push({ line, level: register === 0x1c ? 1 : 0 });
+      }
+    }
+  }
+  return writes;
+}
+
+test('the registers were written as the kernel says, change for change', () => {
+  const seen = registerWrites().filter(({ level }) => level !== undefined);
+  const told = names.flatMap((name) => runs[name].events)
+    .filter(({ line }) => lines.includes(line)).map(({ line, level }) => ({ line, level }));
+  assert.ok(told.length > 2 * (800 + 1800 + 400 + 800));
+  assert.deepEqual(seen, told);
+});
+
+test('a program that is killed leaves the motor off: its lines are inputs, which resistors pull', () => {
+  const { events } = runs.kill;
+  assert.equal(levels(events, enable), '10'); // it could not switch off
+  assert.ok(rises(events).length < 800);
+  const released = registerWrites().filter(({ input }) => input);
+  assert.equal(released.filter(({ line }) => line === enable).length, names.length); // at each end
+});

@@ -1,0 +1,51 @@
+// Runs on the emulated Pi: turns to each position of its command line by Octurn's own stepper on
+// the real GPIO lines, and says where it stands. SIGTERM stops it.
+
+#include <charconv>
+#include <cstring>
+#include <iostream>
+#include <string_view>
+#include <vector>
+
+#include "interruption.hpp"
+#include "octurn/error.hpp"
+#include "turntable/stepper.hpp"
+
+namespace octurn {
+namespace {
+
+void turn(const std::vector<int>& positions) {
+  const Interruption interruption;
+  const StepperSettings settings = {.microstep_lines = {"GPIO22", "GPIO23", "GPIO24"}};
+  GpioLines lines(lines_of(settings));
+  Stepper stepper(settings, [&](Stepper::Line line, bool high) {
+    lines.set(static_cast<std::size_t>(line), high);
+  });
+  bool arrived = true;
+  for (const int position : positions) {
+    arrived = arrived && stepper.move_to(position, interruption.token());
+  }
+  const LatePulses late = stepper.late();
+  std::cout << (arrived ? "arrived" : "stopped") << " at " << stepper.position()
+            << ", late pulses: " << late.count << std::endl;
+}
+
+}  // namespace
+}  // namespace octurn
+
+int main(int argc, char** argv) {
+  octurn::block_signals();
+  std::vector<int> positions;
+  for (int i = 1; i < argc; ++i) {
+    int position = 0;
+    std::from_chars(argv[i], argv[i] + std::strlen(argv[i]), position);
+    positions.push_back(position);
+  }
+  try {
+    octurn::turn(positions);
+    return 0;
+  } catch (const octurn::Error& error) {
+    std::cout << error.code() << ": " << error.what() << std::endl;
+    return 1;
+  }
+}

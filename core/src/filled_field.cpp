@@ -14,15 +14,14 @@ constexpr float least_weight = 0.1F;
 // snapshot saw to the model.
 constexpr float free_distance = 0.8F * DistanceField::ticks;
 
-constexpr int sweeps = 10;  // of the harmonic fill: there and back, after a first guess
+constexpr int sweeps = 10;  // over each grid of the harmonic fill, there and back
 
 }  // namespace
 
 FilledField::FilledField(const DistanceField& field, int foot) : field_(field), foot_(foot) {
   find_box();
   classify();
-  spread(grid_);
-  relax();
+  solve(grid_);
 }
 
 void FilledField::find_box() {
@@ -102,7 +101,9 @@ void FilledField::classify(const Cell& cell, std::size_t index) {
               cell.x % a_brick * leaves + x + (cell.y % a_brick * leaves + y) * Brick::side +
               bz * Brick::side * Brick::side);
           const int through = free + brick->free[sample];
-          if (seen(*brick, sample, through)) {
+          // Behind a surface even the faintest sample says that there is something to fill.
+          const bool behind = brick->distance[sample] < 0 && brick->weight[sample] > 0;
+          if (seen(*brick, sample, through) || (behind && through == 0)) {
             ++seen_count;
             sum += std::min(static_cast<float>(brick->distance[sample]), free_distance);
           } else if (through > 0) {
@@ -124,8 +125,10 @@ void FilledField::classify(const Cell& cell, std::size_t index) {
   }
 }
 
-/// Gives the unknown a first guess: the mean of what is known in ever larger cubes.
-void FilledField::spread(Grid& fine) {
+/// Solves Laplace's equation for the unknown, from coarse to fine: each grid gives the next finer
+/// one its first guess. A coarse cell is as the innermost of its cells, so that a thin shell stays
+/// closed.
+void FilledField::solve(Grid& fine) {
   if (fine.values.size() < 2 || std::ranges::all_of(fine.known, [](char k) { return k != 0; })) {
     return;
   }
@@ -135,7 +138,6 @@ void FilledField::spread(Grid& fine) {
   const auto count = coarse.index(0, 0, coarse.size.z);
   coarse.values.resize(count);
   coarse.known.resize(count);
-  std::vector<int> counts(count);
   const auto for_each = [&](auto visit) {
     std::size_t index = 0;
     for (int z = 0; z < fine.size.z; ++z) {
@@ -148,39 +150,35 @@ void FilledField::spread(Grid& fine) {
   };
   for_each([&](std::size_t from, std::size_t to) {
     if (fine.known[from] != 0) {
-      coarse.values[to] += fine.values[from];
-      ++counts[to];
+      const float value = fine.values[from];
+      coarse.values[to] = coarse.known[to] != 0 ? std::min(coarse.values[to], value) : value;
+      coarse.known[to] = 1;
     }
   });
-  for (std::size_t i = 0; i < count; ++i) {
-    if (counts[i] > 0) {
-      coarse.values[i] /= static_cast<float>(counts[i]);
-      coarse.known[i] = 1;
-    }
-  }
-  spread(coarse);
+  solve(coarse);
   for_each([&](std::size_t to, std::size_t from) {
     if (fine.known[to] == 0) {
       fine.values[to] = coarse.values[from];
     }
   });
+  relax(fine);
 }
 
 /// Gauss-Seidel sweeps of Laplace's equation, there and back.
-void FilledField::relax() {
-  const Cell& size = grid_.size;
-  std::vector<float>& values = grid_.values;
+void FilledField::relax(Grid& grid) {
+  const Cell& size = grid.size;
+  std::vector<float>& values = grid.values;
   const auto relax_at = [&](int x, int y, int z) {
-    const std::size_t i = grid_.index(x, y, z);
-    if (grid_.known[i] != 0) {
+    const std::size_t i = grid.index(x, y, z);
+    if (grid.known[i] != 0) {
       return;
     }
     // At the box's sides the value beyond is that within.
     const float sum = values[x > 0 ? i - 1 : i] + values[x + 1 < size.x ? i + 1 : i] +
-                      values[y > 0 ? grid_.index(x, y - 1, z) : i] +
-                      values[y + 1 < size.y ? grid_.index(x, y + 1, z) : i] +
-                      values[z > 0 ? grid_.index(x, y, z - 1) : i] +
-                      values[z + 1 < size.z ? grid_.index(x, y, z + 1) : i];
+                      values[y > 0 ? grid.index(x, y - 1, z) : i] +
+                      values[y + 1 < size.y ? grid.index(x, y + 1, z) : i] +
+                      values[z > 0 ? grid.index(x, y, z - 1) : i] +
+                      values[z + 1 < size.z ? grid.index(x, y, z + 1) : i];
     values[i] = sum / 6;
   };
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -205,9 +203,8 @@ float FilledField::interpolated(const Cell& leaf) const {
   const auto leaves = static_cast<float>(field_.cell_leaves());
   const auto split = [&](int at, int count, int& first, float& part) {
     const float cells = (static_cast<float>(at) + 0.5F) / leaves - 0.5F;
-    const float whole = std::clamp(std::floor(cells), 0.0F, static_cast<float>(count - 2));
-    first = static_cast<int>(whole);
-    part = std::clamp(cells - whole, 0.0F, 1.0F);
+    first = std::clamp(static_cast<int>(std::max(cells, 0.0F)), 0, count - 2);
+    part = std::clamp(cells - static_cast<float>(first), 0.0F, 1.0F);
   };
   int x = 0;
   int y = 0;

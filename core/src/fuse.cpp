@@ -104,7 +104,8 @@ class Fusion {
 
   /// The nearest pixel, -1 or less if it is before the first; huge numbers are cut.
   static int pixel(float at) {
-    return static_cast<int>(std::floor(std::clamp(at, -10000.0F, 20000.0F) + 0.5F));
+    constexpr int before = 1024;  // counted from there, so that the cast rounds down
+    return static_cast<int>(std::clamp(at, 0.5F - before, 16384.0F) + (before + 0.5F)) - before;
   }
 
   void descend(const Cell& brick, int bricks) {
@@ -250,8 +251,8 @@ class Fusion {
     const float behind = std::max(0.0F, -distance - leaf_);
     const float near = std::max(0.0F, 1 - behind / (truncation_ - leaf_));
     const float trust = near * near * near;
-    const float added =
-        std::floor(weight * trust * static_cast<float>(DistanceField::weight_ticks) + 0.5F);
+    const auto added = static_cast<float>(
+        static_cast<int>(weight * trust * static_cast<float>(DistanceField::weight_ticks) + 0.5F));
     if (added <= 0) {
       return;
     }
@@ -259,7 +260,7 @@ class Fusion {
     const float ticks = distance / truncation_ * static_cast<float>(DistanceField::ticks);
     const float mean =
         (static_cast<float>(samples.distance[index]) * had + ticks * added) / (had + added);
-    samples.distance[index] = static_cast<std::int16_t>(std::floor(mean + 0.5F));
+    samples.distance[index] = static_cast<std::int16_t>(static_cast<int>(mean + 32768.5F) - 32768);
     samples.weight[index] = static_cast<std::uint16_t>(std::min(had + added, most));
   }
 

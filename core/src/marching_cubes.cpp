@@ -79,32 +79,39 @@ class Sweep {
     for (int y = 0; y + 1 < inside_.size().y; ++y) {
       const std::array rows{row(y, z), row(y + 1, z), row(y, z + 1), row(y + 1, z + 1)};
       for (std::size_t word = 0; word < empty_row_.size(); ++word) {
-        std::array<std::uint64_t, 8> corners{};
-        std::uint64_t any = 0;
-        std::uint64_t all = ~std::uint64_t{0};
-        for (std::size_t i = 0; i < 4; ++i) {
-          const std::uint64_t next = word + 1 < rows[i].size() ? rows[i][word + 1] : 0;
-          corners[2 * i] = rows[i][word];
-          corners[2 * i + 1] = rows[i][word] >> 1 | next << 63;
-          any |= corners[2 * i] | corners[2 * i + 1];
-          all &= corners[2 * i] & corners[2 * i + 1];
-        }
-        for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
-          const int bit = std::countr_zero(mixed);
-          std::size_t pattern = 0;
-          for (std::size_t corner = 0; corner < 8; ++corner) {
-            pattern |= (corners[corner] >> bit & 1) << corner;
-          }
-          const int x = static_cast<int>(word) * 64 + bit;
-          layer.mixed.push_back({x, y, static_cast<std::uint8_t>(pattern)});
-          if (may_cut_itself(pattern)) {
-            layer.cutting.resize(names_[0].size());
-            layer.cutting[at(x, y)] = 1;
-          }
-        }
+        add_mixed(rows, word, y, layer);
       }
     }
     return layer;
+  }
+
+  /// Adds those of 64 cubes along x that the surface crosses.
+  /// @param rows  of leaves that they lie between
+  void add_mixed(const std::array<std::span<const std::uint64_t>, 4>& rows, std::size_t word, int y,
+                 CubeLayer& layer) const {
+    std::array<std::uint64_t, 8> corners{};
+    std::uint64_t any = 0;
+    std::uint64_t all = ~std::uint64_t{0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::uint64_t next = word + 1 < rows[i].size() ? rows[i][word + 1] : 0;
+      corners[2 * i] = rows[i][word];
+      corners[2 * i + 1] = rows[i][word] >> 1 | next << 63;
+      any |= corners[2 * i] | corners[2 * i + 1];
+      all &= corners[2 * i] & corners[2 * i + 1];
+    }
+    for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
+      const int bit = std::countr_zero(mixed);
+      std::size_t pattern = 0;
+      for (std::size_t corner = 0; corner < 8; ++corner) {
+        pattern |= (corners[corner] >> bit & 1) << corner;
+      }
+      const int x = static_cast<int>(word) * 64 + bit;
+      layer.mixed.push_back({x, y, static_cast<std::uint8_t>(pattern)});
+      if (may_cut_itself(pattern)) {
+        layer.cutting.resize(names_[0].size());
+        layer.cutting[at(x, y)] = 1;
+      }
+    }
   }
 
   std::size_t at(int x, int y) const {
@@ -119,11 +126,7 @@ class Sweep {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const CubeEdge edge = surface.triangles[i][corner];
         const std::size_t axis = edge / 4U;
-        const int u = edge % 2;
-        const int v = edge / 2 % 2;
-        const Cell leaf = axis == 0   ? Cell{cube.x, cube.y + u, z + v}
-                          : axis == 1 ? Cell{cube.x + v, cube.y, z + u}
-                                      : Cell{cube.x + u, cube.y + v, z};
+        const Cell leaf = start_of(edge, {cube.x, cube.y, z});
         const bool is_above = axis < 2 && leaf.z > z;
         std::uint32_t& name = names_[axis + (is_above ? 3 : 0)][at(leaf.x, leaf.y)];
         if (name == 0) {
@@ -134,6 +137,20 @@ class Sweep {
         triangle[corner] = name - 1;
       }
       triangles_.push_back(triangle);
+    }
+  }
+
+  /// The leaf that an edge of a cube begins at.
+  static Cell start_of(CubeEdge edge, Cell cube) {
+    const int u = edge % 2;
+    const int v = edge / 2 % 2;
+    switch (edge / 4) {
+      case 0:
+        return {cube.x, cube.y + u, cube.z + v};
+      case 1:
+        return {cube.x + v, cube.y, cube.z + u};
+      default:
+        return {cube.x + u, cube.y + v, cube.z};
     }
   }
 

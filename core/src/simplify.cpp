@@ -8,8 +8,8 @@
 namespace octurn {
 namespace {
 
-constexpr int passes = 12;
-constexpr std::size_t window_triangles = 60'000;
+constexpr int passes = 6;
+constexpr std::size_t window_triangles = 30'000;
 constexpr double least_edge_mm = 0.036;  // slicers meld vertices that are closer
 constexpr double least_turn = 0.5;       // cosine between a triangle's normals before and after
 
@@ -31,6 +31,27 @@ Vector cross(const Vector& a, const Vector& b) {
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 Vector normal_of(const Vector& a, const Vector& b, const Vector& c) { return cross(b - a, c - a); }
+
+/// Whether a side or a height is below a slicer's grain, or a height below a twentieth of the
+/// longest side.
+bool is_sliver(const std::array<Vector, 3>& corners) {
+  constexpr double least_square = least_edge_mm * least_edge_mm;
+  double longest = 0;
+  double shortest = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector side = corners[(i + 1) % 3] - corners[i];
+    longest = std::max(longest, dot(side, side));
+    shortest = std::min(shortest, dot(side, side));
+  }
+  const Vector normal = normal_of(corners[0], corners[1], corners[2]);
+  const double height = dot(normal, normal) / longest;
+  return shortest < least_square || height < least_square || height < longest / 400;
+}
+
+/// Whether a triangle's edge was collapsed.
+bool is_gone(const MeshTriangle& triangle) {
+  return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+}
 
 }  // namespace
 
@@ -212,32 +233,34 @@ Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) c
   return collapse;
 }
 
-bool Simplifier::may_collapse(const Collapse& collapse) {
+bool Simplifier::may_collapse(const Collapse& collapse) const {
   const auto& [cost, a, b, position] = collapse;
-  const auto around_a = triangles_of(a);
-  const auto around_b = triangles_of(b);
   // The link condition: the ends have just the two neighbours in common that face the edge.
   int common = 0;
-  for (const std::uint32_t i : around_a) {
-    for (const std::uint32_t corner : triangles_[i]) {
-      if (corner == a || corner == b) {
-        continue;
-      }
-      // Each neighbour of `a` is met in two triangles: counted in the one it follows `a` in.
-      const MeshTriangle& triangle = triangles_[i];
-      const bool follows = (triangle[0] == a && triangle[1] == corner) ||
-                           (triangle[1] == a && triangle[2] == corner) ||
-                           (triangle[2] == a && triangle[0] == corner);
-      if (follows && std::ranges::any_of(around_b, [&](std::uint32_t j) {
-            const MeshTriangle& other = triangles_[j];
-            return other[0] == corner || other[1] == corner || other[2] == corner;
-          })) {
-        ++common;
-      }
+  std::size_t around = 0;
+  for (const std::uint32_t i : triangles_of(a)) {
+    const MeshTriangle& triangle = triangles_[i];
+    if (is_gone(triangle)) {
+      continue;
     }
+    ++around;
+    const std::size_t at = triangle[0] == a ? 0 : triangle[1] == a ? 1 : 2;
+    const std::uint32_t neighbour = triangle[(at + 1) % 3];  // each follows `a` in one triangle
+    common += neighbour != b && are_neighbours(neighbour, b) ? 1 : 0;
   }
-  return common == 2 && around_a.size() + around_b.size() > 6 + 2 && !turns_over(collapse, a, b) &&
-         !turns_over(collapse, b, a);
+  // Around the end that stays there must be three triangles or more when two are gone.
+  for (const std::uint32_t i : triangles_of(b)) {
+    around += is_gone(triangles_[i]) ? 0 : 1;
+  }
+  return common == 2 && around > 6 && !turns_over(collapse, a, b) && !turns_over(collapse, b, a);
+}
+
+/// Whether a live triangle at `b` has the corner `a`.
+bool Simplifier::are_neighbours(std::uint32_t a, std::uint32_t b) const {
+  return std::ranges::any_of(triangles_of(b), [&](std::uint32_t i) {
+    const MeshTriangle& triangle = triangles_[i];
+    return !is_gone(triangle) && (triangle[0] == a || triangle[1] == a || triangle[2] == a);
+  });
 }
 
 /// Whether a triangle around one end, but not the other, would turn over or shrink to a sliver.
@@ -246,7 +269,7 @@ bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
   const Vector to = vector_of(collapse.position);
   for (const std::uint32_t i : triangles_of(around)) {
     const MeshTriangle& triangle = triangles_[i];
-    if (triangle[0] == other || triangle[1] == other || triangle[2] == other) {
+    if (is_gone(triangle) || triangle[0] == other || triangle[1] == other || triangle[2] == other) {
       continue;
     }
     std::array<Vector, 3> before;
@@ -254,30 +277,16 @@ bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
       before[corner] = vector_of(vertices_[triangle[corner]].position);
     }
     std::array<Vector, 3> after = before;
-    double longest = 0;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       if (triangle[corner] == around) {
         after[corner] = to;
       }
     }
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vector side = after[(corner + 1) % 3] - after[corner];
-      const double square = dot(side, side);
-      if (square < least_edge_mm * least_edge_mm) {
-        return true;
-      }
-      longest = std::max(longest, square);
-    }
     const Vector was = normal_of(before[0], before[1], before[2]);
     const Vector is = normal_of(after[0], after[1], after[2]);
     const double along = dot(was, is);
-    const double square = dot(is, is);
-    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * square) {
-      return true;
-    }
-    // A height below a slicer's grain, or a twentieth of the longest side.
-    const double height = square / longest;
-    if (height < least_edge_mm * least_edge_mm || height < longest / 400) {
+    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * dot(is, is) ||
+        is_sliver(after)) {
       return true;
     }
   }
@@ -285,13 +294,9 @@ bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
 }
 
 void Simplifier::apply(const Collapse& collapse) {
-  for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
-    for (const std::uint32_t i : triangles_of(end)) {
-      for (const std::uint32_t corner : triangles_[i]) {
-        touched_[corner] = 1;
-      }
-    }
-  }
+  // The lists of triangles at other vertices still hold, but for triangles that are gone.
+  touched_[collapse.kept] = 1;
+  touched_[collapse.gone] = 1;
   for (const std::uint32_t i : triangles_of(collapse.gone)) {
     std::ranges::replace(triangles_[i], collapse.gone, collapse.kept);
   }
@@ -305,11 +310,7 @@ void Simplifier::apply(const Collapse& collapse) {
   kept.quadric.area += gone.quadric.area;
 }
 
-void Simplifier::drop_collapsed() {
-  std::erase_if(triangles_, [](const MeshTriangle& triangle) {
-    return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-  });
-}
+void Simplifier::drop_collapsed() { std::erase_if(triangles_, is_gone); }
 
 /// Hands on the triangles that lie below `end` as a whole, and forgets the vertices that are no
 /// longer needed.

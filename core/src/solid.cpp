@@ -30,9 +30,6 @@ constexpr double least_truncation_leaves = 2.5;
 // far above its bottom.
 constexpr double foot_margin = 0.001;  // metres
 
-// Beginning higher than this, a clip box is meant to cut the object, not the platform.
-constexpr double highest_foot = 0.01;  // metres
-
 // What a process takes beside its field, measured with a sensor's 640 x 480 samples: the program
 // and its libraries, for each thread a snapshot and what it says, and the mesh on its way out.
 constexpr std::size_t program_bytes = std::size_t{10} << 20U;

@@ -59,8 +59,8 @@ class FilledField {
   void find_box();
   void classify();
   void classify(const Cell& cell, std::size_t index);
-  static void spread(Grid& fine);
-  void relax();
+  static void solve(Grid& fine);
+  static void relax(Grid& grid);
   float interpolated(const Cell& leaf) const;
   enum class Side { inside, outside, both };
   Side side_of(const Cell& brick) const;

@@ -54,7 +54,8 @@ class Simplifier {
   void index_corners();
   void list_collapses(double limit);
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
-  bool may_collapse(const Collapse& collapse);
+  bool may_collapse(const Collapse& collapse) const;
+  bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
   bool turns_over(const Collapse& collapse, std::uint32_t around, std::uint32_t other) const;
   void apply(const Collapse& collapse);
   void drop_collapsed();

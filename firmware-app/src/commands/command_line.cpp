@@ -22,17 +22,24 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
       ->type_name("FACTOR")
       ->check(CLI::Range(0.1, 1000.0))
       ->needs(simulate);
-  command.add_option("--sensor", rig.sensor_uri, "OpenNI2 device to use as the sensor")
+  command
+      .add_option("--sensor", rig.sensor_uri,
+                  "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
+                  "folder of `octurn record`")
       ->type_name("URI");
   return simulate;
 }
 
-void add_config_options(CLI::App& command, std::optional<std::filesystem::path>& config_file,
-                        std::optional<std::filesystem::path>& data) {
+void add_config_option(CLI::App& command, std::optional<std::filesystem::path>& config_file) {
   command
       .add_option("--config", config_file,
                   std::string("settings (") + default_config_file + ", if it is there)")
       ->type_name("FILE");
+}
+
+void add_config_options(CLI::App& command, std::optional<std::filesystem::path>& config_file,
+                        std::optional<std::filesystem::path>& data) {
+  add_config_option(command, config_file);
   command.add_option("--data", data, "folder of the scans (/var/lib/octurn)")->type_name("DIR");
 }
 
@@ -107,6 +114,28 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
   });
 }
 
+void add_record(CLI::App& program, RecordArguments& arguments) {
+  CLI::App& command = *program.add_subcommand(
+      "record", "what the sensor sees in a turn, to be replayed by --sensor");
+  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_config_option(command, arguments.config_file);
+  command
+      .add_option("-o,--output", arguments.output,
+                  "folder for the recording, which must not exist yet")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("--snapshots", arguments.snapshots, "stops in a turn (36); 1 does not turn")
+      ->type_name("N")
+      ->check(CLI::Range(1, 200));
+  command.add_option("--frames", arguments.frames, "frames at each stop (10)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100'000));
+  command.callback([&arguments, simulate] {
+    arguments.rig.simulate = simulate->count() > 0;
+    record(arguments);
+  });
+}
+
 void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
   CLI::App& command = *program.add_subcommand("reconstruct", "a model from a scan folder");
   command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
@@ -146,9 +175,11 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   ServeArguments serve_arguments;
   ScanArguments scan_arguments;
+  RecordArguments record_arguments;
   ReconstructArguments reconstruct_arguments;
   add_serve(program, serve_arguments);
   add_scan(program, scan_arguments);
+  add_record(program, record_arguments);
   add_reconstruct(program, reconstruct_arguments);
 
   block_signals();

@@ -15,7 +15,7 @@ struct RigArguments {
   bool simulate = false;
   std::string mesh_file = {};   ///< on the simulated platform; empty: the simulator's own object
   double speed = 1.0;           ///< of the simulated rig, relative to life
-  std::string sensor_uri = {};  ///< for OpenNI2, in place of the simulated sensor
+  std::string sensor_uri = {};  ///< of a DepthSensor, in place of the simulated one
 };
 
 /// @param stepper  of the real turntable, which is used without --simulate
@@ -56,6 +56,17 @@ struct ScanArguments {
 
 /// `octurn scan`: one scan from the shell. The model goes to `output`, the scan stays in `data`.
 void scan(const ScanArguments& arguments);
+
+struct RecordArguments {
+  RigArguments rig = {};
+  std::optional<std::filesystem::path> config_file = {};
+  std::filesystem::path output = {};
+  int snapshots = 36;  ///< stops in a turn
+  int frames = 10;     ///< at each stop
+};
+
+/// `octurn record`: what the sensor sees in a turn of the platform, to be replayed as the sensor.
+void record(const RecordArguments& arguments);
 
 struct ReconstructArguments {
   std::filesystem::path folder = {};

@@ -1,7 +1,10 @@
 #include "scan/scan_settings.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -75,6 +78,11 @@ Eigen::Isometry3d pose_from(const JsonObject& settings, const json& rows) {
 
 int available_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::size_t half_of_memory() {
+  return static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) / 2 *
+         static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {

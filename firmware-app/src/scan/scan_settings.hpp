@@ -14,6 +14,9 @@ namespace octurn {
 /// One for each processor.
 int available_threads();
 
+/// Half of the machine's memory, bytes: the rest is for the system and its buffers.
+std::size_t half_of_memory();
+
 /// What one scan is made with.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
@@ -32,7 +35,7 @@ struct ScanSettings {
 /// What a reconstruction may use of this machine. No byte of a model depends on it.
 struct Limits {
   int threads = available_threads();
-  std::size_t memory_bytes = 0;  ///< that the whole process may take; 0 is no limit
+  std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
 /// The settings of the reconstruction among them.

@@ -8,6 +8,7 @@
 
 #include "octurn/depth_frame.hpp"
 #include "octurn/intrinsics.hpp"
+#include "sensor/tilt.hpp"
 
 namespace octurn {
 
@@ -22,12 +23,16 @@ struct TimedFrame {
 /// @throws Error "sensor-failed"
 void load_sensor_drivers();
 
-/// A depth camera behind OpenNI2: a Kinect v1 through Octurn's driver, a simulated one, any sensor
-/// that OpenNI2 knows, or a recording. Used by one thread at a time.
+class SensorDevice;
+
+/// A depth camera: a Kinect v1, a simulated one, any sensor that OpenNI2 knows, or a recording that
+/// takes its place. Used by one thread at a time.
 class DepthSensor {
  public:
-  /// Opens the device of that URI, or the first one found if `uri` is empty, and starts its depth
-  /// stream. @throws Error "sensor-missing" if there is none, "sensor-failed" if it does not start
+  /// Opens the OpenNI2 device of that URI, the .oni file of that name, or the recording in that
+  /// folder; the first device found if `uri` is empty. Starts its depth stream.
+  /// @throws Error "sensor-missing" if there is none, "sensor-failed" if it does not start,
+  ///               "recording-malformed"
   explicit DepthSensor(const std::string& uri);
   ~DepthSensor();
   DepthSensor(const DepthSensor&) = delete;
@@ -40,13 +45,16 @@ class DepthSensor {
   /// @throws Error "sensor-silent" if none comes for 2 s, "sensor-lost" if the device is gone
   std::optional<TimedFrame> read(const std::stop_token& stop);
 
-  /// Tells a simulated sensor where its turntable stands. Others pass it over.
+  /// How it stands, by its accelerometer; nothing if it has none that can be read.
+  std::optional<Tilt> tilt() const;
+
+  /// Tells a simulated sensor or a recording where the turntable stands, and that what it sees from
+  /// now on begins there. Others pass it over.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   void show_angle(double angle);
 
  private:
-  struct Device;
-  std::unique_ptr<Device> device_;
+  std::unique_ptr<SensorDevice> device_;
 };
 
 }  // namespace octurn

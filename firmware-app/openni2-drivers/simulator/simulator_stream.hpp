@@ -1,13 +1,12 @@
 #pragma once
 
-#include <Driver/OniDriverAPI.h>
-
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <stop_token>
 #include <thread>
 
+#include "depth_stream.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulation.hpp"
 
@@ -19,23 +18,17 @@ struct DeviceState {
   std::atomic<bool> is_lost = false;
 };
 
-/// The depth stream of a simulated Kinect: DEPTH_100_UM, 640 x 480, 30 frames a second times the
-/// simulation's speed, from a thread of its own that runs from start() to stop().
-class DepthStream final : public oni::driver::StreamBase {
+/// The depth stream of a simulated Kinect, at 30 frames a second times the simulation's speed, from
+/// a thread of its own that runs from start() to stop().
+class SimulatorStream final : public DepthStream {
  public:
-  DepthStream(const Simulation& simulation, SimulatedKinect& kinect, DeviceState& device);
-  ~DepthStream() override;
-  DepthStream(const DepthStream&) = delete;
-  DepthStream& operator=(const DepthStream&) = delete;
-
-  static constexpr OniVideoMode video_mode = {ONI_PIXEL_FORMAT_DEPTH_100_UM, 640, 480, 30};
+  SimulatorStream(const Simulation& simulation, SimulatedKinect& kinect, DeviceState& device);
+  ~SimulatorStream() override;
+  SimulatorStream(const SimulatorStream&) = delete;
+  SimulatorStream& operator=(const SimulatorStream&) = delete;
 
   OniStatus start() override;
   void stop() override;
-  OniBool isPropertySupported(int property) override;
-  OniStatus getProperty(int property, void* data, int* size) override;
-  OniStatus setProperty(int property, const void* data, int size) override;
-  void notifyAllProperties() override;
 
  private:
   void run(const std::stop_token& stop);

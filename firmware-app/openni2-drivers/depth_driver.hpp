@@ -1,0 +1,60 @@
+#pragma once
+
+#include <new>
+
+// OpenNI2's header for drivers takes these two from a library that is not packaged.
+#define XN_NEW(type, argument) new (std::nothrow) type(argument)
+#define XN_DELETE(pointer) delete (pointer)
+#include <Driver/OniDriverAPI.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "depth_stream.hpp"
+
+namespace octurn {
+
+/// A device with one sensor, of depth.
+class DepthDevice : public oni::driver::DeviceBase {
+ public:
+  OniStatus getSensorInfoList(OniSensorInfo** infos, int* count) override;
+  oni::driver::StreamBase* createStream(OniSensorType type) override;
+  void destroyStream(oni::driver::StreamBase* stream) override;
+
+ protected:
+  virtual std::unique_ptr<DepthStream> create_depth_stream() = 0;
+
+ private:
+  OniVideoMode mode_ = DepthStream::video_mode;
+  OniSensorInfo sensor_ = {ONI_SENSOR_DEPTH, 1, &mode_};
+};
+
+/// A driver of devices whose URIs begin with a scheme. It starts no thread of its own that would
+/// tell of devices: OpenNI2's shutdown would wait for it for ever.
+class DepthDriver : public oni::driver::DriverBase {
+ public:
+  /// @param device_name  of every device
+  DepthDriver(OniDriverServices* services, std::string_view scheme, std::string_view device_name)
+      : DriverBase(services), scheme_(scheme), device_name_(device_name) {}
+
+  /// Takes every URI of its scheme, also one that `open` will refuse: only its reasons are heard.
+  OniStatus tryDevice(const char* uri) override;
+
+  oni::driver::DeviceBase* deviceOpen(const char* uri, const char* mode) override;
+  void deviceClose(oni::driver::DeviceBase* device) override;
+  void shutdown() override {}
+
+ protected:
+  /// @throws std::exception  that says why it cannot
+  virtual std::unique_ptr<DepthDevice> open(std::string_view uri) = 0;
+
+  /// Puts a device on OpenNI2's list.
+  void announce(std::string_view uri);
+
+ private:
+  std::string scheme_;
+  std::string device_name_;
+};
+
+}  // namespace octurn

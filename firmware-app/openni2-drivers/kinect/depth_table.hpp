@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace octurn {
+
+/// How one Kinect v1 measures, as its factory has written into it. The defaults are typical.
+struct KinectParameters {
+  double baseline_cm = 7.5;            ///< from the projector to the depth camera
+  double reference_distance_mm = 120;  ///< in units of its 1.2 m, as the device has it
+  double reference_pixel_mm = 0.1042;  ///< of the reference plane, seen by one pixel
+  double shift = 200;                  ///< of readings, so that they are positive
+
+  /// Of the depth camera, in pixels of 640 x 480: those of the sensor, 1280 x 960, are half as
+  /// wide.
+  double focal_length() const { return reference_distance_mm / (2 * reference_pixel_mm); }
+};
+
+/// The 11-bit reading that stands for none.
+inline constexpr int no_kinect_reading = 2047;
+
+/// The depth of each of the 2048 readings in tenths of a millimetre, to the nearest; 0 for no
+/// reading, for those that stand for no depth, and for those farther than 16 bits can tell.
+using DepthTable = std::array<std::uint16_t, no_kinect_reading + 1>;
+
+/// With the metric shift m = ((reading - 4 shift) / 4 - 3/8) p, the depth is
+/// z = 10 (m d / (b - m) + d) mm: baseline b, reference distance d, reference pixel p. For the
+/// defaults it is z = 345489 / (1089.40 - reading) mm, which fits frames of real sensors.
+DepthTable depth_table(const KinectParameters& parameters);
+
+}  // namespace octurn

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <libfreenect.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+
+#include "kinect/depth_table.hpp"
+#include "sensor/tilt.hpp"
+
+namespace octurn {
+
+/// A frame of 640 x 480 raw readings, and when its first packet came: its exposure had ended then.
+struct RawFrame {
+  std::span<const std::uint16_t> readings = {};
+  std::chrono::steady_clock::time_point time = {};
+};
+
+/// A Kinect v1 on USB, by libfreenect. Its colour camera is never started: a Raspberry Pi has no
+/// bandwidth for both.
+class Kinect {
+ public:
+  /// @param index  among the Kinects that are plugged in
+  /// @throws Error "sensor-missing"
+  explicit Kinect(int index);
+  ~Kinect();
+  Kinect(const Kinect&) = delete;
+  Kinect& operator=(const Kinect&) = delete;
+
+  /// How many are plugged in.
+  static int count();
+
+  const KinectParameters& parameters() const { return parameters_; }
+
+  /// By its accelerometer, as read within the last second of a stream; nothing if it has none that
+  /// can be read.
+  std::optional<Tilt> tilt() const;
+
+  bool has_near_mode() const { return has_near_mode_; }
+
+  /// @return false if the depth stream runs: then it cannot be changed
+  bool set_near_mode(bool on);
+
+  /// Runs the depth stream until a stop is requested or the device is gone.
+  /// @param on_frame  given each frame of which every packet has come; the others are dropped
+  void stream(const std::stop_token& stop, const std::function<void(const RawFrame&)>& on_frame);
+
+  /// Whether it was unplugged.
+  bool is_lost() const { return is_lost_; }
+
+ private:
+  struct End {
+    void operator()(freenect_context* context) const { freenect_shutdown(context); }
+  };
+  using Context = std::unique_ptr<freenect_context, End>;
+
+  static Context make_context(int subdevices);
+  bool open(int index, int subdevices);
+  void read_parameters();
+  void read_tilt();
+  void take_packet(std::byte* frame, const void* data, int number, int bytes);
+  void take_frame(const std::uint16_t* readings);
+
+  std::mutex usb_;   // guards what libfreenect does: a stream holds it as long as it runs
+  Context context_;  // closes the device when it ends
+  freenect_device* device_ = nullptr;
+  KinectParameters parameters_ = {};
+  bool has_near_mode_ = false;
+  bool has_accelerometer_ = false;
+  mutable std::mutex tilt_mutex_;  // guards tilt_
+  std::optional<Tilt> tilt_ = {};
+  std::atomic<bool> is_lost_ = false;
+  const std::function<void(const RawFrame&)>* on_frame_ = nullptr;  // while a stream runs
+  int packets_in_order_ = 0;  // of the frame that is coming; -1 once one was missing
+  std::chrono::steady_clock::time_point frame_begin_ = {};
+};
+
+}  // namespace octurn

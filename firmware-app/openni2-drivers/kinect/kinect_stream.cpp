@@ -1,0 +1,33 @@
+#include "kinect/kinect_stream.hpp"
+
+#include <algorithm>
+
+namespace octurn {
+
+KinectStream::KinectStream(Kinect& kinect)
+    : DepthStream(kinect.parameters().focal_length()),
+      kinect_(kinect),
+      table_(depth_table(kinect.parameters())) {}
+
+KinectStream::~KinectStream() = default;
+
+OniStatus KinectStream::start() {
+  if (!thread_.joinable()) {
+    thread_ = std::jthread([this](const std::stop_token& stop) {
+      kinect_.stream(stop, [this](const RawFrame& frame) { convert(frame); });
+    });
+  }
+  return ONI_STATUS_OK;
+}
+
+void KinectStream::stop() { thread_ = {}; }
+
+void KinectStream::convert(const RawFrame& frame) {
+  deliver(++frames_, frame.time, [&](std::span<OniDepthPixel> depth) {
+    std::ranges::transform(frame.readings, depth.begin(), [this](std::uint16_t reading) {
+      return table_[reading & std::size_t{no_kinect_reading}];
+    });
+  });
+}
+
+}  // namespace octurn

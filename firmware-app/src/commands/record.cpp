@@ -1,0 +1,68 @@
+#include <chrono>
+
+#include "commands/commands.hpp"
+#include "interruption.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "progress_bar.hpp"
+#include "scan/plan.hpp"
+#include "sensor/recording.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void stopped() {
+  throw Error("stopped", "stopped before the end: no recording was written");
+}
+
+/// The next frame whose exposure ended after the platform had settled.
+TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
+                         const std::stop_token& stop) {
+  for (;;) {
+    std::optional<TimedFrame> timed = sensor.read(stop);
+    if (!timed) {
+      stopped();
+    }
+    if (timed->time > settled) {
+      return *std::move(timed);
+    }
+  }
+}
+
+}  // namespace
+
+void record(const RecordArguments& arguments) {
+  const Config config = arguments.config_file ? read_config(*arguments.config_file)
+                                              : read_config_if_there(default_config_file);
+  const RigOptions options = rig_options(arguments.rig, config.turntable);
+  load_sensor_drivers();  // before the first thread, as it asks
+  const Interruption interruption;
+  const std::stop_token stop = interruption.token();
+  Rig rig(options);
+  DepthSensor& sensor = rig.sensor();
+  Turntable& turntable = rig.turntable();
+  const int steps = turntable.steps_per_turn();
+  RecordingWriter writer(arguments.output, sensor.name(), sensor.intrinsics());
+  ProgressBar bar;
+  std::optional<Clock::time_point> begin;
+  int done = 0;
+  for (const int position : stop_positions(turntable.position(), steps, arguments.snapshots)) {
+    bar.show(done++, arguments.snapshots, "recording");
+    if (!turntable.move_to(position, stop)) {
+      stopped();
+    }
+    const Clock::time_point settled = Clock::now();
+    for (int frame = 0; frame < arguments.frames; ++frame) {
+      const TimedFrame timed = settled_frame(sensor, settled, stop);
+      begin = begin.value_or(timed.time);
+      writer.write(timed.frame, {.time = timed.time - *begin,
+                                 .angle = radians_from_degrees(angle_deg_at(position, steps)),
+                                 .tilt = sensor.tilt()});
+    }
+  }
+  writer.commit();
+}
+
+}  // namespace octurn

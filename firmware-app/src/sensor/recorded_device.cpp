@@ -1,0 +1,82 @@
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "sensor/pace.hpp"
+#include "sensor/recording.hpp"
+#include "sensor/sensor_device.hpp"
+
+namespace octurn {
+namespace {
+
+/// Whether two angles of the platform are the same, but for the last digits of a file.
+bool is_same_angle(double one, double other) {
+  constexpr double close = 1e-6;  // radians; the finest step of a turntable is a thousand times it
+  return std::abs(std::remainder(one - other, 2 * std::numbers::pi)) < close;
+}
+
+/// Gives the frames that were recorded at the angle of the platform, in their order, and those
+/// again after the last.
+class RecordedDevice final : public SensorDevice {
+ public:
+  explicit RecordedDevice(std::filesystem::path folder)
+      : folder_(std::move(folder)),
+        recording_(read_recording(folder_)),
+        name_(recording_.sensor_name + " (recorded)"),
+        angle_(recording_.frames.front().angle) {}
+
+  const std::string& name() const override { return name_; }
+  const Intrinsics& intrinsics() const override { return recording_.intrinsics; }
+
+  std::optional<TimedFrame> read(const std::stop_token& stop) override {
+    const std::size_t frame = next_frame();
+    if (!pace_.wait(stop)) {
+      return std::nullopt;
+    }
+    tilt_ = recording_.frames[frame].tilt;
+    next_ = frame + 1;
+    return TimedFrame{.frame = read_recorded_frame(folder_, recording_, frame),
+                      .time = std::chrono::steady_clock::now()};
+  }
+
+  std::optional<Tilt> tilt() const override { return tilt_; }
+
+  void show_angle(double angle) override {
+    angle_ = angle;
+    next_ = 0;
+  }
+
+ private:
+  /// The next one that was taken at the platform's angle.
+  std::size_t next_frame() const {
+    const std::size_t count = recording_.frames.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t frame = (next_ + i) % count;
+      if (is_same_angle(recording_.frames[frame].angle, angle_)) {
+        return frame;
+      }
+    }
+    throw Error("sensor-failed",
+                folder_.string() + ": has no frame at " +
+                    std::to_string(degrees_from_radians(angle_)) + " degrees",
+                "Scan with as many snapshots as were recorded.");
+  }
+
+  std::filesystem::path folder_;
+  Recording recording_;
+  std::string name_;
+  double angle_;
+  std::size_t next_ = 0;
+  std::optional<Tilt> tilt_ = recording_.frames.front().tilt;
+  Pace pace_ = {};
+};
+
+}  // namespace
+
+std::unique_ptr<SensorDevice> open_recording(const std::string& folder) {
+  return std::make_unique<RecordedDevice>(folder);
+}
+
+}  // namespace octurn

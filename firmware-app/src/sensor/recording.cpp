@@ -1,0 +1,228 @@
+#include "sensor/recording.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "file_descriptor.hpp"
+#include "json_object.hpp"
+#include "octurn/atomic_file.hpp"
+#include "octurn/depth_png.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* format = "octurn-recording";
+constexpr const char* malformed = "recording-malformed";
+constexpr int version = 1;
+constexpr int largest_side = 10000;  // pixels
+constexpr double most = std::numeric_limits<double>::max();
+
+std::string frame_file(std::size_t frame) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "frames/%06zu.png", frame);
+  return name.data();
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::string& what) {
+  throw Error("write-failed", file.string() + ": " + what,
+              "Name a folder that does not exist yet, where this program may write.");
+}
+
+template <typename Value>
+Value required(std::optional<Value> value, std::string_view key) {
+  if (!value) {
+    throw Error(malformed, "\"" + std::string(key) + "\" is missing");
+  }
+  return *std::move(value);
+}
+
+const json& required(const json* value, std::string_view key) {
+  return *required(value == nullptr ? std::nullopt : std::optional(value), key);
+}
+
+double number(JsonObject& keys, std::string_view key, double least, double greatest) {
+  return required(keys.number(key, least, greatest), key);
+}
+
+Intrinsics intrinsics_from(JsonObject& sensor) {
+  constexpr double smallest = 1e-9;
+  return {.width = required(sensor.whole_number("width", 1, largest_side), "width"),
+          .height = required(sensor.whole_number("height", 1, largest_side), "height"),
+          .fx = number(sensor, "fx", smallest, most),
+          .fy = number(sensor, "fy", smallest, most),
+          .cx = number(sensor, "cx", -most, most),
+          .cy = number(sensor, "cy", -most, most),
+          .depth_unit = number(sensor, "depth_unit_m", smallest, 1)};
+}
+
+RecordedFrame frame_from(const json& object) {
+  JsonObject keys(object, malformed, "frames");
+  RecordedFrame frame{
+      .time = std::chrono::duration<double>(number(keys, "time_s", 0, most)),
+      .angle = radians_from_degrees(number(keys, "angle_deg", -360, 360)),
+  };
+  const auto pitch = keys.number("pitch_deg", -180, 180);
+  const auto roll = keys.number("roll_deg", -180, 180);
+  if (pitch && roll) {
+    frame.tilt = Tilt{.pitch = radians_from_degrees(*pitch), .roll = radians_from_degrees(*roll)};
+  }
+  keys.refuse_unread();
+  return frame;
+}
+
+json json_of(const RecordedFrame& frame) {
+  json object{{"time_s", frame.time.count()}, {"angle_deg", degrees_from_radians(frame.angle)}};
+  if (frame.tilt) {
+    object["pitch_deg"] = degrees_from_radians(frame.tilt->pitch);
+    object["roll_deg"] = degrees_from_radians(frame.tilt->roll);
+  }
+  return object;
+}
+
+json json_of(const Recording& recording) {
+  const Intrinsics& camera = recording.intrinsics;
+  json frames = json::array();
+  for (const RecordedFrame& frame : recording.frames) {
+    frames.push_back(json_of(frame));
+  }
+  return {{"format", format},
+          {"version", version},
+          {"sensor",
+           {{"name", recording.sensor_name},
+            {"width", camera.width},
+            {"height", camera.height},
+            {"fx", camera.fx},
+            {"fy", camera.fy},
+            {"cx", camera.cx},
+            {"cy", camera.cy},
+            {"depth_unit_m", camera.depth_unit}}},
+          {"frames", frames}};
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) {
+    throw Error(malformed, file.string() + ": cannot be read",
+                "Give the folder that `octurn record` has made.");
+  }
+  return content;
+}
+
+/// Everything that was written to the disk that holds this folder.
+void sync_disk_of(const fs::path& folder) {
+  const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.is_open() || ::syncfs(opened.number()) != 0) {
+    fail(folder, "cannot be synced");
+  }
+}
+
+}  // namespace
+
+Recording parse_recording(std::string_view text) {
+  const json object = parse_json(text, malformed, "it");
+  JsonObject keys(object, malformed, "");
+  if (required(keys.text("format"), "format") != format ||
+      required(keys.whole_number("version", 0, 1'000'000), "version") != version) {
+    throw Error(malformed, "it is no recording of a version that this program knows");
+  }
+  JsonObject sensor(required(keys.find("sensor"), "sensor"), malformed, "sensor");
+  Recording recording{.sensor_name = required(sensor.text("name"), "sensor.name"),
+                      .intrinsics = intrinsics_from(sensor)};
+  sensor.refuse_unread();
+  const json& frames = required(keys.find("frames"), "frames");
+  keys.refuse_unread();
+  if (!frames.is_array() || frames.empty()) {
+    keys.refuse("frames", frames, "an array with at least one frame");
+  }
+  for (const json& frame : frames) {
+    recording.frames.push_back(frame_from(frame));
+  }
+  return recording;
+}
+
+Recording read_recording(const fs::path& folder) {
+  const fs::path file = folder / "recording.json";
+  const std::string text = content_of(file);
+  try {
+    return parse_recording(text);
+  } catch (const Error& error) {
+    throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
+  }
+}
+
+DepthFrame read_recorded_frame(const fs::path& folder, const Recording& recording,
+                               std::size_t frame) {
+  const fs::path file = folder / frame_file(frame);
+  const std::string png = content_of(file);
+  return decode_depth_png(file.string(), std::as_bytes(std::span(png)), recording.intrinsics.width,
+                          recording.intrinsics.height);
+}
+
+RecordingWriter::RecordingWriter(fs::path folder, std::string sensor_name,
+                                 const Intrinsics& intrinsics)
+    : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
+      recording_{.sensor_name = std::move(sensor_name), .intrinsics = intrinsics} {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(folder_, error))) {
+    fail(folder_, "is there already");
+  }
+  if (folder_.has_parent_path()) {
+    fs::create_directories(folder_.parent_path(), error);
+  }
+  const std::string prefix = "." + folder_.filename().string() + "." + std::to_string(::getpid());
+  for (int attempt = 0; temporary_.empty(); ++attempt) {
+    const fs::path wanted = folder_.parent_path() / (prefix + "-" + std::to_string(attempt));
+    if (fs::create_directory(wanted, error)) {
+      temporary_ = wanted;
+    } else if (error) {
+      fail(folder_, "cannot be made: " + error.message());
+    }
+  }
+  fs::create_directory(temporary_ / "frames", error);
+}
+
+RecordingWriter::~RecordingWriter() {
+  std::error_code ignored;
+  fs::remove_all(temporary_, ignored);
+}
+
+void RecordingWriter::write(const DepthFrame& frame, const RecordedFrame& about) {
+  const fs::path file = temporary_ / frame_file(recording_.frames.size());
+  const std::vector<std::byte> png = encode_depth_png(frame);
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  if (!stream.flush()) {
+    fail(file, "cannot be written: is the disk full?");
+  }
+  recording_.frames.push_back(about);
+}
+
+void RecordingWriter::commit() {
+  write_file(temporary_ / "recording.json", json_of(recording_).dump(1) + "\n");
+  sync_disk_of(temporary_);
+  std::error_code error;
+  fs::rename(temporary_, folder_, error);
+  if (error) {
+    fail(folder_, "cannot be made: " + error.message());
+  }
+  sync_disk_of(folder_);
+}
+
+}  // namespace octurn

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/intrinsics.hpp"
+#include "sensor/tilt.hpp"
+
+namespace octurn {
+
+/// One frame of a recording, without its depth.
+struct RecordedFrame {
+  std::chrono::duration<double> time = {};  ///< of its exposure, since the first one's
+  double angle = 0;                         ///< of the platform, radians
+  std::optional<Tilt> tilt = {};
+};
+
+/// What a sensor has seen: a folder with `recording.json` and, for each frame in order, its depth
+/// as a PNG like those of a scan folder (`frames/000000.png`).
+///
+/// `{"format": "octurn-recording", "version": 1, "sensor": {"name": "Kinect v1", "width": 640,
+/// "height": 480, "fx": 575.8, "fy": 575.8, "cx": 320, "cy": 240, "depth_unit_m": 0.0001},
+/// "frames": [{"time_s": 0, "angle_deg": 0, "pitch_deg": -25, "roll_deg": 0}, ...]}`, the last two
+/// only where the sensor has told them.
+struct Recording {
+  std::string sensor_name = {};
+  Intrinsics intrinsics = {};
+  std::vector<RecordedFrame> frames = {};
+};
+
+/// Reads the text of a `recording.json`.
+/// @throws Error "recording-malformed"  that names the key and what is wrong with it
+Recording parse_recording(std::string_view text);
+
+/// The same from the folder. @throws Error  also if there is no such file
+Recording read_recording(const std::filesystem::path& folder);
+
+/// The depth of one frame. @throws Error  if its file is missing, damaged, or of another size
+DepthFrame read_recorded_frame(const std::filesystem::path& folder, const Recording& recording,
+                               std::size_t frame);
+
+/// Writes a recording that appears whole or not at all: under a temporary name beside `folder`
+/// until it is committed.
+class RecordingWriter {
+ public:
+  /// @throws Error "write-failed"  if `folder` exists or cannot be made
+  RecordingWriter(std::filesystem::path folder, std::string sensor_name,
+                  const Intrinsics& intrinsics);
+  ~RecordingWriter();
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  /// Appends a frame. @throws Error  if the disk does not take it
+  void write(const DepthFrame& frame, const RecordedFrame& about);
+
+  /// Gives the folder its name; returns when it is on the disk. @throws Error  as above
+  void commit();
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path temporary_;
+  Recording recording_;
+};
+
+}  // namespace octurn

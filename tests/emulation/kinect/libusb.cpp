@@ -1,0 +1,351 @@
+// A stand-in for libusb-1.0, as far as libfreenect and OpenNI2's drivers use it: its bus has one
+// emulated Kinect, or nothing. A program that finds it first (by LD_LIBRARY_PATH) has that bus in
+// place of the machine's; everything above is as it would be with a real one.
+
+#include <libusb.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+#include "emulation/kinect/camera.hpp"
+#include "emulation/kinect/mapped_file.hpp"
+
+using octurn::Camera;
+using octurn::EmulatedKinect;
+using octurn::KinectModel;
+using octurn::MappedFile;
+using std::chrono::steady_clock;
+
+struct libusb_device {
+  enum class Part { camera, motor, audio };
+  libusb_context* context = nullptr;
+  Part part = Part::camera;
+};
+
+struct libusb_device_handle {
+  libusb_device* device = nullptr;
+  int plugged_times = 0;  // when it was opened
+};
+
+/// A program's view of the bus. libfreenect uses each from one thread at a time.
+struct libusb_context {
+  /// The Kinect that the environment names.
+  struct Bus {
+    explicit Bus(const std::filesystem::path& folder)
+        : control(folder / "kinect"), frames(folder / "frames") {}
+    MappedFile control;
+    MappedFile frames;
+    EmulatedKinect& kinect = control.as<EmulatedKinect>();
+    Camera camera = Camera(kinect, frames.values<Camera::Reading>());
+  };
+
+  std::optional<Bus> bus = {};
+  std::array<libusb_device, 3> devices = {};
+  std::deque<libusb_transfer*> waiting = {};
+  std::deque<libusb_transfer*> cancelled = {};
+  steady_clock::time_point begin = {};  // of the microframes that transfers wait for
+  std::int64_t microframes = 0;         // since then
+};
+
+namespace {
+
+constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to a request that a device has not
+constexpr auto microframe = std::chrono::microseconds(125);
+constexpr auto longest_backlog = std::chrono::milliseconds(50);  // more of what was missed is lost
+
+bool is_dead(const libusb_device_handle& handle) {
+  const auto& bus = handle.device->context->bus;
+  return !bus->kinect.plugged || bus->kinect.plugged_times != handle.plugged_times;
+}
+
+steady_clock::time_point due(const libusb_context& context) {
+  const double real =
+      static_cast<double>(context.microframes + context.waiting.front()->num_iso_packets) /
+      context.bus->kinect.speed;
+  return context.begin + std::chrono::duration_cast<steady_clock::duration>(
+                             real * std::chrono::duration<double>(microframe));
+}
+
+/// Gives a transfer back with what came on its endpoint: depth on 0x82, nothing on others.
+void complete(libusb_context& context) {
+  libusb_transfer* transfer = context.waiting.front();
+  context.waiting.pop_front();
+  context.microframes += transfer->num_iso_packets;
+  transfer->status = LIBUSB_TRANSFER_COMPLETED;
+  std::uint8_t* buffer = transfer->buffer;
+  for (int i = 0; i < transfer->num_iso_packets; ++i) {
+    libusb_iso_packet_descriptor& packet = transfer->iso_packet_desc[i];
+    packet.status = LIBUSB_TRANSFER_COMPLETED;
+    packet.actual_length = transfer->endpoint == 0x82
+                               ? static_cast<unsigned>(context.bus->camera.next_packet(
+                                     std::span(buffer, packet.length)))
+                               : 0;
+    buffer += packet.length;
+  }
+  transfer->callback(transfer);
+}
+
+/// @return whether there were any
+bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status status) {
+  const bool any = !transfers.empty();
+  while (!transfers.empty()) {
+    libusb_transfer* transfer = transfers.front();
+    transfers.pop_front();
+    transfer->status = status;
+    transfer->callback(transfer);
+  }
+  return any;
+}
+
+/// Gives back what is over. @return whether there was any
+bool handle_events(libusb_context& context) {
+  if (give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
+    return true;
+  }
+  if (context.waiting.empty()) {
+    return false;
+  }
+  if (is_dead(*context.waiting.front()->dev_handle)) {
+    return give_back(context.waiting, LIBUSB_TRANSFER_NO_DEVICE);
+  }
+  const auto now = steady_clock::now();
+  if (due(context) > now) {
+    return false;
+  }
+  if (now - due(context) > longest_backlog) {
+    context.begin = now;
+    context.microframes = 0;
+    return false;
+  }
+  complete(context);
+  return true;
+}
+
+int reply_of_motor(const EmulatedKinect& kinect, std::span<std::uint8_t> reply) {
+  std::ranges::fill(reply, std::uint8_t{0});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto counts = static_cast<std::uint16_t>(kinect.acceleration[axis].load());
+    reply[2 + 2 * axis] = static_cast<std::uint8_t>(counts >> 8U);
+    reply[3 + 2 * axis] = static_cast<std::uint8_t>(counts & 0xFFU);
+  }
+  return static_cast<int>(reply.size());
+}
+
+}  // namespace
+
+extern "C" {
+
+int libusb_init(libusb_context** context) {
+  auto made = std::make_unique<libusb_context>();
+  for (std::size_t part = 0; part < made->devices.size(); ++part) {
+    made->devices[part] = {made.get(), static_cast<libusb_device::Part>(part)};
+  }
+  if (const char* folder = std::getenv(octurn::emulated_kinect_variable)) {
+    made->bus.emplace(folder);
+  }
+  *context = made.release();
+  return 0;
+}
+
+void libusb_exit(libusb_context* context) { const std::unique_ptr<libusb_context> owned(context); }
+
+const char* libusb_error_name(int /*code*/) { return "error of the emulated bus"; }
+
+ssize_t libusb_get_device_list(libusb_context* context, libusb_device*** list) {
+  auto* devices = static_cast<libusb_device**>(std::calloc(4, sizeof(libusb_device*)));
+  ssize_t count = 0;
+  if (context->bus && context->bus->kinect.plugged) {
+    for (libusb_device& device : context->devices) {
+      const bool is_there = device.part != libusb_device::Part::motor ||
+                            context->bus->kinect.model == KinectModel::k1414;
+      if (is_there) {
+        devices[count++] = &device;
+      }
+    }
+  }
+  *list = devices;
+  return count;
+}
+
+void libusb_free_device_list(libusb_device** list, int /*unref*/) {
+  std::free(static_cast<void*>(list));
+}
+
+libusb_device* libusb_ref_device(libusb_device* device) { return device; }
+void libusb_unref_device(libusb_device* /*device*/) {}
+
+int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor* descriptor) {
+  using Part = libusb_device::Part;
+  const KinectModel model = device->context->bus->kinect.model;
+  const bool for_windows = model == KinectModel::for_windows;
+  *descriptor = {};
+  descriptor->bLength = LIBUSB_DT_DEVICE_SIZE;
+  descriptor->bDescriptorType = LIBUSB_DT_DEVICE;
+  descriptor->idVendor = 0x045E;
+  descriptor->idProduct =
+      static_cast<std::uint16_t>(device->part == Part::motor    ? 0x02B0
+                                 : device->part == Part::camera ? (for_windows ? 0x02BF : 0x02AE)
+                                                                : (for_windows ? 0x02BE : 0x02AD));
+  descriptor->bcdDevice = model == KinectModel::k1414 ? 0x010B : 0x0114;
+  descriptor->iSerialNumber = 3;
+  descriptor->bNumConfigurations = 1;
+  return 0;
+}
+
+/// Of one interface: an audio device that has no firmware yet.
+int libusb_get_active_config_descriptor(libusb_device* /*device*/,
+                                        libusb_config_descriptor** configuration) {
+  auto made = std::make_unique<libusb_config_descriptor>();
+  made->bNumInterfaces = 1;
+  *configuration = made.release();
+  return 0;
+}
+
+void libusb_free_config_descriptor(libusb_config_descriptor* configuration) {
+  const std::unique_ptr<libusb_config_descriptor> owned(configuration);
+}
+
+int libusb_get_max_iso_packet_size(libusb_device* /*device*/, unsigned char /*endpoint*/) {
+  return 1920;
+}
+
+std::uint8_t libusb_get_bus_number(libusb_device* /*device*/) { return 1; }
+std::uint8_t libusb_get_device_address(libusb_device* device) {
+  return static_cast<std::uint8_t>(1 + static_cast<int>(device->part));
+}
+libusb_device* libusb_get_parent(libusb_device* /*device*/) { return nullptr; }
+
+int libusb_open(libusb_device* device, libusb_device_handle** handle) {
+  const EmulatedKinect& kinect = device->context->bus->kinect;
+  if (!kinect.plugged) {
+    return LIBUSB_ERROR_NO_DEVICE;
+  }
+  auto made = std::make_unique<libusb_device_handle>();
+  *made = {device, kinect.plugged_times};
+  *handle = made.release();
+  return 0;
+}
+
+void libusb_close(libusb_device_handle* handle) {
+  const std::unique_ptr<libusb_device_handle> owned(handle);
+}
+
+libusb_device* libusb_get_device(libusb_device_handle* handle) { return handle->device; }
+
+int libusb_get_string_descriptor_ascii(libusb_device_handle* /*handle*/, std::uint8_t /*index*/,
+                                       unsigned char* data, int length) {
+  constexpr std::string_view serial = "A00000000000000A";
+  const auto count =
+      serial.copy(reinterpret_cast<char*>(data), static_cast<std::size_t>(length) - 1);
+  data[count] = 0;
+  return static_cast<int>(count);
+}
+
+int libusb_claim_interface(libusb_device_handle* /*handle*/, int /*number*/) { return 0; }
+int libusb_release_interface(libusb_device_handle* /*handle*/, int /*number*/) { return 0; }
+int libusb_kernel_driver_active(libusb_device_handle* /*handle*/, int /*number*/) { return 0; }
+int libusb_detach_kernel_driver(libusb_device_handle* /*handle*/, int /*number*/) { return 0; }
+int libusb_attach_kernel_driver(libusb_device_handle* /*handle*/, int /*number*/) { return 0; }
+int libusb_set_interface_alt_setting(libusb_device_handle* /*handle*/, int /*number*/,
+                                     int /*setting*/) {
+  return 0;
+}
+int libusb_reset_device(libusb_device_handle* /*handle*/) { return 0; }
+
+int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
+                            std::uint16_t /*value*/, std::uint16_t /*index*/, unsigned char* data,
+                            std::uint16_t length, unsigned /*timeout*/) {
+  if (is_dead(*handle)) {
+    return LIBUSB_ERROR_NO_DEVICE;
+  }
+  auto& bus = *handle->device->context->bus;
+  const std::span buffer(data, length);
+  const bool is_in = (type & LIBUSB_ENDPOINT_IN) != 0;
+  if (handle->device->part == libusb_device::Part::motor && is_in && request == 0x32) {
+    return reply_of_motor(bus.kinect, buffer);
+  }
+  if (handle->device->part != libusb_device::Part::camera) {
+    return is_in ? stalled : 0;
+  }
+  if (!is_in) {
+    return bus.camera.command(buffer) ? int{length} : stalled;
+  }
+  const std::vector<std::uint8_t> reply = bus.camera.take_reply();
+  const std::size_t size = std::min(reply.size(), buffer.size());
+  std::copy_n(reply.begin(), size, buffer.begin());
+  return static_cast<int>(size);
+}
+
+int libusb_bulk_transfer(libusb_device_handle* /*handle*/, unsigned char /*endpoint*/,
+                         unsigned char* /*data*/, int /*length*/, int* transferred,
+                         unsigned /*timeout*/) {
+  *transferred = 0;
+  return stalled;
+}
+
+int libusb_interrupt_transfer(libusb_device_handle* handle, unsigned char endpoint,
+                              unsigned char* data, int length, int* transferred, unsigned timeout) {
+  return libusb_bulk_transfer(handle, endpoint, data, length, transferred, timeout);
+}
+
+libusb_transfer* libusb_alloc_transfer(int packets) {
+  return static_cast<libusb_transfer*>(
+      std::calloc(1, sizeof(libusb_transfer) +
+                         static_cast<std::size_t>(packets) * sizeof(libusb_iso_packet_descriptor)));
+}
+
+void libusb_free_transfer(libusb_transfer* transfer) { std::free(transfer); }
+
+int libusb_submit_transfer(libusb_transfer* transfer) {
+  if (is_dead(*transfer->dev_handle)) {
+    return LIBUSB_ERROR_NO_DEVICE;
+  }
+  libusb_context& context = *transfer->dev_handle->device->context;
+  if (context.waiting.empty()) {
+    context.begin = steady_clock::now();
+    context.microframes = 0;
+  }
+  context.waiting.push_back(transfer);
+  return 0;
+}
+
+int libusb_cancel_transfer(libusb_transfer* transfer) {
+  libusb_context& context = *transfer->dev_handle->device->context;
+  const auto found = std::ranges::find(context.waiting, transfer);
+  if (found == context.waiting.end()) {
+    return LIBUSB_ERROR_NOT_FOUND;
+  }
+  context.waiting.erase(found);
+  context.cancelled.push_back(transfer);
+  return 0;
+}
+
+int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
+  constexpr auto tick = std::chrono::milliseconds(1);  // a pulled plug is seen within it
+  const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +
+                        std::chrono::microseconds(timeout->tv_usec);
+  while (!handle_events(*context) && steady_clock::now() < deadline) {
+    auto until = std::min(steady_clock::now() + tick, deadline);
+    if (!context->waiting.empty()) {
+      until = std::min(until, due(*context));
+    }
+    std::this_thread::sleep_until(until);
+  }
+  return 0;
+}
+
+int libusb_handle_events(libusb_context* context) {
+  timeval minute{.tv_sec = 60, .tv_usec = 0};
+  return libusb_handle_events_timeout(context, &minute);
+}
+
+}  // extern "C"

@@ -1,0 +1,111 @@
+// Whole runs of the program on an emulated Kinect, which looks at what the simulated one sees.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "emulation/kinect_on_desk.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "sensor/recording.hpp"
+#include "support/program.hpp"
+#include "support/stl.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+DepthFrame simulated_frame() {
+  DepthSensor sensor("octurn-simulator://?noise=0");
+  return sensor.read({}).value().frame;
+}
+
+Readings readings_of(const DepthFrame& frame) {
+  Readings readings;
+  for (const std::uint16_t depth : frame.depth) {
+    readings.push_back(depth == 0
+                           ? std::uint16_t{2047}
+                           : static_cast<std::uint16_t>(std::lround(1089.40 - 3454890.0 / depth)));
+  }
+  return readings;
+}
+
+/// The same depths, but for what the last digits of the constants make.
+void expect_same_depths(const DepthFrame& one, const DepthFrame& other) {
+  ASSERT_EQ(one.depth.size(), other.depth.size());
+  for (std::size_t i = 0; i < one.depth.size(); ++i) {
+    const double depth = other.depth[i];
+    ASSERT_NEAR(one.depth[i], depth, 1 + depth * depth * 1e-8) << i;
+  }
+}
+
+std::vector<std::string> command(const char* name, const fs::path& output, const char* sensor,
+                                 std::vector<std::string> more) {
+  std::vector<std::string> words{OCTURN_PROGRAM, name,       "--simulate", "--simulate-speed",
+                                 "20",           "--sensor", sensor,       "-o",
+                                 output,         "--frames", "2"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(KinectScan, MakesAClosedModel) {
+  const DepthFrame seen = simulated_frame();
+  const KinectOnDesk desk({readings_of(seen)});
+  const TemporaryFolder folder;
+  Program scan(
+      command("scan", folder.path() / "Scan.stl", "kinect://",
+              {"--snapshots", "3", "--leaf-size-mm", "4", "--data", folder.path() / "data"}));
+  ASSERT_EQ(scan.wait(), 0) << scan.errors();
+
+  const std::string stl = content_of(folder.path() / "Scan.stl");
+  EXPECT_GT(triangles_of_whole_stl(stl), 1000);
+  EXPECT_EQ(open_edges(stl), 0);
+  const fs::path scans = folder.path() / "data" / "scans";
+  const fs::path stored = fs::directory_iterator(scans)->path();
+  const Scan kept = read_scan(stored);
+  EXPECT_EQ(kept.sensor_name, "Kinect v1");
+  ASSERT_EQ(kept.shots.size(), 3);
+  expect_same_depths(read_snapshot(stored, kept, kept.shots[1]).frame, seen);
+}
+
+TEST(KinectScan, FailsByNameWhenTheKinectIsUnplugged) {
+  KinectOnDesk desk({readings_of(simulated_frame())});
+  const TemporaryFolder folder;
+  Program scan(command("scan", folder.path() / "Scan.stl", "kinect://",
+                       {"--snapshots", "100", "--data", folder.path() / "data"}));
+  while (desk->frames_sent < 5) {
+    std::this_thread::yield();
+  }
+  desk.unplug();
+  EXPECT_EQ(scan.wait(), 1);
+  EXPECT_NE(scan.errors().find("sensor: Kinect v1 is gone"), std::string::npos) << scan.errors();
+}
+
+TEST(KinectScan, IsRecordedWithTimesAnglesAndTilt) {
+  const DepthFrame seen = simulated_frame();
+  KinectOnDesk desk({readings_of(seen)});
+  desk->acceleration[2] = -819;
+  const TemporaryFolder folder;
+  Program record(command("record", folder.path() / "turn", "kinect://", {"--snapshots", "2"}));
+  ASSERT_EQ(record.wait(), 0) << record.errors();
+
+  const Recording recording = read_recording(folder.path() / "turn");
+  EXPECT_EQ(recording.sensor_name, "Kinect v1");
+  ASSERT_EQ(recording.frames.size(), 4);
+  EXPECT_EQ(recording.frames[0].time.count(), 0);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(recording.frames[i].angle, radians_from_degrees(i < 2 ? 0 : 180), 1e-12);
+    EXPECT_NEAR(recording.frames[i].tilt->pitch, radians_from_degrees(-45), 1e-9);
+    if (i > 0) {
+      EXPECT_GT(recording.frames[i].time, recording.frames[i - 1].time);
+    }
+    expect_same_depths(read_recorded_frame(folder.path() / "turn", recording, i), seen);
+  }
+}
+
+}  // namespace
+}  // namespace octurn

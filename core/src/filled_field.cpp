@@ -86,43 +86,47 @@ void FilledField::classify(const Cell& cell, std::size_t index) {
     grid_.known[index] = 1;
     return;
   }
-  int seen_count = 0;
-  int free_count = 0;
-  float sum = 0;
-  if (const FieldBrick* brick = field_.find(position)) {
-    for (int z = 0; z < leaves; ++z) {
-      for (int y = 0; y < leaves; ++y) {
-        for (int x = 0; x < leaves; ++x) {
-          const int bz = cell.z % a_brick * leaves + z;
-          if ((position.z + field_.low().z) * Brick::side + bz < foot_) {
-            continue;
-          }
-          const auto sample = static_cast<std::size_t>(
-              cell.x % a_brick * leaves + x + (cell.y % a_brick * leaves + y) * Brick::side +
-              bz * Brick::side * Brick::side);
-          const int through = free + brick->free[sample];
-          // Behind a surface even the faintest sample says that there is something to fill.
-          const bool behind = brick->distance[sample] < 0 && brick->weight[sample] > 0;
-          if (seen(*brick, sample, through) || (behind && through == 0)) {
-            ++seen_count;
-            sum += std::min(static_cast<float>(brick->distance[sample]), free_distance);
-          } else if (through > 0) {
-            ++free_count;
-            sum += free_distance;
-          }
+  const FieldBrick* const brick = field_.find(position);
+  if (brick == nullptr && free > 0) {
+    grid_.values[index] = free_distance;
+    grid_.known[index] = 1;
+  } else if (brick != nullptr) {
+    const Tally tally = tally_of(*brick, position, cell, free);
+    if (tally.known * 4 >= leaves * leaves * leaves) {
+      grid_.values[index] = tally.sum / static_cast<float>(tally.known);
+      grid_.known[index] = 1;
+    }
+  }
+}
+
+/// What is known of a cell's samples. @param free  snapshots that saw through the cell
+FilledField::Tally FilledField::tally_of(const FieldBrick& brick, const Cell& position,
+                                         const Cell& cell, int free) const {
+  const int a_brick = field_.cells_a_brick();
+  const int leaves = field_.cell_leaves();
+  Tally tally;
+  for (int z = 0; z < leaves; ++z) {
+    const int bz = cell.z % a_brick * leaves + z;
+    if ((position.z + field_.low().z) * Brick::side + bz < foot_) {
+      continue;
+    }
+    for (int y = 0; y < leaves; ++y) {
+      for (int x = 0; x < leaves; ++x) {
+        const auto sample = static_cast<std::size_t>(cell.x % a_brick * leaves + x +
+                                                     (cell.y % a_brick * leaves + y) * Brick::side +
+                                                     bz * Brick::side * Brick::side);
+        const int through = free + brick.free[sample];
+        // Behind a surface even the faintest sample says that there is something to fill.
+        const bool behind = brick.distance[sample] < 0 && brick.weight[sample] > 0;
+        if (seen(brick, sample, through) || (behind && through == 0)) {
+          tally.add(std::min(static_cast<float>(brick.distance[sample]), free_distance));
+        } else if (through > 0) {
+          tally.add(free_distance);
         }
       }
     }
-  } else if (free > 0) {
-    grid_.values[index] = free_distance;
-    grid_.known[index] = 1;
-    return;
   }
-  const int known = seen_count + free_count;
-  if (known * 4 >= leaves * leaves * leaves) {
-    grid_.values[index] = sum / static_cast<float>(known);
-    grid_.known[index] = 1;
-  }
+  return tally;
 }
 
 /// Solves Laplace's equation for the unknown, from coarse to fine: each grid gives the next finer
@@ -164,35 +168,38 @@ void FilledField::solve(Grid& fine) {
   relax(fine);
 }
 
+/// Makes an unknown value the mean of those around it; at the box's sides the value beyond is that
+/// within.
+void FilledField::relax(Grid& grid, int x, int y, int z) {
+  const std::size_t i = grid.index(x, y, z);
+  if (grid.known[i] != 0) {
+    return;
+  }
+  const Cell& size = grid.size;
+  std::vector<float>& values = grid.values;
+  const float sum = values[x > 0 ? i - 1 : i] + values[x + 1 < size.x ? i + 1 : i] +
+                    values[y > 0 ? grid.index(x, y - 1, z) : i] +
+                    values[y + 1 < size.y ? grid.index(x, y + 1, z) : i] +
+                    values[z > 0 ? grid.index(x, y, z - 1) : i] +
+                    values[z + 1 < size.z ? grid.index(x, y, z + 1) : i];
+  values[i] = sum / 6;
+}
+
 /// Gauss-Seidel sweeps of Laplace's equation, there and back.
 void FilledField::relax(Grid& grid) {
   const Cell& size = grid.size;
-  std::vector<float>& values = grid.values;
-  const auto relax_at = [&](int x, int y, int z) {
-    const std::size_t i = grid.index(x, y, z);
-    if (grid.known[i] != 0) {
-      return;
-    }
-    // At the box's sides the value beyond is that within.
-    const float sum = values[x > 0 ? i - 1 : i] + values[x + 1 < size.x ? i + 1 : i] +
-                      values[y > 0 ? grid.index(x, y - 1, z) : i] +
-                      values[y + 1 < size.y ? grid.index(x, y + 1, z) : i] +
-                      values[z > 0 ? grid.index(x, y, z - 1) : i] +
-                      values[z + 1 < size.z ? grid.index(x, y, z + 1) : i];
-    values[i] = sum / 6;
-  };
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int z = 0; z < size.z; ++z) {
       for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-          relax_at(x, y, z);
+          relax(grid, x, y, z);
         }
       }
     }
     for (int z = size.z - 1; z >= 0; --z) {
       for (int y = size.y - 1; y >= 0; --y) {
         for (int x = size.x - 1; x >= 0; --x) {
-          relax_at(x, y, z);
+          relax(grid, x, y, z);
         }
       }
     }
@@ -293,30 +300,46 @@ FilledField::Side FilledField::side_of(const Cell& brick) const {
   return any_outside ? Side::outside : Side::inside;
 }
 
+/// The same for all bricks of the box, x before y before z.
+std::vector<FilledField::Side> FilledField::sides_of_bricks() const {
+  std::vector<Side> sides;
+  for (int z = 0; z < (end_.z - low_.z) / Brick::side; ++z) {
+    for (int y = 0; y < (end_.y - low_.y) / Brick::side; ++y) {
+      for (int x = 0; x < (end_.x - low_.x) / Brick::side; ++x) {
+        sides.push_back(side_of({x, y, z}));
+      }
+    }
+  }
+  return sides;
+}
+
+/// Eight leaves of a row that lie in one brick, counted from the box's lowest corner: a bit for
+/// each at which the distance is negative.
+std::uint64_t FilledField::inside(const Cell& brick, Side side, int y, int z) const {
+  if (side != Side::both) {
+    return side == Side::inside ? 0xff : 0;
+  }
+  std::uint64_t bits = 0;
+  for (int x = 0; x < Brick::side; ++x) {
+    const Cell leaf{low_.x + brick.x * Brick::side + x, low_.y + y, low_.z + z};
+    bits |= (at(leaf).distance < 0 ? std::uint64_t{1} : 0) << x;
+  }
+  return bits;
+}
+
 LeafSet FilledField::inside() const {
   LeafSet set(low_, end_);
   const Cell& size = set.size();
-  std::vector<Side> sides_;
-  for (int z = 0; z < size.z / 8; ++z)
-    for (int y = 0; y < size.y / 8; ++y)
-      for (int x = 0; x < size.x / 8; ++x) sides_.push_back(side_of({x, y, z}));
+  const std::vector<Side> sides = sides_of_bricks();
   for (int z = 0; z + 1 < size.z; ++z) {
     for (int y = 1; y + 1 < size.y; ++y) {
       const auto row = set.row(y, z);
-      for (int brick = 0; brick * Brick::side < size.x; ++brick) {
-        const Side side =
-            sides_[static_cast<std::size_t>(brick) +
-                   static_cast<std::size_t>(size.x / 8) *
-                       (static_cast<std::size_t>(y / 8) +
-                        static_cast<std::size_t>(z / 8) * static_cast<std::size_t>(size.y / 8))];
-        std::uint64_t bits = side == Side::inside ? 0xff : 0;
-        if (side == Side::both) {
-          for (int x = 0; x < Brick::side; ++x) {
-            const Cell leaf{low_.x + brick * Brick::side + x, low_.y + y, low_.z + z};
-            bits |= (at(leaf).distance < 0 ? std::uint64_t{1} : 0) << x;
-          }
-        }
-        row[static_cast<std::size_t>(brick) / 8] |= bits << (brick % 8 * Brick::side);
+      for (int x = 0; x * Brick::side < size.x; ++x) {
+        const Cell brick{x, y / Brick::side, z / Brick::side};
+        const auto index = static_cast<std::size_t>(
+            (brick.z * (size.y / Brick::side) + brick.y) * (size.x / Brick::side) + brick.x);
+        row[static_cast<std::size_t>(x) / 8] |= inside(brick, sides[index], y, z)
+                                                << (x % 8 * Brick::side);
       }
       row.front() &= ~std::uint64_t{1};
       row[static_cast<std::size_t>(size.x - 1) / 64] &= ~(std::uint64_t{1} << (size.x - 1) % 64);

@@ -167,7 +167,7 @@ class Fusion {
     }
     const int a_brick = field_.cells_a_brick();
     const int leaves = field_.cell_leaves();
-    FieldBrick* samples = const_cast<FieldBrick*>(field_.find(brick));
+    auto* samples = const_cast<FieldBrick*>(field_.find(brick));
     for (int z = 0; z < a_brick; ++z) {
       for (int y = 0; y < a_brick; ++y) {
         for (int x = 0; x < a_brick; ++x) {
@@ -251,8 +251,8 @@ class Fusion {
     const float behind = std::max(0.0F, -distance - leaf_);
     const float near = std::max(0.0F, 1 - behind / (truncation_ - leaf_));
     const float trust = near * near * near;
-    const auto added = static_cast<float>(
-        static_cast<int>(weight * trust * static_cast<float>(DistanceField::weight_ticks) + 0.5F));
+    const float added =
+        std::floor(weight * trust * static_cast<float>(DistanceField::weight_ticks) + 0.5F);
     if (added <= 0) {
       return;
     }

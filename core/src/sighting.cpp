@@ -40,24 +40,26 @@ DepthImage metres(const Snapshot& snapshot) {
   return image;
 }
 
+/// Whether enough of a sample's neighbours bear it out.
+bool is_supported(const DepthImage& image, int u, int v) {
+  const float z = image.at(u, v);
+  int support = 0;
+  for (int dv = -1; dv <= 1; ++dv) {
+    for (int du = -1; du <= 1; ++du) {
+      support += std::abs(image.at(u + du, v + dv) - z) <= step_limit ? 1 : 0;
+    }
+  }
+  return z != 0 && support >= least_support;
+}
+
 /// Leaves out samples that too few of their neighbours bear out.
 DepthImage supported(const DepthImage& image) {
   DepthImage kept{.width = image.width, .height = image.height, .z = {}};
   kept.z.resize(image.z.size());
   for (int v = 1; v + 1 < image.height; ++v) {
     for (int u = 1; u + 1 < image.width; ++u) {
-      const float z = image.at(u, v);
-      if (z == 0) {
-        continue;
-      }
-      int support = 0;
-      for (int dv = -1; dv <= 1; ++dv) {
-        for (int du = -1; du <= 1; ++du) {
-          support += std::abs(image.at(u + du, v + dv) - z) <= step_limit ? 1 : 0;
-        }
-      }
-      if (support >= least_support) {
-        kept.z[static_cast<std::size_t>(v * image.width + u)] = z;
+      if (is_supported(image, u, v)) {
+        kept.z[static_cast<std::size_t>(v * image.width + u)] = image.at(u, v);
       }
     }
   }
@@ -146,6 +148,49 @@ float least_around(const DepthImage& image, int u, int v) {
   return least;
 }
 
+using Ray = std::array<float, 3>;  // from the sensor, of depth 1
+
+/// The space in which a reading makes a surface, and how to get there from the sensor.
+struct Scene {
+  Eigen::Vector3f low;
+  Eigen::Vector3f high;
+  Eigen::Matrix3f rotation;
+  Eigen::Vector3f centre;
+
+  bool holds(const Ray& ray, float z) const {
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float at =
+          z * (rotation(axis, 0) * ray[0] + rotation(axis, 1) * ray[1] + rotation(axis, 2)) +
+          centre[axis];
+      inside = inside && at >= low[axis] && at <= high[axis];
+    }
+    return inside;
+  }
+};
+
+/// The plane that was fitted at a ray, and what it weighs: nothing where there is none, or where it
+/// is seen at a grazing angle.
+void set_surface(Sight& sight, const Fit& fit, const Intrinsics& lens, const Ray& ray, float z) {
+  if (fit.samples == 0 || fit.nearness <= 0) {
+    return;
+  }
+  const float a = fit.slope_u * static_cast<float>(lens.fx);
+  const float b = fit.slope_v * static_cast<float>(lens.fy);
+  const float c = fit.nearness - a * ray[0] - b * ray[1];
+  const float norm = std::sqrt(a * a + b * b + c * c);
+  const float length = std::sqrt(ray[0] * ray[0] + ray[1] * ray[1] + 1);
+  const float cosine = fit.nearness / (norm * length);
+  if (cosine < least_cosine) {
+    return;
+  }
+  const float close = best_distance / z;
+  const float whole = static_cast<float>(fit.samples) / 25.0F;
+  sight.normal = {-a / norm, -b / norm, -c / norm};
+  sight.offset = 1 / norm;
+  sight.weight = close * close * close * close * whole * whole / cosine;
+}
+
 }  // namespace
 
 Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
@@ -161,11 +206,11 @@ Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
   for (std::size_t i = 0; i < samples; ++i) {
     nearness[i] = image.z[i] > 0 ? 1.0F / image.z[i] : 0.0F;
   }
-  Eigen::Vector3f low = clip.min.cast<float>();
-  low.z() = std::max(low.z(), static_cast<float>(platform_slack));
-  const Eigen::Vector3f high = clip.max.cast<float>();
-  const Eigen::Matrix3f rotation = snapshot.object_from_sensor.linear().cast<float>();
-  const Eigen::Vector3f centre = snapshot.object_from_sensor.translation().cast<float>();
+  Scene scene{.low = clip.min.cast<float>(),
+              .high = clip.max.cast<float>(),
+              .rotation = snapshot.object_from_sensor.linear().cast<float>(),
+              .centre = snapshot.object_from_sensor.translation().cast<float>()};
+  scene.low.z() = std::max(scene.low.z(), static_cast<float>(platform_slack));
 
   sights_.resize(samples);
   for (int v = reach; v + reach < lens_.height; ++v) {
@@ -176,36 +221,11 @@ Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
       }
       Sight& sight = sights_[static_cast<std::size_t>(v * lens_.width + u)];
       sight.free_z = least_around(image, u, v);
-      const std::array<float, 3> ray{static_cast<float>((u - lens_.cx) / lens_.fx),
-                                     static_cast<float>((v - lens_.cy) / lens_.fy), 1.0F};
-      bool inside = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float at =
-            z * (rotation(axis, 0) * ray[0] + rotation(axis, 1) * ray[1] + rotation(axis, 2)) +
-            centre[axis];
-        inside = inside && at >= low[axis] && at <= high[axis];
+      const Ray ray{static_cast<float>((u - lens_.cx) / lens_.fx),
+                    static_cast<float>((v - lens_.cy) / lens_.fy), 1.0F};
+      if (scene.holds(ray, z)) {
+        set_surface(sight, fit_plane(image, nearness, u, v), lens_, ray, z);
       }
-      if (!inside) {
-        continue;
-      }
-      const Fit fit = fit_plane(image, nearness, u, v);
-      if (fit.samples == 0 || fit.nearness <= 0) {
-        continue;
-      }
-      const float a = fit.slope_u * static_cast<float>(lens_.fx);
-      const float b = fit.slope_v * static_cast<float>(lens_.fy);
-      const float c = fit.nearness - a * ray[0] - b * ray[1];
-      const float norm = std::sqrt(a * a + b * b + c * c);
-      const float length = std::sqrt(ray[0] * ray[0] + ray[1] * ray[1] + 1);
-      const float cosine = fit.nearness / (norm * length);
-      if (cosine < least_cosine) {
-        continue;
-      }
-      const float close = best_distance / z;
-      const float whole = static_cast<float>(fit.samples) / 25.0F;
-      sight.normal = {-a / norm, -b / norm, -c / norm};
-      sight.offset = 1 / norm;
-      sight.weight = close * close * close * close * whole * whole / cosine;
     }
   }
   build_pyramid();

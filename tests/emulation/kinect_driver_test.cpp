@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr std::size_t pixels = 640 * 480;
+constexpr std::size_t pixels = std::size_t{640} * 480;
 
 Readings frame_of(std::uint16_t reading) { return Readings(pixels, reading); }
 

@@ -59,11 +59,24 @@ class FilledField {
   void find_box();
   void classify();
   void classify(const Cell& cell, std::size_t index);
+
+  struct Tally {
+    int known = 0;
+    float sum = 0;  // of distances, ticks
+    void add(float distance) {
+      ++known;
+      sum += distance;
+    }
+  };
+  Tally tally_of(const FieldBrick& brick, const Cell& position, const Cell& cell, int free) const;
   static void solve(Grid& fine);
   static void relax(Grid& grid);
+  static void relax(Grid& grid, int x, int y, int z);
   float interpolated(const Cell& leaf) const;
   enum class Side { inside, outside, both };
   Side side_of(const Cell& brick) const;
+  std::vector<Side> sides_of_bricks() const;
+  std::uint64_t inside(const Cell& brick, Side side, int y, int z) const;
 
   const DistanceField& field_;
   int foot_;

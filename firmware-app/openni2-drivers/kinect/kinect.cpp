@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::size_t pixels = 640 * 480;
+constexpr std::size_t pixels = std::size_t{640} * 480;
 constexpr int frame_bytes = static_cast<int>(pixels) * 11 / 8;
 constexpr int packet_bytes = 1748;  // of a frame in each but the last, without the header's 12
 constexpr int packets = (frame_bytes + packet_bytes - 1) / packet_bytes;
@@ -92,9 +92,10 @@ bool Kinect::open(int index, int subdevices) {
 
 void Kinect::read_parameters() {
   freenect_registration registration = freenect_copy_registration(device_);
-  parameters_ = {.baseline_cm = registration.zero_plane_info.dcmos_emitter_dist,
-                 .reference_distance_mm = registration.zero_plane_info.reference_distance,
-                 .reference_pixel_mm = registration.zero_plane_info.reference_pixel_size,
+  const freenect_zero_plane_info& plane = registration.zero_plane_info;
+  parameters_ = {.baseline_cm = static_cast<double>(plane.dcmos_emitter_dist),
+                 .reference_distance_mm = static_cast<double>(plane.reference_distance),
+                 .reference_pixel_mm = static_cast<double>(plane.reference_pixel_size),
                  .shift = registration.const_shift};
   freenect_destroy_registration(&registration);
   if (!is_sound(parameters_)) {

@@ -17,7 +17,7 @@ namespace octurn {
 class Camera {
  public:
   using Reading = std::uint16_t;
-  static constexpr std::size_t pixels = 640 * 480;
+  static constexpr std::size_t pixels = std::size_t{640} * 480;
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 

@@ -11,9 +11,9 @@ namespace {
 /// The formula solved for the depth: z = 10 b d / (b - m), in tenths of a millimetre; nothing below
 /// infinity if b <= m.
 double exact_depth(const KinectParameters& unit, int reading) {
-  const double m = (reading / 4.0 - unit.shift - 0.375) * unit.reference_pixel_mm;
+  const double m = (reading / 4.0 - unit.shift - 0.375) * unit.reference_pixel_cm;
   return m < unit.baseline_cm
-             ? 100 * unit.baseline_cm * unit.reference_distance_mm / (unit.baseline_cm - m)
+             ? 100 * unit.baseline_cm * unit.reference_distance_cm / (unit.baseline_cm - m)
              : std::numeric_limits<double>::infinity();
 }
 
@@ -38,7 +38,7 @@ TEST(DepthTable, IsTheFormulaForEveryReading) { expect_formula({}); }
 
 TEST(DepthTable, IsTheFormulaForOtherUnits) {
   expect_formula(
-      {.baseline_cm = 7.62, .reference_distance_mm = 121.5, .reference_pixel_mm = 0.1047});
+      {.baseline_cm = 7.62, .reference_distance_cm = 121.5, .reference_pixel_cm = 0.1047});
   expect_formula({.baseline_cm = 7.4, .shift = 195});
 }
 

@@ -114,8 +114,8 @@ TEST(KinectDriver, StampsFramesByTheSteadyClock) {
 TEST(KinectDriver, UsesTheParametersOfTheUnit) {
   KinectOnDesk desk({frame_of(500), frame_of(500)});
   desk->baseline_cm = 7.62F;
-  desk->reference_distance_mm = 121.5F;
-  desk->reference_pixel_mm = 0.1047F;
+  desk->reference_distance_cm = 121.5F;
+  desk->reference_pixel_cm = 0.1047F;
   desk->shift = 190;
   DepthSensor sensor("kinect://");
 
@@ -128,7 +128,7 @@ TEST(KinectDriver, UsesTheParametersOfTheUnit) {
 
 TEST(KinectDriver, RefusesParametersThatMakeNoSense) {
   KinectOnDesk desk({frame_of(500)});
-  desk->reference_pixel_mm = 0;
+  desk->reference_pixel_cm = 0;
   const Error error = error_thrown_by([] { DepthSensor("kinect://"); });
   EXPECT_NE(std::string(error.what()).find("factory parameters"), std::string::npos)
       << error.what();

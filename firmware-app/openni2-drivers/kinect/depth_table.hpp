@@ -8,13 +8,12 @@ namespace octurn {
 /// How one Kinect v1 measures, as its factory has written into it. The defaults are typical.
 struct KinectParameters {
   double baseline_cm = 7.5;            ///< from the projector to the depth camera
-  double reference_distance_mm = 120;  ///< in units of its 1.2 m, as the device has it
-  double reference_pixel_mm = 0.1042;  ///< of the reference plane, seen by one pixel
+  double reference_distance_cm = 120;  ///< of the plane whose pattern the sensor remembers
+  double reference_pixel_cm = 0.1042;  ///< of that plane, seen by one pixel of 1280 x 960
   double shift = 200;                  ///< of readings, so that they are positive
 
-  /// Of the depth camera, in pixels of 640 x 480: those of the sensor, 1280 x 960, are half as
-  /// wide.
-  double focal_length() const { return reference_distance_mm / (2 * reference_pixel_mm); }
+  /// Of the depth camera, in pixels of 640 x 480.
+  double focal_length() const { return reference_distance_cm / (2 * reference_pixel_cm); }
 };
 
 /// The 11-bit reading that stands for none.

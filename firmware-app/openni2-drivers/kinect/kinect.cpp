@@ -30,8 +30,8 @@ int bytes_of_packet(int number) {
 
 bool is_sound(const KinectParameters& parameters) {
   const auto is_positive = [](double value) { return std::isfinite(value) && value > 0; };
-  return is_positive(parameters.baseline_cm) && is_positive(parameters.reference_distance_mm) &&
-         is_positive(parameters.reference_pixel_mm) && is_positive(parameters.shift);
+  return is_positive(parameters.baseline_cm) && is_positive(parameters.reference_distance_cm) &&
+         is_positive(parameters.reference_pixel_cm) && is_positive(parameters.shift);
 }
 
 /// The accelerometer's axes: x to the left seen from behind, y up, z forward; at rest it points
@@ -94,8 +94,8 @@ void Kinect::read_parameters() {
   freenect_registration registration = freenect_copy_registration(device_);
   const freenect_zero_plane_info& plane = registration.zero_plane_info;
   parameters_ = {.baseline_cm = static_cast<double>(plane.dcmos_emitter_dist),
-                 .reference_distance_mm = static_cast<double>(plane.reference_distance),
-                 .reference_pixel_mm = static_cast<double>(plane.reference_pixel_size),
+                 .reference_distance_cm = static_cast<double>(plane.reference_distance),
+                 .reference_pixel_cm = static_cast<double>(plane.reference_pixel_size),
                  .shift = registration.const_shift};
   freenect_destroy_registration(&registration);
   if (!is_sound(parameters_)) {

@@ -66,8 +66,8 @@ std::vector<std::uint8_t> Camera::answer(std::uint16_t command,
       break;
     case 0x04: {  // the parameters of its factory
       reply.resize(is_1414 ? 322 : 334);
-      const std::array<float, 4> plane = {kinect_.baseline_cm, 2.3F, kinect_.reference_distance_mm,
-                                          kinect_.reference_pixel_mm};
+      const std::array<float, 4> plane = {kinect_.baseline_cm, 2.3F, kinect_.reference_distance_cm,
+                                          kinect_.reference_pixel_cm};
       std::memcpy(&reply[94], plane.data(), sizeof plane);
       break;
     }

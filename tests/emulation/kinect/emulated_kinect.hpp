@@ -19,8 +19,8 @@ struct EmulatedKinect {
   std::atomic<int> plugged_times = 1;  // what was opened before the last time stays dead
   std::atomic<KinectModel> model = KinectModel::k1414;
   std::atomic<float> baseline_cm = 7.5F;
-  std::atomic<float> reference_distance_mm = 120;
-  std::atomic<float> reference_pixel_mm = 0.1042F;
+  std::atomic<float> reference_distance_cm = 120;
+  std::atomic<float> reference_pixel_cm = 0.1042F;
   std::atomic<std::uint16_t> shift = 200;
   std::array<std::atomic<std::int16_t>, 3> acceleration = {0, 819,
                                                            0};  // 819 to a g: left, up, forward

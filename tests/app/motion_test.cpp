@@ -9,19 +9,19 @@ namespace {
 
 std::vector<double> step_times(const Motion& motion, int steps) {
   std::vector<double> times;
-  Pace pace(motion, steps);
-  while (pace.steps_left() > 0) {
-    times.push_back(pace.next_step());
+  Course course(motion, steps);
+  while (course.steps_left() > 0) {
+    times.push_back(course.next_step());
   }
   return times;
 }
 
-TEST(Pace, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
+TEST(Course, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
   // From 200 to 800 steps/s at 2000 steps/s^2: 150 steps in 0.3 s, twice; 500 steps at 800.
   EXPECT_NEAR(move_time({}, 800), 0.3 + 500.0 / 800 + 0.3, 1e-9);
 }
 
-TEST(Pace, TurnsAShortMoveRoundInTheMiddle) {
+TEST(Course, TurnsAShortMoveRoundInTheMiddle) {
   // 50 steps from rest at 400 steps/s^2 take 0.5 s, and so do the 50 that end at rest.
   const Motion motion = {.start_steps_per_second = 0, .ramp_steps_per_second2 = 400};
   EXPECT_NEAR(move_time(motion, 100), 1, 1e-9);
@@ -31,36 +31,36 @@ TEST(Pace, TurnsAShortMoveRoundInTheMiddle) {
   }
 }
 
-TEST(Pace, IsNeverFasterThanTheTopSpeed) {
+TEST(Course, IsNeverFasterThanTheTopSpeed) {
   for (const double time : step_times({.start_steps_per_second = 900}, 800)) {
     EXPECT_GE(time, 1.0 / 800);
   }
 }
 
-TEST(Pace, GainsAgainWhatItLost) {
-  Pace pace({}, 800);
+TEST(Course, GainsAgainWhatItLost) {
+  Course course({}, 800);
   for (int i = 0; i < 300; ++i) {
-    pace.next_step();
+    course.next_step();
   }
-  pace.slowed_to(1.0 / 600);  // steps a second
+  course.slowed_to(1.0 / 600);  // steps a second
 
   // v^2 = 600^2 + 2 * 2000 s: back at 800 after 70 steps.
   double time = 0;
   for (int i = 0; i < 70; ++i) {
-    time += pace.next_step();
+    time += course.next_step();
   }
   EXPECT_NEAR(time, (800.0 - 600) / 2000, 1e-9);
-  EXPECT_NEAR(pace.next_step(), 1.0 / 800, 1e-12);
+  EXPECT_NEAR(course.next_step(), 1.0 / 800, 1e-12);
 }
 
-TEST(Pace, StartsAgainAfterAStandstill) {
-  Pace pace({}, 800);
-  const double first = pace.next_step();
+TEST(Course, StartsAgainAfterAStandstill) {
+  Course course({}, 800);
+  const double first = course.next_step();
   for (int i = 0; i < 300; ++i) {
-    pace.next_step();
+    course.next_step();
   }
-  pace.slowed_to(3);
-  EXPECT_NEAR(pace.next_step(), first, 1e-12);
+  course.slowed_to(3);
+  EXPECT_NEAR(course.next_step(), first, 1e-12);
 }
 
 }  // namespace

@@ -5,14 +5,14 @@
 
 namespace octurn {
 
-Pace::Pace(const Motion& motion, int steps)
+Course::Course(const Motion& motion, int steps)
     : start_(std::min(motion.start_steps_per_second, motion.top_steps_per_second)),
       top_(motion.top_steps_per_second),
       ramp_(motion.ramp_steps_per_second2),
       speed_(start_),
       steps_left_(steps) {}
 
-double Pace::next_step() {
+double Course::next_step() {
   --steps_left_;
   // v^2 = v0^2 + 2 a s, for one step from here and for what is left of the way to the end.
   const double gained = std::sqrt(speed_ * speed_ + 2 * ramp_);
@@ -23,13 +23,13 @@ double Pace::next_step() {
   return 1 / mean;
 }
 
-void Pace::slowed_to(double step_time) { speed_ = std::clamp(1 / step_time, start_, speed_); }
+void Course::slowed_to(double step_time) { speed_ = std::clamp(1 / step_time, start_, speed_); }
 
 double move_time(const Motion& motion, int steps) {
-  Pace pace(motion, steps);
+  Course course(motion, steps);
   double time = 0;
-  while (pace.steps_left() > 0) {
-    time += pace.next_step();
+  while (course.steps_left() > 0) {
+    time += course.next_step();
   }
   return time;
 }

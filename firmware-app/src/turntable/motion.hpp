@@ -16,9 +16,9 @@ struct Motion {
 
 /// The speed of one move, from step to step: even acceleration up to the top speed, or to the
 /// middle of a short move, and its mirror image down again.
-class Pace {
+class Course {
  public:
-  Pace(const Motion& motion, int steps);
+  Course(const Motion& motion, int steps);
 
   int steps_left() const { return steps_left_; }
 

@@ -19,7 +19,7 @@ constexpr auto late_after = 500us;
 }  // namespace
 
 PulseTrain::PulseTrain(const Motion& motion, int steps, Time start)
-    : pace_(motion, steps), risen_(start) {
+    : course_(motion, steps), risen_(start) {
   plan_rise(start);
 }
 
@@ -32,7 +32,7 @@ void PulseTrain::done(Time time) {
   if (delay > late_after) {
     ++late_.count;
     late_.longest = std::max(late_.longest, delay);
-    pace_.slowed_to(duration<double>(time - risen_).count());
+    course_.slowed_to(duration<double>(time - risen_).count());
   }
   risen_ = time;
   next_ = Change{.high = false, .due = time + shortest_level};
@@ -40,12 +40,12 @@ void PulseTrain::done(Time time) {
 
 /// @param low_since  when the line fell, or the beginning
 void PulseTrain::plan_rise(Time low_since) {
-  if (pace_.steps_left() == 0) {
+  if (course_.steps_left() == 0) {
     next_.reset();
     return;
   }
   planned_rise_ =
-      risen_ + std::chrono::ceil<steady_clock::duration>(duration<double>(pace_.next_step()));
+      risen_ + std::chrono::ceil<steady_clock::duration>(duration<double>(course_.next_step()));
   next_ = Change{.high = true, .due = std::max(planned_rise_, low_since + shortest_level)};
 }
 

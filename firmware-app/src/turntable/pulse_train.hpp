@@ -40,7 +40,7 @@ class PulseTrain {
  private:
   void plan_rise(Time low_since);
 
-  Pace pace_;
+  Course course_;
   Time risen_ = {};         // the last pulse, or the beginning
   Time planned_rise_ = {};  // the next one, if nothing delays it
   std::optional<Change> next_ = {};

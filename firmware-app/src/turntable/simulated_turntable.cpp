@@ -19,9 +19,9 @@ bool SimulatedTurntable::move_to(int position, std::stop_token stop) {
   constexpr auto tick = std::chrono::milliseconds(10);
   const int direction = position < position_ ? -1 : 1;
   const int steps = std::abs(position - position_);
-  Pace pace(motion_, steps);
+  Course course(motion_, steps);
   double arrival =
-      steps > 0 ? pace.next_step() : 0;  // at the next step, seconds from the beginning
+      steps > 0 ? course.next_step() : 0;  // at the next step, seconds from the beginning
   const auto begin = steady_clock::now();
   const auto end = begin + real_time(move_time(motion_, steps));
   while (position_ != position) {
@@ -30,7 +30,7 @@ bool SimulatedTurntable::move_to(int position, std::stop_token stop) {
     int reached = position_;
     while (reached != position && arrival <= elapsed) {
       reached += direction;
-      arrival += pace.steps_left() > 0 ? pace.next_step() : 0;
+      arrival += course.steps_left() > 0 ? course.next_step() : 0;
     }
     stand_at(reached);
     if (stopped) {

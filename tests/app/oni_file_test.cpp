@@ -40,7 +40,7 @@ class FrameCounter final : public openni::VideoStream::NewFrameListener {
 void record_oni(const std::filesystem::path& file, int frames) {
   load_sensor_drivers();
   openni::Device device;
-  ASSERT_EQ(device.open("octurn-simulator://?speed=10"), openni::STATUS_OK);
+  ASSERT_EQ(device.open("octurn-simulator://"), openni::STATUS_OK);
   openni::VideoStream stream;
   ASSERT_EQ(stream.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
   FrameCounter counter;

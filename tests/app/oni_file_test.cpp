@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "scan/run_scan.hpp"
@@ -22,8 +21,8 @@ using Depths = std::vector<std::uint16_t>;
 class FrameCounter final : public openni::VideoStream::NewFrameListener {
  public:
   void wait_for(int count) const {
-    while (count_ < count) {
-      std::this_thread::yield();
+    for (int seen = count_; seen < count; seen = count_) {
+      count_.wait(seen);
     }
   }
 
@@ -32,6 +31,7 @@ class FrameCounter final : public openni::VideoStream::NewFrameListener {
     openni::VideoFrameRef frame;
     stream.readFrame(&frame);
     ++count_;
+    count_.notify_all();
   }
   std::atomic<int> count_ = 0;
 };
@@ -40,7 +40,7 @@ class FrameCounter final : public openni::VideoStream::NewFrameListener {
 void record_oni(const std::filesystem::path& file, int frames) {
   load_sensor_drivers();
   openni::Device device;
-  ASSERT_EQ(device.open("octurn-simulator://?speed=10"), openni::STATUS_OK);
+  ASSERT_EQ(device.open("octurn-simulator://"), openni::STATUS_OK);
   openni::VideoStream stream;
   ASSERT_EQ(stream.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
   FrameCounter counter;

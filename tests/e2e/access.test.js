@@ -61,7 +61,8 @@ async function startByKeyboard(scanner, browser) {
   await snapshots.focus();
   await page.keyboard.press('ControlOrMeta+a');
   await page.keyboard.type('4');
-  await page.keyboard.press('Tab');
+  await page.keyboard.press('Tab');  // to the method
+  await page.keyboard.press('Tab');  // to the leaf size
   await page.keyboard.press('ArrowLeft');
   await page.keyboard.press('ArrowLeft');
   assert.ok(await page.getByLabel('Draft').isChecked());

@@ -42,8 +42,8 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
 
 test('a scan that somebody else starts is followed, and can be looked away from', async (t) => {
   const scanner = await startScanner(t, lifelike);
-  const {page} = await openPage(await openBrowser(t), scanner.url);
   const earlier = await scan(scanner, draft);
+  const {page} = await openPage(await openBrowser(t), scanner.url);
   await page.locator(`#rows [data-key="${earlier.id}"]`).waitFor();
   const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();

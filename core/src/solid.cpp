@@ -122,22 +122,14 @@ void Solid::add(const Snapshot& snapshot) {
 }
 
 void Solid::add(const SnapshotSource& snapshots, const std::stop_token& stop) try {
-  InOrder shots(snapshots.count);
-  const int threads = std::clamp(static_cast<int>(snapshots.count), 1, options_.threads);
-  fork_join(threads, [&](int) {
-    while (!stop.stop_requested()) {
-      const auto shot = shots.take();
-      if (!shot) {
-        break;
-      }
-      try {
-        const Sighting sighting(snapshots.read(*shot), options_.clip);
-        shots.in_turn(*shot, [&] { fuse(field_, sighting); });
-      } catch (...) {
-        shots.fail();
-        throw;
-      }
-    }
+  InOrder shots([&, shot = std::size_t{0}]() mutable -> std::optional<std::size_t> {
+    return shot < snapshots.count && !stop.stop_requested() ? std::optional(shot++) : std::nullopt;
+  });
+  fork_join(std::clamp(static_cast<int>(snapshots.count), 1, options_.threads), [&](int) {
+    shots.take_all([&](std::size_t shot, auto in_turn) {
+      const Sighting sighting(snapshots.read(shot), options_.clip);
+      in_turn([&] { fuse(field_, sighting); });
+    });
   });
 } catch (const OctreeFull&) {
   throw Error("memory-limit",

@@ -6,32 +6,39 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace octurn {
 
-/// Lets threads take pieces of work from one source, and hand in what comes of them in the order in
-/// which they were taken.
+/// Pieces of work from one source that several threads make results of, which are used one by one in
+/// the order of their pieces. A thread whose result is early leaves it and goes on with other work.
 ///
 /// @tparam Source  called without arguments, by one thread at a time: the next piece as a
 ///                 std::optional, empty when there are no more
-template <typename Source>
+/// @tparam Result  default-constructible; made anew in one that was used before
+template <typename Source, typename Result>
 class InOrder {
  public:
-  explicit InOrder(Source source) : source_(std::move(source)) {}
+  /// @param window  pieces that may be at hand at once, results that wait for their turn among them
+  InOrder(Source source, int window)
+      : source_(std::move(source)), slots_(static_cast<std::size_t>(window)) {}
 
-  /// Calls `work` for piece after piece until there are no more, or a thread has failed. What `work`
-  /// throws ends all.
-  /// @param work  called with a piece and `in_turn`, which calls what it is given when all pieces
-  ///              before this one were handed in; not, if one of them has failed
-  template <typename Work>
-  void take_all(Work work) {
+  /// Takes pieces, on each thread that calls it, until there are no more. Ends early when one has
+  /// thrown something, which goes on to that one's caller.
+  /// @param make  called with a piece and the result to be made of it
+  /// @param use  called with a result, by one thread at a time
+  template <typename Make, typename Use>
+  void take_all(Make make, Use use) {
     try {
+      Result result{};
       while (auto taken = take()) {
-        work(std::move(taken->piece),
-             [&](auto hand_in) { this->in_turn(taken->turn, std::move(hand_in)); });
+        make(taken->piece, result);
+        hand_in(taken->turn, result, use);
       }
     } catch (...) {
-      fail();
+      const std::lock_guard lock(mutex_);
+      failed_ = true;
+      moved_on_.notify_all();
       throw;
     }
   }
@@ -42,48 +49,56 @@ class InOrder {
     typename std::invoke_result_t<Source>::value_type piece;
   };
 
+  struct Slot {
+    Result result = {};
+    bool is_ready = false;
+  };
+
+  Slot& slot(std::size_t turn) { return slots_[turn % slots_.size()]; }
+
   std::optional<Taken> take() {
     const std::lock_guard taking(taking_);
-    if (has_failed()) {
-      return std::nullopt;
+    {
+      std::unique_lock lock(mutex_);
+      moved_on_.wait(lock, [&] { return taken_ < next_ + slots_.size() || failed_; });
+      if (failed_) {
+        return std::nullopt;
+      }
     }
     auto piece = source_();
     return piece ? std::optional(Taken{.turn = taken_++, .piece = std::move(*piece)})
                  : std::nullopt;
   }
 
-  template <typename HandIn>
-  void in_turn(std::size_t turn, HandIn hand_in) {
+  /// Leaves a result, gets a used one for it, and uses those whose turn it is, if nobody else does.
+  template <typename Use>
+  void hand_in(std::size_t turn, Result& result, Use& use) {
     std::unique_lock lock(mutex_);
-    moved_on_.wait(lock, [&] { return next_ == turn || failed_; });
-    if (failed_) {
+    std::swap(slot(turn).result, result);
+    slot(turn).is_ready = true;
+    if (is_used_) {
       return;
     }
-    lock.unlock();  // only the thread whose turn it is gets here
-    hand_in();
-    lock.lock();
-    ++next_;
-    moved_on_.notify_all();
-  }
-
-  bool has_failed() {
-    const std::lock_guard lock(mutex_);
-    return failed_;
-  }
-
-  /// Lets nobody wait for a piece that will not come.
-  void fail() {
-    const std::lock_guard lock(mutex_);
-    failed_ = true;
-    moved_on_.notify_all();
+    is_used_ = true;
+    while (slot(next_).is_ready && !failed_) {
+      lock.unlock();
+      use(slot(next_).result);
+      lock.lock();
+      slot(next_++).is_ready = false;
+      moved_on_.notify_all();
+    }
+    is_used_ = false;
   }
 
   std::mutex taking_ = {};  // guards the source and how often it was asked
   Source source_;
   std::size_t taken_ = 0;
+
   std::mutex mutex_ = {};  // guards what follows
   std::condition_variable moved_on_ = {};
-  std::size_t next_ = 0;
+  std::vector<Slot> slots_;
+  std::size_t next_ = 0;  // turn
+  bool is_used_ = false;  // by a thread
   bool failed_ = false;
 };
 

@@ -195,16 +195,16 @@ class CellSource {
 
 void isosurface(const Octree& octree, const BrickLayers& layers, int threads,
                 const FacetSink& sink) {
-  InOrder pieces(CellSource(octree, layers));
+  InOrder<CellSource, std::vector<Facet>> pieces(CellSource(octree, layers), 4 * threads);
   fork_join(threads, [&](int) {
-    std::vector<Facet> facets;
-    pieces.take_all([&](const CellBricks& cells, auto in_turn) {
-      facets.clear();
-      for (const CellBrick& cell : cells.bricks) {
-        append_facets(octree, cell, facets);
-      }
-      in_turn([&] { sink(facets); });
-    });
+    pieces.take_all(
+        [&](const CellBricks& cells, std::vector<Facet>& facets) {
+          facets.clear();
+          for (const CellBrick& cell : cells.bricks) {
+            append_facets(octree, cell, facets);
+          }
+        },
+        [&](const std::vector<Facet>& facets) { sink(facets); });
   });
 }
 

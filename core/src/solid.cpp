@@ -122,14 +122,20 @@ void Solid::add(const Snapshot& snapshot) {
 }
 
 void Solid::add(const SnapshotSource& snapshots, const std::stop_token& stop) try {
-  InOrder shots([&, shot = std::size_t{0}]() mutable -> std::optional<std::size_t> {
+  const int threads = std::clamp(static_cast<int>(snapshots.count), 1, options_.threads);
+  auto next = [&, shot = std::size_t{0}]() mutable -> std::optional<std::size_t> {
     return shot < snapshots.count && !stop.stop_requested() ? std::optional(shot++) : std::nullopt;
-  });
-  fork_join(std::clamp(static_cast<int>(snapshots.count), 1, options_.threads), [&](int) {
-    shots.take_all([&](std::size_t shot, auto in_turn) {
-      const Sighting sighting(snapshots.read(shot), options_.clip);
-      in_turn([&] { fuse(field_, sighting); });
-    });
+  };
+  InOrder<decltype(next), std::optional<Sighting>> shots(next, threads);
+  fork_join(threads, [&](int) {
+    shots.take_all(
+        [&](std::size_t shot, std::optional<Sighting>& sighting) {
+          sighting.emplace(snapshots.read(shot), options_.clip);
+        },
+        [&](std::optional<Sighting>& sighting) {
+          fuse(field_, *sighting);
+          sighting.reset();
+        });
   });
 } catch (const OctreeFull&) {
   throw Error("memory-limit",

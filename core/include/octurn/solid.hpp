@@ -6,6 +6,7 @@
 #include "octurn/isosurface.hpp"
 #include "octurn/leaf_set.hpp"
 #include "octurn/reconstruct_options.hpp"
+#include "octurn/seen_field.hpp"
 
 namespace octurn {
 
@@ -13,10 +14,14 @@ namespace octurn {
 /// them.
 ///
 /// Each snapshot is conditioned (`Sighting`) and fused (`fuse`) in a field of distances, in the
-/// order of the scan. Then what nobody saw is filled in (`FilledField`), the part that stands on
-/// the platform is kept without its cavities (`LeafSet`), and its surface is made
+/// order of the scan, and what that says of each leaf is kept (`SeenField`). Then what nobody saw
+/// is filled in (`FilledField`), the part that stands on the platform is kept without its cavities
+/// (`LeafSet`), and its surface is made
 /// (`marching_cubes`) with no more triangles than it needs (`Simplifier`), all of it streamed.
-/// Threads do not change a byte of it.
+///
+/// Where the field does not fit in the memory limit, it holds as many of its lowest layers as do: a
+/// slab. For the others the snapshots are read again. Neither slabs nor threads change a byte of
+/// the surface.
 ///
 /// A facet's attributes are `filled_in` where nobody saw the surface.
 class Solid {
@@ -31,17 +36,20 @@ class Solid {
   /// The same for all of them; several threads condition them. Ends early if stopped.
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {});
 
-  /// The surface, streamed. What `sink` throws ends it. The snapshots are not read again.
-  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) const;
+  /// The surface, streamed. What `sink` throws ends it.
+  /// @param snapshots  those that were added, to be read again if there are several slabs
+  /// @throws Error "memory-limit"  if what was seen does not fit
+  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink);
 
   /// What `surface` would give: as much work, but for handing it on.
-  SurfaceCount count(const SnapshotSource& snapshots) const;
+  SurfaceCount count(const SnapshotSource& snapshots);
 
   /// The part made of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres.
+  /// metres. Of several slabs it shows the one at hand.
   void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
+  SeenField seen(const SnapshotSource& snapshots);
   int foot() const;
 
   ReconstructOptions options_;

@@ -12,6 +12,7 @@
 
 #include "fork_join.hpp"
 #include "in_order.hpp"
+#include "memory_limit.hpp"
 #include "octurn/error.hpp"
 #include "octurn/filled_field.hpp"
 #include "octurn/fuse.hpp"
@@ -34,17 +35,13 @@ constexpr double foot_margin = 0.001;  // metres
 
 // What a process takes beside its field, measured with a sensor's 640 x 480 samples: the program
 // and its libraries, for each thread a snapshot and what it says, and the mesh on its way out.
-constexpr std::size_t program_bytes = std::size_t{12} << 20U;
-constexpr std::size_t thread_bytes = std::size_t{14} << 20U;
-constexpr std::size_t surface_bytes = std::size_t{16} << 20U;
-constexpr std::size_t least_field_bytes = std::size_t{4} << 20U;
+constexpr std::size_t program_bytes = 12 * mebibyte;
+constexpr std::size_t thread_bytes = 14 * mebibyte;
+constexpr std::size_t surface_bytes = 16 * mebibyte;
+constexpr std::size_t least_field_bytes = 4 * mebibyte;
 
 /// How far below the upper end of its window a mesh is simplified, in leaves.
 constexpr double margin_leaves = 8;
-
-std::string mb_text(std::size_t bytes) {
-  return std::to_string((bytes + (std::size_t{1} << 20U) - 1) >> 20U) + " MB";
-}
 
 std::size_t beside_field(const ReconstructOptions& options) {
   return program_bytes +
@@ -60,18 +57,11 @@ ReconstructOptions checked(ReconstructOptions options) {
   if (!std::isfinite(options.max_error) || options.max_error < 0) {
     throw Error("bad-settings", "max error: must be 0 or above");
   }
-  if (options.memory_limit != 0) {
-    while (options.threads > 1 &&
-           beside_field(options) + least_field_bytes > options.memory_limit) {
-      --options.threads;
-    }
-    if (const std::size_t least = beside_field(options) + least_field_bytes;
-        least > options.memory_limit) {
-      throw Error("memory-limit",
-                  "memory limit: " + mb_text(options.memory_limit) + " is too little",
-                  "Allow at least " + mb_text(least) + ".");
-    }
+  const auto least = [&] { return beside_field(options) + least_field_bytes; };
+  while (options.memory_limit != 0 && options.threads > 1 && least() > options.memory_limit) {
+    --options.threads;
   }
+  check_memory_limit(options.memory_limit, least());
   return options;
 }
 

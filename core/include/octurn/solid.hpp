@@ -23,29 +23,15 @@ namespace octurn {
 /// slab. For the others the snapshots are read again. Neither slabs nor threads change a byte of
 /// the surface.
 ///
-/// A facet's attributes are `filled_in` where nobody saw the surface.
+/// A facet's attributes are `filled_in` where nobody saw the surface. What the members do, and
+/// throw, `Reconstruction` says; `count` is as much work as `surface`.
 class Solid {
  public:
-  /// @throws Error "bad-settings"  that says which option is out of its range
-  /// @throws Error "memory-limit"  that says what limit would do
   explicit Solid(const ReconstructOptions& options);
-
-  /// @throws Error "memory-limit"  if what was seen does not fit
   void add(const Snapshot& snapshot);
-
-  /// The same for all of them; several threads condition them. Ends early if stopped.
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {});
-
-  /// The surface, streamed. What `sink` throws ends it.
-  /// @param snapshots  those that were added, to be read again if there are several slabs
-  /// @throws Error "memory-limit"  if what was seen does not fit
   SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink);
-
-  /// What `surface` would give: as much work, but for handing it on.
   SurfaceCount count(const SnapshotSource& snapshots);
-
-  /// The part made of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres. Of several slabs it shows the one at hand.
   void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:

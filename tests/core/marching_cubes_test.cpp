@@ -12,18 +12,6 @@
 namespace octurn {
 namespace {
 
-std::vector<Facet> surface_of(const LeafSet& set, const FilledField& filled) {
-  std::vector<MeshVertex> vertices;
-  std::vector<Facet> facets;
-  marching_cubes(set, filled, [&](const MeshPiece& piece) {
-    vertices.insert(vertices.end(), piece.vertices.begin(), piece.vertices.end());
-    for (const MeshTriangle& t : piece.triangles) {
-      facets.push_back(facet_of({vertices[t[0]], vertices[t[1]], vertices[t[2]]}));
-    }
-  });
-  return facets;
-}
-
 /// Parts that no facet joins, counted over the corners they share.
 int parts_of(const std::vector<Facet>& facets) {
   std::map<std::array<float, 3>, std::size_t> names;

@@ -68,7 +68,9 @@ std::string rounded(double value, int digits) {
   std::array<char, 64> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
                                  std::chars_format::fixed, digits);
-  return {text.data(), end.ptr};
+  const std::string_view number(text.data(), static_cast<std::size_t>(end.ptr - text.data()));
+  const bool is_zero = number.find_first_not_of("-0.") == number.npos;
+  return std::string(number.substr(is_zero && number.starts_with('-') ? 1 : 0));
 }
 
 std::string readable_bytes(double bytes) {

@@ -180,7 +180,7 @@ Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point 
   }
   return entries(root / "sys/class/rtc").empty()
              ? clock_set.warning(
-                   time + ", set by nobody",
+                   time + ", not from a time server",
                    "Connect the scanner to a network with internet, or its scans have wrong dates.")
              : clock_set.ok(time + ", from this machine's own clock");
 }

@@ -139,18 +139,17 @@ Finding check_lost_frames(const SensorSample& sample) {
   const std::string measured =
       std::to_string(lost) + " of " + std::to_string(all) +
       (sample.damaged ? ", " + std::to_string(damaged) + " of them damaged on the way" : "");
-  constexpr const char* cable =
-      "Plug the sensor directly into another USB port, and check its power supply and cable.";
-  if (2 * damaged > all) {
-    return lost_frames.fault(measured, cable);
+  const auto is_many = [&](int frames) { return 50 * frames > all; };
+  if (is_many(damaged)) {
+    constexpr const char* advice =
+        "Plug the sensor directly into another USB port, and check its power supply and cable.";
+    return 2 * damaged > all ? lost_frames.fault(measured, advice)
+                             : lost_frames.warning(measured, advice);
   }
-  if (lost * 50 <= all) {
-    return lost_frames.ok(measured);
-  }
-  return lost_frames.warning(measured, 2 * damaged >= lost
-                                           ? cable
-                                           : "End other programs: this machine was too busy to "
-                                             "take every frame.");
+  return is_many(lost)
+             ? lost_frames.warning(
+                   measured, "End other programs: this machine was too busy to take every frame.")
+             : lost_frames.ok(measured);
 }
 
 PlatformView view_of_platform(const SensorSample& sample, const Box& clip,

@@ -6,7 +6,6 @@
 #include <regex>
 #include <vector>
 
-#include "octurn/units.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -44,8 +43,8 @@ TEST(Finding, HasNumbersWithoutMoreDigitsThanItSays) {
 }
 
 TEST(Finding, HasSizesAsPeopleReadThem) {
-  EXPECT_EQ(readable_bytes(bytes_from_mb(512)), "512 MB");
-  EXPECT_EQ(readable_bytes(bytes_from_mb(2560)), "2.5 GB");
+  EXPECT_EQ(readable_bytes(512e6), "512 MB");
+  EXPECT_EQ(readable_bytes(2.46e9), "2.5 GB");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "octurn/units.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {
@@ -41,12 +40,12 @@ class Pi {
   TemporaryFolder folder_;
 };
 
-constexpr std::uint64_t scan = 150U << 20U;
+constexpr std::uint64_t scan = 150'000'000;
 
 TEST(DiskCheck, CountsTheScansThatFit) {
   const Finding finding = check_disk(40 * scan, scan);
   EXPECT_EQ(finding.state, State::ok);
-  EXPECT_EQ(finding.measured, "5.9 GB free, enough for 40 scans");
+  EXPECT_EQ(finding.measured, "6.0 GB free, enough for 40 scans");
   EXPECT_EQ(finding.advice, "");
 }
 
@@ -61,10 +60,10 @@ TEST(DiskCheck, WarnsBeforeItIsFull) {
 
 TEST(MemoryCheck, ComparesWhatIsThereWithWhatMayBeUsed) {
   const Pi pi;
-  pi.has_memory("2097152");
+  pi.has_memory("2097152");  // 2 GiB
   const Finding enough = check_memory(pi.root(), 1U << 30U);
   EXPECT_EQ(enough.state, State::ok);
-  EXPECT_EQ(enough.measured, "2.0 GB available, 1.0 GB allowed for a model");
+  EXPECT_EQ(enough.measured, "2.1 GB available, 1.1 GB allowed for a model");
   const Finding few = check_memory(pi.root(), (std::size_t{2} << 30U) + 1);
   EXPECT_EQ(few.state, State::warning);
   EXPECT_NE(few.advice.find("memory_limit_mb"), std::string::npos);

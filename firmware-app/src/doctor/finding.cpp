@@ -74,8 +74,8 @@ std::string rounded(double value, int digits) {
 }
 
 std::string readable_bytes(double bytes) {
-  const double mb = mb_from_bytes(bytes);
-  return mb < 1000 ? rounded(mb, 0) + " MB" : rounded(gb_from_bytes(bytes), 1) + " GB";
+  const double gb = decimal_gb_from_bytes(bytes);
+  return gb < 1 ? rounded(decimal_mb_from_bytes(bytes), 0) + " MB" : rounded(gb, 1) + " GB";
 }
 
 json json_of(std::span<const Finding> findings) {

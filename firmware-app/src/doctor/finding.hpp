@@ -41,7 +41,7 @@ Finding::State worst(std::span<const Finding> findings);
 /// A number with so many digits after the point.
 std::string rounded(double value, int digits);
 
-/// A size as people read it: "512 MB", "12.3 GB".
+/// A size as people read it and disks are sold, in powers of 1000: "512 MB", "12.3 GB".
 std::string readable_bytes(double bytes);
 
 /// The findings as `octurn doctor --json` and the API have them, with version and time, so that

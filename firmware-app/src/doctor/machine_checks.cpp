@@ -187,7 +187,8 @@ Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point 
 
 bool is_clock_synchronised() {
   timex state{};
-  return ::adjtimex(&state) != TIME_ERROR;
+  const int answer = ::adjtimex(&state);  // -1 where a service may not even ask
+  return answer >= 0 && answer != TIME_ERROR;
 }
 
 }  // namespace octurn

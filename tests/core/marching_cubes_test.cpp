@@ -54,7 +54,7 @@ int parts_of(const std::vector<Facet>& facets) {
 
 TEST(MarchingCubes, IsClosedAndManifoldWhateverTheSigns) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    const DistanceField field = random_field(seed, 0.2 * seed);
+    const SeenField field = random_field(seed, 0.2 * seed);
     const FilledField filled(field, 3);
     const std::vector<Facet> facets = surface_of(filled.inside(), filled);
     ASSERT_GT(facets.size(), 1000U);
@@ -64,7 +64,7 @@ TEST(MarchingCubes, IsClosedAndManifoldWhateverTheSigns) {
 
 TEST(MarchingCubes, OfAKeptPartIsOnePart) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    const DistanceField field = random_field(seed, 0.2 * seed);
+    const SeenField field = random_field(seed, 0.2 * seed);
     const FilledField filled(field, 3);
     LeafSet part = filled.inside();
     part.keep_part();
@@ -77,7 +77,7 @@ TEST(MarchingCubes, OfAKeptPartIsOnePart) {
 }
 
 TEST(MarchingCubes, KeepsVerticesApart) {
-  const DistanceField field = random_field(7, 0.4);
+  const SeenField field = random_field(7, 0.4);
   const FilledField filled(field, 3);
   for (const Facet& facet : surface_of(filled.inside(), filled)) {
     const auto corners = facet.corners;
@@ -91,7 +91,7 @@ TEST(MarchingCubes, KeepsVerticesApart) {
 
 TEST(Simplifier, KeepsNoiseManifold) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    const DistanceField field = random_field(seed, 0.2 * seed);
+    const SeenField field = random_field(seed, 0.2 * seed);
     const FilledField filled(field, 3);
     std::vector<Facet> facets;
     Simplifier simplifier(0.5, 4, [&](std::span<const Facet> some) {

@@ -50,10 +50,24 @@
  * @property {number} disk_free_bytes
  * @property {Scan | null} scan
  * @property {string | null} newest
+ *
+ * @typedef {Object} Finding  of one check
+ * @property {string} check  its name for programs
+ * @property {string} name
+ * @property {'ok' | 'warning' | 'fault' | 'unknown'} state
+ * @property {string} measured  with units
+ * @property {string} advice  what to do, or empty
+ *
+ * @typedef {Object} Report  of the scanner's doctor
+ * @property {string} version
+ * @property {string} time
+ * @property {'ok' | 'warning' | 'fault'} state
+ * @property {Finding[]} findings
  */
 
 const root = '/api/v1/';
 const patience = 8000;  // milliseconds until a request counts as unanswered
+const patienceWithDoctor = 60000;  // who watches the sensor first, after whoever else does
 
 /** Why the scanner did not do what it was asked, in the words of its problem+json. */
 export class Problem extends Error {
@@ -86,14 +100,15 @@ async function problemOf(response) {
 /**
  * @param {string} path  below the API's root, or absolute
  * @param {RequestInit} [options]
+ * @param {number} [timeout]  milliseconds
  * @returns {Promise<Response>} a good one
  * @throws {Problem}
  */
-async function request(path, options = {}) {
+async function request(path, options = {}, timeout = patience) {
   let response;
   try {
     response = await fetch(path.startsWith('/') ? path : root + path,
-        {signal: AbortSignal.timeout(patience), cache: 'no-store', ...options});
+        {signal: AbortSignal.timeout(timeout), cache: 'no-store', ...options});
   } catch (error) {
     throw options.signal?.aborted ? error : unreachable();
   }
@@ -106,9 +121,10 @@ async function request(path, options = {}) {
 /**
  * @param {string} path
  * @param {RequestInit} [options]
+ * @param {number} [timeout]  milliseconds
  */
-async function json(path, options) {
-  const response = await request(path, options);
+async function json(path, options, timeout) {
+  const response = await request(path, options, timeout);
   return response.json().catch(() => {
     throw unreachable();  // cut short, or something else than the scanner answers at this address
   });
@@ -129,6 +145,9 @@ const scan = (/** @type {string} */ id) => `scans/${encodeURIComponent(id)}`;
 
 /** @returns {Promise<Status>} */
 export const status = () => json('status');
+
+/** @returns {Promise<Report>} what a check of the scanner finds; it takes a few seconds */
+export const examine = () => json('doctor', {}, patienceWithDoctor);
 
 /** @returns {Promise<Scan[]>} newest first */
 export const scans = async () => (await json('scans')).scans;

@@ -2,6 +2,7 @@
 
 import * as api from './api.js';
 import {watchCamera} from './camera.js';
+import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import {chosenSettings, prepareForm} from './form.js';
 import {nameOf, screenOf} from './screen.js';
@@ -144,5 +145,6 @@ function listen() {
 change(states.withSelected(state, location.hash.slice(1) || null));
 listen();
 prepareStage();
+prepareDoctor();
 watch();
 watchCamera();

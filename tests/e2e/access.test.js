@@ -25,6 +25,10 @@ const overflow = (page) => page.evaluate(() => document.documentElement.scrollWi
 /** The states of the page, each with how to get there. */
 const states = {
   idle: async () => {},
+  checked: async (page) => {
+    await page.getByRole('button', {name: 'Check now'}).click();
+    await page.locator('.finding').first().waitFor();
+  },
   advanced: (page) => page.getByText('Advanced').click(),
   finished: async (page, finished) => {
     await page.goto(`${new URL('/', page.url())}#${finished.id}`);

@@ -33,6 +33,7 @@ class Device final : public DepthDevice {
   OniBool isPropertySupported(int property) override {
     switch (property) {
       case ONI_DEVICE_PROPERTY_ERROR_STATE:
+      case damaged_frames_property:
         return TRUE;
       case tilt_property:
         return kinect_.tilt() ? TRUE : FALSE;
@@ -51,6 +52,9 @@ class Device final : public DepthDevice {
     if (property == tilt_property) {
       const std::optional<Tilt> tilt = kinect_.tilt();
       return tilt ? give_property(*tilt, data, size) : ONI_STATUS_NOT_SUPPORTED;
+    }
+    if (property == damaged_frames_property) {
+      return give_property(kinect_.damaged_frames(), data, size);
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }

@@ -167,6 +167,8 @@ void Kinect::take_packet(std::byte* frame, const void* data, int number, int byt
 void Kinect::take_frame(const std::uint16_t* readings) {
   if (packets_in_order_ == packets) {
     (*on_frame_)({.readings = std::span(readings, pixels), .time = frame_begin_});
+  } else {
+    ++damaged_frames_;
   }
 }
 

@@ -53,6 +53,9 @@ class Kinect {
   /// @param on_frame  given each frame of which every packet has come; the others are dropped
   void stream(const std::stop_token& stop, const std::function<void(const RawFrame&)>& on_frame);
 
+  /// How many frames were dropped because packets of them were missing.
+  int damaged_frames() const { return damaged_frames_; }
+
   /// Whether it was unplugged.
   bool is_lost() const { return is_lost_; }
 
@@ -78,6 +81,7 @@ class Kinect {
   mutable std::mutex tilt_mutex_;  // guards tilt_
   std::optional<Tilt> tilt_ = {};
   std::atomic<bool> is_lost_ = false;
+  std::atomic<int> damaged_frames_ = 0;
   const std::function<void(const RawFrame&)>* on_frame_ = nullptr;  // while a stream runs
   int packets_in_order_ = 0;  // of the frame that is coming; -1 once one was missing
   std::chrono::steady_clock::time_point frame_begin_ = {};

@@ -18,4 +18,7 @@ inline constexpr int tilt_property = 0x4F430011;
 /// for Windows has it, and it is set before the stream starts.
 inline constexpr int near_mode_property = 0x4F430012;
 
+/// The property that is an int: how many frames came damaged since the device was opened.
+inline constexpr int damaged_frames_property = 0x4F430013;
+
 }  // namespace octurn

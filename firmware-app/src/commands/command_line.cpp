@@ -135,6 +135,20 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
   });
 }
 
+void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
+  CLI::App& command =
+      *program.add_subcommand("doctor", "checks the scanner, and says what to do about each fault");
+  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_config_options(command, arguments.config_file, arguments.data);
+  command.add_flag("--json", arguments.json, "print one line of JSON in place of the table");
+  command.footer(
+      "It never moves the motor. It ends with 0 if there is no fault, with 1 if one is.");
+  command.callback([&arguments, &status, simulate] {
+    arguments.rig.simulate = simulate->count() > 0;
+    status = doctor(arguments) ? 0 : 1;
+  });
+}
+
 void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
   CLI::App& command = *program.add_subcommand("reconstruct", "a model from a scan folder");
   command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
@@ -175,16 +189,19 @@ int run(int argc, char** argv) {
   ServeArguments serve_arguments;
   ScanArguments scan_arguments;
   RecordArguments record_arguments;
+  DoctorArguments doctor_arguments;
   ReconstructArguments reconstruct_arguments;
+  int status = 0;
   add_serve(program, serve_arguments);
   add_scan(program, scan_arguments);
   add_record(program, record_arguments);
+  add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
 
   block_signals();
   try {
     program.parse(argc, argv);  // and runs the command
-    return 0;
+    return status;
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   } catch (const Error& error) {

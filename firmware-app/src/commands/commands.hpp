@@ -68,6 +68,17 @@ struct RecordArguments {
 /// `octurn record`: what the sensor sees in a turn of the platform, to be replayed as the sensor.
 void record(const RecordArguments& arguments);
 
+struct DoctorArguments {
+  RigArguments rig = {};
+  std::optional<std::filesystem::path> config_file = {};
+  std::optional<std::filesystem::path> data = {};
+  bool json = false;  ///< one line of JSON in place of the table
+};
+
+/// `octurn doctor`: checks the scanner and says what to do about each fault. Never moves the motor.
+/// @return false if there is a fault
+bool doctor(const DoctorArguments& arguments);
+
 struct ReconstructArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};  ///< "-" is standard output

@@ -103,6 +103,7 @@ const std::vector<Api::Route>& Api::routes() {
       {"GET", "/Scan.stl", &Api::newest_model},
       {"GET", "/api/v1/status", &Api::status},
       {"GET", "/api/v1/settings", &Api::settings},
+      {"GET", "/api/v1/doctor", &Api::doctor},
       {"GET", "/api/v1/preview/depth.png", &Api::preview},
       {"GET", "/api/v1/scans", &Api::list},
       {"POST", "/api/v1/scans", &Api::start},
@@ -179,6 +180,10 @@ Response Api::status(const Request& /*request*/, std::string_view /*id*/) {
 
 Response Api::settings(const Request& /*request*/, std::string_view /*id*/) {
   return json_response({{"defaults", json_of(options_.defaults)}});
+}
+
+Response Api::doctor(const Request& /*request*/, std::string_view /*id*/) {
+  return json_response(octurn::json_of(examine(options_.patient, scanner_)));
 }
 
 Response Api::preview(const Request& /*request*/, std::string_view /*id*/) {

@@ -36,6 +36,8 @@ using Moment = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::ra
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
+constexpr const char* lock_file = "lock";
+
 // A 16-bit depth image that does not compress at all, and a fine model.
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
 constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
@@ -109,13 +111,39 @@ bool is_scan_id(std::string_view text) {
   });
 }
 
+std::uint64_t most_bytes_of(const ScanSettings& settings) {
+  return model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
+}
+
+fs::path existing_part(fs::path folder) {
+  std::error_code ignored;
+  while (!folder.empty() && !fs::exists(folder, ignored) && folder != folder.parent_path()) {
+    folder = folder.parent_path();
+  }
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+std::uint64_t free_bytes_in(const fs::path& folder) {
+  std::error_code error;
+  const fs::space_info space = fs::space(existing_part(folder), error);
+  if (error) {
+    fail(folder, "read", error);
+  }
+  return space.available;
+}
+
+bool is_in_use(const fs::path& data) {
+  const FileDescriptor lock(::open((data / lock_file).c_str(), O_RDONLY | O_CLOEXEC));
+  return lock.is_open() && ::flock(lock.number(), LOCK_SH | LOCK_NB) != 0;
+}
+
 ScanStore::ScanStore(fs::path data) : data_(std::move(data)), scans_(data_ / "scans") {
   std::error_code error;
   fs::create_directories(scans_, error);
   if (error) {
     fail(scans_, "make the folder", error);
   }
-  const fs::path file = data_ / "lock";
+  const fs::path file = data_ / lock_file;
   lock_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
   if (!lock_.is_open()) {
     fail(file, "open", {errno, std::generic_category()});
@@ -128,8 +156,7 @@ ScanStore::ScanStore(fs::path data) : data_(std::move(data)), scans_(data_ / "sc
 }
 
 Job ScanStore::create(const ScanSettings& settings) const {
-  const std::uint64_t needed =
-      model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
+  const std::uint64_t needed = most_bytes_of(settings);
   if (const std::uint64_t available = free_bytes(); available < needed) {
     const auto mb = [](std::uint64_t bytes) {
       return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
@@ -230,14 +257,7 @@ void ScanStore::remove(std::string_view id) const {
 
 fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
 
-std::uint64_t ScanStore::free_bytes() const {
-  std::error_code error;
-  const fs::space_info space = fs::space(scans_, error);
-  if (error) {
-    fail(scans_, "read", error);
-  }
-  return space.available;
-}
+std::uint64_t ScanStore::free_bytes() const { return free_bytes_in(scans_); }
 
 std::vector<std::string> ScanStore::ids_newest_first() const {
   std::vector<std::string> ids;

@@ -16,6 +16,18 @@ namespace octurn {
 /// become part of a path.
 bool is_scan_id(std::string_view text);
 
+/// What a scan with these settings takes on the disk at most.
+std::uint64_t most_bytes_of(const ScanSettings& settings);
+
+/// The folder, or the nearest one above it that exists.
+std::filesystem::path existing_part(std::filesystem::path folder);
+
+/// What may still be written into a folder, or where it would be made. @throws Error "data-failed"
+std::uint64_t free_bytes_in(const std::filesystem::path& folder);
+
+/// Whether a program works in that folder of scans just now.
+bool is_in_use(const std::filesystem::path& data);
+
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
 /// asked for and what became of it) and `name.txt` (what a person called it).
 ///

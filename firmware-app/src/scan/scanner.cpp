@@ -58,6 +58,9 @@ std::optional<Job> Scanner::start(const ScanSettings& settings) {
   if (leave_) {
     leave_->request_stop();
   }
+  if (loan_ != nullptr) {
+    loan_->stop.request_stop();
+  }
   wake_.notify_all();
   return job;
 }
@@ -84,6 +87,26 @@ void Scanner::take_leave_back() {
   const std::lock_guard lock(mutex_);
   leave_.reset();
   wake_.notify_all();
+}
+
+bool Scanner::lend_rig(const std::function<void(Rig& rig, const std::stop_token& stop)>& use) {
+  Loan loan{.use = use};
+  std::unique_lock lock(mutex_);
+  const auto is_ending = [&] { return worker_.get_stop_token().stop_requested(); };
+  wake_.wait(lock, [&] { return loan_ == nullptr || order_ || is_ending(); });
+  if (loan_ != nullptr || order_ || is_ending()) {
+    return false;
+  }
+  loan_ = &loan;
+  wake_.notify_all();
+  wake_.wait(lock, [&] { return loan.done || (order_ && !loan.taken); });
+  if (!loan.done) {
+    loan_ = nullptr;  // the scan is first
+  }
+  if (loan.failure) {
+    std::rethrow_exception(loan.failure);
+  }
+  return loan.used;
 }
 
 void Scanner::request_stop() {
@@ -146,21 +169,29 @@ void Scanner::work(const std::stop_token& stop) {
       case Demand::view:
         look(rig, stop);
         break;
+      case Demand::loan:
+        lend(rig, stop);
+        break;
       case Demand::none:
         rig.close_sensor();
         break;
     }
   }
+  end_loan();
 }
 
 Scanner::Demand Scanner::wait_for_demand(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   const auto viewed = [&] { return Clock::now() < view_wanted_until_; };
-  wake_.wait_for(lock, stop, open_without_use, [&] { return order_ || viewed(); });
+  wake_.wait_for(lock, stop, open_without_use,
+                 [&] { return order_ || loan_ != nullptr || viewed(); });
   if (stop.stop_requested()) {
     return Demand::none;
   }
-  return order_ ? Demand::scan : viewed() ? Demand::view : Demand::none;
+  return order_             ? Demand::scan
+         : loan_ != nullptr ? Demand::loan
+         : viewed()         ? Demand::view
+                            : Demand::none;
 }
 
 void Scanner::look(Rig& rig, const std::stop_token& stop) {
@@ -174,7 +205,7 @@ void Scanner::look(Rig& rig, const std::stop_token& stop) {
     rig.close_sensor();
     set_device_failed(failure_of(error));
     std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, stop, retry_interval, [&] { return order_.has_value(); });
+    wake_.wait_for(lock, stop, retry_interval, [&] { return order_ || loan_ != nullptr; });
   }
 }
 
@@ -233,6 +264,36 @@ void Scanner::run_order(Rig& rig, const std::stop_token& stop) {
   }
   let_go(rig);
   finish(std::move(job));
+}
+
+void Scanner::lend(Rig& rig, const std::stop_token& stop) {
+  Loan* loan = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (loan_ == nullptr) {
+      return;  // a scan has come before it
+    }
+    loan = loan_;
+    loan->taken = true;
+  }
+  const std::stop_callback end_with_the_daemon(stop, [&] { loan->stop.request_stop(); });
+  try {
+    loan->use(rig, loan->stop.get_token());
+    loan->used = true;
+  } catch (...) {
+    loan->failure = std::current_exception();
+  }
+  end_loan();
+}
+
+/// Lets whoever waits for the rig go on, with it or without.
+void Scanner::end_loan() {
+  const std::lock_guard lock(mutex_);
+  if (loan_ != nullptr) {
+    loan_->done = true;
+    loan_ = nullptr;
+  }
+  wake_.notify_all();
 }
 
 void Scanner::let_go(Rig& rig) {

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -98,6 +100,12 @@ class Scanner {
   /// @return nothing while a scan runs, or somebody has leave already
   std::unique_ptr<Leave> leave_to_reconstruct();
 
+  /// Has the worker use the rig, between scans, and waits until it has. A scan that starts asks for
+  /// it back.
+  /// @param use  returns soon after its token has a stop request; what it throws comes out here
+  /// @return false if it was not used, since a scan runs or this ends
+  bool lend_rig(const std::function<void(Rig& rig, const std::stop_token& stop)>& use);
+
   /// Asks the worker to end, and whoever has leave. The destructor does the same, and waits for the
   /// worker.
   void request_stop();
@@ -107,13 +115,23 @@ class Scanner {
     Job job = {};
     std::stop_source cancel = {};
   };
-  enum class Demand { none, view, scan };
+  struct Loan {
+    const std::function<void(Rig& rig, const std::stop_token& stop)>& use;
+    std::stop_source stop = {};
+    bool taken = false;  // by the worker
+    bool used = false;
+    bool done = false;
+    std::exception_ptr failure = {};
+  };
+  enum class Demand { none, view, loan, scan };
 
   void work(const std::stop_token& stop);
   Demand wait_for_demand(const std::stop_token& stop);
   void look(Rig& rig, const std::stop_token& stop);
   void look_for_turntable(Rig& rig);
   void run_order(Rig& rig, const std::stop_token& stop);
+  void lend(Rig& rig, const std::stop_token& stop);
+  void end_loan();
   void let_go(Rig& rig);
   void report(Phase phase, int snapshots_done);
   void finish(Job job);
@@ -130,10 +148,11 @@ class Scanner {
   Latest<Status> status_;
   Latest<View> view_;
   Latest<Preview> preview_;
-  mutable std::mutex mutex_;  // guards order_, leave_ and view_wanted_until_
+  mutable std::mutex mutex_;  // guards order_, leave_, loan_ and view_wanted_until_
   std::condition_variable_any wake_;
   std::optional<Order> order_;             // the one job slot: full while a scan waits or runs
   std::optional<std::stop_source> leave_;  // full while somebody has leave
+  Loan* loan_ = nullptr;                   // of whoever waits in lend_rig
   std::chrono::steady_clock::time_point view_wanted_until_ = {};
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };

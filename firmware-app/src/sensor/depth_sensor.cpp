@@ -21,6 +21,8 @@ std::optional<TimedFrame> DepthSensor::read(const std::stop_token& stop) {
 
 std::optional<Tilt> DepthSensor::tilt() const { return device_->tilt(); }
 
+std::optional<int> DepthSensor::damaged_frames() const { return device_->damaged_frames(); }
+
 void DepthSensor::show_angle(double angle) { device_->show_angle(angle); }
 
 }  // namespace octurn

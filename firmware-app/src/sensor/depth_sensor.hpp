@@ -48,6 +48,10 @@ class DepthSensor {
   /// How it stands, by its accelerometer; nothing if it has none that can be read.
   std::optional<Tilt> tilt() const;
 
+  /// How many frames came damaged since it was opened, and were dropped; nothing if it does not
+  /// count them.
+  std::optional<int> damaged_frames() const;
+
   /// Tells a simulated sensor or a recording where the turntable stands, and that what it sees from
   /// now on begins there. Others pass it over.
   /// @param angle  of the platform, radians, counter-clockwise seen from above

@@ -150,6 +150,15 @@ void prepare_kinect(openni::Device& device) {
   }
 }
 
+/// The value of a device's property, if it has it.
+template <typename Value>
+std::optional<Value> property_of(const openni::Device& device, int property) {
+  Value value{};
+  int size = sizeof value;
+  return device.getProperty(property, &value, &size) == openni::STATUS_OK ? std::optional(value)
+                                                                          : std::nullopt;
+}
+
 DepthFrame copy_of(const openni::VideoFrameRef& frame) {
   DepthFrame copy = {.width = frame.getWidth(), .height = frame.getHeight()};
   const auto row = static_cast<std::size_t>(copy.width);
@@ -180,6 +189,7 @@ class OpenNiDevice final : public SensorDevice {
   const Intrinsics& intrinsics() const override { return intrinsics_; }
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
+  std::optional<int> damaged_frames() const override;
   void show_angle(double angle) override;
 
  private:
@@ -282,11 +292,10 @@ std::optional<TimedFrame> OpenNiDevice::read(const std::stop_token& stop) {
   return std::nullopt;
 }
 
-std::optional<Tilt> OpenNiDevice::tilt() const {
-  Tilt tilt;
-  int size = sizeof tilt;
-  return device_.getProperty(tilt_property, &tilt, &size) == openni::STATUS_OK ? std::optional(tilt)
-                                                                               : std::nullopt;
+std::optional<Tilt> OpenNiDevice::tilt() const { return property_of<Tilt>(device_, tilt_property); }
+
+std::optional<int> OpenNiDevice::damaged_frames() const {
+  return property_of<int>(device_, damaged_frames_property);
 }
 
 void OpenNiDevice::show_angle(double angle) {

@@ -43,6 +43,8 @@ class RecordedDevice final : public SensorDevice {
 
   std::optional<Tilt> tilt() const override { return tilt_; }
 
+  std::optional<int> damaged_frames() const override { return std::nullopt; }
+
   void show_angle(double angle) override {
     angle_ = angle;
     next_ = 0;

@@ -22,6 +22,7 @@ class SensorDevice {
   virtual const Intrinsics& intrinsics() const = 0;
   virtual std::optional<TimedFrame> read(const std::stop_token& stop) = 0;
   virtual std::optional<Tilt> tilt() const = 0;
+  virtual std::optional<int> damaged_frames() const = 0;
   virtual void show_angle(double angle) = 0;
 };
 

@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* user = "octurn";
-
 /// What the kernel calls the chip behind the header: of a Pi 3 and older, a Pi 4, and a Pi 5. The
 /// number of its device differs from kernel to kernel.
 constexpr std::array<const char*, 3> header_labels = {"pinctrl-bcm2835", "pinctrl-bcm2711",
@@ -59,13 +57,30 @@ unsigned free_line(const GpioChip& chip, const std::string& name) {
   }
   if (const std::optional<std::string> other = chip.user_of(*offset)) {
     throw Error("turntable-failed", "line " + name + " is in use by " + *other,
-                *other == user ? "End the other Octurn first."
-                               : "End what uses it, or choose another line in octurn.json.");
+                *other == gpio_user ? "End the other Octurn first."
+                                    : "End what uses it, or choose another line in octurn.json.");
   }
   return *offset;
 }
 
 }  // namespace
+
+HeaderUse look_at_header(const std::vector<NamedLine>& lines) {
+  const GpioChip chip = header_chip();
+  try {
+    HeaderUse use{.label = chip.label()};
+    for (const NamedLine& line : lines) {
+      const std::optional<unsigned> offset = chip.offset_of(line.name);
+      use.lines.push_back({.name = line.name,
+                           .exists = offset.has_value(),
+                           .user = offset ? chip.user_of(*offset) : std::nullopt});
+    }
+    return use;
+  } catch (const std::system_error& error) {
+    throw Error("turntable-failed", std::string("the GPIO lines cannot be read: ") + error.what(),
+                "Start this machine again.");
+  }
+}
 
 GpioLines::GpioLines(std::vector<NamedLine> lines)
     : lines_(std::move(lines)), chip_(header_chip()) {
@@ -74,7 +89,7 @@ GpioLines::GpioLines(std::vector<NamedLine> lines)
     for (const NamedLine& line : lines_) {
       outputs.push_back({.offset = free_line(chip_, line.name), .high = line.high});
     }
-    chip_.drive(outputs, user);
+    chip_.drive(outputs, gpio_user);
   } catch (const std::system_error& error) {
     throw Error("turntable-failed", std::string("the GPIO lines cannot be driven: ") + error.what(),
                 "End other programs that use GPIO, and retry.");

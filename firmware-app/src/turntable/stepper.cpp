@@ -1,7 +1,5 @@
 #include "turntable/stepper.hpp"
 
-#include <pthread.h>
-#include <sched.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 
 #include "log.hpp"
 #include "octurn/error.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
@@ -22,13 +21,9 @@ using Clock = std::chrono::steady_clock;
 // When its current comes on, the rotor jumps by up to two full steps and swings.
 constexpr auto grip_time = 100ms;
 
-// Above every ordinary program, below the kernel's own threads, which have 50.
-constexpr int real_time_priority = 40;
-
-/// Lets this thread run when its time has come, whatever else the system has to do.
-void ask_for_real_time_priority() {
-  const sched_param parameters{.sched_priority = real_time_priority};
-  const int failure = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+/// Has this thread's pulses come in time, as far as the system allows it.
+void be_punctual() {
+  const int failure = ask_for_real_time_priority();
   if (failure == 0) {
     return;
   }
@@ -82,7 +77,7 @@ LatePulses Stepper::late() const {
 }
 
 void Stepper::work(const std::stop_token& end) {
-  ask_for_real_time_priority();
+  be_punctual();
   std::unique_lock lock(mutex_);
   while (true) {
     const bool ordered =

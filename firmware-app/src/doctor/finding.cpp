@@ -1,0 +1,96 @@
+#include "doctor/finding.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "octurn/units.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+Finding finding(const Check& check, Finding::State state, std::string measured,
+                std::string advice) {
+  return {.check = std::string(check.id),
+          .name = std::string(check.name),
+          .state = state,
+          .measured = std::move(measured),
+          .advice = std::move(advice)};
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+}  // namespace
+
+Finding Check::ok(std::string measured) const {
+  return finding(*this, Finding::State::ok, std::move(measured), {});
+}
+
+Finding Check::warning(std::string measured, std::string advice) const {
+  return finding(*this, Finding::State::warning, std::move(measured), std::move(advice));
+}
+
+Finding Check::fault(std::string measured, std::string advice) const {
+  return finding(*this, Finding::State::fault, std::move(measured), std::move(advice));
+}
+
+Finding Check::unknown(std::string measured, std::string advice) const {
+  return finding(*this, Finding::State::unknown, std::move(measured), std::move(advice));
+}
+
+std::string_view name_of(Finding::State state) {
+  constexpr std::array<std::string_view, 4> names{"ok", "warning", "fault", "unknown"};
+  return names[static_cast<std::size_t>(state)];
+}
+
+Finding::State worst(std::span<const Finding> findings) {
+  for (const auto state : {Finding::State::fault, Finding::State::warning}) {
+    if (std::ranges::find(findings, state, &Finding::state) != findings.end()) {
+      return state;
+    }
+  }
+  return Finding::State::ok;
+}
+
+std::string rounded(double value, int digits) {
+  std::array<char, 64> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                 std::chars_format::fixed, digits);
+  const std::string_view number(text.data(), static_cast<std::size_t>(end.ptr - text.data()));
+  const bool is_zero = number.find_first_not_of("-0.") == number.npos;
+  return std::string(number.substr(is_zero && number.starts_with('-') ? 1 : 0));
+}
+
+std::string readable_bytes(double bytes) {
+  const double gb = decimal_gb_from_bytes(bytes);
+  return gb < 1 ? rounded(decimal_mb_from_bytes(bytes), 0) + " MB" : rounded(gb, 1) + " GB";
+}
+
+json json_of(std::span<const Finding> findings) {
+  json all = json::array();
+  for (const Finding& finding : findings) {
+    all.push_back({{"check", finding.check},
+                   {"name", finding.name},
+                   {"state", name_of(finding.state)},
+                   {"measured", finding.measured},
+                   {"advice", finding.advice}});
+  }
+  return {{"version", version()},
+          {"time", utc_now()},
+          {"state", name_of(worst(findings))},
+          {"findings", std::move(all)}};
+}
+
+}  // namespace octurn

@@ -1,0 +1,194 @@
+#include "doctor/machine_checks.hpp"
+
+#include <sys/timex.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "doctor/system_files.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Check disk{"disk", "Disk space"};
+constexpr Check memory{"memory", "Memory"};
+constexpr Check temperature{"temperature", "CPU temperature"};
+constexpr Check supply{"supply", "Supply voltage"};
+constexpr Check throttling{"throttling", "CPU speed"};
+constexpr Check clock_set{"clock", "Clock"};
+
+constexpr const char* not_known = "not known on this machine";
+
+constexpr std::uint64_t few_scans = 5;
+
+// A model of leaves of 1 mm takes less; below this the kernel itself gets into trouble.
+constexpr double least_memory = bytes_from_mb(64);
+
+// A Raspberry Pi lowers its clock at 80 degrees, some models a little at 60; at 85 it stops turbo.
+constexpr double warm = 70;
+constexpr double hot = 80;
+
+/// What the firmware of a Raspberry Pi says in `get_throttled`: bits for now, and the same 16
+/// higher for some time before (Raspberry Pi documentation, vcgencmd).
+struct Throttled {
+  unsigned bits = 0;
+
+  static constexpr unsigned under_voltage = 1U << 0U;
+  static constexpr unsigned slowed = (1U << 1U) | (1U << 2U) | (1U << 3U);
+
+  bool now(unsigned what) const { return (bits & what) != 0; }
+  bool before(unsigned what) const { return ((bits >> 16U) & what) != 0; }
+};
+
+std::optional<Throttled> throttled(const fs::path& root) {
+  const auto text = first_line(root / "sys/devices/platform/soc/soc:firmware/get_throttled");
+  if (!text) {
+    return std::nullopt;
+  }
+  const std::string_view digits = std::string_view(*text).substr(text->starts_with("0x") ? 2 : 0);
+  Throttled flags;
+  const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), flags.bits, 16);
+  return end.ec == std::errc() ? std::optional(flags) : std::nullopt;
+}
+
+/// The alarm of the kernel's driver raspberrypi-hwmon; nothing where there is no such driver.
+std::optional<bool> voltage_alarm(const fs::path& root) {
+  for (const fs::path& device : entries(root / "sys/class/hwmon")) {
+    if (first_line(device / "name") == "rpi_volt") {
+      const auto alarm = first_line(device / "in0_lcrit_alarm");
+      return alarm ? std::optional(*alarm != "0") : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A line of /proc/meminfo, bytes.
+std::optional<double> meminfo(const fs::path& root, const std::string& key) {
+  std::ifstream lines(root / "proc/meminfo");
+  for (std::string name; lines >> name;) {
+    double kb = 0;
+    lines >> kb;
+    if (lines && name == key + ":") {
+      return bytes_from_kb(kb);
+    }
+    lines.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return std::nullopt;
+}
+
+std::string readable_time(std::chrono::system_clock::time_point time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm utc{};
+  ::gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc)};
+}
+
+}  // namespace
+
+Finding check_disk(std::uint64_t free, std::uint64_t bytes_each) {
+  constexpr const char* advice = "Delete scans that are no longer needed.";
+  const std::uint64_t scans = free / bytes_each;
+  const std::string measured = readable_bytes(static_cast<double>(free)) + " free, enough for " +
+                               std::to_string(scans) + (scans == 1 ? " scan" : " scans");
+  return scans == 0          ? disk.fault(measured, advice)
+         : scans < few_scans ? disk.warning(measured, advice)
+                             : disk.ok(measured);
+}
+
+Finding check_memory(const fs::path& root, std::size_t limit) {
+  const std::optional<double> available = meminfo(root, "MemAvailable");
+  if (!available) {
+    return memory.unknown(not_known);
+  }
+  const auto wanted = static_cast<double>(limit);
+  const std::string measured =
+      readable_bytes(*available) + " available" +
+      (limit == 0 ? "" : ", " + readable_bytes(wanted) + " allowed for a model");
+  if (*available < least_memory) {
+    return memory.fault(measured, "End other programs on this machine, or start it again.");
+  }
+  return *available < wanted
+             ? memory.warning(measured,
+                              "End other programs, or lower memory_limit_mb in octurn.json.")
+             : memory.ok(measured);
+}
+
+Finding check_temperature(const fs::path& root) {
+  std::optional<double> hottest;
+  for (const fs::path& zone : entries(root / "sys/class/thermal")) {
+    const std::string type = first_line(zone / "type").value_or("");
+    const std::optional<double> reading = number_in(zone / "temp");
+    if (reading && (type.find("cpu") != type.npos || type == "x86_pkg_temp")) {
+      hottest = std::max(hottest.value_or(-273), celsius_from_millicelsius(*reading));
+    }
+  }
+  if (!hottest) {
+    return temperature.unknown(not_known);
+  }
+  const std::string measured = rounded(*hottest, 1) + " °C";
+  if (*hottest >= hot) {
+    return temperature.fault(measured,
+                             "Cool the computer: give it a heat sink, a fan or a place with air.");
+  }
+  return *hottest >= warm
+             ? temperature.warning(measured, "See that air can reach the computer's processor.")
+             : temperature.ok(measured);
+}
+
+Finding check_supply(const fs::path& root) {
+  constexpr const char* advice =
+      "Use the power supply made for this Raspberry Pi, with a short, thick cable.";
+  const std::optional<Throttled> flags = throttled(root);
+  const std::optional<bool> alarm = voltage_alarm(root);
+  if (!flags && !alarm) {
+    return supply.unknown(not_known);
+  }
+  if (alarm.value_or(false) || (flags && flags->now(Throttled::under_voltage))) {
+    return supply.fault("below 4.63 V", advice);
+  }
+  return flags && flags->before(Throttled::under_voltage)
+             ? supply.warning("it has been below 4.63 V", advice)
+             : supply.ok("above 4.63 V");
+}
+
+Finding check_throttling(const fs::path& root) {
+  constexpr const char* advice = "Give the computer a stronger supply and better cooling.";
+  const std::optional<Throttled> flags = throttled(root);
+  if (!flags) {
+    return throttling.unknown(not_known);
+  }
+  return flags->now(Throttled::slowed)      ? throttling.warning("slowed down", advice)
+         : flags->before(Throttled::slowed) ? throttling.warning("it has been slowed down", advice)
+                                            : throttling.ok("full");
+}
+
+Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point now,
+                    bool synchronised) {
+  const std::string time = readable_time(now);
+  if (synchronised || fs::exists(root / "run/systemd/timesync/synchronized")) {
+    return clock_set.ok(time + ", from a time server");
+  }
+  return entries(root / "sys/class/rtc").empty()
+             ? clock_set.warning(
+                   time + ", not from a time server",
+                   "Connect the scanner to a network with internet, or its scans have wrong dates.")
+             : clock_set.ok(time + ", from this machine's own clock");
+}
+
+bool is_clock_synchronised() {
+  timex state{};
+  const int answer = ::adjtimex(&state);  // -1 where a service may not even ask
+  return answer >= 0 && answer != TIME_ERROR;
+}
+
+}  // namespace octurn

@@ -1,0 +1,53 @@
+#include "doctor/sensor_look.hpp"
+
+#include <utility>
+
+namespace octurn {
+namespace {
+
+constexpr int first_frames = 10;  // passed over: a sensor that has just been opened finds its pace
+constexpr int timed_frames = 60;  // two seconds
+constexpr std::size_t kept_frames = 10;  // as a scan takes at each stop
+
+/// @return nothing if stopped first
+std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& stop) {
+  SensorSample sample{.name = sensor.name(), .intrinsics = sensor.intrinsics()};
+  std::optional<int> damaged_before;
+  for (int count = 0; count < first_frames + timed_frames; ++count) {
+    std::optional<TimedFrame> timed = sensor.read(stop);
+    if (!timed) {
+      return std::nullopt;
+    }
+    if (count < first_frames) {
+      damaged_before = sensor.damaged_frames();
+      continue;
+    }
+    sample.times.push_back(timed->time);
+    if (first_frames + timed_frames - count <= static_cast<int>(kept_frames)) {
+      sample.frames.push_back(std::move(timed->frame));
+    }
+  }
+  if (const auto damaged = sensor.damaged_frames(); damaged && damaged_before) {
+    sample.damaged = *damaged - *damaged_before;
+  }
+  sample.tilt = sensor.tilt();
+  return sample;
+}
+
+}  // namespace
+
+SensorLook look_at_sensor(Rig& rig, const std::stop_token& stop) {
+  try {
+    if (auto seen = sample(rig.sensor(), stop)) {
+      return *std::move(seen);
+    }
+    return Failure{.code = "busy",
+                   .detail = "not looked at: something else began to use the sensor",
+                   .hint = "Check again later."};
+  } catch (const Error& error) {
+    rig.close_sensor();
+    return failure_of(error);
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,69 @@
+#include "doctor/turntable_checks.hpp"
+
+#include <string>
+
+namespace octurn {
+namespace {
+
+constexpr Check gpio_chip{"gpio-chip", "GPIO chip"};
+constexpr Check gpio_lines{"gpio-lines", "GPIO lines"};
+constexpr Check turntable{"turntable", "Turntable"};
+
+void append(std::string& list, const std::string& item) {
+  list += (list.empty() ? "" : ", ") + item;
+}
+
+}  // namespace
+
+HeaderLook look_at_gpio(const std::vector<NamedLine>& lines) {
+  try {
+    return look_at_header(lines);
+  } catch (const Error& error) {
+    return failure_of(error);
+  }
+}
+
+Finding check_gpio_chip(const HeaderLook& header) {
+  if (const auto* failure = std::get_if<Failure>(&header)) {
+    return gpio_chip.fault(failure->detail, failure->hint);
+  }
+  return gpio_chip.ok(std::get<HeaderUse>(header).label);
+}
+
+Finding check_gpio_lines(const HeaderLook& header, LineOwner owner) {
+  const auto* use = std::get_if<HeaderUse>(&header);
+  if (use == nullptr) {
+    return gpio_lines.unknown("there is no GPIO chip to look at");
+  }
+  std::string free;
+  std::string held;
+  std::string used;
+  std::string missing;
+  for (const LineUse& line : use->lines) {
+    if (!line.exists) {
+      append(missing, line.name);
+    } else if (!line.user) {
+      append(free, line.name);
+    } else if (*line.user == gpio_user && owner == LineOwner::this_program) {
+      append(held, line.name);
+    } else {
+      append(used, line.name + " in use by " + *line.user);
+    }
+  }
+  if (!missing.empty()) {
+    return gpio_lines.fault(
+        "there is no " + missing,
+        "Correct the turntable's lines in octurn.json; they are called GPIO2 to GPIO27.");
+  }
+  if (!used.empty()) {
+    return gpio_lines.fault(used,
+                            "End what uses them, or choose other lines in octurn.json and rewire.");
+  }
+  return gpio_lines.ok(held.empty()   ? free + " free"
+                       : free.empty() ? held + " held by Octurn"
+                                      : held + " held by Octurn, " + free + " free");
+}
+
+Finding check_simulated_turntable() { return turntable.ok("simulated: it needs no GPIO"); }
+
+}  // namespace octurn

@@ -1,0 +1,126 @@
+// Scanner::lend_rig, and the doctor that it is for.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "doctor/doctor.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* fast_sensor = "octurn-simulator://?speed=20";
+
+class LendRig : public ::testing::Test {
+ protected:
+  static RigOptions rig() { return {.sensor_uri = fast_sensor, .speed = 20}; }
+
+  TemporaryFolder folder_;
+  ScanStore store_{folder_.path()};
+  Scanner scanner_{rig(), {}, store_};
+};
+
+TEST_F(LendRig, LetsTheRigBeUsedBetweenScans) {
+  std::string name;
+  EXPECT_TRUE(scanner_.lend_rig(
+      [&](Rig& lent, const std::stop_token& /*stop*/) { name = lent.sensor().name(); }));
+  EXPECT_EQ(name, "Kinect v1 (simulated)");
+}
+
+TEST_F(LendRig, RefusesDuringAScan) {
+  ASSERT_TRUE(scanner_.start({.snapshots = 200, .frames = 2, .leaf_size = 0.004}));
+  EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));
+}
+
+TEST_F(LendRig, GivesTheRigBackToAScanThatStarts) {
+  std::atomic<bool> is_lent = false;
+  std::thread borrower([&] {
+    scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
+      while (lent.sensor().read(stop)) {
+        is_lent = true;
+        is_lent.notify_all();
+      }
+    });
+  });
+  is_lent.wait(false);
+  EXPECT_TRUE(scanner_.start({.snapshots = 3, .frames = 2, .leaf_size = 0.004}));
+  borrower.join();
+  EXPECT_EQ(scanner_.wait_until_done(20s).job->state, JobState::finished);
+}
+
+TEST_F(LendRig, LendsToOneAfterTheOther) {
+  std::atomic<int> users = 0;
+  std::atomic<int> most = 0;
+  const auto use = [&](Rig& lent, const std::stop_token& stop) {
+    most = std::max(most.load(), ++users);
+    lent.sensor().read(stop);
+    --users;
+  };
+  {
+    std::jthread one([&] { EXPECT_TRUE(scanner_.lend_rig(use)); });
+    std::jthread other([&] { EXPECT_TRUE(scanner_.lend_rig(use)); });
+  }
+  EXPECT_EQ(most, 1);
+}
+
+TEST_F(LendRig, HandsOnWhatItsUserThrows) {
+  EXPECT_THROW(
+      scanner_.lend_rig([](Rig&, const std::stop_token&) { throw std::runtime_error("no"); }),
+      std::runtime_error);
+  EXPECT_TRUE(scanner_.lend_rig([](Rig&, const std::stop_token&) {}));
+}
+
+TEST_F(LendRig, EndsWithTheScanner) {
+  std::atomic<bool> is_lent = false;
+  std::thread borrower([&] {
+    scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
+      while (lent.sensor().read(stop)) {
+        is_lent = true;
+        is_lent.notify_all();
+      }
+    });
+  });
+  is_lent.wait(false);
+  scanner_.request_stop();
+  borrower.join();
+  EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));
+}
+
+TEST_F(LendRig, LetsTheDoctorLookAtTheSensor) {
+  const auto findings = examine({.rig = rig(), .data = folder_.path()}, scanner_);
+  EXPECT_EQ(findings[0].check, "sensor");
+  EXPECT_EQ(findings[0].state, Finding::State::ok);
+}
+
+TEST(SensorLook, IsASampleOfWhatTheSensorSees) {
+  Rig rig({.sensor_uri = fast_sensor});
+  const SensorLook look = look_at_sensor(rig, {});
+  ASSERT_TRUE(std::holds_alternative<SensorSample>(look));
+  const auto& sample = std::get<SensorSample>(look);
+  EXPECT_EQ(sample.times.size(), 60);
+  EXPECT_TRUE(std::ranges::is_sorted(sample.times));
+  ASSERT_EQ(sample.frames.size(), 10);
+  EXPECT_NE(sample.frames[0].depth, sample.frames[9].depth);  // its noise is new in each
+}
+
+TEST(SensorLook, SaysWhyThereIsNoSensor) {
+  Rig rig({.sensor_uri = "kinect://7"});
+  const SensorLook look = look_at_sensor(rig, {});
+  ASSERT_TRUE(std::holds_alternative<Failure>(look));
+  EXPECT_EQ(std::get<Failure>(look).code, "sensor-missing");
+}
+
+TEST(SensorLook, IsBusyIfItIsStopped) {
+  Rig rig({.sensor_uri = fast_sensor});
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(std::get<Failure>(look_at_sensor(rig, stop.get_token())).code, "busy");
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,221 @@
+#include "doctor/sensor_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "octurn/units.hpp"
+#include "sensor/nominal_pose.hpp"
+
+namespace octurn {
+namespace {
+
+using State = Finding::State;
+using namespace std::chrono_literals;
+using Time = std::chrono::steady_clock::time_point;
+
+constexpr auto period = std::chrono::nanoseconds(33'333'333);
+const Box clip{.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
+
+SensorSample sample_of(std::vector<Time> times, std::optional<int> damaged = {}) {
+  return {.name = "Kinect v1", .times = std::move(times), .damaged = damaged};
+}
+
+/// Frames that came at every period, but for those of these numbers.
+std::vector<Time> every_period_but(const std::vector<int>& missing) {
+  std::vector<Time> times;
+  for (int i = 0; i < 60; ++i) {
+    if (std::ranges::find(missing, i) == missing.end()) {
+      times.push_back(Time(1s) + i * period);
+    }
+  }
+  return times;
+}
+
+/// A sensor at its nominal place that sees nothing but a plane so high, metres, with readings by
+/// turns so much above and below it along the ray.
+SensorSample sample_of_plane(double height, double noise) {
+  SensorSample sample = sample_of(every_period_but({}));
+  const Eigen::Isometry3d pose = nominal_platform_from_sensor();
+  const Intrinsics& lens = sample.intrinsics;
+  for (int i = 0; i < 4; ++i) {
+    DepthFrame frame{.width = lens.width, .height = lens.height};
+    for (int v = 0; v < lens.height; ++v) {
+      for (int u = 0; u < lens.width; ++u) {
+        const Eigen::Vector3d direction =
+            pose.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+        const double depth =
+            (height - pose.translation().z()) / direction.z() + (i % 2 == 0 ? noise : -noise);
+        const bool is_seen = direction.z() < 0 && depth < 6;
+        frame.depth.push_back(
+            is_seen ? static_cast<std::uint16_t>(std::lround(depth / lens.depth_unit)) : 0);
+      }
+    }
+    sample.frames.push_back(std::move(frame));
+  }
+  return sample;
+}
+
+PlatformView view_of_plane(double height, double noise = 0) {
+  return view_of_platform(sample_of_plane(height, noise), clip, nominal_platform_from_sensor());
+}
+
+TEST(FrameRateCheck, MeasuresIt) {
+  const Finding finding = check_frame_rate(sample_of(every_period_but({})));
+  EXPECT_EQ(finding.state, State::ok);
+  EXPECT_EQ(finding.measured, "30.0 frames a second");
+}
+
+TEST(FrameRateCheck, WarnsOfASlowSensor) {
+  std::vector<Time> times;
+  for (int i = 0; i < 30; ++i) {
+    times.push_back(Time(1s) + i * 100ms);
+  }
+  const Finding finding = check_frame_rate(sample_of(times));
+  EXPECT_EQ(finding.state, State::warning);
+  EXPECT_EQ(finding.measured, "10.0 frames a second");
+}
+
+TEST(LostFramesCheck, CountsTheGaps) {
+  EXPECT_EQ(check_lost_frames(sample_of(every_period_but({}))).measured, "0 of 60");
+  EXPECT_EQ(check_lost_frames(sample_of(every_period_but({20}))).state, State::ok);
+  const Finding busy = check_lost_frames(sample_of(every_period_but({20, 30, 31})));
+  EXPECT_EQ(busy.measured, "3 of 60");
+  EXPECT_EQ(busy.state, State::warning);
+  EXPECT_NE(busy.advice.find("too busy"), std::string::npos);
+}
+
+TEST(LostFramesCheck, TellsDamagedFramesFromABusyMachine) {
+  const Finding some = check_lost_frames(sample_of(every_period_but({20, 30, 31}), 3));
+  EXPECT_EQ(some.measured, "3 of 60, 3 of them damaged on the way");
+  EXPECT_EQ(some.state, State::warning);
+  EXPECT_NE(some.advice.find("cable"), std::string::npos);
+  EXPECT_EQ(check_lost_frames(sample_of(every_period_but({}), 61)).state, State::fault);
+}
+
+TEST(PlatformCheck, FindsThePlatformWhereTheCalibrationHasIt) {
+  const PlatformView view = view_of_plane(0);
+  EXPECT_EQ(view.readings, view.rays);
+  EXPECT_EQ(view.on_surface, view.rays);
+  EXPECT_NEAR(view.height, 0, 0.0001);  // the sensor's unit
+  EXPECT_EQ(check_platform(view).state, State::ok);
+}
+
+/// The circle of 28 cm about the axis, seen from 0.72 m, 30 degrees above it on the way there.
+TEST(PlatformCheck, LooksAtTheCircleInsideTheClipBox) {
+  const double f = Intrinsics{}.fx;
+  const double distance = std::hypot(0.62, 0.36);
+  const double area =
+      std::numbers::pi * 0.14 * 0.14 * (0.36 / distance) * f * f / (distance * distance);
+  EXPECT_NEAR(view_of_plane(0).rays, area, 0.1 * area);  // it is not small against the distance
+}
+
+TEST(PlatformCheck, WarnsOfAPlatformThatIsTooHigh) {
+  const PlatformView view = view_of_plane(0.006);
+  EXPECT_NEAR(view.height, 0.006, 0.0001);
+  const Finding finding = check_platform(view);
+  EXPECT_EQ(finding.state, State::warning);
+  EXPECT_EQ(finding.measured,
+            "6.0 mm above where the calibration has it, 100 % of it has readings");
+  EXPECT_EQ(check_platform(view_of_plane(-0.006)).measured.substr(0, 12), "6.0 mm below");
+}
+
+TEST(PlatformCheck, FindsThatItIsSomewhereElse) {
+  const Finding finding = check_platform(view_of_plane(-0.1));
+  EXPECT_EQ(finding.state, State::fault);
+  EXPECT_EQ(finding.measured, "nothing is where the calibration has it");
+}
+
+TEST(PlatformCheck, FindsThatHalfOfItIsNotSeen) {
+  SensorSample sample = sample_of_plane(0, 0);
+  for (DepthFrame& frame : sample.frames) {
+    for (std::size_t row = 0; row < frame.depth.size(); row += 640) {  // a little more than half
+      std::fill_n(frame.depth.begin() + static_cast<std::ptrdiff_t>(row), 330, std::uint16_t{0});
+    }
+  }
+  const PlatformView half = view_of_platform(sample, clip, nominal_platform_from_sensor());
+  EXPECT_EQ(check_platform(half).state, State::warning);
+  for (DepthFrame& frame : sample.frames) {
+    std::ranges::fill(frame.depth, std::uint16_t{0});
+  }
+  const PlatformView none = view_of_platform(sample, clip, nominal_platform_from_sensor());
+  EXPECT_EQ(none.readings, 0);
+  EXPECT_EQ(check_platform(none).state, State::fault);
+  EXPECT_EQ(check_depth_noise(none).state, State::unknown);
+}
+
+TEST(PlatformCheck, FindsThatTheCalibrationLooksElsewhere) {
+  Eigen::Isometry3d away = nominal_platform_from_sensor();
+  away.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY()));
+  const PlatformView view = view_of_platform(sample_of_plane(0, 0), clip, away);
+  EXPECT_EQ(view.rays, 0);
+  EXPECT_EQ(check_platform(view).state, State::fault);
+}
+
+TEST(DepthNoiseCheck, MeasuresHowFarReadingsAreFromTheirMean) {
+  const PlatformView view = view_of_plane(0, 0.0015);
+  EXPECT_NEAR(view.noise, 0.0015, 0.0001);  // the sensor's unit
+  EXPECT_EQ(check_depth_noise(view).state, State::ok);
+  EXPECT_EQ(check_depth_noise(view).measured.substr(0, 4), "1.50");
+}
+
+TEST(DepthNoiseCheck, FindsANoisySensor) {
+  EXPECT_EQ(check_depth_noise(view_of_plane(0, 0.004)).state, State::warning);
+  EXPECT_EQ(check_depth_noise(view_of_plane(0, 0.012)).state, State::fault);
+}
+
+Tilt tilt_of(double pitch_deg, double roll_deg) {
+  return {.pitch = radians_from_degrees(pitch_deg), .roll = radians_from_degrees(roll_deg)};
+}
+
+TEST(TiltCheck, ComparesItWithTheCalibration) {
+  const Eigen::Isometry3d pose = nominal_platform_from_sensor();  // looks 25 degrees down
+  EXPECT_EQ(check_tilt(tilt_of(-25, 0), pose).state, State::ok);
+  EXPECT_EQ(check_tilt(tilt_of(-27, 0), pose).state, State::warning);
+  EXPECT_EQ(check_tilt(tilt_of(-25, 2), pose).state, State::warning);
+  const Finding level = check_tilt(tilt_of(0, 0), pose);
+  EXPECT_EQ(level.state, State::fault);
+  EXPECT_EQ(level.measured, "pitch 0.0°, roll 0.0°; calibrated at -25.0°, 0.0°");
+  EXPECT_EQ(check_tilt(std::nullopt, pose).state, State::unknown);
+}
+
+/// Turned about its optical axis, from right to down: its right side is the lower.
+TEST(TiltCheck, KnowsWhichSideIsTheLower) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  pose.rotate(Eigen::AngleAxisd(radians_from_degrees(10), Eigen::Vector3d::UnitZ()));
+  EXPECT_EQ(check_tilt(tilt_of(0, 10), pose).state, State::ok);
+  EXPECT_EQ(check_tilt(tilt_of(0, -10), pose).state, State::fault);
+}
+
+TEST(SensorChecks, AreFaultAndUnknownWithoutASensor) {
+  const SensorLook silent = Failure{.code = "sensor-silent",
+                                    .detail = "sensor: no frame for 2000 ms",
+                                    .hint = "Unplug the sensor."};
+  const auto findings = check_sensor(silent, clip, nominal_platform_from_sensor());
+  ASSERT_EQ(findings.size(), 6);
+  EXPECT_EQ(findings[0].state, State::fault);
+  EXPECT_EQ(findings[0].measured, "sensor: no frame for 2000 ms");
+  EXPECT_EQ(findings[0].advice, "Unplug the sensor.");
+  EXPECT_EQ(std::ranges::count(findings, State::unknown, &Finding::state), 5);
+}
+
+TEST(SensorChecks, AreNoFaultWhileTheSensorIsBusy) {
+  const SensorLook busy =
+      Failure{.code = "busy", .detail = "a scan is running", .hint = "Check again later."};
+  const auto findings = check_sensor(busy, clip, nominal_platform_from_sensor());
+  EXPECT_EQ(std::ranges::count(findings, State::unknown, &Finding::state), 6);
+  EXPECT_EQ(findings[0].measured, "a scan is running");
+}
+
+TEST(SensorChecks, AreTheSameChecksWithASensorAndWithout) {
+  const auto without = check_sensor(Failure{}, clip, nominal_platform_from_sensor());
+  const auto with = check_sensor(sample_of_plane(0, 0), clip, nominal_platform_from_sensor());
+  EXPECT_TRUE(std::ranges::equal(with, without, {}, &Finding::check, &Finding::check));
+  EXPECT_EQ(with[0].measured, "Kinect v1, 640 x 480");
+}
+
+}  // namespace
+}  // namespace octurn

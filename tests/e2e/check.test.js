@@ -1,0 +1,61 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, startScanner} from './scanner.js';
+
+const button = (page) => page.getByRole('button', {name: 'Check now'});
+const line = (page, name) => page.locator('.finding').filter({has: page.getByText(name, {exact: true})});
+
+/** Checks the simulated rig by keyboard alone. */
+async function checkByKeyboard(scanner, browser) {
+  const {page, faults} = await openPage(browser, scanner.url);
+  await button(page).focus();
+  await page.keyboard.press('Enter');
+  await page.getByRole('progressbar', {name: 'Checking'}).waitFor();
+  await line(page, 'Sensor').waitFor();
+  assert.ok(await page.getByRole('progressbar', {name: 'Checking'}).isHidden());
+  assert.match(await line(page, 'Sensor').innerText(), /In order\s+Kinect v1 \(simulated\), 640 x 480/);
+  assert.match(await line(page, 'Depth noise').innerText(), /\d\.\d\d mm on the platform/);
+  assert.ok(await button(page).evaluate((one) => one === document.activeElement));
+  assert.deepEqual(faults, []);
+}
+
+/** A scanner without a sensor, on one screen. */
+async function checkBrokenOne(scanner, browser, screen) {
+  const {page} = await openPage(browser, scanner.url, {screen});
+  await button(page).click();
+  await line(page, 'Sensor').waitFor();
+  assert.match(await line(page, 'Sensor').innerText(), /Fault[^]*power supply/);
+  assert.match(await page.locator('#doctor-summary').innerText(), /\d faults? .*found/);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(overflow <= 0, `${overflow} pixels too wide`);
+  await page.locator('.doctor').scrollIntoViewIfNeeded();
+  await picture(page, `check-faults-${screen}`);
+}
+
+/** While a scan runs, what would disturb it is not measured. */
+async function checkDuringScan(scanner, browser) {
+  const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 30, leaf_size_mm: 8});
+  const {page} = await openPage(browser, scanner.url);
+  await button(page).click();
+  await line(page, 'Sensor').waitFor();
+  assert.match(await line(page, 'Sensor').innerText(), /Not known[^]*a scan is running/i);
+  assert.equal((await ask(scanner, 'status')).scan.id, id);
+  await ask(scanner, `scans/${id}/cancel`, 'POST');
+}
+
+test('the scanner is checked on the page', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  await t.test('by the keyboard alone, with progress and focus kept', () => checkByKeyboard(scanner, browser));
+  await t.test('a scan is not disturbed', () => checkDuringScan(scanner, browser));
+});
+
+test('a scanner without a sensor says what to do', async (t) => {
+  const scanner = await startScanner(t, {rig: ['--sensor', 'kinect://7']});
+  const browser = await openBrowser(t);
+  for (const screen of ['desktop', 'phone']) {
+    await t.test(`on a ${screen}`, () => checkBrokenOne(scanner, browser, screen));
+  }
+});

@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/daemon.hpp"
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// The finding of a check; null if there is none.
+json finding(const json& report, const char* check) {
+  const auto found = std::ranges::find_if(report["findings"],
+                                          [&](const json& one) { return one["check"] == check; });
+  return found == report["findings"].end() ? json() : *found;
+}
+
+/// Each says what was measured, and each fault and warning what to do.
+void expect_complete(const json& report) {
+  EXPECT_GT(report["findings"].size(), 10);
+  for (const json& one : report["findings"]) {
+    EXPECT_NE(one["measured"], "") << one;
+    EXPECT_EQ(one["name"].empty(), false) << one;
+    if (one["state"] == "fault" || one["state"] == "warning") {
+      EXPECT_NE(one["advice"], "") << one;
+    }
+  }
+}
+
+TEST(DoctorCommand, ChecksTheSimulatedRig) {
+  const TemporaryFolder folder;
+  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--json", "--data", folder.path()});
+  const int status = doctor.wait();
+  const json report = json::parse(doctor.output(), nullptr, false);
+  ASSERT_TRUE(report.is_object()) << doctor.output() << doctor.errors();
+  expect_complete(report);
+  EXPECT_EQ(status, report["state"] == "fault" ? 1 : 0);
+  EXPECT_EQ(report["version"], OCTURN_VERSION);
+  EXPECT_EQ(finding(report, "sensor")["state"], "ok");
+  EXPECT_EQ(finding(report, "sensor")["measured"], "Kinect v1 (simulated), 640 x 480");
+  EXPECT_EQ(finding(report, "platform")["state"], "ok") << report;
+  EXPECT_EQ(finding(report, "depth-noise")["state"], "ok") << report;
+  EXPECT_EQ(finding(report, "turntable")["state"], "ok");
+  EXPECT_EQ(finding(report, "data-folder")["state"], "ok");
+  EXPECT_TRUE(finding(report, "usb").is_null());
+}
+
+TEST(DoctorCommand, SaysWhatIsMissingWhereNothingIsConnected) {
+  const TemporaryFolder folder;
+  Program doctor({OCTURN_PROGRAM, "doctor", "--data", folder.path(), "--sensor", "kinect://7"});
+  EXPECT_EQ(doctor.wait(), 1);
+  EXPECT_NE(doctor.output().find("fault    Sensor "), std::string::npos) << doctor.output();
+  EXPECT_NE(doctor.output().find("power supply"), std::string::npos) << doctor.output();
+  EXPECT_EQ(doctor.output().find('\033'), std::string::npos);  // no colour into a pipe
+}
+
+/// The last column begins at one place.
+TEST(DoctorCommand, AlignsItsTable) {
+  const TemporaryFolder folder;
+  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--data", folder.path()});
+  doctor.wait();
+  std::istringstream lines(doctor.output());
+  const std::size_t column = doctor.output().find("Kinect v1");
+  int rows = 0;
+  for (std::string line; std::getline(lines, line) && !line.empty(); ++rows) {
+    ASSERT_GT(line.size(), column) << line;
+    EXPECT_EQ(line.substr(column - 2, 2), "  ") << line;
+    EXPECT_NE(line[column], ' ') << line;
+  }
+  EXPECT_GT(rows, 10);
+}
+
+TEST(DoctorCommand, LeavesTheDaemonsLinesAndSensorAlone) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  Program doctor({OCTURN_PROGRAM, "doctor", "--json", "--data", folder.path() / "data"});
+  doctor.wait();
+  const json report = json::parse(doctor.output(), nullptr, false);
+  EXPECT_EQ(finding(report, "sensor")["state"], "unknown") << report;
+  EXPECT_NE(finding(report, "sensor")["advice"].get<std::string>().find("page"), std::string::npos);
+}
+
+TEST(DoctorApi, GivesTheSameChecks) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const Reply reply = daemon.get("/api/v1/doctor");
+  EXPECT_EQ(reply.status, 200);
+  EXPECT_EQ(reply.header("Content-Type"), "application/json");
+  const json report = parsed(reply);
+  expect_complete(report);
+  EXPECT_EQ(finding(report, "sensor")["state"], "ok");
+  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--json", "--data", folder.path()});
+  doctor.wait();
+  const json same = json::parse(doctor.output(), nullptr, false);
+  EXPECT_TRUE(std::ranges::equal(
+      report["findings"], same["findings"],
+      [](const json& one, const json& other) { return one["check"] == other["check"]; }));
+}
+
+TEST(DoctorApi, DoesNotDisturbAScan) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(endless);
+  daemon.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 1; });
+  const json report = parsed(daemon.get("/api/v1/doctor"));
+  EXPECT_EQ(finding(report, "sensor")["state"], "unknown");
+  EXPECT_NE(finding(report, "sensor")["measured"].get<std::string>().find("a scan is running"),
+            std::string::npos);
+  EXPECT_EQ(finding(report, "frame-rate")["state"], "unknown");
+  EXPECT_EQ(finding(report, "disk")["state"], "ok");
+  EXPECT_EQ(parsed(daemon.get(scan))["state"], "running");
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,68 @@
+// What octurn doctor finds at an emulated Kinect.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "emulation/kinect_on_desk.hpp"
+#include "support/program.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// A wall at 0.8 m.
+Readings wall() { return Readings(std::size_t{640} * 480, 657); }
+
+/// What the doctor says of a check.
+json finding(const char* check) {
+  const TemporaryFolder folder;
+  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--sensor", "kinect://", "--json",
+                  "--data", folder.path()});
+  doctor.wait();
+  const json report = json::parse(doctor.output(), nullptr, false);
+  for (const json& one : report["findings"]) {
+    if (one["check"] == check) {
+      return one;
+    }
+  }
+  ADD_FAILURE() << doctor.output() << doctor.errors();
+  return {};
+}
+
+TEST(KinectDoctor, ComparesTheTiltWithTheCalibration) {
+  KinectOnDesk desk({wall()});
+  desk->acceleration[2] = -819;  // as much forward and down as up: it looks 45 degrees down
+  const json tilt = finding("tilt");
+  EXPECT_EQ(tilt["measured"], "pitch -45.0°, roll 0.0°; calibrated at -25.0°, 0.0°");
+  EXPECT_EQ(tilt["state"], "fault");
+}
+
+TEST(KinectDoctor, CountsDamagedFrames) {
+  KinectOnDesk desk({wall()});
+  desk->loss_period = 3;
+  desk->first_lost = 100;
+  desk->lost_packets = 1;
+  const json lost = finding("lost-frames");
+  EXPECT_NE(lost["state"], "ok") << lost;
+  EXPECT_NE(lost["advice"].get<std::string>().find("USB port"), std::string::npos) << lost;
+}
+
+TEST(KinectDoctor, CountsNoneOfAKinectThatIsWell) {
+  const KinectOnDesk desk({wall()});
+  EXPECT_NE(finding("lost-frames")["measured"].get<std::string>().find(", 0 of them damaged"),
+            std::string::npos);
+}
+
+TEST(KinectDoctor, FindsASilentKinect) {
+  KinectOnDesk desk({wall()});
+  desk->silent = true;
+  const json sensor = finding("sensor");
+  EXPECT_EQ(sensor["state"], "fault");
+  EXPECT_EQ(sensor["measured"], "sensor: no frame for 2000 ms");
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,42 @@
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "octurn/error.hpp"
+#include "sensor/recording.hpp"
+
+// Whatever the text, it is refused by an Error of one line, or it is a recording that a sensor can
+// be made of.
+
+namespace {
+
+void require(bool promise) {
+  if (!promise) {
+    std::abort();
+  }
+}
+
+void check(const octurn::Recording& recording) {
+  const octurn::Intrinsics& lens = recording.intrinsics;
+  require(lens.width > 0 && lens.height > 0);
+  require(lens.fx > 0 && lens.fy > 0 && lens.depth_unit > 0);
+  require(!recording.frames.empty());
+  for (const octurn::RecordedFrame& frame : recording.frames) {
+    require(std::isfinite(frame.time.count()) && frame.time.count() >= 0);
+    require(std::isfinite(frame.angle));
+    require(!frame.tilt || (std::isfinite(frame.tilt->pitch) && std::isfinite(frame.tilt->roll)));
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    check(octurn::parse_recording({reinterpret_cast<const char*>(data), size}));
+  } catch (const octurn::Error& error) {
+    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+  }
+  return 0;
+}

@@ -1,0 +1,90 @@
+// "Check the scanner": asks the scanner's doctor, and shows what it finds.
+
+import * as api from './api.js';
+import {element, list, part, setText, show} from './dom.js';
+import {count, sentence} from './format.js';
+
+/** @typedef {import('./api.js').Finding} Finding */
+
+// Worst first; what is not known is worth the least attention.
+const order = /** @type {const} */ (['fault', 'warning', 'ok', 'unknown']);
+
+const stateNames = {fault: 'Fault', warning: 'Warning', ok: 'In order', unknown: 'Not known'};
+
+const expected = 4;  // seconds that a check takes, two of them to watch the sensor
+
+/** What to show of a report. Pure. @param {import('./api.js').Report} report */
+export function shownOf({findings}) {
+  const numberOf = (/** @type {Finding['state']} */ state) => findings.filter((finding) => finding.state === state).length;
+  const [faults, warnings] = [numberOf('fault'), numberOf('warning')];
+  const found = [faults > 0 && count(faults, 'fault'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(' and ');
+  return {
+    summary: found ? `${found} found.` : 'Everything that could be checked is in order.',
+    lines: order.flatMap((state) => findings.filter((finding) => finding.state === state)).map((finding) => ({
+      key: finding.check,
+      name: finding.name,
+      state: finding.state,
+      stateName: stateNames[finding.state],
+      measured: finding.measured && finding.measured[0].toUpperCase() + finding.measured.slice(1),
+      advice: sentence(finding.advice),
+    })),
+  };
+}
+
+/** How far a check is that has run for so many seconds: it never shows its end before it is there. @param {number} seconds */
+export const progressAfter = (seconds) => 1 - Math.exp(-1.5 * seconds / expected);
+
+/** @param {ReturnType<typeof shownOf>} shown */
+function showReport({summary, lines}) {
+  setText(element('doctor-summary'), summary);
+  list(element('findings'), lines, ({key}) => key, 'finding', (item, line) => {
+    item.dataset.state = line.state;
+    part(item, 'use').setAttribute('href', `icons/symbols.svg#${line.state}`);
+    setText(part(item, '.finding-name'), line.name);
+    setText(part(item, '.finding-state'), line.stateName);
+    setText(part(item, '.finding-measured'), line.measured);
+    setText(part(item, '.finding-advice'), line.advice);
+  });
+}
+
+/** @param {boolean} isRunning */
+function showRunning(isRunning) {
+  element('examine').setAttribute('aria-disabled', String(isRunning));  // unlike disabled it keeps the focus
+  show(element('doctor-progress'), isRunning);
+  element('findings').classList.toggle('old', isRunning);
+}
+
+/** Moves the bar while a check runs. @returns {() => void} what ends that */
+function startProgress() {
+  const begin = Date.now();
+  const bar = element('doctor-progress');
+  bar.value = 0;
+  const timer = setInterval(() => {
+    bar.value = progressAfter((Date.now() - begin) / 1000);
+  }, 100);
+  return () => clearInterval(timer);
+}
+
+async function examine() {
+  if (element('examine').getAttribute('aria-disabled') === 'true') {
+    return;
+  }
+  show(element('doctor-problem'), false);
+  setText(element('doctor-summary'), 'Watching the sensor for two seconds, then looking at the rest.');
+  showRunning(true);
+  const endProgress = startProgress();
+  try {
+    showReport(shownOf(await api.examine()));
+  } catch (error) {
+    const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
+    setText(element('doctor-summary'), 'The check did not end.');
+    setText(part(element('doctor-problem'), 'p'), [detail || title, hint].map(sentence).join(' '));
+    show(element('doctor-problem'), true);
+  }
+  endProgress();
+  showRunning(false);
+}
+
+export function prepareDoctor() {
+  element('examine').addEventListener('click', examine);
+}

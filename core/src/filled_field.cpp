@@ -198,28 +198,28 @@ void FilledField::relax(Grid& grid) {
   }
 }
 
-float FilledField::interpolated(const Cell& leaf) const {
-  const auto leaves = static_cast<float>(field_.cell_leaves());
-  const auto split = [&](int at, int count, int& first, float& part) {
-    const float cells = (static_cast<float>(at) + 0.5F) / leaves - 0.5F;
-    first = std::clamp(static_cast<int>(std::max(cells, 0.0F)), 0, count - 2);
-    part = std::clamp(cells - static_cast<float>(first), 0.0F, 1.0F);
-  };
-  int x = 0;
-  int y = 0;
-  int z = 0;
-  float px = 0;
-  float py = 0;
-  float pz = 0;
-  split(leaf.x - low_.x, grid_.size.x, x, px);
-  split(leaf.y - low_.y, grid_.size.y, y, py);
-  split(leaf.z - low_.z, grid_.size.z, z, pz);
+/// Where a leaf, counted from the box's lowest corner, lies between the centres of cells on an
+/// axis.
+FilledField::Between FilledField::between(int leaf, int cells) const {
+  const float at =
+      (static_cast<float>(leaf) + 0.5F) / static_cast<float>(field_.cell_leaves()) - 0.5F;
+  const int first = std::clamp(static_cast<int>(std::max(at, 0.0F)), 0, cells - 2);
+  return {first, std::clamp(at - static_cast<float>(first), 0.0F, 1.0F)};
+}
+
+float FilledField::interpolated(const Between& x, const Between& y, const Between& z) const {
   const auto mix = [](float a, float b, float part) { return a + (b - a) * part; };
   const auto row = [&](int dy, int dz) {
-    const float* pair = &grid_.values[grid_.index(x, y + dy, z + dz)];
-    return mix(pair[0], pair[1], px);
+    const float* pair = &grid_.values[grid_.index(x.first, y.first + dy, z.first + dz)];
+    return mix(pair[0], pair[1], x.part);
   };
-  return mix(mix(row(0, 0), row(1, 0), py), mix(row(0, 1), row(1, 1), py), pz);
+  return mix(mix(row(0, 0), row(1, 0), y.part), mix(row(0, 1), row(1, 1), y.part), z.part);
+}
+
+float FilledField::interpolated(const Cell& leaf) const {
+  return interpolated(between(leaf.x - low_.x, grid_.size.x),
+                      between(leaf.y - low_.y, grid_.size.y),
+                      between(leaf.z - low_.z, grid_.size.z));
 }
 
 FilledField::Value FilledField::at(const Cell& leaf) const {
@@ -288,29 +288,39 @@ FilledField::Side FilledField::side_of(const Cell& brick) const {
   return any_outside ? Side::outside : Side::inside;
 }
 
-/// The same for all bricks of the box, x before y before z.
-std::vector<FilledField::Side> FilledField::sides_of_bricks() const {
-  std::vector<Side> sides;
-  for (int z = 0; z < (end_.z - low_.z) / Brick::side; ++z) {
-    for (int y = 0; y < (end_.y - low_.y) / Brick::side; ++y) {
-      for (int x = 0; x < (end_.x - low_.x) / Brick::side; ++x) {
-        sides.push_back(side_of({x, y, z}));
-      }
-    }
-  }
-  return sides;
-}
-
-/// Eight leaves of a row that lie in one brick, counted from the box's lowest corner: a bit for
-/// each at which the distance is negative.
-std::uint64_t FilledField::inside(const Cell& brick, Side side, int y, int z) const {
-  if (side != Side::both) {
-    return side == Side::inside ? 0xff : 0;
-  }
+/// Eight leaves of a row that lie in one brick, `first` the first of them: a bit for each at which
+/// the distance is negative.
+std::uint64_t FilledField::inside(const Cell& first) const {
   std::uint64_t bits = 0;
+  if (first.z < foot_) {
+    for (int x = 0; x < Brick::side; ++x) {
+      bits |= (at({first.x + x, first.y, first.z}).distance < 0 ? std::uint64_t{1} : 0) << x;
+    }
+    return bits;
+  }
+  const Cell& low = field_.low();
+  const int leaves = field_.cell_leaves();
+  const Cell corner{low.x * Brick::side, low.y * Brick::side, low.z * Brick::side};
+  const SeenBrick* const brick =
+      field_.find({(first.x >> 3) - low.x, (first.y >> 3) - low.y, (first.z >> 3) - low.z});
+  const auto sample = static_cast<std::size_t>((first.y & 7) << 3 | (first.z & 7) << 6);
+  const Between y = between(first.y - low_.y, grid_.size.y);
+  const Between z = between(first.z - low_.z, grid_.size.z);
   for (int x = 0; x < Brick::side; ++x) {
-    const Cell leaf{low_.x + brick.x * Brick::side + x, low_.y + y, low_.z + z};
-    bits |= (at(leaf).distance < 0 ? std::uint64_t{1} : 0) << x;
+    const auto i = sample + static_cast<std::size_t>(x);
+    Sighted sighted = Sighted::unknown;
+    if (brick != nullptr) {
+      sighted = brick->at(i);
+    } else if (field_.is_free({(first.x + x - corner.x) / leaves, (first.y - corner.y) / leaves,
+                               (first.z - corner.z) / leaves})) {
+      sighted = Sighted::free;
+    }
+    const bool is_inside =
+        sighted == Sighted::seen
+            ? brick->distance[i] < 0
+            : sighted != Sighted::free &&
+                  interpolated(between(first.x + x - low_.x, grid_.size.x), y, z) < 0;
+    bits |= (is_inside ? std::uint64_t{1} : 0) << x;
   }
   return bits;
 }
@@ -318,16 +328,32 @@ std::uint64_t FilledField::inside(const Cell& brick, Side side, int y, int z) co
 LeafSet FilledField::inside() const {
   LeafSet set(low_, end_);
   const Cell& size = set.size();
-  const std::vector<Side> sides = sides_of_bricks();
-  for (int z = 0; z + 1 < size.z; ++z) {
-    for (int y = 1; y + 1 < size.y; ++y) {
+  const auto set_brick = [&](const Cell& brick) {
+    const Side side = side_of(brick);
+    if (side == Side::outside) {
+      return;
+    }
+    for (int z = brick.z * Brick::side; z < (brick.z + 1) * Brick::side; ++z) {
+      for (int y = brick.y * Brick::side; y < (brick.y + 1) * Brick::side; ++y) {
+        const std::uint64_t bits =
+            side == Side::inside ? 0xff
+                                 : inside({low_.x + brick.x * Brick::side, low_.y + y, low_.z + z});
+        set.row(y, z)[static_cast<std::size_t>(brick.x) / 8] |= bits << (brick.x % 8 * Brick::side);
+      }
+    }
+  };
+  for (int z = 0; z < size.z / Brick::side; ++z) {
+    for (int y = 0; y < size.y / Brick::side; ++y) {
+      for (int x = 0; x < size.x / Brick::side; ++x) {
+        set_brick({x, y, z});
+      }
+    }
+  }
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
       const auto row = set.row(y, z);
-      for (int x = 0; x * Brick::side < size.x; ++x) {
-        const Cell brick{x, y / Brick::side, z / Brick::side};
-        const auto index = static_cast<std::size_t>(
-            (brick.z * (size.y / Brick::side) + brick.y) * (size.x / Brick::side) + brick.x);
-        row[static_cast<std::size_t>(x) / 8] |= inside(brick, sides[index], y, z)
-                                                << (x % 8 * Brick::side);
+      if (y == 0 || y + 1 == size.y || z + 1 == size.z) {
+        std::ranges::fill(row, 0U);
       }
       row.front() &= ~std::uint64_t{1};
       row[static_cast<std::size_t>(size.x - 1) / 64] &= ~(std::uint64_t{1} << (size.x - 1) % 64);

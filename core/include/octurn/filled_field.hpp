@@ -70,11 +70,18 @@ class FilledField {
   static void solve(Grid& fine);
   static void relax(Grid& grid);
   static void relax(Grid& grid, int x, int y, int z);
+
+  /// The first of two neighbouring cells, and how far it is from its centre to the other's.
+  struct Between {
+    int first = 0;
+    float part = 0;
+  };
+  Between between(int leaf, int cells) const;
+  float interpolated(const Between& x, const Between& y, const Between& z) const;
   float interpolated(const Cell& leaf) const;
   enum class Side { inside, outside, both };
   Side side_of(const Cell& brick) const;
-  std::vector<Side> sides_of_bricks() const;
-  std::uint64_t inside(const Cell& brick, Side side, int y, int z) const;
+  std::uint64_t inside(const Cell& first) const;
 
   const SeenField& field_;
   int foot_;

@@ -17,7 +17,9 @@ class Fusion {
         fx_(static_cast<float>(sighting.lens().fx)),
         fy_(static_cast<float>(sighting.lens().fy)),
         cx_(static_cast<float>(sighting.lens().cx)),
-        cy_(static_cast<float>(sighting.lens().cy)) {
+        cy_(static_cast<float>(sighting.lens().cy)),
+        width_(static_cast<float>(sighting.lens().width)),
+        height_(static_cast<float>(sighting.lens().height)) {
     const Eigen::Matrix3f rotation = sighting.sensor_from_object().linear().cast<float>();
     const Eigen::Vector3d origin(
         field.centre(field.low().x * Brick::side, 0) - field.leaf_side() / 2,
@@ -104,8 +106,13 @@ class Fusion {
 
   /// The nearest pixel, -1 or less if it is before the first; huge numbers are cut.
   static int pixel(float at) {
-    constexpr int before = 1024;  // counted from there, so that the cast rounds down
-    return static_cast<int>(std::clamp(at, 0.5F - before, 16384.0F) + (before + 0.5F)) - before;
+    return nearest_pixel(std::clamp(at, 0.5F - before_first, 16384.0F));
+  }
+
+  /// The same for numbers that are not huge. Pixels are counted from before the first, so that the
+  /// cast rounds down.
+  static int nearest_pixel(float at) {
+    return static_cast<int>(at + (before_first + 0.5F)) - before_first;
   }
 
   void descend(const Cell& brick, int bricks) {
@@ -217,8 +224,13 @@ class Fusion {
       return false;
     }
     const float nearness = 1.0F / p[2];
-    const int u = pixel(p[0] * nearness * fx_ + cx_);
-    const int v = pixel(p[1] * nearness * fy_ + cy_);
+    const float at_u = p[0] * nearness * fx_ + cx_;
+    const float at_v = p[1] * nearness * fy_ + cy_;
+    if (!(at_u > -1 && at_v > -1 && at_u < width_ && at_v < height_)) {
+      return false;
+    }
+    const int u = nearest_pixel(at_u);
+    const int v = nearest_pixel(at_v);
     if (u < 0 || v < 0 || u >= sighting_.lens().width || v >= sighting_.lens().height) {
       return false;
     }
@@ -263,6 +275,7 @@ class Fusion {
     samples.weight[index] = static_cast<std::uint16_t>(std::min(had + added, most));
   }
 
+  static constexpr int before_first = 1024;      // pixels
   static constexpr float nearest_z = 0.05F;      // metres: nearer than any depth sensor sees
   static constexpr float deepest_behind = 2.5F;  // truncations along the ray, at grazing angles
   static constexpr float free_margin = 1.5F;     // truncations along the ray
@@ -275,6 +288,8 @@ class Fusion {
   float fy_;
   float cx_;
   float cy_;
+  float width_;
+  float height_;
   Point origin_ = {};               // the field's lowest corner, sensor's frame
   std::array<Point, 3> step_ = {};  // over one leaf along each axis
   Point reach_ = {};                // of a leaf from its centre, along the sensor's axes

@@ -145,12 +145,16 @@ void Simplifier::simplify() {
 
 void Simplifier::collapse_edges() {
   // The limit rises, so that what costs little goes first, all over the window.
+  double refused = 0;  // what costs no more was tried in the last pass
+  changed_.assign(vertices_.size(), 1);
   for (int pass = 0; pass < passes; ++pass) {
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
     const double error = max_error_ * share;
     index_corners();
-    list_collapses(error * error);
+    list_collapses(error * error, pass > 0 ? refused : -1);
+    refused = error * error;
     touched_.assign(vertices_.size(), 0);
+    changed_.assign(vertices_.size(), 0);
     std::size_t done = 0;
     for (const Collapse& collapse : collapses_) {
       if (touched_[collapse.kept] == 0 && touched_[collapse.gone] == 0 && may_collapse(collapse)) {
@@ -184,7 +188,9 @@ void Simplifier::index_corners() {
   }
 }
 
-void Simplifier::list_collapses(double limit) {
+/// @param refused  limit of the last pass: where no triangle around has changed since, it would
+///                 refuse the same
+void Simplifier::list_collapses(double limit, double refused) {
   collapses_.clear();
   for (const MeshTriangle& triangle : triangles_) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -192,8 +198,12 @@ void Simplifier::list_collapses(double limit) {
       const std::uint32_t b = triangle[(i + 1) % 3];
       // Each edge is met once in either direction.
       if (a < b && !vertices_[a].fixed && !vertices_[b].fixed) {
+        const bool is_known = changed_[a] == 0 && changed_[b] == 0;
+        if (is_known && limit <= refused) {
+          continue;
+        }
         const Collapse collapse = collapse_of(a, b);
-        if (collapse.cost <= limit) {
+        if (collapse.cost <= limit && !(is_known && collapse.cost <= refused)) {
           collapses_.push_back(collapse);
         }
       }
@@ -323,6 +333,13 @@ void Simplifier::apply(const Collapse& collapse) {
   touched_[collapse.gone] = 1;
   for (const std::uint32_t i : triangles_of(collapse.gone)) {
     std::ranges::replace(triangles_[i], collapse.gone, collapse.kept);
+  }
+  for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
+    for (const std::uint32_t i : triangles_of(end)) {
+      for (const std::uint32_t corner : triangles_[i]) {
+        changed_[corner] = 1;
+      }
+    }
   }
   Vertex& kept = vertices_[collapse.kept];
   const Vertex& gone = vertices_[collapse.gone];

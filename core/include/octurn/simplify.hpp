@@ -53,7 +53,7 @@ class Simplifier {
   void simplify();
   void collapse_edges();
   void index_corners();
-  void list_collapses(double limit);
+  void list_collapses(double limit, double refused);
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
   bool may_collapse(const Collapse& collapse) const;
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
@@ -82,6 +82,7 @@ class Simplifier {
   std::vector<std::uint32_t> corners_ = {};  // triangles at each vertex
   std::vector<Collapse> collapses_ = {};
   std::vector<char> touched_ = {};  // vertices, in this pass
+  std::vector<char> changed_ = {};  // vertices, or triangles at them, in this pass
   std::vector<Facet> facets_ = {};
 };
 

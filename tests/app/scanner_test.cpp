@@ -111,10 +111,9 @@ TEST_F(ScannerTest, CountsDownWhatIsLeft) {
 }
 
 TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
-  // Frames for half a second each time, which are not enough for 16 snapshots.
-  Scanner scanner({.sensor_uri = "octurn-simulator://?speed=4&silent-after=60", .speed = 20}, {},
-                  store_);
-  scanner.start(few_snapshots(16));
+  // A snapshot takes two frames, and at least one goes by while the platform turns.
+  Scanner scanner({.sensor_uri = "octurn-simulator://?silent-after=16", .speed = 20}, {}, store_);
+  scanner.start(few_snapshots(6));
   const Status silent = wait_until(scanner, [](const Status& status) {
     return status.job->failure.has_value() || !status.busy();
   });

@@ -3,7 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
+#include <new>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -12,6 +15,9 @@
 
 namespace octurn {
 namespace {
+
+constexpr std::size_t block_bytes = std::size_t{1} << 20U;
+constexpr std::size_t page_bytes = 4096;  // past the page cache, disks read from whole pages
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int number) {
   const std::string reason = std::generic_category().message(number);
@@ -40,7 +46,12 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+AtomicFile::AtomicFile(std::filesystem::path target)
+    : target_(std::move(target)),
+      block_(static_cast<std::byte*>(std::aligned_alloc(page_bytes, block_bytes)), &std::free) {
+  if (!block_) {
+    throw std::bad_alloc();
+  }
   std::error_code unknown;  // opening the file says why
   const std::filesystem::file_status status = std::filesystem::status(target_, unknown);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -67,28 +78,54 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) {
-      fail(target_, "write", errno);
+    const auto part = bytes.first(std::min(bytes.size(), block_bytes - filled_));
+    std::ranges::copy(part, block_.get() + filled_);
+    filled_ += part.size();
+    bytes = bytes.subspan(part.size());
+    if (filled_ == block_bytes) {
+      if (written_ == 0) {
+        go_past_cache(true);
+      }
+      flush();
     }
-    bytes = bytes.subspan(static_cast<std::size_t>(written < 0 ? 0 : written));
   }
 }
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  go_past_cache(false);
+  flush();
+  put(offset, bytes);
+}
+
+void AtomicFile::flush() {
+  put(written_, {block_.get(), filled_});
+  written_ += std::exchange(filled_, 0);
+}
+
+void AtomicFile::put(std::uint64_t offset, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t written =
+    const ssize_t done =
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno != EINTR) {
-      fail(target_, "write", errno);
+    if (done >= 0) {
+      offset += static_cast<std::size_t>(done);
+      bytes = bytes.subspan(static_cast<std::size_t>(done));
+    } else if (const int number = errno;
+               number != EINTR && !(number == EINVAL && go_past_cache(false))) {
+      fail(target_, "write", number);
     }
-    const auto advanced = static_cast<std::size_t>(written < 0 ? 0 : written);
-    bytes = bytes.subspan(advanced);
-    offset += advanced;
   }
 }
 
+/// Whether that is a change; file systems without a way past the cache make none.
+bool AtomicFile::go_past_cache(bool past) {
+  const int flags = ::fcntl(descriptor_, F_GETFL);
+  const int wanted = past ? flags | O_DIRECT : flags & ~O_DIRECT;
+  return flags >= 0 && wanted != flags && ::fcntl(descriptor_, F_SETFL, wanted) == 0;
+}
+
 void AtomicFile::commit() {
+  go_past_cache(false);
+  flush();
   if (::fsync(descriptor_) != 0) {
     fail(target_, "sync", errno);
   }

@@ -4,48 +4,101 @@
 #include <cstddef>
 #include <mutex>
 #include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace octurn {
 
-/// Lets threads take chunks of work in any order, and hand them in one by one, from first to last.
+/// Pieces of work from one source that several threads make results of, which are used one by one in
+/// the order of their pieces. A thread whose result is early leaves it and goes on with other work.
+///
+/// @tparam Source  called without arguments, by one thread at a time: the next piece as a
+///                 std::optional, empty when there are no more
+/// @tparam Result  default-constructible; made anew in one that was used before
+template <typename Source, typename Result>
 class InOrder {
  public:
-  explicit InOrder(std::size_t count) : count_(count) {}
+  /// @param window  pieces that may be at hand at once, results that wait for their turn among them
+  InOrder(Source source, int window)
+      : source_(std::move(source)), slots_(static_cast<std::size_t>(window)) {}
 
-  /// The next chunk that nobody has taken; nothing when all are taken, or one has failed.
-  std::optional<std::size_t> take() {
-    const std::lock_guard lock(mutex_);
-    return taken_ < count_ && !failed_ ? std::optional(taken_++) : std::nullopt;
-  }
-
-  /// Calls `hand_in` when all chunks before this one were handed in. Not, if one has failed.
-  template <typename HandIn>
-  void in_turn(std::size_t chunk, HandIn hand_in) {
-    std::unique_lock lock(mutex_);
-    moved_on_.wait(lock, [&] { return next_ == chunk || failed_; });
-    if (failed_) {
-      return;
+  /// Takes pieces, on each thread that calls it, until there are no more. Ends early when one has
+  /// thrown something, which goes on to that one's caller.
+  /// @param make  called with a piece and the result to be made of it
+  /// @param use  called with a result, by one thread at a time
+  template <typename Make, typename Use>
+  void take_all(Make make, Use use) {
+    try {
+      Result result{};
+      while (auto taken = take()) {
+        make(taken->piece, result);
+        hand_in(taken->turn, result, use);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      failed_ = true;
+      moved_on_.notify_all();
+      throw;
     }
-    lock.unlock();  // only the thread whose turn it is gets here
-    hand_in();
-    lock.lock();
-    ++next_;
-    moved_on_.notify_all();
-  }
-
-  /// Lets nobody wait for a chunk that will not come.
-  void fail() {
-    const std::lock_guard lock(mutex_);
-    failed_ = true;
-    moved_on_.notify_all();
   }
 
  private:
-  std::size_t count_;
+  struct Taken {
+    std::size_t turn;
+    typename std::invoke_result_t<Source>::value_type piece;
+  };
+
+  struct Slot {
+    Result result = {};
+    bool is_ready = false;
+  };
+
+  Slot& slot(std::size_t turn) { return slots_[turn % slots_.size()]; }
+
+  std::optional<Taken> take() {
+    const std::lock_guard taking(taking_);
+    {
+      std::unique_lock lock(mutex_);
+      moved_on_.wait(lock, [&] { return taken_ < next_ + slots_.size() || failed_; });
+      if (failed_) {
+        return std::nullopt;
+      }
+    }
+    auto piece = source_();
+    return piece ? std::optional(Taken{.turn = taken_++, .piece = std::move(*piece)})
+                 : std::nullopt;
+  }
+
+  /// Leaves a result, gets a used one for it, and uses those whose turn it is, if nobody else does.
+  template <typename Use>
+  void hand_in(std::size_t turn, Result& result, Use& use) {
+    std::unique_lock lock(mutex_);
+    std::swap(slot(turn).result, result);
+    slot(turn).is_ready = true;
+    if (is_used_) {
+      return;
+    }
+    is_used_ = true;
+    while (slot(next_).is_ready && !failed_) {
+      lock.unlock();
+      use(slot(next_).result);
+      lock.lock();
+      slot(next_++).is_ready = false;
+      moved_on_.notify_all();
+    }
+    is_used_ = false;
+  }
+
+  std::mutex taking_ = {};  // guards the source and how often it was asked
+  Source source_;
+  std::size_t taken_ = 0;
+
   std::mutex mutex_ = {};  // guards what follows
   std::condition_variable moved_on_ = {};
-  std::size_t taken_ = 0;
-  std::size_t next_ = 0;
+  std::vector<Slot> slots_;
+  std::size_t next_ = 0;  // turn
+  bool is_used_ = false;  // by a thread
   bool failed_ = false;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "fork_join.hpp"
@@ -151,50 +153,70 @@ void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Face
   });
 }
 
-/// Calls `visit` for the layers of pseudo-voxels that begin in `layers`, and for those that begin
-/// one leaf below the root.
-template <typename Visit>
-void for_each_layer(const Octree& octree, const BrickLayers& layers, Visit visit) {
-  for (int layer = layers.low == 0 ? -1 : layers.low; layer < layers.end; ++layer) {
-    visit(LayerOfCells(octree, layer).cells());
+/// The first of the layers of pseudo-voxels that belong to layers of bricks: those of the root's
+/// bottom begin one leaf below it.
+int first_layer(const BrickLayers& layers) { return layers.low == 0 ? -1 : layers.low; }
+
+/// Some cell bricks of a layer, which lives as long as they are looked at.
+struct CellBricks {
+  std::shared_ptr<const LayerOfCells> layer;
+  std::span<const CellBrick> bricks;
+};
+
+/// Cuts the cell bricks of layer after layer in pieces that make some hundred kilobytes of facets.
+class CellSource {
+ public:
+  CellSource(const Octree& octree, const BrickLayers& layers)
+      : octree_(octree), next_(first_layer(layers)), end_(layers.end) {}
+
+  std::optional<CellBricks> operator()() {
+    constexpr std::size_t most = 8;
+    while (rest_.empty() && next_ < end_) {
+      layer_ = std::make_shared<const LayerOfCells>(octree_, next_++);
+      rest_ = layer_->cells();
+    }
+    if (rest_.empty()) {
+      return std::nullopt;
+    }
+    const auto bricks = rest_.first(std::min(most, rest_.size()));
+    rest_ = rest_.subspan(bricks.size());
+    return CellBricks{.layer = layer_, .bricks = bricks};
   }
-}
+
+ private:
+  const Octree& octree_;
+  int next_;
+  int end_;
+  std::shared_ptr<const LayerOfCells> layer_ = {};
+  std::span<const CellBrick> rest_ = {};  // of the layer
+};
 
 }  // namespace
 
 void isosurface(const Octree& octree, const BrickLayers& layers, int threads,
                 const FacetSink& sink) {
-  constexpr std::size_t chunk_size = 8;  // cell bricks: some hundred kilobytes of facets
-  for_each_layer(octree, layers, [&](std::span<const CellBrick> cells) {
-    InOrder chunks((cells.size() + chunk_size - 1) / chunk_size);
-    fork_join(cells.size() > chunk_size ? threads : 1, [&](int) {
-      std::vector<Facet> facets;
-      try {
-        while (const auto chunk = chunks.take()) {
+  InOrder<CellSource, std::vector<Facet>> pieces(CellSource(octree, layers), 4 * threads);
+  fork_join(threads, [&](int) {
+    pieces.take_all(
+        [&](const CellBricks& cells, std::vector<Facet>& facets) {
           facets.clear();
-          const std::size_t first = *chunk * chunk_size;
-          for (const CellBrick& cell :
-               cells.subspan(first, std::min(chunk_size, cells.size() - first))) {
+          for (const CellBrick& cell : cells.bricks) {
             append_facets(octree, cell, facets);
           }
-          chunks.in_turn(*chunk, [&] { sink(facets); });
-        }
-      } catch (...) {
-        chunks.fail();
-        throw;
-      }
-    });
+        },
+        [&](const std::vector<Facet>& facets) { sink(facets); });
   });
 }
 
 std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
   std::uint64_t count = 0;
-  for_each_layer(octree, layers, [&](std::span<const CellBrick> cells) {
-    for (const CellBrick& cell : cells) {
+  for (int layer = first_layer(layers); layer < layers.end; ++layer) {
+    const LayerOfCells cells(octree, layer);
+    for (const CellBrick& cell : cells.cells()) {
       for_each_mixed(
           cell, [&](int, int, int, std::size_t pattern) { count += cell_surfaces[pattern].count; });
     }
-  });
+  }
   return count;
 }
 

@@ -122,22 +122,20 @@ void Solid::add(const Snapshot& snapshot) {
 }
 
 void Solid::add(const SnapshotSource& snapshots, const std::stop_token& stop) try {
-  InOrder shots(snapshots.count);
   const int threads = std::clamp(static_cast<int>(snapshots.count), 1, options_.threads);
+  auto next = [&, shot = std::size_t{0}]() mutable -> std::optional<std::size_t> {
+    return shot < snapshots.count && !stop.stop_requested() ? std::optional(shot++) : std::nullopt;
+  };
+  InOrder<decltype(next), std::optional<Sighting>> shots(next, threads);
   fork_join(threads, [&](int) {
-    while (!stop.stop_requested()) {
-      const auto shot = shots.take();
-      if (!shot) {
-        break;
-      }
-      try {
-        const Sighting sighting(snapshots.read(*shot), options_.clip);
-        shots.in_turn(*shot, [&] { fuse(field_, sighting); });
-      } catch (...) {
-        shots.fail();
-        throw;
-      }
-    }
+    shots.take_all(
+        [&](std::size_t shot, std::optional<Sighting>& sighting) {
+          sighting.emplace(snapshots.read(shot), options_.clip);
+        },
+        [&](std::optional<Sighting>& sighting) {
+          fuse(field_, *sighting);
+          sighting.reset();
+        });
   });
 } catch (const OctreeFull&) {
   throw Error("memory-limit",

@@ -84,6 +84,35 @@ TEST(AtomicFile, OverwritesInPlaceWithoutMovingItsEnd) {
   EXPECT_EQ(content_of(target), "count=1234;end");
 }
 
+TEST(AtomicFile, KeepsEveryByteOfALargeFile) {
+  // Of this size it goes past the page cache, but for its end and what is overwritten.
+  const TemporaryFolder folder;
+  const std::filesystem::path target = folder.path() / "Scan.stl";
+  std::string model;
+  AtomicFile file(target);
+  for (int piece = 0; model.size() < 5'000'000; ++piece) {
+    const std::string bytes(static_cast<std::size_t>(1 + piece % 977), static_cast<char>(piece));
+    file.write(bytes_of(bytes));
+    model += bytes;
+  }
+  file.write_at(3, bytes_of("count"));
+  file.write(bytes_of(model));
+  model = std::string(model).replace(3, 5, "count") + model;
+
+  file.commit();
+
+  EXPECT_TRUE(content_of(target) == model);
+}
+
+TEST(AtomicFile, SaysDiskFullInTheMidstOfALargeFile) {
+  const TemporaryFolder folder;
+  const std::string model(3'000'000, 'x');
+  const SmallDisk disk(2'500'000);
+
+  EXPECT_EQ(code_thrown_by([&] { write_file(folder.path() / "Scan.stl", model); }), "disk-full");
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
 TEST(AtomicFile, LeavesNothingBehindWhenNotCommitted) {
   const TemporaryFolder folder;
   {

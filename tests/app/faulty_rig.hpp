@@ -12,6 +12,7 @@
 
 #include "app/simulated_frames.hpp"
 #include "octurn/error.hpp"
+#include "scan/latest.hpp"
 #include "scan/plan.hpp"
 #include "scan/rig.hpp"
 #include "sensor/sensor_device.hpp"
@@ -63,6 +64,12 @@ class FaultyRig {
   int position() const { return position_; }
   int moves_without_motor() const { return moves_without_motor_; }
 
+  /// Of the sensor that is opened next.
+  void set_lens(const Intrinsics& lens) { lens_.set(lens); }
+
+  /// Makes each pulse late by this.
+  void set_pulse_delay(std::chrono::milliseconds delay) { pulse_delay_ = delay; }
+
   /// Called at each frame, on the thread that takes it.
   std::function<void(int stop)> on_frame = [](int) {};
 
@@ -84,7 +91,7 @@ class FaultyRig {
    private:
     FaultyRig& rig_;
     std::string name_ = "sensor of a test";
-    Intrinsics intrinsics_ = {};
+    Intrinsics intrinsics_ = *rig_.lens_.get();
   };
 
   static std::vector<DepthFrame> seen_at_stops(int stops) {
@@ -146,6 +153,7 @@ class FaultyRig {
       } else if (line == Stepper::Line::direction) {
         forward = high;
       } else if (high) {
+        std::this_thread::sleep_for(pulse_delay_.load());
         moves_without_motor_ += motor_on_ ? 0 : 1;
         position_ += forward ? 1 : -1;
       }
@@ -157,6 +165,8 @@ class FaultyRig {
   std::atomic<int> position_;
   std::atomic<bool> motor_on_ = false;
   std::atomic<int> moves_without_motor_ = 0;
+  std::atomic<std::chrono::milliseconds> pulse_delay_ = {};
+  Latest<Intrinsics> lens_ = {};
   std::atomic<Fault> fault_ = Fault::none;
   std::atomic<int> fault_stop_ = 0;
   std::atomic<bool> begun_ = false;

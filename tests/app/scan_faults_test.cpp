@@ -155,6 +155,31 @@ TEST_F(PausedScan, IsEndedByACancelAndKeepsItsSnapshots) {
   EXPECT_EQ(code_thrown_by([&] { scanner_.resume(job.id); }), "not-paused");
 }
 
+TEST_F(PausedScan, GoesOnWithItsOwnSensorOnly) {
+  const Job job = pause();
+  rig_.mend();
+  rig_.set_lens({.fx = 580});
+  ASSERT_TRUE(scanner_.resume(job.id));
+  const Job other = ended(scanner_);
+  EXPECT_EQ(other.state, JobState::paused);
+  EXPECT_EQ(other.failure->code, "sensor-other");
+  rig_.set_lens({});
+  ASSERT_TRUE(scanner_.resume(job.id));
+  EXPECT_EQ(ended(scanner_).state, JobState::finished);
+}
+
+TEST_F(PausedScan, CountsTheLatePulsesOfAllItsParts) {
+  rig_.set_pulse_delay(2ms);
+  const Job job = pause();
+  const int late = job.late_pulses;
+  EXPECT_GT(late, FaultyRig::steps / 2 - 10);  // to stop 2, of 4
+  rig_.mend();
+  ASSERT_TRUE(scanner_.resume(job.id));
+  const Job done = ended(scanner_);
+  EXPECT_GT(done.late_pulses, late + FaultyRig::steps / 4 - 10);
+  EXPECT_EQ(store_.find(job.id)->late_pulses, done.late_pulses);
+}
+
 TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {
   const Job job = pause();
   rig_.mend();
@@ -209,19 +234,19 @@ TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
     FaultyRig rig(stops);
     std::atomic<Scanner*> scanning = nullptr;
     rig.on_frame = [&](int now) {
-      if (Scanner* scanner = scanning; scanner != nullptr && now == stop) {
-        scanner->cancel(scanner->status().job->id);
+      Scanner* const scanner = scanning;
+      const Status status = scanner == nullptr ? Status{} : scanner->status();
+      if (status.busy() && now == stop) {
+        scanner->cancel(status.job->id);
       }
     };
     Scanner scanner(rig.options(speed), {}, store);
-    scanner.start(settings());
     scanning = &scanner;
+    scanner.start(settings());
     const Job job = ended(scanner);
-    if (job.state == JobState::finished && stop == 0) {
-      continue;  // it was past that stop before this thread knew it
-    }
     EXPECT_EQ(job.state, JobState::cancelled);
-    EXPECT_EQ(stored_snapshots(store, job), job.snapshots_done);
+    EXPECT_EQ(job.snapshots_done, stop);
+    EXPECT_EQ(stored_snapshots(store, job), stop);
     EXPECT_FALSE(rig.is_motor_on());
     EXPECT_EQ(code_thrown_by([&] { scanner.resume(job.id); }), "not-paused");
   }

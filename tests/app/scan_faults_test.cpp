@@ -60,7 +60,7 @@ struct Case {
   std::string code;
 };
 
-void PrintTo(const Case& fault, std::ostream* out) { *out << fault.code; }
+std::ostream& operator<<(std::ostream& out, const Case& fault) { return out << fault.code; }
 
 class ScanFaults : public ::testing::TestWithParam<Case> {};
 

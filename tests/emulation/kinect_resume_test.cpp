@@ -22,7 +22,7 @@ struct Fault {
   const char* code;
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
 class KinectFaults : public ::testing::TestWithParam<Fault> {
  protected:

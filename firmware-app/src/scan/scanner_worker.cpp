@@ -113,13 +113,13 @@ void Scanner::run_until_it_ends(Job& job, Rig& rig, const std::stop_token& stop)
   Clock::time_point last_attempt = {};
   for (;;) {
     attempt(job, rig, stop);
-    const Clock::time_point now = Clock::now();
-    if (job.state == JobState::paused && job.snapshots_done > failed_at) {
-      failed_at = job.snapshots_done;
-      last_attempt = now + at_speed(attempts_time);
-    }
     if (job.state != JobState::paused) {
       return;
+    }
+    const Clock::time_point now = Clock::now();
+    if (job.snapshots_done > failed_at) {
+      failed_at = job.snapshots_done;
+      last_attempt = now + at_speed(attempts_time);
     }
     if (now >= last_attempt) {
       job.failure->hint += " Then resume the scan.";

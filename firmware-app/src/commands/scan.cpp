@@ -94,6 +94,7 @@ void scan(const ScanArguments& arguments) {
   const ScanStore store(arguments.data.value_or(config.data));
   Scanner scanner(rig, config.limits, store);
 
+  scanner.expect_ready();  // or there would be no more than an empty folder
   const std::optional<Job> started =  // nothing else starts scans here
       arguments.resume ? scanner.resume(*arguments.resume) : scanner.start(settings);
   const Job job = follow(scanner, *started, interruption.token());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace octurn {
 namespace {
@@ -19,13 +20,11 @@ int cell_leaves_of(double leaf_side) {
 
 }  // namespace
 
-DistanceField::DistanceField(double side, int levels, const Box& clip, double truncation,
-                             std::size_t max_bytes)
+FieldShape::FieldShape(double side, int levels, const Box& clip, double truncation)
     : side_(side),
       levels_(levels),
       leaf_side_(side / (1 << levels)),
       truncation_(truncation),
-      max_bytes_(max_bytes),
       cell_leaves_(cell_leaves_of(leaf_side_)) {
   const double brick_side = leaf_side_ * Brick::side;
   const auto bricks = [&](Eigen::Index axis) {
@@ -40,22 +39,62 @@ DistanceField::DistanceField(double side, int levels, const Box& clip, double tr
   };
   low_ = {bricks(0)[0], bricks(1)[0], bricks(2)[0]};
   size_ = {bricks(0)[1], bricks(1)[1], bricks(2)[1]};
-  const auto count = static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
-                     static_cast<std::size_t>(size_.z);
-  const auto a_brick = static_cast<std::size_t>(cells_a_brick());
-  names_.resize(count);
-  free_.resize(count * a_brick * a_brick * a_brick);
 }
 
-FieldBrick& DistanceField::make(const Cell& brick) {
-  std::uint32_t& index = names_[name_of(brick)];
-  if (index == 0) {
-    if (bricks_.is_full() && bytes() + Pool<FieldBrick>::block_bytes > max_bytes_) {
-      throw OctreeFull();
-    }
-    index = bricks_.add();
+DistanceField::DistanceField(const FieldShape& shape, std::size_t max_bytes)
+    : FieldShape(shape),
+      max_bytes_(max_bytes),
+      layers_{.low = 0, .end = shape.size().z},
+      names_(brick_count()),
+      free_(cell_count()) {}
+
+void DistanceField::begin(int low, std::size_t max_bytes) {
+  max_bytes_ = max_bytes;
+  layers_ = {.low = low, .end = size().z};
+  bricks_ = {};
+  std::ranges::fill(names_, 0U);
+  std::ranges::fill(free_, std::uint8_t{0});
+}
+
+FieldBrick* DistanceField::make(const Cell& brick) {
+  std::uint32_t& name = names_[brick_index(brick)];
+  while (name == 0 && brick.z < layers_.end && bricks_.is_full() &&
+         bytes() + Pool<FieldBrick>::block_bytes > max_bytes_) {
+    give_up_layers();
   }
-  return bricks_[index];
+  if (brick.z >= layers_.end) {
+    return nullptr;
+  }
+  if (name == 0) {
+    name = bricks_.add();
+  }
+  return &bricks_[name];
+}
+
+/// Gives up layers from the top, until at most half of the bricks are left, or one layer.
+void DistanceField::give_up_layers() {
+  if (layers_.end - layers_.low <= 1) {
+    throw OctreeFull();
+  }
+  const auto layer = [&](int z) {
+    return std::span(names_).subspan(brick_index({0, 0, z}), brick_index({0, 0, 1}));
+  };
+  const auto bricks_of = [&](int z) {
+    return static_cast<std::size_t>(std::ranges::count_if(layer(z), [](auto n) { return n != 0; }));
+  };
+  std::size_t all = 0;
+  for (int z = layers_.low; z < layers_.end; ++z) {
+    all += bricks_of(z);
+  }
+  for (std::size_t kept = all; 2 * kept > all && layers_.end - layers_.low > 1;) {
+    --layers_.end;
+    kept -= bricks_of(layers_.end);
+    for (std::uint32_t& name : layer(layers_.end)) {
+      if (name != 0) {
+        bricks_.remove(std::exchange(name, 0));
+      }
+    }
+  }
 }
 
 }  // namespace octurn

@@ -6,19 +6,15 @@
 namespace octurn {
 namespace {
 
-// What a sample needs to count as seen: of one good reading a tenth, and no less than the snapshots
-// that saw through.
-constexpr float least_weight = 0.1F;
-
 // The distance of free space where the unknown is filled in. Less would leave more of what no
 // snapshot saw to the model.
-constexpr float free_distance = 0.8F * DistanceField::ticks;
+constexpr float free_distance = 0.8F * FieldShape::ticks;
 
 constexpr int sweeps = 10;  // over each grid of the harmonic fill, there and back
 
 }  // namespace
 
-FilledField::FilledField(const DistanceField& field, int foot) : field_(field), foot_(foot) {
+FilledField::FilledField(const SeenField& field, int foot) : field_(field), foot_(foot) {
   find_box();
   classify();
   solve(grid_);
@@ -55,11 +51,6 @@ void FilledField::find_box() {
                 (last.z + 1 - first.z) * a_brick};
 }
 
-bool FilledField::seen(const FieldBrick& brick, std::size_t sample, int free) const {
-  const float w = static_cast<float>(brick.weight[sample]) / DistanceField::weight_ticks;
-  return w >= least_weight && w >= static_cast<float>(free);
-}
-
 void FilledField::classify() {
   const auto count = grid_.index(0, 0, grid_.size.z);
   grid_.values.resize(count);
@@ -78,20 +69,17 @@ void FilledField::classify(const Cell& cell, std::size_t index) {
   const int a_brick = field_.cells_a_brick();
   const int leaves = field_.cell_leaves();
   const Cell position{cell.x / a_brick, cell.y / a_brick, cell.z / a_brick};
-  const int free = field_.free_cell(cell);
-  const Cell& size = field_.size();
-  if (position.x == 0 || position.y == 0 || position.x == size.x - 1 || position.y == size.y - 1 ||
-      position.z == size.z - 1) {
+  if (field_.is_border(position)) {
     grid_.values[index] = free_distance;
     grid_.known[index] = 1;
     return;
   }
-  const FieldBrick* const brick = field_.find(position);
-  if (brick == nullptr && free > 0) {
+  const SeenBrick* const brick = field_.find(position);
+  if (brick == nullptr && field_.is_free(cell)) {
     grid_.values[index] = free_distance;
     grid_.known[index] = 1;
   } else if (brick != nullptr) {
-    const Tally tally = tally_of(*brick, position, cell, free);
+    const Tally tally = tally_of(*brick, position, cell);
     if (tally.known * 4 >= leaves * leaves * leaves) {
       grid_.values[index] = tally.sum / static_cast<float>(tally.known);
       grid_.known[index] = 1;
@@ -99,9 +87,10 @@ void FilledField::classify(const Cell& cell, std::size_t index) {
   }
 }
 
-/// What is known of a cell's samples. @param free  snapshots that saw through the cell
-FilledField::Tally FilledField::tally_of(const FieldBrick& brick, const Cell& position,
-                                         const Cell& cell, int free) const {
+/// What is known of a cell's samples. Behind a surface even the faintest sample says that there is
+/// something to fill.
+FilledField::Tally FilledField::tally_of(const SeenBrick& brick, const Cell& position,
+                                         const Cell& cell) const {
   const int a_brick = field_.cells_a_brick();
   const int leaves = field_.cell_leaves();
   Tally tally;
@@ -115,13 +104,16 @@ FilledField::Tally FilledField::tally_of(const FieldBrick& brick, const Cell& po
         const auto sample = static_cast<std::size_t>(cell.x % a_brick * leaves + x +
                                                      (cell.y % a_brick * leaves + y) * Brick::side +
                                                      bz * Brick::side * Brick::side);
-        const int through = free + brick.free[sample];
-        // Behind a surface even the faintest sample says that there is something to fill.
-        const bool behind = brick.distance[sample] < 0 && brick.weight[sample] > 0;
-        if (seen(brick, sample, through) || (behind && through == 0)) {
-          tally.add(std::min(static_cast<float>(brick.distance[sample]), free_distance));
-        } else if (through > 0) {
-          tally.add(free_distance);
+        switch (brick.at(sample)) {
+          case Sighted::seen:
+          case Sighted::behind:
+            tally.add(std::min(static_cast<float>(brick.distance[sample]), free_distance));
+            break;
+          case Sighted::free:
+            tally.add(free_distance);
+            break;
+          case Sighted::unknown:
+            break;
         }
       }
     }
@@ -239,29 +231,25 @@ FilledField::Value FilledField::at(const Cell& leaf) const {
   const Cell cell{above.x / leaves - low.x * a_brick, above.y / leaves - low.y * a_brick,
                   above.z / leaves - low.z * a_brick};
   Value value;
-  bool known = false;
-  const int free = field_.free_cell(cell);
-  if (const FieldBrick* brick = field_.find(position)) {
+  Sighted sighted = Sighted::unknown;
+  if (const SeenBrick* brick = field_.find(position)) {
     const auto sample =
         static_cast<std::size_t>((above.x & 7) | (above.y & 7) << 3 | (above.z & 7) << 6);
-    const int through = free + brick->free[sample];
-    if (seen(*brick, sample, through)) {
-      value = {static_cast<float>(brick->distance[sample]), true};
-      known = true;
-    } else if (through > 0) {
-      value.distance = DistanceField::ticks;
-      known = true;
-    }
-  } else if (free > 0) {
-    value.distance = DistanceField::ticks;
-    known = true;
+    sighted = brick->at(sample);
+    value.distance = static_cast<float>(brick->distance[sample]);
+  } else if (field_.is_free(cell)) {
+    sighted = Sighted::free;
   }
-  if (!known) {
+  if (sighted == Sighted::seen) {
+    value.seen = true;
+  } else if (sighted == Sighted::free) {
+    value.distance = FieldShape::ticks;
+  } else {
     value.distance = interpolated(above);
   }
   // The model is what lies above the platform.
   const auto below = static_cast<float>(-(leaf.z + 0.5) * field_.leaf_side() / field_.truncation() *
-                                        DistanceField::ticks);
+                                        FieldShape::ticks);
   if (below > value.distance) {
     value = {below, false};
   }

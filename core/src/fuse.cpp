@@ -110,7 +110,9 @@ class Fusion {
 
   void descend(const Cell& brick, int bricks) {
     const Cell& size = field_.size();
-    if (brick.x >= size.x || brick.y >= size.y || brick.z >= size.z) {
+    const BrickLayers& layers = field_.layers();
+    if (brick.x >= size.x || brick.y >= size.y || brick.z >= layers.end ||
+        brick.z + bricks <= layers.low) {
       return;
     }
     switch (look({brick.x * Brick::side, brick.y * Brick::side, brick.z * Brick::side},
@@ -141,8 +143,9 @@ class Fusion {
     const Cell& size = field_.size();
     const int end_x = std::min(brick.x + bricks, size.x) * a_brick;
     const int end_y = std::min(brick.y + bricks, size.y) * a_brick;
-    const int end_z = std::min(brick.z + bricks, size.z) * a_brick;
-    for (int z = brick.z * a_brick; z < end_z; ++z) {
+    const int low_z = std::max(brick.z, field_.layers().low) * a_brick;
+    const int end_z = std::min(brick.z + bricks, field_.layers().end) * a_brick;
+    for (int z = low_z; z < end_z; ++z) {
       for (int y = brick.y * a_brick; y < end_y; ++y) {
         for (int x = brick.x * a_brick; x < end_x; ++x) {
           count(field_.free_cell({x, y, z}));
@@ -155,19 +158,13 @@ class Fusion {
     counter = static_cast<std::uint8_t>(counter + (counter < 255 ? 1 : 0));
   }
 
-  bool is_border(const Cell& brick) const {
-    const Cell& size = field_.size();
-    return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == size.x - 1 ||
-           brick.y == size.y - 1 || brick.z == size.z - 1;
-  }
-
   void enter(const Cell& brick) {
-    if (is_border(brick)) {
+    if (field_.is_border(brick)) {
       return;
     }
     const int a_brick = field_.cells_a_brick();
     const int leaves = field_.cell_leaves();
-    auto* samples = const_cast<FieldBrick*>(field_.find(brick));
+    FieldBrick* samples = field_.find(brick);
     for (int z = 0; z < a_brick; ++z) {
       for (int y = 0; y < a_brick; ++y) {
         for (int x = 0; x < a_brick; ++x) {
@@ -236,9 +233,11 @@ class Fusion {
     }
     if (distance > -truncation_ && p[2] < sight.free_z + deepest_behind * truncation_) {
       if (samples == nullptr) {
-        samples = &field_.make(brick);
+        samples = field_.make(brick);
       }
-      average(*samples, index, distance, sight.weight);
+      if (samples != nullptr) {
+        average(*samples, index, distance, sight.weight);
+      }
     }
     return false;
   }

@@ -10,8 +10,9 @@
 
 namespace octurn {
 
-/// Pieces of work from one source that several threads make results of, which are used one by one in
-/// the order of their pieces. A thread whose result is early leaves it and goes on with other work.
+/// Pieces of work from one source that several threads make results of, which are used one by one
+/// in the order of their pieces. A thread whose result is early leaves it and goes on with other
+/// work.
 ///
 /// @tparam Source  called without arguments, by one thread at a time: the next piece as a
 ///                 std::optional, empty when there are no more

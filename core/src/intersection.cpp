@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fork_join.hpp"
+#include "memory_limit.hpp"
 #include "octurn/error.hpp"
 #include "octurn/intersect.hpp"
 #include "octurn/point_grid.hpp"
@@ -21,13 +22,9 @@ namespace {
 
 // What a process takes beside its octrees, measured with a sensor's 640 x 480 samples: the program
 // and its libraries, and for each thread a snapshot, its points, and facets on their way out.
-constexpr std::size_t program_bytes = std::size_t{10} << 20U;
-constexpr std::size_t thread_bytes = std::size_t{6} << 20U;
-constexpr std::size_t least_octree_bytes = std::size_t{1} << 20U;
-
-std::string mb_text(std::size_t bytes) {
-  return std::to_string((bytes + (std::size_t{1} << 20U) - 1) >> 20U) + " MB";
-}
+constexpr std::size_t program_bytes = 10 * mebibyte;
+constexpr std::size_t thread_bytes = 6 * mebibyte;
+constexpr std::size_t least_octree_bytes = 1 * mebibyte;
 
 /// @returns the options, if each is in its range
 const ReconstructOptions& checked(const ReconstructOptions& options) {
@@ -39,12 +36,7 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
   if (options.level && (*options.level < 0 || *options.level > levels)) {
     refuse("level: must be from 0, the root, to " + std::to_string(levels) + ", the leaves");
   }
-  if (options.memory_limit != 0 &&
-      options.memory_limit < program_bytes + thread_bytes + least_octree_bytes) {
-    throw Error(
-        "memory-limit", "memory limit: " + mb_text(options.memory_limit) + " is too little",
-        "Allow at least " + mb_text(program_bytes + thread_bytes + least_octree_bytes) + ".");
-  }
+  check_memory_limit(options.memory_limit, program_bytes + thread_bytes + least_octree_bytes);
   return options;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 
 namespace octurn {
 namespace {
@@ -173,6 +174,45 @@ void LeafSet::keep_part() {
       assign(row(y, z), run, false);
     }
   });
+}
+
+LeafSet LeafSet::cropped() const {
+  std::vector<std::uint64_t> columns(words_);  // of all rows together
+  Cell first{size_.x, size_.y, size_.z};
+  Cell last{-1, -1, -1};
+  for (int z = 0; z < size_.z; ++z) {
+    for (int y = 0; y < size_.y; ++y) {
+      const auto leaves = row(y, z);
+      if (std::ranges::any_of(leaves, [](std::uint64_t word) { return word != 0; })) {
+        first = {first.x, std::min(first.y, y), std::min(first.z, z)};
+        last = {last.x, std::max(last.y, y), std::max(last.z, z)};
+        std::ranges::transform(columns, leaves, columns.begin(), std::bit_or());
+      }
+    }
+  }
+  if (last.y < 0) {
+    return {low_, low_};
+  }
+  for (std::size_t word = 0; word < words_; ++word) {
+    if (columns[word] != 0) {
+      const int at = static_cast<int>(word) * 64;
+      first.x = std::min(first.x, at + std::countr_zero(columns[word]));
+      last.x = at + 63 - std::countl_zero(columns[word]);
+    }
+  }
+  const int skipped = std::max(first.x - 1, 0) / 64;  // words
+  const int low_y = std::max(first.y - 1, 0);
+  LeafSet set({low_.x + 64 * skipped, low_.y + low_y, low_.z + first.z},
+              {low_.x + std::min(last.x + 2, size_.x), low_.y + std::min(last.y + 2, size_.y),
+               low_.z + last.z + 1});
+  for (int z = 0; z < set.size_.z; ++z) {
+    for (int y = 0; y < set.size_.y; ++y) {
+      std::ranges::copy(
+          row(low_y + y, first.z + z).subspan(static_cast<std::size_t>(skipped), set.words_),
+          set.row(y, z).begin());
+    }
+  }
+  return set;
 }
 
 std::uint64_t LeafSet::count_parts() const {

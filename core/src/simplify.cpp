@@ -5,6 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "mesh_cuts.hpp"
+#include "vector3.hpp"
+
 namespace octurn {
 namespace {
 
@@ -12,40 +15,28 @@ constexpr int passes = 6;
 constexpr std::size_t window_triangles = 30'000;
 constexpr double least_edge_mm = 0.036;  // slicers meld vertices that are closer
 constexpr double least_turn = 0.5;       // cosine between a triangle's normals before and after
-
-using Vector = std::array<double, 3>;
-
-Vector vector_of(const std::array<float, 3>& position) {
-  return {static_cast<double>(position[0]), static_cast<double>(position[1]),
-          static_cast<double>(position[2])};
-}
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector normal_of(const Vector& a, const Vector& b, const Vector& c) { return cross(b - a, c - a); }
+constexpr float first_reach_mm = 0.5F;   // around a cut, where the surface is left as it was
 
 /// Whether a side or a height is below a slicer's grain, or a height below a twentieth of the
 /// longest side.
-bool is_sliver(const std::array<Vector, 3>& corners) {
+bool is_sliver(const std::array<Vector3, 3>& corners) {
   constexpr double least_square = least_edge_mm * least_edge_mm;
   double longest = 0;
   double shortest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vector side = corners[(i + 1) % 3] - corners[i];
+    const Vector3 side = corners[(i + 1) % 3] - corners[i];
     longest = std::max(longest, dot(side, side));
     shortest = std::min(shortest, dot(side, side));
   }
-  const Vector normal = normal_of(corners[0], corners[1], corners[2]);
+  const Vector3 normal = normal_of(corners[0], corners[1], corners[2]);
   const double height = dot(normal, normal) / longest;
   return shortest < least_square || height < least_square || height < longest / 400;
+}
+
+/// A box with a point in its middle.
+Bounds around(const std::array<float, 3>& point, float reach) {
+  return {.low = {point[0] - reach, point[1] - reach, point[2] - reach},
+          .high = {point[0] + reach, point[1] + reach, point[2] + reach}};
 }
 
 /// Whether a triangle's edge was collapsed.
@@ -79,12 +70,12 @@ void Simplifier::add(const MeshPiece& piece) {
   add_quadrics(first);
   fresh_ += piece.triangles.size();
   if (fresh_ >= window_triangles) {
-    simplify();
-    float top = 0;
+    top_ = 0;
     for (const std::uint32_t name : names_) {
-      top = std::max(top, vertices_[name].position[2]);
+      top_ = std::max(top_, vertices_[name].position[2]);
     }
-    hand_on(top - static_cast<float>(margin_));
+    simplify();
+    hand_on(top_ - static_cast<float>(margin_));
     fresh_ = 0;
   }
 }
@@ -94,6 +85,7 @@ void Simplifier::finish() {
     vertices_[name].fixed = false;
   }
   names_.clear();
+  top_ = std::numeric_limits<float>::max();
   simplify();
   hand_on(std::numeric_limits<float>::max());
 }
@@ -101,14 +93,14 @@ void Simplifier::finish() {
 void Simplifier::add_quadrics(std::size_t first_triangle) {
   for (std::size_t i = first_triangle; i < triangles_.size(); ++i) {
     const MeshTriangle& triangle = triangles_[i];
-    const Vector a = vector_of(vertices_[triangle[0]].position);
-    const Vector normal = normal_of(a, vector_of(vertices_[triangle[1]].position),
-                                    vector_of(vertices_[triangle[2]].position));
+    const Vector3 a = vector_of(vertices_[triangle[0]].position);
+    const Vector3 normal = normal_of(a, vector_of(vertices_[triangle[1]].position),
+                                     vector_of(vertices_[triangle[2]].position));
     const double twice_area = std::sqrt(dot(normal, normal));
     if (twice_area == 0) {
       continue;
     }
-    const Vector n{normal[0] / twice_area, normal[1] / twice_area, normal[2] / twice_area};
+    const Vector3 n{normal[0] / twice_area, normal[1] / twice_area, normal[2] / twice_area};
     const double d = -dot(n, a);
     const double area = twice_area / 2;
     const std::array terms{n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2],
@@ -123,7 +115,35 @@ void Simplifier::add_quadrics(std::size_t first_triangle) {
   }
 }
 
+/// Collapses edges; where that makes the surface cut itself, does it again with the vertices around
+/// there fixed. What is handed on as it came does not cut itself (see `marching_cubes`).
 void Simplifier::simplify() {
+  const std::vector<Vertex> vertices = vertices_;
+  const std::vector<MeshTriangle> triangles = triangles_;
+  for (float reach = first_reach_mm;;) {
+    collapse_edges();
+    std::vector<std::array<float, 3>> positions(vertices.size());
+    std::ranges::transform(vertices_, positions.begin(), &Vertex::position);
+    const std::vector<Bounds> cuts = cuts_of(positions, triangles_, handed_on_);
+    if (cuts.empty() || triangles_.size() == triangles.size()) {
+      return;
+    }
+    bool any = false;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const bool was_fixed = vertices_[i].fixed;
+      vertices_[i] = vertices[i];
+      const Bounds place = around(vertices[i].position, reach);
+      vertices_[i].fixed = was_fixed || std::ranges::any_of(cuts, [&](const Bounds& cut) {
+                             return cut.meets(place);
+                           });
+      any = any || vertices_[i].fixed != was_fixed;
+    }
+    triangles_ = triangles;
+    reach = any ? reach : 2 * reach;
+  }
+}
+
+void Simplifier::collapse_edges() {
   // The limit rises, so that what costs little goes first, all over the window.
   for (int pass = 0; pass < passes; ++pass) {
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
@@ -193,14 +213,14 @@ Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) c
   }
   sum.area += vertices_[b].quadric.area;
   const auto& [xx, xy, xz, yy, yz, zz, xd, yd, zd, dd] = sum.terms;
-  const auto cost_at = [&sum](const Vector& p) {
+  const auto cost_at = [&sum](const Vector3& p) {
     const auto& t = sum.terms;
     return p[0] * (t[0] * p[0] + 2 * (t[1] * p[1] + t[2] * p[2] + t[6])) +
            p[1] * (t[3] * p[1] + 2 * (t[4] * p[2] + t[7])) + p[2] * (t[5] * p[2] + 2 * t[8]) + t[9];
   };
-  const Vector from = vector_of(vertices_[a].position);
-  const Vector to = vector_of(vertices_[b].position);
-  const Vector middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
+  const Vector3 from = vector_of(vertices_[a].position);
+  const Vector3 to = vector_of(vertices_[b].position);
+  const Vector3 middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
   // The foot stays on the platform.
   const bool stands = from[2] == 0 || to[2] == 0;
   // Along directions that the planes leave open, the middle of the edge.
@@ -211,7 +231,7 @@ Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) c
   const double bx = hold * middle[0] - xd;
   const double by = hold * middle[1] - yd;
   const double bz = hold * middle[2] - zd;
-  Vector best = middle;
+  Vector3 best = middle;
   if (stands) {
     const double det = axx * ayy - xy * xy;
     best = {(bx * ayy - by * xy) / det, (by * axx - bx * xy) / det, 0.0};
@@ -235,6 +255,10 @@ Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) c
 
 bool Simplifier::may_collapse(const Collapse& collapse) const {
   const auto& [cost, a, b, position] = collapse;
+  // Beyond may lie what was handed on long ago, or is still to come.
+  if (position[2] < bottom_ || position[2] > top_) {
+    return false;
+  }
   // The link condition: the ends have just the two neighbours in common that face the edge.
   int common = 0;
   std::size_t around = 0;
@@ -266,24 +290,24 @@ bool Simplifier::are_neighbours(std::uint32_t a, std::uint32_t b) const {
 /// Whether a triangle around one end, but not the other, would turn over or shrink to a sliver.
 bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
                             std::uint32_t other) const {
-  const Vector to = vector_of(collapse.position);
+  const Vector3 to = vector_of(collapse.position);
   for (const std::uint32_t i : triangles_of(around)) {
     const MeshTriangle& triangle = triangles_[i];
     if (is_gone(triangle) || triangle[0] == other || triangle[1] == other || triangle[2] == other) {
       continue;
     }
-    std::array<Vector, 3> before;
+    std::array<Vector3, 3> before;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       before[corner] = vector_of(vertices_[triangle[corner]].position);
     }
-    std::array<Vector, 3> after = before;
+    std::array<Vector3, 3> after = before;
     for (std::size_t corner = 0; corner < 3; ++corner) {
       if (triangle[corner] == around) {
         after[corner] = to;
       }
     }
-    const Vector was = normal_of(before[0], before[1], before[2]);
-    const Vector is = normal_of(after[0], after[1], after[2]);
+    const Vector3 was = normal_of(before[0], before[1], before[2]);
+    const Vector3 is = normal_of(after[0], after[1], after[2]);
     const double along = dot(was, is);
     if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * dot(is, is) ||
         is_sliver(after)) {
@@ -312,31 +336,40 @@ void Simplifier::apply(const Collapse& collapse) {
 
 void Simplifier::drop_collapsed() { std::erase_if(triangles_, is_gone); }
 
-/// Hands on the triangles that lie below `end` as a whole, and forgets the vertices that are no
-/// longer needed.
+/// Hands on the triangles that lie below `end` as a whole, and forgets what is no longer needed.
 void Simplifier::hand_on(float end) {
   facets_.clear();
-  std::vector<char> handed(vertices_.size());
-  std::size_t left = 0;
-  for (const MeshTriangle& triangle : triangles_) {
-    const bool keep = std::ranges::any_of(
-        triangle, [&](std::uint32_t corner) { return vertices_[corner].position[2] >= end; });
-    if (keep) {
-      triangles_[left++] = triangle;
-      continue;
+  const auto height = [&](std::uint32_t corner) { return vertices_[corner].position[2]; };
+  const auto rest = std::stable_partition(
+      triangles_.begin() + static_cast<std::ptrdiff_t>(handed_on_), triangles_.end(),
+      [&](const MeshTriangle& triangle) {
+        return std::ranges::all_of(triangle, [&](std::uint32_t c) { return height(c) < end; });
+      });
+  bottom_ = std::numeric_limits<float>::max();
+  std::for_each(rest, triangles_.end(), [&](const MeshTriangle& triangle) {
+    for (const std::uint32_t corner : triangle) {
+      bottom_ = std::min(bottom_, height(corner));
     }
-    std::array<MeshVertex, 3> corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vertex& vertex = vertices_[triangle[i]];
-      corners[i] = {.position = vertex.position, .seen = vertex.seen};
-      handed[triangle[i]] = 1;
-    }
-    facets_.push_back(facet_of(corners));
-  }
-  triangles_.resize(left);
+  });
+  std::for_each(triangles_.begin() + static_cast<std::ptrdiff_t>(handed_on_), rest,
+                [&](const MeshTriangle& triangle) {
+                  std::array<MeshVertex, 3> corners{};
+                  for (std::size_t i = 0; i < 3; ++i) {
+                    Vertex& vertex = vertices_[triangle[i]];
+                    corners[i] = {.position = vertex.position, .seen = vertex.seen};
+                    vertex.fixed = true;
+                  }
+                  facets_.push_back(facet_of(corners));
+                });
   if (!facets_.empty()) {
     sink_(facets_);
   }
+  // What the rest could still be made to cut stays.
+  const auto left = std::remove_if(triangles_.begin(), rest, [&](const MeshTriangle& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t c) { return height(c) < bottom_; });
+  });
+  handed_on_ = static_cast<std::size_t>(left - triangles_.begin());
+  triangles_.erase(left, rest);
   std::vector<std::uint32_t> moved(vertices_.size(), std::numeric_limits<std::uint32_t>::max());
   std::uint32_t next = 0;
   const auto keep = [&](std::uint32_t vertex) { moved[vertex] = 0; };
@@ -346,7 +379,6 @@ void Simplifier::hand_on(float end) {
   std::ranges::for_each(names_, keep);
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     if (moved[i] == 0) {
-      vertices_[i].fixed = vertices_[i].fixed || handed[i] != 0;
       moved[i] = next;
       vertices_[next++] = vertices_[i];
     }

@@ -1,5 +1,7 @@
 #include "octurn/solid.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,6 +12,7 @@
 
 #include "fork_join.hpp"
 #include "in_order.hpp"
+#include "memory_limit.hpp"
 #include "octurn/error.hpp"
 #include "octurn/filled_field.hpp"
 #include "octurn/fuse.hpp"
@@ -32,17 +35,13 @@ constexpr double foot_margin = 0.001;  // metres
 
 // What a process takes beside its field, measured with a sensor's 640 x 480 samples: the program
 // and its libraries, for each thread a snapshot and what it says, and the mesh on its way out.
-constexpr std::size_t program_bytes = std::size_t{10} << 20U;
-constexpr std::size_t thread_bytes = std::size_t{14} << 20U;
-constexpr std::size_t surface_bytes = std::size_t{16} << 20U;
-constexpr std::size_t least_field_bytes = std::size_t{4} << 20U;
+constexpr std::size_t program_bytes = 12 * mebibyte;
+constexpr std::size_t thread_bytes = 14 * mebibyte;
+constexpr std::size_t surface_bytes = 16 * mebibyte;
+constexpr std::size_t least_field_bytes = 4 * mebibyte;
 
 /// How far below the upper end of its window a mesh is simplified, in leaves.
 constexpr double margin_leaves = 8;
-
-std::string mb_text(std::size_t bytes) {
-  return std::to_string((bytes + (std::size_t{1} << 20U) - 1) >> 20U) + " MB";
-}
 
 std::size_t beside_field(const ReconstructOptions& options) {
   return program_bytes +
@@ -58,29 +57,48 @@ ReconstructOptions checked(ReconstructOptions options) {
   if (!std::isfinite(options.max_error) || options.max_error < 0) {
     throw Error("bad-settings", "max error: must be 0 or above");
   }
-  if (options.memory_limit != 0) {
-    while (options.threads > 1 &&
-           beside_field(options) + least_field_bytes > options.memory_limit) {
-      --options.threads;
-    }
-    if (const std::size_t least = beside_field(options) + least_field_bytes;
-        least > options.memory_limit) {
-      throw Error("memory-limit",
-                  "memory limit: " + mb_text(options.memory_limit) + " is too little",
-                  "Allow at least " + mb_text(least) + ".");
-    }
+  const auto least = [&] { return beside_field(options) + least_field_bytes; };
+  while (options.memory_limit != 0 && options.threads > 1 && least() > options.memory_limit) {
+    --options.threads;
   }
+  check_memory_limit(options.memory_limit, least());
   return options;
 }
 
-DistanceField field_for(const ReconstructOptions& options) {
+/// What a field and what is left of it may take together, bytes.
+std::size_t room(const ReconstructOptions& options) {
+  return options.memory_limit == 0 ? std::numeric_limits<std::size_t>::max()
+                                   : options.memory_limit - beside_field(options);
+}
+
+/// What a slab of the field may take, so that there is room for what is left of it.
+/// @param seen  what is left of other slabs
+std::size_t slab_room(const ReconstructOptions& options, const SeenField& seen) {
+  constexpr double share =
+      static_cast<double>(sizeof(FieldBrick)) / (sizeof(FieldBrick) + sizeof(SeenBrick));
+  const std::size_t all = room(options);
+  const std::size_t taken = seen.bytes() + Pool<SeenBrick>::block_bytes;
+  return all > taken ? static_cast<std::size_t>(share * static_cast<double>(all - taken)) : 0;
+}
+
+FieldShape shape_for(const ReconstructOptions& options) {
   const int levels = checked_levels(options);
   const double leaf_side = options.root_size / (1 << levels);
-  DistanceField field(options.root_size, levels, options.clip,
-                      std::max(truncation, least_truncation_leaves * leaf_side),
-                      options.memory_limit == 0 ? std::numeric_limits<std::size_t>::max()
-                                                : options.memory_limit - beside_field(options));
-  return field;
+  return {options.root_size, levels, options.clip,
+          std::max(truncation, least_truncation_leaves * leaf_side)};
+}
+
+[[noreturn]] void refuse_field(const ReconstructOptions& options) {
+  throw Error("memory-limit",
+              "memory limit: " + mb_text(options.memory_limit) + " do not hold what was seen",
+              "Allow " + mb_text(2 * options.memory_limit) + ", or choose a larger leaf size.");
+}
+
+/// What the leaves of a field's box take, a bit for each, and half as much to find their parts.
+std::size_t leaf_set_bytes(const FilledField& filled) {
+  const auto side = [](int low, int end) { return static_cast<std::size_t>(end - low); };
+  return side(filled.low().x, filled.end().x) * side(filled.low().y, filled.end().y) *
+         side(filled.low().z, filled.end().z) / 16 * 3;
 }
 
 /// Facets of a mesh as it comes, with all its triangles.
@@ -115,7 +133,8 @@ class Facets {
 }  // namespace
 
 Solid::Solid(const ReconstructOptions& options)
-    : options_(checked(options)), field_(field_for(options_)) {}
+    : options_(checked(options)),
+      field_(shape_for(options_), slab_room(options_, SeenField(shape_for(options_)))) {}
 
 void Solid::add(const Snapshot& snapshot) {
   add({.count = 1, .read = [&](std::size_t) { return snapshot; }});
@@ -138,9 +157,33 @@ void Solid::add(const SnapshotSource& snapshots, const std::stop_token& stop) tr
         });
   });
 } catch (const OctreeFull&) {
-  throw Error("memory-limit",
-              "memory limit: " + mb_text(options_.memory_limit) + " do not hold what was seen",
-              "Allow " + mb_text(2 * options_.memory_limit) + ", or choose a larger leaf size.");
+  refuse_field(options_);
+}
+
+/// What all snapshots say, slab by slab.
+SeenField Solid::seen(const SnapshotSource& snapshots) {
+  SeenField seen(field_);
+  const auto add_slab = [&](int low) {
+    if (low != field_.layers().low) {
+      field_.begin(low, slab_room(options_, seen));
+      add(snapshots);
+    }
+    seen.add(field_);
+    if (seen.bytes() + field_.bytes() > room(options_)) {
+      refuse_field(options_);
+    }
+  };
+  add_slab(0);
+  while (field_.layers().end < field_.size().z) {
+    add_slab(field_.layers().end);
+  }
+  if (field_.layers().low > 0) {
+    field_.begin(field_.size().z, 0);  // what it holds is of no more use
+  }
+  if (options_.memory_limit != 0) {
+    ::malloc_trim(0);  // the C library would keep what slabs and sightings took
+  }
+  return seen;
 }
 
 /// The lowest layer of leaves that counts.
@@ -149,10 +192,16 @@ int Solid::foot() const {
   return static_cast<int>(std::ceil((bottom + foot_margin) / field_.leaf_side() - 0.5));
 }
 
-SurfaceCount Solid::surface(const SnapshotSource& /*snapshots*/, const FacetSink& sink) const {
-  const FilledField filled(field_, foot());
+SurfaceCount Solid::surface(const SnapshotSource& snapshots, const FacetSink& sink) {
+  const SeenField seen = this->seen(snapshots);
+  const FilledField filled(seen, foot());
+  if (options_.memory_limit != 0 &&
+      program_bytes + seen.bytes() + leaf_set_bytes(filled) > options_.memory_limit) {
+    refuse_field(options_);
+  }
   LeafSet part = filled.inside();
   part.keep_part();
+  part = part.cropped();
   part.fill_cavities();
   SurfaceCount count{.leaves = part.count(), .facets = 0, .parts = part.count_parts()};
   const FacetSink counted = [&](std::span<const Facet> facets) {
@@ -171,14 +220,16 @@ SurfaceCount Solid::surface(const SnapshotSource& /*snapshots*/, const FacetSink
   return count;
 }
 
-SurfaceCount Solid::count(const SnapshotSource& snapshots) const {
+SurfaceCount Solid::count(const SnapshotSource& snapshots) {
   return surface(snapshots, [](std::span<const Facet>) {});
 }
 
 void Solid::preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const {
   const int level = std::min(Octree::level_of(field_.side(), leaf_size), field_.levels());
   const int finer = field_.levels() - level;
-  const FilledField filled(field_, foot());
+  SeenField seen(field_);
+  seen.add(field_);
+  const FilledField filled(seen, foot());
   LeafSet part = filled.inside();
   part.keep_part();
   Octree coarse(field_.side(), level);

@@ -28,6 +28,14 @@ void wait_for_signal() {
   ::sigwait(&signals, &signal);
 }
 
+bool wait_for_signal(std::chrono::microseconds most) {
+  const sigset_t signals = ending_signals();
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(most);
+  const timespec wait{.tv_sec = seconds.count(),
+                      .tv_nsec = std::chrono::nanoseconds(most - seconds).count()};
+  return ::sigtimedwait(&signals, nullptr, &wait) > 0;
+}
+
 Interruption::Interruption()
     : waiter_([this] {
         wait_for_signal();

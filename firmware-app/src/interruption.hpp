@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <stop_token>
 #include <thread>
 
@@ -11,6 +12,9 @@ void block_signals();
 
 /// Waits for SIGINT or SIGTERM, which are blocked.
 void wait_for_signal();
+
+/// The same, but no longer than `most`. @return whether one came
+bool wait_for_signal(std::chrono::microseconds most);
 
 /// Turns SIGINT and SIGTERM, which are blocked, into a stop request as long as it lives.
 class Interruption {

@@ -23,8 +23,7 @@ namespace fs = std::filesystem;
 
 struct Golden {
   std::string scan = {};
-  double leaf_size = 0.001;  // metres
-  std::optional<int> level = {};
+  ReconstructOptions options = {};
   std::uint64_t facets = 0;
   std::uint64_t checksum = 0;  // of the whole STL file
 };
@@ -48,10 +47,10 @@ TEST_P(GoldenScan, GivesTheSameFile) {
                                    return read_snapshot(folder, scan, scan.shots[i]);
                                  }};
   for (const int threads : {1, 2}) {
-    Reconstruction reconstruction({.leaf_size = golden.leaf_size,
-                                   .clip = scan.clip,
-                                   .level = golden.level,
-                                   .threads = threads});
+    ReconstructOptions options = golden.options;
+    options.clip = scan.clip;
+    options.threads = threads;
+    Reconstruction reconstruction(options);
     reconstruction.add(snapshots);
     const SurfaceCount count = reconstruction.count(snapshots);
     EXPECT_EQ(count.facets, golden.facets);
@@ -64,19 +63,39 @@ TEST_P(GoldenScan, GivesTheSameFile) {
   }
 }
 
+ReconstructOptions intersection(double leaf_size, std::optional<int> level = {}) {
+  return {.leaf_size = leaf_size, .level = level};
+}
+
+ReconstructOptions solid(double leaf_size, double max_error = ReconstructOptions().max_error) {
+  return {.method = Method::solid, .leaf_size = leaf_size, .max_error = max_error};
+}
+
+std::string name_of_golden(const testing::TestParamInfo<Golden>& named) {
+  const ReconstructOptions& options = named.param.options;
+  std::string name = named.param.scan + "_" + std::string(name_of(options.method)) + "_" +
+                     std::to_string(static_cast<int>(options.leaf_size * 1e6)) + "um";
+  if (options.level) {
+    name += "_level_" + std::to_string(*options.level);
+  }
+  return options.max_error == 0 ? name + "_whole" : name;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Golden, GoldenScan,
-    testing::Values(Golden{"figure_scan", 0.004, {}, 35444, 0x17bd0167601e9706U},
-                    Golden{"figure_scan", 0.002, {}, 135152, 0xffb242a7b612b7edU},
-                    Golden{"figure_scan", 0.001, 7, 8992, 0xf1a326bd52c41826U},
-                    Golden{"tower_scan", 0.002, {}, 87336, 0xb64d3c95e521210bU},
-                    Golden{"tower_scan", 0.001, {}, 348860, 0x343286fd1d4d3509U},
-                    Golden{"tower_scan", 0.0005, 8, 21608, 0x21cb0ba7ab681d39U}),
-    [](const testing::TestParamInfo<Golden>& named) {
-      const int leaf_um = static_cast<int>(named.param.leaf_size * 1e6);
-      return named.param.scan + "_" + std::to_string(leaf_um) + "um" +
-             (named.param.level ? "_level_" + std::to_string(*named.param.level) : "");
-    });
+    testing::Values(Golden{"figure_scan", intersection(0.004), 35444, 0x17bd0167601e9706U},
+                    Golden{"figure_scan", intersection(0.002), 135152, 0xffb242a7b612b7edU},
+                    Golden{"figure_scan", intersection(0.001, 7), 8992, 0xf1a326bd52c41826U},
+                    Golden{"tower_scan", intersection(0.002), 87336, 0xb64d3c95e521210bU},
+                    Golden{"tower_scan", intersection(0.001), 348860, 0x343286fd1d4d3509U},
+                    Golden{"tower_scan", intersection(0.0005, 8), 21608, 0x21cb0ba7ab681d39U},
+                    Golden{"figure_scan", solid(0.004), 5386, 0x273b884557db3eddU},
+                    Golden{"figure_scan", solid(0.002, 0), 26756, 0xcebc1e8023322ed1U},
+                    Golden{"figure_scan", solid(0.001), 33214, 0xf6965bcd9ece0703U},
+                    Golden{"tower_scan", solid(0.002), 7340, 0xbe5bd538bc82edc4U},
+                    Golden{"tower_scan", solid(0.001, 0), 59100, 0xbd83d4d972490c93U},
+                    Golden{"tower_scan", solid(0.001, 0.0002), 3764, 0xb6a1b96bd603291aU}),
+    name_of_golden);
 
 }  // namespace
 }  // namespace octurn

@@ -2,21 +2,21 @@
 
 #include <random>
 
-#include "octurn/distance_field.hpp"
+#include "octurn/seen_field.hpp"
 
 namespace octurn {
 
 /// A field of noise: any pattern of signs, distances from the least to the greatest, samples that
 /// are seen, free and unknown side by side.
-inline DistanceField random_field(std::uint32_t seed, double density) {
-  DistanceField field(1.0, 10, {.min = {-0.007, -0.007, 0.002}, .max = {0.007, 0.007, 0.02}},
-                      0.0035);
+inline SeenField random_field(std::uint32_t seed, double density) {
+  DistanceField field(
+      FieldShape(1.0, 10, {.min = {-0.007, -0.007, 0.002}, .max = {0.007, 0.007, 0.02}}, 0.0035));
   std::mt19937 random(seed);
   const auto chance = [&](double part) { return std::bernoulli_distribution(part)(random); };
   for (int z = 1; z + 1 < field.size().z; ++z) {
     for (int y = 1; y + 1 < field.size().y; ++y) {
       for (int x = 1; x + 1 < field.size().x; ++x) {
-        FieldBrick& brick = field.make({x, y, z});
+        FieldBrick& brick = *field.make({x, y, z});
         for (std::size_t i = 0; i < FieldBrick::samples; ++i) {
           const int most = chance(0.3) ? 3 : DistanceField::ticks;
           const int ticks = std::uniform_int_distribution(1, most)(random);
@@ -27,7 +27,9 @@ inline DistanceField random_field(std::uint32_t seed, double density) {
       }
     }
   }
-  return field;
+  SeenField seen(field);
+  seen.add(field);
+  return seen;
 }
 
 }  // namespace octurn

@@ -152,6 +152,26 @@ TEST(Solid, GivesTheSameBytesForAnyThreadsAndMemory) {
   }
 }
 
+TEST(Solid, GivesTheSameBytesInSlabs) {
+  const SnapshotSource all = rendered(block({0.06, 0.05, 0.06}), 4);
+  const std::vector<Facet> whole = part_of(options(0.0005), all);
+  std::size_t reads = 0;
+  const SnapshotSource counted{.count = all.count, .read = [&](std::size_t i) {
+                                 ++reads;
+                                 return all.read(i);
+                               }};
+  ReconstructOptions tight = options(0.0005);
+  tight.memory_limit = std::size_t{44} << 20U;
+  EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
+  EXPECT_GT(reads, all.count);
+
+  Solid solid(tight);
+  solid.add(counted);
+  const SurfaceCount first = solid.count(counted);
+  EXPECT_EQ(first.facets, whole.size());
+  EXPECT_EQ(solid.count(counted).facets, first.facets);
+}
+
 TEST(Solid, GivesTheSameBytesOneByOne) {
   const SnapshotSource snapshots = rendered(hollowed_block({0.08, 0.06, 0.04}, 0.025), 3);
   Solid solid(options());

@@ -8,8 +8,22 @@
 #include <vector>
 
 #include "octurn/facet.hpp"
+#include "octurn/marching_cubes.hpp"
 
 namespace octurn {
+
+/// All facets of the surface around a set.
+inline std::vector<Facet> surface_of(const LeafSet& set, const FilledField& filled) {
+  std::vector<MeshVertex> vertices;
+  std::vector<Facet> facets;
+  marching_cubes(set, filled, [&](const MeshPiece& piece) {
+    vertices.insert(vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const MeshTriangle& t : piece.triangles) {
+      facets.push_back(facet_of({vertices[t[0]], vertices[t[1]], vertices[t[2]]}));
+    }
+  });
+  return facets;
+}
 
 /// What a slicer would find in a surface, counted in the most obvious way.
 struct Topology {

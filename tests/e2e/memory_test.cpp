@@ -73,6 +73,19 @@ TEST(Memory, StaysBelowItsLimitWithTheSameBytes) {
   }
 }
 
+TEST(Memory, OfASolidStaysBelowItsLimitWithTheSameBytes) {
+  const TemporaryFolder folder;
+  write_ball_scan(folder.path(), 6);
+  const Outcome free = outcome_of(command(folder.path(), "0.5", {"--method", "solid"}));
+  ASSERT_EQ(free.status, 0) << free.errors;
+  const Outcome tight = outcome_of(command(
+      folder.path(), "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "44"}));
+  EXPECT_EQ(tight.status, 0) << tight.errors;
+  EXPECT_LT(tight.peak_bytes, 44 * mb);
+  EXPECT_GT(free.peak_bytes, 44 * mb);
+  EXPECT_EQ(tight.model, free.model);
+}
+
 TEST(Memory, IsSharedByTheThreads) {
   const TemporaryFolder folder;
   write_ball_scan(folder.path(), 6);
@@ -165,6 +178,15 @@ TEST_F(SharedBunny, StaysBelow64MbAtAnEighthOfAMillimetre) {
   EXPECT_EQ(fine.status, 0) << fine.errors;
   EXPECT_LT(fine.peak_bytes, 64 * mb);
   EXPECT_GT(fine.model.bytes(), 84 + 50 * std::uint64_t{100'000'000});
+}
+
+TEST_F(SharedBunny, AsASolidStaysBelow64MbAtHalfAMillimetreWithTheSameBytes) {
+  const Outcome free = outcome_of(command(scan_, "0.5", {"--method", "solid"}));
+  const Outcome tight = outcome_of(
+      command(scan_, "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "64"}));
+  EXPECT_EQ(tight.status, 0) << tight.errors;
+  EXPECT_LT(tight.peak_bytes, 64 * mb);
+  EXPECT_EQ(tight.model, free.model);
 }
 
 TEST_F(SharedBunny, StaysBelow24MbAtHalfAMillimetreWithTheSameBytes) {

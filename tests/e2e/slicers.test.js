@@ -1,13 +1,14 @@
-// What slicers say of a model made through the API, as it comes: with nothing mended.
+// What slicers say of models made through the API, as they come: with nothing mended.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
-import {writeFile} from 'node:fs/promises';
+import {readFile, writeFile} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
 import {setTimeout as wait} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
+import {curaSettings} from './cura_settings.js';
 import {startScanner} from './scanner.js';
 
 const run = promisify(execFile);
@@ -15,12 +16,12 @@ const everyEdgeMatched = /Total disconnected facets\s*:\s*0\s+0/;
 const mended = ['Degenerate facets', 'Edges fixed', 'Facets removed', 'Facets added', 'Facets reversed', 'Backwards edges', 'Normals fixed'];
 
 /** Scans through the API, and resolves to the model's file. */
-async function scan(scanner, snapshots) {
+async function scan(scanner, snapshots, method) {
   const api = new URL('/api/v1/', scanner.url);
   const started = await fetch(new URL('scans', api), {
     method: 'POST',
     headers: {'Content-Type': 'application/json'},
-    body: JSON.stringify({snapshots, filter: 'basic'}),
+    body: JSON.stringify({snapshots, method, filter: 'basic'}),
   });
   assert.equal(started.status, 202);
   const here = new URL(started.headers.get('Location'), scanner.url);
@@ -37,15 +38,49 @@ async function scan(scanner, snapshots) {
   return file;
 }
 
-for (const snapshots of [8, 36]) {
-  test(`admesh and prusa-slicer accept a model of ${snapshots} snapshots without repair`, async (t) => {
-    const file = await scan(await startScanner(t, {rig: ['--simulate', '--simulate-speed', '30']}), snapshots);
+/** Fails if admesh finds anything to mend, or prusa-slicer an edge without its other side. */
+async function expectNothingToMend(file) {
+  const admesh = (await run('admesh', [file])).stdout;
+  assert.match(admesh, everyEdgeMatched);
+  for (const what of mended) {
+    assert.match(admesh, new RegExp(`${what}\\s*:\\s*0\\b`), what);
+  }
+  assert.match((await run('prusa-slicer', ['--info', file])).stdout, /manifold = yes/);
+}
 
-    const admesh = (await run('admesh', [file])).stdout;
-    assert.match(admesh, everyEdgeMatched);
-    for (const what of mended) {
-      assert.match(admesh, new RegExp(`${what}\\s*:\\s*0\\b`), what);
-    }
-    assert.match((await run('prusa-slicer', ['--info', file])).stdout, /manifold = yes/);
+/** What a slicer run on a file said, and how many lines of G-code move while they print. */
+async function slice(program, args, gcode) {
+  const {stdout, stderr} = await run(program, args, {maxBuffer: 1 << 28});
+  const moves = (await readFile(gcode, 'utf8')).match(/^G1 .*X.*Y.*E/gm) ?? [];
+  return {said: stdout + stderr, moves: moves.length};
+}
+
+const simulated = {rig: ['--simulate', '--simulate-speed', '30']};
+
+for (const [method, snapshots] of [['intersection', 8], ['intersection', 36], ['solid', 8], ['solid', 36]]) {
+  test(`admesh and prusa-slicer accept a model by ${method} of ${snapshots} snapshots without repair`, async (t) => {
+    await expectNothingToMend(await scan(await startScanner(t, simulated), snapshots, method));
   });
 }
+
+test('prusa-slicer and CuraEngine slice a solid model without complaint', async (t) => {
+  const file = await scan(await startScanner(t, simulated), 8, 'solid');
+  const gcode = `${file}.gcode`;
+  const prusa = await slice('prusa-slicer',
+      ['--export-gcode', '--layer-height', '0.3', '--perimeters', '1', '--fill-density', '0', '-o', gcode, file], gcode);
+  assert.doesNotMatch(prusa.said, /repair|manifold|open edge|error/i);
+  assert.ok(prusa.moves > 10000, `${prusa.moves} moves`);
+
+  const cura = await slice('CuraEngine', ['slice', ...curaSettings(), '-o', gcode, '-l', file], gcode);
+  assert.doesNotMatch(cura.said, /\[ERROR\]|\[WARNING\] (?!Layer \d+ is empty| -s )/);
+  assert.ok(cura.moves > 10000, `${cura.moves} moves`);
+});
+
+test('CuraEngine complains of a model that lacks a triangle', async (t) => {
+  const file = await scan(await startScanner(t, simulated), 8, 'solid');
+  const stl = await readFile(file);
+  stl.writeUInt32LE(stl.readUInt32LE(80) - 1, 80);
+  await writeFile(file, stl.subarray(0, stl.length - 50));
+  const cura = await slice('CuraEngine', ['slice', ...curaSettings(), '-o', `${file}.gcode`, '-l', file], `${file}.gcode`);
+  assert.match(cura.said, /Mesh has disconnected faces/);
+});

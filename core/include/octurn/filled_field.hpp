@@ -2,22 +2,21 @@
 
 #include <vector>
 
-#include "octurn/distance_field.hpp"
 #include "octurn/leaf_set.hpp"
+#include "octurn/seen_field.hpp"
 
 namespace octurn {
 
 /// A distance field with a value everywhere: what no snapshot saw is filled in smoothly.
 ///
-/// A leaf is *seen* if it lies near a surface that enough was seen of, *free* if it was seen
-/// through, else *unknown*. The unknown takes a harmonic function between the others, on the
+/// Leaves that are neither seen nor free take a harmonic function between the others, on the
 /// field's cells. Below the foot each layer is as the foot's, and the model ends on the platform's
 /// plane.
 class FilledField {
  public:
   /// @param field  must outlive this
   /// @param foot   the lowest layer of leaves that counts; those below take its values
-  FilledField(const DistanceField& field, int foot);
+  FilledField(const SeenField& field, int foot);
 
   /// The box of leaves outside which there is nothing: from `low` up to but without `end`.
   const Cell& low() const { return low_; }
@@ -28,7 +27,7 @@ class FilledField {
 
   /// Half a leaf's side in ticks.
   float half_leaf() const {
-    return static_cast<float>(field_.leaf_side() / 2 / field_.truncation() * DistanceField::ticks);
+    return static_cast<float>(field_.leaf_side() / 2 / field_.truncation() * FieldShape::ticks);
   }
 
   struct Value {
@@ -55,7 +54,6 @@ class FilledField {
     }
   };
 
-  bool seen(const FieldBrick& brick, std::size_t sample, int free) const;
   void find_box();
   void classify();
   void classify(const Cell& cell, std::size_t index);
@@ -68,7 +66,7 @@ class FilledField {
       sum += distance;
     }
   };
-  Tally tally_of(const FieldBrick& brick, const Cell& position, const Cell& cell, int free) const;
+  Tally tally_of(const SeenBrick& brick, const Cell& position, const Cell& cell) const;
   static void solve(Grid& fine);
   static void relax(Grid& grid);
   static void relax(Grid& grid, int x, int y, int z);
@@ -78,7 +76,7 @@ class FilledField {
   std::vector<Side> sides_of_bricks() const;
   std::uint64_t inside(const Cell& brick, Side side, int y, int z) const;
 
-  const DistanceField& field_;
+  const SeenField& field_;
   int foot_;
   Cell low_ = {};
   Cell end_ = {};

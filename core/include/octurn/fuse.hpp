@@ -5,14 +5,14 @@
 
 namespace octurn {
 
-/// Fuses one snapshot into a signed distance field.
+/// Fuses one snapshot into the layers that a signed distance field holds.
 ///
 /// A sample within the truncation of a pixel's tangent plane takes its distance to it, by a
 /// weighted running mean (Curless and Levoy 1996, eq. 3-4); what lies in front of that is counted
 /// as seen through. Nodes of the octree are met with the least and greatest depth of the pixels
 /// they cover, so that only those near the surface are looked into.
 ///
-/// @throws OctreeFull  some of the snapshot is then fused
+/// @throws OctreeFull  if not even one layer fits; some of the snapshot is then fused
 void fuse(DistanceField& field, const Sighting& sighting);
 
 }  // namespace octurn

@@ -14,29 +14,16 @@ namespace octurn {
 /// Where the octree does not fit in the memory limit, it keeps as many of its lowest layers as do:
 /// a slab. The surface is then made slab by slab, and for each the snapshots are read again.
 /// Neither slabs nor threads change a byte of it.
+///
+/// What the members do, and throw, `Reconstruction` says; `count` is a moment's work if there is
+/// one slab.
 class Intersection {
  public:
-  /// @throws Error "bad-settings"  that says which option is out of its range
-  /// @throws Error "memory-limit"  that says what limit would do
   explicit Intersection(const ReconstructOptions& options);
-
-  /// Depth -> world points -> clip -> triangles -> octree.
-  /// @throws Error "memory-limit"  if not even the smallest slab fits
   void add(const Snapshot& snapshot);
-
-  /// The same for all of them, on as many threads as the options say. Ends early if stopped.
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {});
-
-  /// Octree -> isosurface, streamed. What `sink` throws ends it.
-  /// @param snapshots  those that were added, to be read again if there are several slabs
   SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink);
-
-  /// What `surface` would give, without making it: a moment's work if there is one slab.
   SurfaceCount count(const SnapshotSource& snapshots);
-
-  /// The surface of what was seen so far, on the first level whose nodes are at or below
-  /// `leaf_size` (metres), or on the finest above it that has no more than `most_facets`.
-  /// Of several slabs it shows the one at hand.
   void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:

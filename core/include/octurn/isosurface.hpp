@@ -11,12 +11,6 @@ namespace octurn {
 /// Takes a surface piece by piece, in order. The facets are gone after the call.
 using FacetSink = std::function<void(std::span<const Facet>)>;
 
-/// Layers of bricks, from `low` up to but without `end`, counted from the root's bottom.
-struct BrickLayers {
-  int low = 0;
-  int end = 0;
-};
-
 /// All layers of an octree.
 inline BrickLayers all_layers(const Octree& octree) {
   return {.low = 0, .end = octree.brick_layers()};

@@ -31,10 +31,15 @@ class LeafSet {
   }
 
   std::uint64_t count() const;
+  std::size_t bytes() const { return bits_.size() * sizeof bits_[0]; }
 
   /// Keeps the one part that stands on the platform: of those in the lowest layer of the box the
   /// largest, or the largest of all if none is. Leaves of a part meet in faces.
   void keep_part();
+
+  /// The same leaves in a smaller box, which leaves one leaf free, at least, around them in x and
+  /// y.
+  LeafSet cropped() const;
 
   /// How many parts there are.
   std::uint64_t count_parts() const;

@@ -26,6 +26,12 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
+/// Layers of bricks, from `low` up to but without `end`, counted from the lowest.
+struct BrickLayers {
+  int low = 0;
+  int end = 0;
+};
+
 /// Thrown when an octree would grow past its memory. It is then as it was, but for leaves of the
 /// same triangle.
 struct OctreeFull : std::exception {

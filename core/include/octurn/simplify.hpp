@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "octurn/isosurface.hpp"
@@ -13,8 +14,9 @@ namespace octurn {
 ///
 /// Edges are collapsed where the surface stays within an error of the planes that it came from
 /// (Garland and Heckbert 1997), the cheapest first, if the mesh stays manifold (the link condition,
-/// Dey et al. 1999) and no triangle turns over. That is done in a window that moves up: what lies
-/// well below its upper end is handed on, the rest waits for what comes.
+/// Dey et al. 1999), no triangle turns over, and the surface does not come to cut itself. That is
+/// done in a window that moves up: what lies well below its upper end is handed on, the rest waits
+/// for what comes.
 class Simplifier {
  public:
   /// @param max_error  millimetres, above 0
@@ -27,8 +29,6 @@ class Simplifier {
   void finish();
 
  private:
-  using Point = std::array<double, 3>;
-
   /// The sum of squared distances to planes, weighted by area, as a symmetric matrix.
   struct Quadric {
     std::array<double, 10> terms = {};
@@ -51,6 +51,7 @@ class Simplifier {
 
   void add_quadrics(std::size_t first_triangle);
   void simplify();
+  void collapse_edges();
   void index_corners();
   void list_collapses(double limit);
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
@@ -70,6 +71,9 @@ class Simplifier {
   FacetSink sink_;
   std::vector<Vertex> vertices_ = {};
   std::vector<MeshTriangle> triangles_ = {};
+  std::size_t handed_on_ = 0;                            // of them; they are only in the way
+  float bottom_ = std::numeric_limits<float>::lowest();  // of what the others may become
+  float top_ = std::numeric_limits<float>::max();
   std::size_t fresh_ = 0;                  // triangles since the last pass
   std::uint32_t first_name_ = 0;           // of the vertices of the last two pieces
   std::vector<std::uint32_t> names_ = {};  // where those are in the window

@@ -6,6 +6,7 @@
 #include "octurn/isosurface.hpp"
 #include "octurn/leaf_set.hpp"
 #include "octurn/reconstruct_options.hpp"
+#include "octurn/seen_field.hpp"
 
 namespace octurn {
 
@@ -13,35 +14,28 @@ namespace octurn {
 /// them.
 ///
 /// Each snapshot is conditioned (`Sighting`) and fused (`fuse`) in a field of distances, in the
-/// order of the scan. Then what nobody saw is filled in (`FilledField`), the part that stands on
-/// the platform is kept without its cavities (`LeafSet`), and its surface is made
+/// order of the scan, and what that says of each leaf is kept (`SeenField`). Then what nobody saw
+/// is filled in (`FilledField`), the part that stands on the platform is kept without its cavities
+/// (`LeafSet`), and its surface is made
 /// (`marching_cubes`) with no more triangles than it needs (`Simplifier`), all of it streamed.
-/// Threads do not change a byte of it.
 ///
-/// A facet's attributes are `filled_in` where nobody saw the surface.
+/// Where the field does not fit in the memory limit, it holds as many of its lowest layers as do: a
+/// slab. For the others the snapshots are read again. Neither slabs nor threads change a byte of
+/// the surface.
+///
+/// A facet's attributes are `filled_in` where nobody saw the surface. What the members do, and
+/// throw, `Reconstruction` says; `count` is as much work as `surface`.
 class Solid {
  public:
-  /// @throws Error "bad-settings"  that says which option is out of its range
-  /// @throws Error "memory-limit"  that says what limit would do
   explicit Solid(const ReconstructOptions& options);
-
-  /// @throws Error "memory-limit"  if what was seen does not fit
   void add(const Snapshot& snapshot);
-
-  /// The same for all of them; several threads condition them. Ends early if stopped.
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {});
-
-  /// The surface, streamed. What `sink` throws ends it. The snapshots are not read again.
-  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) const;
-
-  /// What `surface` would give: as much work, but for handing it on.
-  SurfaceCount count(const SnapshotSource& snapshots) const;
-
-  /// The part made of what was seen so far, on a level whose nodes are at or below `leaf_size`,
-  /// metres.
+  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink);
+  SurfaceCount count(const SnapshotSource& snapshots);
   void preview(double leaf_size, std::uint64_t most_facets, const FacetSink& sink) const;
 
  private:
+  SeenField seen(const SnapshotSource& snapshots);
   int foot() const;
 
   ReconstructOptions options_;

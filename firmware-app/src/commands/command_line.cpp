@@ -73,8 +73,7 @@ void add_method_options(CLI::App& command, Arguments& arguments, const std::stri
   command
       .add_option("--max-error-mm", arguments.max_error_mm,
                   "solid: what fewer triangles may cost (0.04); 0 keeps them all")
-      ->type_name("MM")
-      ->check(CLI::NonNegativeNumber);
+      ->type_name("MM");
 }
 
 void add_serve(CLI::App& program, ServeArguments& arguments) {

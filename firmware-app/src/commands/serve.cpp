@@ -7,6 +7,7 @@
 #include "log.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
+#include "service_manager.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -18,6 +19,25 @@ std::string page_address(const HttpOptions& options, int port) {
   const bool v6 = options.address.find(':') != std::string::npos;
   const std::string host = any ? "localhost" : v6 ? "[" + options.address + "]" : options.address;
   return "http://" + host + ":" + std::to_string(port) + "/";
+}
+
+/// Until SIGINT or SIGTERM. As long as the daemon can answer what the page asks all the time, which
+/// takes all its locks, systemd is told that it lives.
+void wait(Api& api) {
+  const auto interval = watchdog_interval();
+  if (!interval) {
+    wait_for_signal();
+    return;
+  }
+  while (!wait_for_signal(*interval / 3)) {
+    const Response status =
+        api.answer({.path = "/api/v1/status", .headers = {{"Host", "localhost"}}});
+    if (status.status == 200) {
+      notify_alive();
+    } else {
+      log::error("octurn", "the status has failed: " + std::to_string(status.status));
+    }
+  }
 }
 
 }  // namespace
@@ -39,8 +59,10 @@ void serve(const ServeArguments& arguments) {
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;
   log::info("octurn", "version " + std::string(version()) + " ready");
-  wait_for_signal();
+  notify_ready("serving the page at port " + std::to_string(server.port()));
+  wait(api);
   log::info("octurn", "ending");
+  notify_stopping();
   scanner.request_stop();  // so that no request waits for it while the server ends
 }
 

@@ -1,0 +1,103 @@
+#include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octurn/fuse.hpp"
+#include "octurn/solid.hpp"
+#include "support/ball_scan.hpp"
+
+// The solid method, with eight snapshots of a ball at the size of a Kinect v1's image. The argument
+// is the leaf size in micrometres.
+
+namespace octurn {
+namespace {
+
+constexpr std::size_t shots = 8;
+
+const std::vector<Snapshot>& snapshots() {
+  static const std::vector<Snapshot> all = [] {
+    std::vector<Snapshot> made;
+    for (std::size_t i = 0; i < shots; ++i) {
+      made.push_back(ball_snapshot(ball_angle(i, shots), Intrinsics{}));
+    }
+    return made;
+  }();
+  return all;
+}
+
+SnapshotSource source() {
+  return {.count = shots, .read = [](std::size_t i) { return snapshots()[i]; }};
+}
+
+ReconstructOptions options_for(const benchmark::State& state) {
+  return {.method = Method::solid,
+          .leaf_size = static_cast<double>(state.range(0)) / 1e6,
+          .clip = ball_clip};
+}
+
+void condition_a_snapshot(benchmark::State& state) {
+  for (auto unused : state) {
+    const Sighting sighting(snapshots().front(), ball_clip);
+    benchmark::DoNotOptimize(sighting.at(320, 240));
+  }
+}
+BENCHMARK(condition_a_snapshot)->Unit(benchmark::kMillisecond);
+
+void fuse_a_snapshot(benchmark::State& state) {
+  const Sighting sighting(snapshots().front(), ball_clip);
+  const double leaf_size = options_for(state).leaf_size;
+  const int levels = Octree::level_of(1.0, leaf_size);
+  // A field that has seen it already: no brick is new.
+  DistanceField field(FieldShape(1.0, levels, ball_clip, 0.0035));
+  fuse(field, sighting);
+  for (auto unused : state) {
+    fuse(field, sighting);
+    benchmark::DoNotOptimize(field.bytes());
+  }
+}
+BENCHMARK(fuse_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
+
+void make_the_surface(benchmark::State& state, double max_error) {
+  ReconstructOptions options = options_for(state);
+  options.max_error = max_error;
+  Solid solid(options);
+  solid.add(source());
+  std::uint64_t facets = 0;
+  for (auto unused : state) {
+    facets += solid.surface(source(), [](std::span<const Facet>) {}).facets;
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(facets));
+}
+void make_the_whole_surface(benchmark::State& state) { make_the_surface(state, 0); }
+void make_a_surface_of_fewer_triangles(benchmark::State& state) {
+  make_the_surface(state, ReconstructOptions().max_error);
+}
+BENCHMARK(make_the_whole_surface)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
+BENCHMARK(make_a_surface_of_fewer_triangles)
+    ->Arg(2000)
+    ->Arg(1000)
+    ->Arg(500)
+    ->Unit(benchmark::kMillisecond);
+
+/// From snapshots in memory to facets that nobody takes. The second argument is the threads.
+void make_the_whole_solid(benchmark::State& state) {
+  std::uint64_t facets = 0;
+  for (auto unused : state) {
+    ReconstructOptions options = options_for(state);
+    options.threads = static_cast<int>(state.range(1));
+    Solid solid(options);
+    solid.add(source());
+    facets += solid.surface(source(), [](std::span<const Facet>) {}).facets;
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(facets));
+}
+BENCHMARK(make_the_whole_solid)
+    ->ArgsProduct({{2000, 1000, 500}, {1, 2}})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,143 @@
+// What the solid method makes of scans that went badly: always one closed part, whose seen surface
+// is still near the true one. Prints what it measures.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/surface.hpp"
+#include "octurn/mesh_check.hpp"
+#include "octurn/units.hpp"
+#include "solid/simulated_scan.hpp"
+
+namespace octurn {
+namespace {
+
+/// How far the seen surface is from the true one, each facet by its area, millimetres.
+struct Errors {
+  double mean = 0;
+  double p95 = 0;
+};
+
+Errors errors_of(const std::vector<Facet>& facets, const Shape& truth) {
+  struct Part {
+    double error = 0;
+    double area = 0;
+  };
+  std::vector<Part> parts;
+  double whole = 0;
+  Errors errors;
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    const Eigen::Vector3d a = Eigen::Vector3f(corners[0].data()).cast<double>();
+    const Eigen::Vector3d b = Eigen::Vector3f(corners[1].data()).cast<double>();
+    const Eigen::Vector3d c = Eigen::Vector3f(corners[2].data()).cast<double>();
+    const Eigen::Vector3d middle = (a + b + c) / 3;
+    if (facet.attributes == filled_in || middle.z() < 6) {  // the clip box begins at 5
+      continue;
+    }
+    const Part part{.error = std::abs(mm_from_metres(truth(middle / 1000))),
+                    .area = (b - a).cross(c - a).norm() / 2};
+    parts.push_back(part);
+    whole += part.area;
+    errors.mean += part.error * part.area;
+  }
+  errors.mean /= whole;
+  std::ranges::sort(parts, {}, &Part::error);
+  double below = 0;
+  for (const Part& part : parts) {
+    below += part.area;
+    if (below >= 0.95 * whole) {
+      errors.p95 = part.error;
+      break;
+    }
+  }
+  return errors;
+}
+
+/// Fails unless the model is one closed part within these errors: half again what was measured.
+void expect_sound(const std::string& what, const std::vector<Snapshot>& snapshots,
+                  const SimulatedObject& object, const Errors& most) {
+  const SolidModel model = solid_of(scan_options(), snapshots);
+  ASSERT_FALSE(model.facets.empty());
+  EXPECT_EQ(model.count.parts, 1U);
+  EXPECT_TRUE(topology_of(model.facets).manifold);
+  MeshCheck check;
+  check.add(model.facets);
+  const Errors errors = errors_of(model.facets, object.distance);
+  EXPECT_LT(errors.mean, most.mean);
+  EXPECT_LT(errors.p95, most.p95);
+  std::printf("| %s | %.2f | %.2f | %.0f %% | %.1f |\n", what.c_str(), errors.mean, errors.p95,
+              100 * check.filled_share(), check.volume_mm3() / 1000);
+}
+
+SimulatedObject hollow() {
+  const Eigen::Vector3d size(0.12, 0.1, 0.05);
+  return standing(hollowed_block(size, 0.035), size);
+}
+
+TEST(Robustness, OfAnOrdinaryScan) {
+  expect_sound("robot", simulated_scan(robot()), robot(), {0.36, 1.0});
+  expect_sound("hollowed block", simulated_scan(hollow()), hollow(), {0.3, 0.7});
+}
+
+TEST(Robustness, ToTwiceTheNoise) {
+  const SimulatedTurn noisy{.noise = 2};
+  expect_sound("robot, noise doubled", simulated_scan(robot(), noisy), robot(), {0.7, 1.9});
+  expect_sound("hollowed block, noise doubled", simulated_scan(hollow(), noisy), hollow(),
+               {0.55, 1.4});
+}
+
+TEST(Robustness, ToMissingSnapshots) {
+  const std::vector<Snapshot> all = simulated_scan(robot());
+  expect_sound("robot, every other snapshot missing", {all[0], all[2], all[4], all[6]}, robot(),
+               {0.45, 1.3});
+  expect_sound("robot, half the turn missing", {all[0], all[1], all[2], all[3]}, robot(),
+               {0.45, 1.2});
+}
+
+TEST(Robustness, ToHolesInTheDepth) {
+  std::vector<Snapshot> snapshots = simulated_scan(robot());
+  std::mt19937 random(1);
+  const auto number = [&](int end) {
+    return static_cast<int>(random() % static_cast<unsigned>(end));
+  };
+  for (Snapshot& snapshot : snapshots) {
+    for (int hole = 0; hole < 200; ++hole) {  // of 3 to 22 pixels: a third of the image
+      const int left = number(620);
+      const int top = number(460);
+      const int width = 3 + number(20);
+      const int height = 3 + number(20);
+      for (int v = top; v < std::min(top + height, 480); ++v) {
+        for (int u = left; u < std::min(left + width, 640); ++u) {
+          snapshot.frame.depth[static_cast<std::size_t>(v * 640 + u)] = 0;
+        }
+      }
+    }
+  }
+  expect_sound("robot, holes in the depth", snapshots, robot(), {0.4, 1.0});
+}
+
+TEST(Robustness, ToAnObjectOffCentre) {
+  const SimulatedObject object = standing_block({0.05, 0.04, 0.06}, {0.09, 0.06, 0});
+  expect_sound("block, 11 cm off the axis", simulated_scan(object), object, {0.3, 0.9});
+}
+
+TEST(Robustness, ToAnObjectTallerThanTheView) {
+  const SimulatedObject object = standing_block({0.05, 0.04, 0.42});
+  expect_sound("column of 42 cm", simulated_scan(object), object, {0.3, 0.7});
+}
+
+TEST(Robustness, ToAnEmptyPlatform) {
+  // An object that is too low to count: what is left is the platform, its edge and the table.
+  const SimulatedObject object = standing_block({0.004, 0.004, 0.0005});
+  EXPECT_TRUE(solid_of(scan_options(), simulated_scan(object)).facets.empty());
+  EXPECT_TRUE(solid_of(scan_options(), simulated_scan(object, {.noise = 2})).facets.empty());
+}
+
+}  // namespace
+}  // namespace octurn

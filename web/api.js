@@ -25,7 +25,7 @@
  * @typedef {Object} Scan
  * @property {string} id
  * @property {string} name
- * @property {'running' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
+ * @property {'running' | 'paused' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
  * @property {'starting' | 'turning' | 'capturing' | 'building' | 'done'} phase
  * @property {string} created
  * @property {number} snapshots_done
@@ -33,7 +33,8 @@
  * @property {number} seconds_elapsed
  * @property {number | null} seconds_left
  * @property {Settings} settings
- * @property {{code: string, detail: string, hint: string} | null} error
+ * @property {number} late_pulses  of the motor
+ * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
  * @property {Model | null} model
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
@@ -163,6 +164,9 @@ export const start = (settings) => json('scans', sending('POST', settings));
 
 /** @param {string} id @returns {Promise<Scan>} */
 export const cancel = (id) => json(`${scan(id)}/cancel`, sending('POST'));
+
+/** @param {string} id  of a scan that was paused or interrupted @returns {Promise<Scan>} */
+export const resume = (id) => json(`${scan(id)}/resume`, sending('POST'));
 
 /** @param {string} id @param {string} name @returns {Promise<Scan>} */
 export const rename = (id, name) => json(scan(id), sending('PATCH', {name}));

@@ -58,6 +58,16 @@ const cancel = () => act('The scan was not cancelled', async () => {
   return (now) => now;
 });
 
+const resume = () => act('The scan was not resumed', async () => {
+  const scan = await api.resume(/** @type {string} */ (state.selected));
+  return (now) => states.withStarted(now, scan);
+});
+
+const end = () => act('The scan was not ended', async () => {
+  const scan = await api.cancel(/** @type {string} */ (state.selected));
+  return (now) => states.withScan(now, scan);
+});
+
 /** @param {string | null} id */
 async function rename(id) {
   const scan = states.scanOf(state, id);
@@ -124,6 +134,8 @@ function listen() {
     start();
   });
   click('cancel', cancel);
+  click('resume', resume);
+  click('end', end);
   click('retry', () => wake());
   click('dismiss', () => change(states.withProblem(state, null)));
   click('show-model', () => change(states.withStage(state, 'model')));

@@ -15,6 +15,7 @@ const filters = {'basic': 'unfiltered', 'average': 'average', 'average-discard':
 /** @type {Record<Scan['state'], {tone: Tone, text: string}>} */
 const badges = {
   running: {tone: 'busy', text: 'Scanning'},
+  paused: {tone: 'warn', text: 'Paused'},
   finished: {tone: 'good', text: 'Finished'},
   cancelled: {tone: 'idle', text: 'Cancelled'},
   failed: {tone: 'bad', text: 'Failed'},
@@ -30,6 +31,9 @@ const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
 /** @param {Scan} scan */
 function phaseText(scan) {
   const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
+  if (scan.error) {
+    return `Trying ${stop} again`;
+  }
   switch (scan.phase) {
     case 'starting': return 'Getting ready';
     case 'turning': return `Turning to ${stop}`;
@@ -59,6 +63,7 @@ const progressOf = (scan) => ({
   id: scan.id,
   phase: scan.phase,
   text: phaseText(scan),
+  trouble: format.sentence(scan.error?.detail ?? ''),
   percent: percent(scan),
   done: scan.snapshots_done,
   total: scan.snapshots_total,
@@ -72,6 +77,8 @@ function troubleOf(scan) {
   switch (scan.state) {
     case 'cancelled':
       return {...said, tone: 'idle', title: 'Scan cancelled', detail: said.detail || 'It was stopped before the turn was complete.'};
+    case 'paused':
+      return {...said, tone: 'warn', title: 'Scan paused'};
     case 'interrupted':
       return {...said, tone: 'warn', title: 'Scan interrupted'};
     case 'failed':
@@ -89,6 +96,7 @@ function factsOf(scan) {
   const capture = [
     {label: 'Snapshots', text: `${taken(scan)}, ${filters[settings.filter]}${pictures}`},
     {label: 'Taken', text: `${format.when(scan.created)}${took}`},
+    ...(scan.late_pulses > 0 ? [{label: 'Motor', text: `${format.number(scan.late_pulses)} pulses late, so it turned more slowly`}] : []),
   ];
   if (!model) {
     return capture;
@@ -105,6 +113,19 @@ function factsOf(scan) {
   ];
 }
 
+/**
+ * What can be downloaded: the model, or, of a scan that has ended without one, that of the snapshots it has.
+ * @param {Scan} scan
+ */
+function downloadOf({id, state, model, error, settings, ...scan}) {
+  if (model) {
+    return {url: model.url, about: format.bytes(model.bytes)};
+  }
+  const hasEnded = state === 'cancelled' || state === 'failed';
+  return hasEnded && scan.snapshots_done > 0 && error?.code !== 'model-empty' ?
+    {url: `/api/v1/scans/${id}/Scan.stl?leaf_size_mm=${settings.leaf_size_mm}`, about: `of ${scan.snapshots_done} ${scan.snapshots_done === 1 ? 'snapshot' : 'snapshots'}`} : null;
+}
+
 /** @param {Scan} scan */
 const detailsOf = (scan) => ({
   id: scan.id,
@@ -112,7 +133,8 @@ const detailsOf = (scan) => ({
   trouble: troubleOf(scan),
   size: scan.model ? format.size(scan.model.size_mm) : '',
   facts: factsOf(scan),
-  download: scan.model && {url: scan.model.url, bytes: format.bytes(scan.model.bytes)},
+  canResume: scan.state === 'paused' || scan.state === 'interrupted',
+  download: downloadOf(scan),
 });
 
 /** @param {State} state */

@@ -75,7 +75,7 @@ export function withScans(state, scans) {
 /** @param {State} state @param {Scan} scan @returns {State} */
 export const withScan = (state, scan) => ({...state, scans: merged(state.scans, scan)});
 
-/** @param {State} state @param {Scan} scan  just started from here @returns {State} */
+/** @param {State} state @param {Scan} scan  just started or resumed from here @returns {State} */
 export const withStarted = (state, scan) => withSelected(
     state.status ? withStatus(state, {...state.status, scan}) : withScan(state, scan), null);
 

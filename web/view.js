@@ -55,6 +55,8 @@ function showProgress(progress) {
   setText(element('dial-total'), `of ${total}`);
   setText(element('phase'), progress.text);
   setText(element('left'), progress.left);
+  show(element('trying'), progress.trouble !== '');
+  setText(part(element('trying'), 'p'), progress.trouble);
   for (const {name, state} of progress.steps) {
     const step = part(element('steps'), `[data-step=${name}]`);
     step.dataset.state = state;
@@ -63,7 +65,7 @@ function showProgress(progress) {
 }
 
 /** @param {NonNullable<Screen['details']>} details */
-function showDetails({name, trouble, size, facts, download}) {
+function showDetails({name, trouble, size, facts, canResume, download}) {
   setText(element('details-name'), name);
   show(element('trouble'), trouble !== null);
   if (trouble) {
@@ -72,6 +74,7 @@ function showDetails({name, trouble, size, facts, download}) {
     setText(element('trouble-detail'), trouble.detail);
     setText(element('trouble-hint'), trouble.hint);
   }
+  show(element('resumable'), canResume);
   show(element('size'), size !== '');
   setText(element('size'), size);
   list(element('facts'), facts, ({label}) => label, 'fact', (item, {label, ...value}) => {
@@ -81,7 +84,7 @@ function showDetails({name, trouble, size, facts, download}) {
   show(element('download'), download !== null);
   if (download) {
     element('download').href = download.url;
-    setText(element('download-bytes'), download.bytes);
+    setText(element('download-about'), download.about);
   }
 }
 
@@ -141,7 +144,7 @@ export function render(screen) {
   }
   showPanel(screen.panel);
   showRows(screen);
-  for (const id of ['start', 'cancel']) {
+  for (const id of ['start', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
     element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled it keeps the focus
   }

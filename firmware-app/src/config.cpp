@@ -71,8 +71,12 @@ Config read_config(const std::filesystem::path& file) {
   }
 }
 
-Config read_config_if_there(const std::filesystem::path& file) {
-  return std::filesystem::exists(file) ? read_config(file) : defaults();
+Config config_of(const std::optional<std::filesystem::path>& file) {
+  if (file) {
+    return read_config(*file);
+  }
+  return std::filesystem::exists(default_config_file) ? read_config(default_config_file)
+                                                      : defaults();
 }
 
 }  // namespace octurn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 ///                            that is none
 Config read_config(const std::filesystem::path& file);
 
-/// The same, but with the defaults if there is no such file.
-Config read_config_if_there(const std::filesystem::path& file);
+/// The configuration in the file that the command line names, or in the default one if that is
+/// there, or the defaults.
+Config config_of(const std::optional<std::filesystem::path>& file);
 
 }  // namespace octurn

@@ -67,8 +67,7 @@ TEST(Config, RefusesWhatIsNoJson) {
 
 TEST(Config, NeedNotExistUnlessItIsNamed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(read_config_if_there(folder.path() / "none.json").http.port, 8080);
-  EXPECT_EQ(code_thrown_by([&] { read_config(folder.path() / "none.json"); }), "bad-config");
+  EXPECT_EQ(code_thrown_by([&] { config_of(folder.path() / "none.json"); }), "bad-config");
 }
 
 }  // namespace

@@ -38,12 +38,33 @@ TEST(Plan, BeginsAtTheNextWholeTurnSoThatThePlatformTurnsOneWay) {
   EXPECT_EQ(stop_positions(-100, 800, 2), (std::vector<int>{0, 400}));
 }
 
+TEST(Plan, GoesOnAtTheNextStopWhereverThePlatformStands) {
+  const std::vector<int> last_two{400, 600};
+  for (const int position : {201, 310, 400}) {
+    EXPECT_EQ(stop_positions(position, 800, 4, 2), last_two) << position;
+  }
+  EXPECT_EQ(stop_positions(401, 800, 4, 2), (std::vector<int>{1200, 1400}));
+  EXPECT_EQ(stop_positions(-400, 800, 4, 2), (std::vector<int>{-400, -200}));
+  EXPECT_EQ(stop_positions(0, 800, 4, 3), (std::vector<int>{600}));
+  EXPECT_TRUE(stop_positions(0, 800, 4, 4).empty());
+}
+
 TEST(Plan, TellsTheAngleOfAPosition) {
   EXPECT_EQ(angle_deg_at(0, 800), 0.0);
   EXPECT_EQ(angle_deg_at(200, 800), 90.0);
   EXPECT_EQ(angle_deg_at(267, 800), 120.15);
   EXPECT_EQ(angle_deg_at(1000, 800), 90.0);
   EXPECT_EQ(angle_deg_at(-200, 800), 270.0);
+}
+
+TEST(Plan, FindsThePositionOfEveryAngleAgain) {
+  for (const int steps : {200, 800, 3200, 799, 57600}) {
+    for (int position = 0; position < steps; ++position) {
+      ASSERT_EQ(position_at(angle_deg_at(position, steps), steps), position) << steps;
+    }
+  }
+  EXPECT_EQ(position_at(-90, 800), 600);
+  EXPECT_EQ(position_at(450, 800), 200);
 }
 
 }  // namespace

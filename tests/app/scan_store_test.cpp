@@ -200,6 +200,23 @@ TEST(ScanStore, TouchesNothingThatIsNoScan) {
   EXPECT_TRUE(fs::exists(folder.path() / "secret" / "job.json"));
 }
 
+TEST(ScanStore, RemembersWhereThePlatformStands) {
+  const TemporaryFolder folder;
+  leave_behind(folder.path(), [](const ScanStore& store) {
+    EXPECT_EQ(store.platform_angle_deg(), 0);
+    store.save_platform_angle_deg(120.15);
+  });
+  EXPECT_EQ(ScanStore(folder.path()).platform_angle_deg(), 120.15);
+}
+
+TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {
+  const TemporaryFolder folder;
+  for (const char* const text : {"", "{", "[]", "{}", R"({"angle_deg": "far"})"}) {
+    put(folder.path() / "platform.json", text);
+    EXPECT_EQ(ScanStore(folder.path()).platform_angle_deg(), 0) << text;
+  }
+}
+
 TEST(ScanStore, BelongsToOneProcessAtATime) {
   const TemporaryFolder folder;
   const ScanStore store(folder.path());

@@ -94,6 +94,13 @@ TEST_F(StepperTest, MakesATurnOfExactly800Steps) {
   EXPECT_EQ(stepper.position(), 1600);
 }
 
+TEST_F(StepperTest, GoesOnFromWhereThePlatformStands) {
+  Stepper stepper(fast, recorder(), 600);
+  EXPECT_EQ(stepper.position(), 600);
+  EXPECT_TRUE(stepper.move_to(603, {}));
+  EXPECT_EQ(recording_.changes(), "eDSsSsSs");
+}
+
 TEST_F(StepperTest, NeverDoesAnythingByItself) {
   {
     Stepper stepper(fast, recorder());
@@ -226,6 +233,7 @@ TEST_F(StepperTest, CountsLatePulses) {
   });
   stepper.move_to(10, {});
   EXPECT_EQ(stepper.late().count, 10);
+  EXPECT_EQ(stepper.late_pulses(), 10);
   EXPECT_GE(stepper.late().longest, 2ms);
 }
 

@@ -39,6 +39,12 @@ test('a cancel has an empty body', async (t) => {
   assert.equal(`${requests[0].method} ${requests[0].path} ${requests[0].body}`, 'POST /api/v1/scans/one/cancel {}');
 });
 
+test('a scan is resumed by its name', async (t) => {
+  const requests = answering(t, json({id: 'one'}, 202));
+  assert.deepEqual(await api.resume('one'), {id: 'one'});
+  assert.equal(`${requests[0].method} ${requests[0].path}`, 'POST /api/v1/scans/one/resume');
+});
+
 test('a problem arrives in the words of the scanner', async (t) => {
   answering(t, json({title: 'Busy', code: 'busy', detail: 'a scan is running', hint: 'Wait.'}, 409, 'application/problem+json'));
   await assert.rejects(api.start({}), {name: 'Problem', code: 'busy', title: 'Busy', detail: 'a scan is running', hint: 'Wait.'});

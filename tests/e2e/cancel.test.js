@@ -1,9 +1,10 @@
 import assert from 'node:assert/strict';
-import {readdir} from 'node:fs/promises';
+import {readFile, readdir} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage} from './browser.js';
+import {measure} from './mesh_file.js';
 import {ask, lifelike, scanFolders, startScanner} from './scanner.js';
 
 test('a scan cancelled half way ends at once, and keeps its snapshots', async (t) => {
@@ -22,7 +23,8 @@ test('a scan cancelled half way ends at once, and keeps its snapshots', async (t
   const [folder] = await scanFolders(scanner);
   assert.equal((await readdir(join(folder, 'snapshots'))).length, kept);
   assert.equal((await ask(scanner, 'status')).scan, null);
-  assert.equal(await page.getByRole('link', {name: 'Download STL'}).count(), 0);
+  const [arrived] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: `Download STL of ${kept} snapshots`}).click()]);
+  assert.ok(measure(await readFile(await arrived.path())).triangles > 1000);
 
   await page.getByRole('link', {name: 'New scan'}).click();
   assert.ok(await page.getByRole('button', {name: 'Start scan'}).isEnabled());

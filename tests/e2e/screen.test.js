@@ -53,7 +53,7 @@ test('a finished scan shows its size, its facts and its download', () => {
   assert.equal(facts.Volume, '97.1 cm³');
   assert.equal(facts.Watertight, 'Yes, ready to slice');
   assert.equal(facts.Snapshots, '36 of 36, average of 10');
-  assert.deepEqual(details.download, {url: finished.model.url, bytes: '51 MB'});
+  assert.deepEqual(details.download, {url: finished.model.url, about: '51 MB'});
   assert.equal(stage.shows, 'model');
   assert.equal(title, 'Done · Octurn');
 });
@@ -70,7 +70,8 @@ test('a scan without a model says why, and what of it is kept', () => {
   const failed = {...running, id: 'bad', state: 'failed', error};
   const {details, rows, stage} = screenOf(looking(failed));
   assert.deepEqual(details.trouble, {tone: 'bad', title: 'Scan failed', detail: 'No frame for 2000 ms.', hint: 'Check the cable.'});
-  assert.equal(details.download, null);
+  assert.deepEqual(details.download, {url: '/api/v1/scans/bad/Scan.stl?leaf_size_mm=1', about: 'of 9 snapshots'});
+  assert.equal(details.canResume, false);
   assert.equal(rows[0].about, '9 of 36 snapshots kept');
   assert.equal(stage.shows, 'camera');
 });
@@ -92,4 +93,41 @@ test('progress is announced four times a turn, not at each stop', () => {
   const said = Array.from({length: 37}, (_, done) => screenOf(scanning({snapshots_done: done})).announcement);
   assert.equal(new Set(said).size, 5);
   assert.equal(said[9], '25 percent of the snapshots taken.');
+});
+
+test('a paused scan says why, and can be resumed or ended', () => {
+  const error = {code: 'sensor-lost', detail: 'the Kinect is gone', hint: 'Plug it in. Then resume the scan.'};
+  const {details, rows, title, announcement, panel} = screenOf(looking({...running, id: 'wait', state: 'paused', phase: 'done', error}));
+  assert.deepEqual(details.trouble, {tone: 'warn', title: 'Scan paused', detail: 'The Kinect is gone.', hint: 'Plug it in. Then resume the scan.'});
+  assert.equal(details.canResume, true);
+  assert.equal(details.download, null);
+  assert.deepEqual(rows[0].badge, {tone: 'warn', text: 'Paused'});
+  assert.equal(rows[0].isRunning, false);
+  assert.deepEqual({title, announcement, panel}, {title: 'Paused · Octurn', announcement: 'Scan paused.', panel: 'details'});
+});
+
+test('an interrupted scan can be resumed, a finished, failed or cancelled one cannot', () => {
+  const can = ['interrupted', 'finished', 'failed', 'cancelled'].map((state) => screenOf(looking({...running, state})).details.canResume);
+  assert.deepEqual(can, [true, false, false, false]);
+});
+
+test('a scan that ended without a model still gives that of its snapshots, if it has any to make one of', () => {
+  const download = (changes) => screenOf(looking({...running, id: 'end', state: 'cancelled', ...changes})).details.download;
+  assert.equal(download({}).about, 'of 9 snapshots');
+  assert.equal(download({snapshots_done: 0}), null);
+  assert.equal(download({state: 'failed', error: {code: 'model-empty', detail: '', hint: ''}}), null);
+});
+
+test('while a device is tried again the progress says which, and at what stop', () => {
+  const error = {code: 'sensor-silent', detail: 'no frame for 2000 ms', hint: ''};
+  const {progress} = screenOf(scanning({error}));
+  assert.equal(progress.text, 'Trying stop 10 of 36 again');
+  assert.equal(progress.trouble, 'No frame for 2000 ms.');
+  assert.equal(screenOf(scanning({})).progress.trouble, '');
+});
+
+test('late pulses of the motor are told, if there were any', () => {
+  const motor = (late_pulses) => screenOf(looking({...finished, late_pulses})).details.facts.find(({label}) => label === 'Motor');
+  assert.equal(motor(0), undefined);
+  assert.match(motor(1234).text, /^1,234 pulses late/);
 });

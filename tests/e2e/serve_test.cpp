@@ -246,10 +246,11 @@ TEST(Serve, SaysThatThereIsNoTurntableAndGoesOn) {
   command.erase(std::ranges::find(command, "--simulate"), std::ranges::find(command, "--listen"));
   command.insert(command.end(), {"--sensor", "octurn-simulator://"});
   const Daemon daemon(std::move(command));
-  const json failed = daemon.wait_until_done(daemon.start(quick));
-  EXPECT_EQ(failed["state"], "failed");
-  EXPECT_EQ(failed["error"]["code"], "turntable-missing");
-  EXPECT_FALSE(failed["error"]["hint"].get<std::string>().empty());
+  const Reply refused = daemon.post("/api/v1/scans", quick);
+  EXPECT_EQ(refused.status, 503);
+  EXPECT_EQ(parsed(refused)["code"], "turntable-missing");
+  EXPECT_FALSE(parsed(refused)["hint"].get<std::string>().empty());
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
   EXPECT_EQ(daemon.status()["turntable"]["state"], "missing");
   EXPECT_EQ(daemon.get("/api/v1/preview/depth.png").status, 200);
 }

@@ -23,6 +23,15 @@ test('a scan that ends while another is looked at does not take its place', () =
   assert.equal(states.withStatus(elsewhere, status).selected, 'done');
 });
 
+test('a scan that pauses stays in view, and is looked at as the running one once it is resumed', () => {
+  const listed = states.withScans(states.withStatus(scanning, status), [{...running, state: 'paused'}]);
+  assert.equal(listed.selected, 'run');
+  const resumed = states.withStarted(listed, running);
+  assert.equal(resumed.selected, null);
+  assert.equal(states.running(resumed).id, 'run');
+  assert.deepEqual(resumed.scans.map(({state}) => state), ['running']);
+});
+
 test('the running scan is looked at by looking at nothing else', () => {
   assert.equal(states.withSelected(scanning, 'run').selected, null);
 });

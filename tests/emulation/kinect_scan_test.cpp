@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "emulation/kinect_on_desk.hpp"
+#include "emulation/kinect_view.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
-#include "sensor/depth_sensor.hpp"
 #include "sensor/recording.hpp"
 #include "support/program.hpp"
 #include "support/stl.hpp"
@@ -18,21 +18,6 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-
-DepthFrame simulated_frame() {
-  DepthSensor sensor("octurn-simulator://?noise=0");
-  return sensor.read({}).value().frame;
-}
-
-Readings readings_of(const DepthFrame& frame) {
-  Readings readings;
-  for (const std::uint16_t depth : frame.depth) {
-    readings.push_back(depth == 0
-                           ? std::uint16_t{2047}
-                           : static_cast<std::uint16_t>(std::lround(1089.40 - 3454890.0 / depth)));
-  }
-  return readings;
-}
 
 /// The same depths, but for what the last digits of the constants make.
 void expect_same_depths(const DepthFrame& one, const DepthFrame& other) {
@@ -72,17 +57,26 @@ TEST(KinectScan, MakesAClosedModel) {
   expect_same_depths(read_snapshot(stored, kept, kept.shots[1]).frame, seen);
 }
 
-TEST(KinectScan, FailsByNameWhenTheKinectIsUnplugged) {
+TEST(KinectScan, PausesWhenTheKinectIsUnpluggedAndGoesOnWhenItIsBack) {
   KinectOnDesk desk({readings_of(simulated_frame())});
   const TemporaryFolder folder;
-  Program scan(command("scan", folder.path() / "Scan.stl", "kinect://",
-                       {"--snapshots", "100", "--data", folder.path() / "data"}));
+  std::vector<std::string> words =
+      command("scan", folder.path() / "Scan.stl", "kinect://",
+              {"--snapshots", "12", "--leaf-size-mm", "4", "--data", folder.path() / "data"});
+  Program scan(words);
   while (desk->frames_sent < 5) {
     std::this_thread::yield();
   }
   desk.unplug();
   EXPECT_EQ(scan.wait(), 1);
-  EXPECT_NE(scan.errors().find("sensor: Kinect v1 is gone"), std::string::npos) << scan.errors();
+  EXPECT_NE(scan.errors().find("kinect: none is plugged in"), std::string::npos) << scan.errors();
+
+  desk.plug_in();
+  const fs::path stored = fs::directory_iterator(folder.path() / "data" / "scans")->path();
+  words.insert(words.end(), {"--resume", stored.filename()});
+  Program resumed(words);
+  EXPECT_EQ(resumed.wait(), 0) << resumed.errors();
+  EXPECT_EQ(read_scan(stored).shots.size(), 12U);
 }
 
 TEST(KinectScan, IsRecordedWithTimesAnglesAndTilt) {

@@ -15,6 +15,8 @@ struct Intrinsics {
   double cx = 320.0;
   double cy = 240.0;
   double depth_unit = 0.0001;  // metres
+
+  bool operator==(const Intrinsics&) const = default;
 };
 
 }  // namespace octurn

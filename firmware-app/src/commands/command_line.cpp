@@ -107,6 +107,11 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
   command.add_option("--frames", settings.frames, "frames at each stop (10)")->type_name("N");
   add_method_options(command, settings, "solid");
   add_model_options(command, settings, "-140 -140 5 140 140 400");
+  command
+      .add_option("--resume", arguments.resume,
+                  "go on with this scan in the folder of scans, which was paused or interrupted; "
+                  "its own settings apply")
+      ->type_name("ID");
   command.callback([&arguments, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
     scan(arguments);

@@ -49,6 +49,7 @@ struct SettingsArguments {
 struct ScanArguments {
   RigArguments rig = {};
   SettingsArguments settings = {};
+  std::optional<std::string> resume = {};  ///< the scan to go on with, by its own settings
   std::optional<std::filesystem::path> config_file = {};
   std::optional<std::filesystem::path> data = {};
   std::filesystem::path output = "Scan.stl";

@@ -34,8 +34,7 @@ TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
 }  // namespace
 
 void record(const RecordArguments& arguments) {
-  const Config config = arguments.config_file ? read_config(*arguments.config_file)
-                                              : read_config_if_there(default_config_file);
+  const Config config = config_of(arguments.config_file);
   const RigOptions options = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
   const Interruption interruption;

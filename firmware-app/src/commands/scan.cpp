@@ -43,13 +43,27 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
   ProgressBar bar;
   Status status = scanner.status();
   while (status.busy()) {
-    bar.show(status.job->snapshots_done, job.settings.snapshots, name_of(status.job->phase));
+    bar.show(status.job->snapshots_done, job.settings.snapshots,
+             status.job->failure ? "trying again" : name_of(status.job->phase));
     if (stop.stop_requested()) {
       scanner.cancel(job.id);
     }
     status = scanner.wait_until_done(100ms);
   }
   return *status.job;
+}
+
+/// Says why there is no model, where the snapshots are, and how to go on.
+[[noreturn]] void explain(const Job& job, const std::filesystem::path& folder) {
+  const std::string kept = std::to_string(job.snapshots_done) + " of " +
+                           std::to_string(job.settings.snapshots) + " snapshots are in " +
+                           folder.string();
+  if (!job.failure) {
+    throw Error("stopped", "stopped before the end: " + kept);
+  }
+  const std::string resume =
+      is_resumable(job.state) ? " The same command does that with --resume " + job.id : "";
+  throw Error(job.failure->code, job.failure->detail + ": " + kept, job.failure->hint + resume);
 }
 
 void copy_model(const std::filesystem::path& from, const std::filesystem::path& to) {
@@ -70,8 +84,7 @@ void copy_model(const std::filesystem::path& from, const std::filesystem::path& 
 }  // namespace
 
 void scan(const ScanArguments& arguments) {
-  const Config config = arguments.config_file ? read_config(*arguments.config_file)
-                                              : read_config_if_there(default_config_file);
+  const Config config = config_of(arguments.config_file);
   const ScanSettings settings = settings_from(json_of(arguments.settings), config.scan);
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
@@ -80,14 +93,12 @@ void scan(const ScanArguments& arguments) {
   const ScanStore store(arguments.data.value_or(config.data));
   Scanner scanner(rig, config.limits, store);
 
-  const std::optional<Job> started = scanner.start(settings);  // nothing else starts scans here
+  scanner.expect_ready();             // or there would be no more than an empty folder
+  const std::optional<Job> started =  // nothing else starts scans here
+      arguments.resume ? scanner.resume(*arguments.resume) : scanner.start(settings);
   const Job job = follow(scanner, *started, interruption.token());
-  if (job.failure) {
-    throw Error(job.failure->code, job.failure->detail, job.failure->hint);
-  }
   if (!job.model) {
-    throw Error("stopped",
-                "stopped before the end: its snapshots are in " + store.folder(job.id).string());
+    explain(job, store.folder(job.id));
   }
   copy_model(store.model_file(job.id), arguments.output);
 }

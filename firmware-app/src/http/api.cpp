@@ -4,13 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "http/file_response.hpp"
 #include "http/preview_image.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
 #include "json_object.hpp"
 #include "log.hpp"
-#include "scan/model_stream.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -31,7 +29,11 @@ json json_of(const DeviceStatus& device) {
   return {{"state", states[static_cast<std::size_t>(device.state)]},
           {"name", device.name},
           {"simulated", device.simulated},
-          {"message", device.message}};
+          {"message", device.failure.detail}};
+}
+
+[[noreturn]] void throw_busy() {
+  throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
 }
 
 json body_of(const Request& request) {
@@ -52,27 +54,6 @@ Job current(Job stored, const Status& status) {
   }
   return stored;
 }
-
-/// What a query says, "leaf_size_mm=0.5&level=7": numbers by name.
-json numbers_from(std::string_view query) {
-  json numbers = json::object();
-  while (!query.empty()) {
-    const std::string_view part = query.substr(0, query.find('&'));
-    query.remove_prefix(std::min(part.size() + 1, query.size()));
-    const std::size_t equals = part.find('=');
-    const std::string name(part.substr(0, equals));
-    const json value = equals == std::string_view::npos
-                           ? json()
-                           : json::parse(part.substr(equals + 1), nullptr, false);
-    if (!value.is_number() || !numbers.emplace(name, value).second) {
-      throw Error("bad-settings", "the query must give each setting once, as a number",
-                  "Such as ?leaf_size_mm=0.5&level=7.");
-    }
-  }
-  return numbers;
-}
-
-std::string file_name(const Job& job) { return (job.name.empty() ? "Scan" : job.name) + ".stl"; }
 
 /// Whether a path is as a route has it; `{id}` stands for any one part.
 /// @return the part, empty if the route has none; nothing if they differ
@@ -111,6 +92,7 @@ const std::vector<Api::Route>& Api::routes() {
       {"PATCH", "/api/v1/scans/{id}", &Api::rename},
       {"DELETE", "/api/v1/scans/{id}", &Api::remove},
       {"POST", "/api/v1/scans/{id}/cancel", &Api::cancel},
+      {"POST", "/api/v1/scans/{id}/resume", &Api::resume},
       {"GET", "/api/v1/scans/{id}/Scan.stl", &Api::model},
       {"GET", "/api/v1/scans/{id}/preview.stl", &Api::surface_so_far},
   };
@@ -192,14 +174,6 @@ Response Api::preview(const Request& /*request*/, std::string_view /*id*/) {
           .body = preview_png(view->frame, view->depth_unit)};
 }
 
-Response Api::newest_model(const Request& request, std::string_view /*id*/) {
-  const std::optional<Job> newest = store_.newest_finished();
-  if (!newest) {
-    throw Error("no-model", "no scan is finished yet", "Start a scan and wait for its end.");
-  }
-  return file_response(request, store_.model_file(newest->id), "model/stl", "Scan.stl");
-}
-
 Response Api::list(const Request& /*request*/, std::string_view /*id*/) {
   json scans = json::array();
   const std::vector<Job> stored = store_.list();
@@ -212,13 +186,10 @@ Response Api::list(const Request& /*request*/, std::string_view /*id*/) {
 
 Response Api::start(const Request& request, std::string_view /*id*/) {
   const ScanSettings settings = settings_from(body_of(request), options_.defaults);
-  const Status now = scanner_.status();
-  if (!now.busy() && now.sensor.state != DeviceStatus::State::ready) {
-    scanner_.view();  // it may work again; if not, this says why
-  }
+  scanner_.expect_ready();
   const std::optional<Job> job = scanner_.start(settings);
   if (!job) {
-    throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
+    throw_busy();
   }
   Response response = json_response(described(*job), 202);
   response.headers.emplace_back("Location", "/api/v1/scans/" + job->id);
@@ -254,78 +225,20 @@ Response Api::cancel(const Request& /*request*/, std::string_view id) {
   const Job job = find(id);
   if (!scanner_.cancel(id)) {
     throw Error("not-running", "this scan is " + std::string(name_of(job.state)),
-                "Only a running scan can be cancelled.");
+                "Only a scan that runs, or could be resumed, can be cancelled.");
   }
   return json_response(described(find(id)), 202);
 }
 
-Response Api::model(const Request& request, std::string_view id) {
+Response Api::resume(const Request& /*request*/, std::string_view id) {
   const Job job = find(id);
-  if (!request.query.empty()) {
-    return made_model(request, job);
+  if (is_resumable(job.state) && job.snapshots_done < job.settings.snapshots) {
+    scanner_.expect_ready();
   }
-  if (job.state != JobState::finished) {
-    throw Error("no-model", "this scan is " + std::string(name_of(job.state)) + ": it has no model",
-                "Only a finished scan has one.");
+  if (job.state == JobState::running || !scanner_.resume(id)) {
+    throw_busy();
   }
-  return file_response(request, store_.model_file(id), "model/stl", file_name(job));
-}
-
-Response Api::made_model(const Request& request, const Job& job) {
-  json numbers = numbers_from(request.query);
-  std::optional<int> level;
-  if (const auto given = numbers.find("level"); given != numbers.end()) {
-    level = JsonObject(numbers, "bad-settings", "").whole_number("level", 0, Octree::max_levels);
-    numbers.erase(given);
-  }
-  for (const auto& [name, value] : numbers.items()) {
-    if (name != "leaf_size_mm") {
-      throw Error("bad-settings", "the query has \"" + name + "\"",
-                  "It takes leaf_size_mm and level.");
-    }
-  }
-  ReconstructOptions options =
-      reconstruct_options(settings_from(numbers, job.settings), options_.limits);
-  options.level = level;
-  if (job.state != JobState::running && job.snapshots_done == 0) {
-    throw Error("no-model", "this scan has no snapshots", "Start a new scan.");
-  }
-  auto leave = scanner_.leave_to_reconstruct();
-  if (!leave) {
-    throw Error("busy", "a scan is running, or another model is being made", "Wait for its end.");
-  }
-  auto model = std::make_unique<ModelStream>(store_.folder(job.id), options, std::move(leave));
-  const std::uint64_t bytes = model->bytes();
-  ByteStream stream{.length = bytes};
-  stream.make = std::packaged_task<void(const ByteSink&)>(
-      [made = std::move(model), id = job.id](const ByteSink& sink) {
-        try {
-          made->send(sink);
-        } catch (const std::exception& error) {
-          log::error("http", "model of scan " + id + ": " + error.what());
-        }
-      });
-  return {.headers = {{"Content-Type", "model/stl"},
-                      {"Content-Disposition", attachment(file_name(job))},
-                      {"Accept-Ranges", "none"},
-                      {"Cache-Control", "no-store"}},
-          .body = std::move(stream)};
-}
-
-Response Api::surface_so_far(const Request& request, std::string_view id) {
-  find(id);  // or there is no such scan
-  const auto preview = scanner_.preview();
-  if (preview->id != id || preview->snapshots == 0) {
-    throw Error("no-preview", "there is nothing of this scan to show",
-                "Only the latest scan has a preview, from its first snapshot on.");
-  }
-  const std::string tag = '"' + preview->id + '-' + std::to_string(preview->snapshots) + '"';
-  Headers headers{{"ETag", tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, tag)) {
-    return {.status = 304, .headers = std::move(headers)};
-  }
-  headers.emplace_back("Content-Type", "model/stl");
-  return {.headers = std::move(headers), .body = preview->stl};
+  return json_response(described(find(id)), 202);
 }
 
 json Api::described(const Job& job) const {

@@ -45,6 +45,7 @@ class Api {
   Response rename(const Request& request, std::string_view id);
   Response remove(const Request& request, std::string_view id);
   Response cancel(const Request& request, std::string_view id);
+  Response resume(const Request& request, std::string_view id);
   Response model(const Request& request, std::string_view id);
   Response made_model(const Request& request, const Job& job);
   Response surface_so_far(const Request& request, std::string_view id);

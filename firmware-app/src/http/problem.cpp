@@ -27,6 +27,7 @@ constexpr std::array kinds{
     Kind{"wrong-method", 405, "That cannot be done with this"},
     Kind{"busy", 409, "The scanner is busy"},
     Kind{"not-running", 409, "The scan is not running"},
+    Kind{"not-paused", 409, "The scan cannot be resumed"},
     Kind{"changed", 412, "It is no longer what was asked for"},
     Kind{"too-large", 413, "The request is too large"},
     Kind{"wrong-content-type", 415, "The body is of the wrong type"},

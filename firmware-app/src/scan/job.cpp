@@ -19,7 +19,8 @@ using Seconds = std::chrono::duration<double>;
 template <typename Value>
 using Names = std::pair<Value, std::string_view>;
 
-constexpr std::array<Names<JobState>, 5> states{{{JobState::running, "running"},
+constexpr std::array<Names<JobState>, 6> states{{{JobState::running, "running"},
+                                                 {JobState::paused, "paused"},
                                                  {JobState::finished, "finished"},
                                                  {JobState::cancelled, "cancelled"},
                                                  {JobState::failed, "failed"},
@@ -123,6 +124,10 @@ std::optional<Model> model_from(const json* object) {
 
 }  // namespace
 
+bool is_resumable(JobState state) {
+  return state == JobState::paused || state == JobState::interrupted;
+}
+
 std::string_view name_of(JobState state) {
   return std::ranges::find(states, state, &Names<JobState>::first)->second;
 }
@@ -135,10 +140,14 @@ Failure failure_of(const Error& error) {
   return {.code = error.code(), .detail = error.what(), .hint = error.hint()};
 }
 
+bool is_device_fault(const Failure& failure) {
+  return failure.code.starts_with("sensor-") || failure.code.starts_with("turntable-");
+}
+
 Failure interruption() {
   return {.code = "interrupted",
           .detail = "the scanner was switched off during this scan",
-          .hint = "Its snapshots are kept; start a new scan for a whole model."};
+          .hint = "Resume it if neither the object nor the platform was moved since."};
 }
 
 json json_of(const Job& job) {
@@ -151,6 +160,7 @@ json json_of(const Job& job) {
               {"snapshots_total", job.settings.snapshots},
               {"seconds_elapsed", rounded(job.elapsed.count())},
               {"seconds_left", nullptr},
+              {"late_pulses", job.late_pulses},
               {"settings", json_of(job.settings)},
               {"error", nullptr},
               {"model", nullptr}};
@@ -182,6 +192,8 @@ Job job_from(const json& object) {
               static_cast<int>(number(keys, "snapshots_done", std::numeric_limits<int>::max())),
           .elapsed = Seconds(number(keys, "seconds_elapsed", most)),
           .settings = settings_from(*settings, {}, "settings"),
+          .late_pulses = static_cast<int>(
+              number_or_none(keys, "late_pulses", std::numeric_limits<int>::max())),
           .failure = failure_from(keys.find("error")),
           .model = model_from(keys.find("model"))};
 }

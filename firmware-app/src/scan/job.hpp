@@ -14,6 +14,7 @@ namespace octurn {
 
 enum class JobState {
   running,
+  paused,  ///< a device failed for too long
   finished,
   cancelled,
   failed,
@@ -22,6 +23,9 @@ enum class JobState {
 
 /// What a scan is doing.
 enum class Phase { starting, turning, capturing, building, done };
+
+/// Whether a scan in that state can go on where it stopped.
+bool is_resumable(JobState state);
 
 std::string_view name_of(JobState state);
 std::string_view name_of(Phase phase);
@@ -34,6 +38,9 @@ struct Failure {
 };
 
 Failure failure_of(const Error& error);
+
+/// Whether the sensor or the turntable is to blame: what a person can mend while the scan waits.
+bool is_device_fault(const Failure& failure);
 
 /// Why a scan has no model whose daemon ended while it ran.
 Failure interruption();
@@ -55,7 +62,8 @@ struct Job {
   std::chrono::duration<double> elapsed = {};
   std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
   ScanSettings settings = {};
-  std::optional<Failure> failure = {};
+  int late_pulses = 0;                  ///< of the motor, which turned more slowly for it
+  std::optional<Failure> failure = {};  ///< of a running scan: what is being tried again
   std::optional<Model> model = {};
 };
 

@@ -5,11 +5,16 @@
 namespace octurn {
 
 /// Where a scan stops: the whole microsteps nearest to equal parts of a turn, so that the turn sums
-/// exactly. The first stop is the next whole turn at or after `position`, so that the platform
-/// turns one way only and every scan begins at angle 0.
-std::vector<int> stop_positions(int position, int steps_per_turn, int stops);
+/// exactly. Stop 0 is at angle 0, and the platform turns one way only, to a stop that is at or
+/// after `position`.
+///
+/// @param first  the first stop that is still to be made
+std::vector<int> stop_positions(int position, int steps_per_turn, int stops, int first = 0);
 
 /// The angle of a position, degrees in [0, 360), counter-clockwise seen from above.
 double angle_deg_at(int position, int steps_per_turn);
+
+/// The position in the first turn that is nearest to an angle, degrees.
+int position_at(double angle_deg, int steps_per_turn);
 
 }  // namespace octurn

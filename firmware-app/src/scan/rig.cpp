@@ -6,23 +6,31 @@
 #include "scan/plan.hpp"
 #include "turntable/gpio_lines.hpp"
 #include "turntable/simulated_turntable.hpp"
-#include "turntable/stepper.hpp"
 
 namespace octurn {
 
+std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
+  return std::make_unique<DepthSensor>(uri);
+}
+
+Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
+  // Shared, as a std::function has to be able to be copied.
+  return [lines = std::make_shared<GpioLines>(lines_of(settings))](Stepper::Line line, bool high) {
+    lines->set(static_cast<std::size_t>(line), high);
+  };
+}
+
 bool is_simulated_sensor(const std::string& uri) { return uri.starts_with("octurn-simulator:"); }
 
-Rig::Rig(RigOptions options) : options_(std::move(options)) {}
+Rig::Rig(RigOptions options)
+    : options_(std::move(options)), closed_angle_deg_(options_.platform_angle_deg) {}
 
 Rig::~Rig() = default;
 
 DepthSensor& Rig::sensor() {
   if (!sensor_) {
-    sensor_ = std::make_unique<DepthSensor>(options_.sensor_uri);
-    if (turntable_) {
-      sensor_->show_angle(
-          radians_from_degrees(angle_deg_at(turntable_->position(), turntable_->steps_per_turn())));
-    }
+    sensor_ = options_.open_sensor(options_.sensor_uri);
+    sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
   }
   return *sensor_;
 }
@@ -32,18 +40,19 @@ Turntable& Rig::turntable() {
     return *turntable_;
   }
   if (options_.stepper) {
-    lines_ = std::make_unique<GpioLines>(lines_of(*options_.stepper));
-    turntable_ = std::make_unique<Stepper>(*options_.stepper,
-                                           [lines = lines_.get()](Stepper::Line line, bool high) {
-                                             lines->set(static_cast<std::size_t>(line), high);
-                                           });
+    const int steps = motion_of(*options_.stepper).steps_per_turn;
+    turntable_ =
+        std::make_unique<Stepper>(*options_.stepper, options_.open_lines(*options_.stepper),
+                                  position_at(closed_angle_deg_, steps));
   } else {
     const auto show = [this](double angle) {
       if (sensor_) {
         sensor_->show_angle(angle);
       }
     };
-    turntable_ = std::make_unique<SimulatedTurntable>(show, options_.speed);
+    const Motion motion;
+    turntable_ = std::make_unique<SimulatedTurntable>(
+        show, options_.speed, motion, position_at(closed_angle_deg_, motion.steps_per_turn));
   }
   return *turntable_;
 }
@@ -52,6 +61,21 @@ void Rig::release_turntable() {
   if (turntable_) {
     turntable_->release();
   }
+}
+
+void Rig::close_turntable() {
+  closed_angle_deg_ = platform_angle_deg();
+  closed_late_pulses_ = late_pulses();
+  turntable_.reset();
+}
+
+double Rig::platform_angle_deg() const {
+  return turntable_ ? angle_deg_at(turntable_->position(), turntable_->steps_per_turn())
+                    : closed_angle_deg_;
+}
+
+int Rig::late_pulses() const {
+  return closed_late_pulses_ + (turntable_ ? turntable_->late_pulses() : 0);
 }
 
 }  // namespace octurn

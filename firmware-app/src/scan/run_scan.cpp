@@ -1,5 +1,6 @@
 #include "scan/run_scan.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <utility>
@@ -18,6 +19,9 @@ using Clock = std::chrono::steady_clock;
 // Frames older than the end of a move that a sensor may still hand out: a second of them, at 30 Hz.
 constexpr int most_stale_frames = 30;
 
+// A sensor that is well sees about as much at every stop: what turns is a part of the picture.
+constexpr double least_sight = 0.6;  // of the readings in the scan's first snapshot
+
 /// Takes frames whose exposure ended after `settled`; none if stopped first.
 std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_point settled,
                                     const std::stop_token& stop, const ScanObserver& observer) {
@@ -32,7 +36,7 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
       frames.push_back(std::move(timed->frame));
     } else if (++stale > most_stale_frames) {
       throw Error("sensor-failed", sensor.name() + ": its frames are older than they may be",
-                  "Unplug the sensor, plug it in again and start a new scan.");
+                  "Unplug the sensor, and plug it in again.");
     }
   }
   return frames;
@@ -53,19 +57,176 @@ double stored_angle(double angle) { return radians_from_degrees(degrees_from_rad
 /// Leads out of a model that is no longer wanted.
 struct Stopped {};
 
-/// Writes `folder/Scan.stl`; where the octree did not fit in memory as a whole, the snapshots are
-/// read again for each part.
-std::optional<ModelReport> write_model_unless_stopped(Reconstruction& reconstruction,
-                                                      const std::filesystem::path& folder,
-                                                      const Scan& scan,
-                                                      const std::stop_token& stop) try {
-  const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t shot) {
-                                   if (stop.stop_requested()) {
-                                     throw Stopped{};
-                                   }
-                                   return read_snapshot(folder, scan, scan.shots[shot]);
-                                 }};
-  return write_model(reconstruction, snapshots, folder / "Scan.stl", stop);
+/// The snapshots in a scan's folder, which are read until `stop`.
+SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
+                                const std::stop_token& stop) {
+  return {.count = scan.shots.size(), .read = [=](std::size_t shot) {
+            if (stop.stop_requested()) {
+              throw Stopped{};
+            }
+            return read_snapshot(folder, scan, scan.shots[shot]);
+          }};
+}
+
+std::ptrdiff_t readings_in(const DepthFrame& frame) {
+  return std::ranges::count_if(frame.depth, [](std::uint16_t depth) { return depth > 0; });
+}
+
+ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
+                               const Limits& limits) {
+  ReconstructOptions options = reconstruct_options(settings, limits);
+  if (!scan.shots.empty()) {
+    options.clip = scan.clip;  // which lost nothing by being written in millimetres
+  }
+  return options;
+}
+
+/// One scan on its way, or one more attempt at it.
+class Run {
+ public:
+  Run(const ScanSettings& settings, const Limits& limits, const std::filesystem::path& folder,
+      Rig& rig, const std::stop_token& stop, const ScanObserver& observer)
+      : settings_(settings),
+        folder_(folder),
+        rig_(rig),
+        stop_(stop),
+        observer_(observer),
+        scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
+        reconstruction_(options_for(scan_, settings, limits)) {}
+
+  /// @return false if stopped first
+  bool take_snapshots();
+  std::optional<Model> build();
+
+ private:
+  int done() const { return static_cast<int>(scan_.shots.size()); }
+  void begin();
+  void go_on();
+  std::optional<DepthFrame> look_at(int position);
+  void expect_sight(const DepthFrame& frame);
+  template <typename Add>
+  void add(Add add_to);
+
+  const ScanSettings& settings_;
+  const std::filesystem::path& folder_;
+  Rig& rig_;
+  const std::stop_token& stop_;
+  const ScanObserver& observer_;
+  Scan scan_;
+  std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
+  Reconstruction reconstruction_;
+  std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
+};
+
+bool Run::take_snapshots() {
+  if (done() == settings_.snapshots) {
+    go_on();
+    return true;
+  }
+  Turntable& turntable = rig_.turntable();
+  if (done() == 0) {
+    begin();
+  } else {
+    go_on();
+  }
+  const int steps = turntable.steps_per_turn();
+  for (const int position :
+       stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
+    std::optional<DepthFrame> frame = look_at(position);
+    if (!frame) {
+      return false;
+    }
+    expect_sight(*frame);
+    const Shot shot{.file = shot_file(done()),
+                    .angle = radians_from_degrees(angle_deg_at(position, steps))};
+    store(folder_, scan_, shot, *frame);
+    add([added = Snapshot{.frame = *std::move(frame),
+                          .intrinsics = scan_.intrinsics,
+                          .object_from_sensor = object_from_sensor(scan_.platform_from_sensor,
+                                                                   stored_angle(shot.angle))}](
+            Reconstruction& reconstruction) { reconstruction.add(added); });
+  }
+  return true;
+}
+
+/// What all snapshots of a new scan have in common.
+void Run::begin() {
+  scan_ = {.sensor_name = rig_.sensor().name(),
+           .intrinsics = rig_.sensor().intrinsics(),
+           .platform_from_sensor = settings_.platform_from_sensor,
+           .clip = settings_.clip};
+}
+
+/// Adds what was stored before: in the order in which it was taken, and while the platform turns.
+void Run::go_on() {
+  if (done() < settings_.snapshots && rig_.sensor().intrinsics() != scan_.intrinsics) {
+    throw Error("sensor-other", "this scan was begun with another sensor: " + scan_.sensor_name,
+                "Plug in the one that it was begun with.");
+  }
+  first_readings_ = readings_in(read_snapshot(folder_, scan_, scan_.shots.front()).frame);
+  add([stored = stored_snapshots(folder_, scan_, {}), this](Reconstruction& reconstruction) {
+    reconstruction.add(stored, stop_);
+  });
+}
+
+/// Turns to a stop, and takes its depth image; nothing if stopped first.
+std::optional<DepthFrame> Run::look_at(int position) {
+  Turntable& turntable = rig_.turntable();
+  DepthSensor& sensor = rig_.sensor();
+  const double angle_deg = angle_deg_at(position, turntable.steps_per_turn());
+  observer_.on_progress(Phase::turning, done());
+  observer_.on_turn(angle_deg);
+  if (!turntable.move_to(position, stop_)) {
+    return std::nullopt;
+  }
+  observer_.on_progress(Phase::capturing, done());
+  sensor.show_angle(radians_from_degrees(angle_deg));
+  const int count = settings_.filter == DepthFilter::basic ? 1 : settings_.frames;
+  const std::vector<DepthFrame> frames = read_frames(sensor, count, Clock::now(), stop_, observer_);
+  return frames.empty() ? std::nullopt : std::optional(merge_frames(frames, settings_.filter));
+}
+
+void Run::expect_sight(const DepthFrame& frame) {
+  const std::ptrdiff_t readings = readings_in(frame);
+  if (done() == 0) {
+    first_readings_ = readings;
+  }
+  if (readings == 0 ||
+      static_cast<double>(readings) < least_sight * static_cast<double>(first_readings_)) {
+    throw Error("sensor-blind",
+                scan_.sensor_name + ": has " + std::to_string(readings) +
+                    " readings in its picture, and had " + std::to_string(first_readings_) +
+                    " at the first stop",
+                "Look for something before its lenses, and for sunlight.");
+  }
+}
+
+template <typename Add>
+void Run::add(Add add_to) {
+  if (adding_.valid()) {
+    adding_.get();
+  }
+  adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
+    add_to(reconstruction_);
+    if (done < settings_.snapshots && !stop_.stop_requested()) {  // else comes the model itself
+      observer_.on_added(reconstruction_, done);
+    }
+  });
+}
+
+/// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
+/// again for each part.
+std::optional<Model> Run::build() try {
+  observer_.on_progress(Phase::building, done());
+  const Clock::time_point captured = Clock::now();
+  adding_.get();
+  if (stop_.stop_requested()) {
+    return std::nullopt;  // before all was added
+  }
+  const auto report = write_model(reconstruction_, stored_snapshots(folder_, scan_, stop_),
+                                  folder_ / "Scan.stl", stop_);
+  return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
+                : std::nullopt;
 } catch (const Stopped&) {
   return std::nullopt;
 }
@@ -75,54 +236,8 @@ std::optional<ModelReport> write_model_unless_stopped(Reconstruction& reconstruc
 std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
                               const std::filesystem::path& folder, Rig& rig,
                               const std::stop_token& stop, const ScanObserver& observer) {
-  Turntable& turntable = rig.turntable();
-  DepthSensor& sensor = rig.sensor();
-  const int steps = turntable.steps_per_turn();
-  const int frame_count = settings.filter == DepthFilter::basic ? 1 : settings.frames;
-  Scan scan{.sensor_name = sensor.name(),
-            .intrinsics = sensor.intrinsics(),
-            .platform_from_sensor = settings.platform_from_sensor,
-            .clip = settings.clip};
-  Reconstruction reconstruction(reconstruct_options(settings, limits));
-  std::future<void> adding;  // at most one: joined before the next begins, and on every way out
-
-  int done = 0;
-  for (const int position : stop_positions(turntable.position(), steps, settings.snapshots)) {
-    observer.on_progress(Phase::turning, done);
-    if (!turntable.move_to(position, stop)) {
-      return std::nullopt;
-    }
-    observer.on_progress(Phase::capturing, done);
-    const std::vector<DepthFrame> frames =
-        read_frames(sensor, frame_count, Clock::now(), stop, observer);
-    if (frames.empty()) {
-      return std::nullopt;
-    }
-    const Shot shot{.file = shot_file(done),
-                    .angle = radians_from_degrees(angle_deg_at(position, steps))};
-    Snapshot snapshot{.frame = merge_frames(frames, settings.filter),
-                      .intrinsics = scan.intrinsics,
-                      .object_from_sensor = object_from_sensor(settings.platform_from_sensor,
-                                                               stored_angle(shot.angle))};
-    store(folder, scan, shot, snapshot.frame);
-    ++done;
-    if (adding.valid()) {
-      adding.get();
-    }
-    adding = std::async(std::launch::async, [&, done, added = std::move(snapshot)] {
-      reconstruction.add(added);
-      if (done < settings.snapshots) {  // then comes the model itself
-        observer.on_added(reconstruction, done);
-      }
-    });
-  }
-
-  observer.on_progress(Phase::building, done);
-  const Clock::time_point captured = Clock::now();
-  adding.get();
-  const auto report = write_model_unless_stopped(reconstruction, folder, scan, stop);
-  return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
-                : std::nullopt;
+  Run run(settings, limits, folder, rig, stop, observer);
+  return run.take_snapshots() ? run.build() : std::nullopt;
 }
 
 }  // namespace octurn

@@ -14,6 +14,8 @@ namespace octurn {
 /// while the platform turns.
 struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
+  /// Before each move: where to, degrees.
+  std::function<void(double angle_deg)> on_turn = [](double) {};
   std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
                                                                                 double) {};
   std::function<void(const Reconstruction& seen, int snapshots)> on_added =
@@ -23,7 +25,8 @@ struct ScanObserver {
 /// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.
 ///
 /// Each snapshot is on the disk before the platform moves on, and goes into the octree while it
-/// turns. What was stored stays, however the scan ends.
+/// turns. What was stored stays, however the scan ends; a folder that holds some snapshots already
+/// is continued with the next, and its model is that of a scan that was never disturbed.
 ///
 /// @return the model, or nothing if stopped first
 /// @throws Error  if the sensor, the turntable or the disk fails, or there is no surface

@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -26,6 +27,7 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 // Date and time of day (UTC), and how far into the second, in steps of 20 us. So ids sort by time.
 constexpr std::string_view id_form = "00000000-000000-xxxx";
@@ -137,7 +139,8 @@ bool is_in_use(const fs::path& data) {
   return lock.is_open() && ::flock(lock.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
-ScanStore::ScanStore(fs::path data) : data_(std::move(data)), scans_(data_ / "scans") {
+ScanStore::ScanStore(fs::path data)
+    : data_(std::move(data)), scans_(data_ / "scans"), platform_(data_ / "platform.json") {
   std::error_code error;
   fs::create_directories(scans_, error);
   if (error) {
@@ -256,6 +259,16 @@ void ScanStore::remove(std::string_view id) const {
 }
 
 fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
+
+double ScanStore::platform_angle_deg() const {
+  const json text = json::parse(read_text(platform_).value_or(""), nullptr, false);
+  const json angle = text.is_object() ? text.value("angle_deg", json()) : json();
+  return angle.is_number() && std::isfinite(angle.get<double>()) ? angle.get<double>() : 0;
+}
+
+void ScanStore::save_platform_angle_deg(double angle_deg) const {
+  write_file(platform_, json{{"angle_deg", angle_deg}}.dump() + "\n");
+}
 
 std::uint64_t ScanStore::free_bytes() const { return free_bytes_in(scans_); }
 

@@ -29,10 +29,12 @@ std::uint64_t free_bytes_in(const std::filesystem::path& folder);
 bool is_in_use(const std::filesystem::path& data);
 
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
-/// asked for and what became of it) and `name.txt` (what a person called it).
+/// asked for and what became of it) and `name.txt` (what a person called it). And
+/// `DATA/platform.json`, which tells where the platform stands.
 ///
 /// Holds nothing but the path. Each file appears whole or not at all and has one writer (the worker
-/// those of the scan, an HTTP thread the name), so any thread may call anything at any time.
+/// those of the scan, an HTTP thread the name and what ends a paused scan), so any thread may call
+/// anything at any time.
 class ScanStore {
  public:
   /// Takes hold of the folder, clears away what a dead process left unfinished, and marks the scans
@@ -63,6 +65,10 @@ class ScanStore {
   std::filesystem::path folder(std::string_view id) const;
   std::filesystem::path model_file(std::string_view id) const { return folder(id) / "Scan.stl"; }
 
+  /// Where the platform was when it was written down last, degrees; 0 if it never was.
+  double platform_angle_deg() const;
+  void save_platform_angle_deg(double angle_deg) const;
+
   std::uint64_t free_bytes() const;
 
  private:
@@ -71,6 +77,7 @@ class ScanStore {
 
   std::filesystem::path data_;
   std::filesystem::path scans_;
+  std::filesystem::path platform_;
   FileDescriptor lock_;  // locked while it is open
 };
 

@@ -8,53 +8,25 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <string_view>
 #include <thread>
 
-#include "scan/job.hpp"
-#include "scan/latest.hpp"
-#include "scan/rig.hpp"
 #include "scan/scan_store.hpp"
+#include "scan/status_board.hpp"
 
 namespace octurn {
 
-/// How a sensor or a turntable is, as far as the last use of it told.
-struct DeviceStatus {
-  enum class State { ready, missing, failed };
-  State state = State::missing;
-  std::string name = {};
-  bool simulated = false;
-  std::string message = {};  ///< what is wrong, or empty
-};
-
-struct Status {
-  DeviceStatus sensor = {};
-  DeviceStatus turntable = {};
-  std::optional<Job> job = {};  ///< the scan that was started last, running or not
-  std::chrono::steady_clock::time_point job_started = {};
-  std::optional<std::chrono::steady_clock::time_point> job_end = {};  ///< as expected
-
-  bool busy() const { return job && job->state == JobState::running; }
-};
-
-/// What the sensor saw last, or why it saw nothing.
-struct View {
-  std::chrono::steady_clock::time_point time = {};
-  DepthFrame frame = {};
-  double depth_unit = 0;  ///< metres
-  std::optional<Failure> failure = {};
-};
-
-/// A coarse mesh of what the scan that was started last has seen so far.
-struct Preview {
-  std::string id = {};  ///< of the scan
-  int snapshots = 0;    ///< that it shows; 0 if there is nothing to show yet
-  std::string stl = {};
-};
-
 /// Runs one scan at a time on a worker of its own, which alone touches sensor, turntable and the
 /// scan's octree. Everything else here may be called from any thread.
+///
+///              start                  every snapshot taken, and the model built
+///     (none) --------> running ------------------------------------------------> finished
+///                      |  ^  |  disk full, nothing in the clip box, ... --------> failed
+///      device fails,   |  |  |  cancel ----------------------------------------> cancelled
+///      also when tried |  |  |                                                       ^
+///      again: paused <-+  |  +-> interrupted, when this program ends                 |
+///                 |       |            |                                             |
+///                 +-------+------------+---- resume; or cancel ----------------------+
 class Scanner {
  public:
   Scanner(RigOptions rig, const Limits& limits, const ScanStore& store);
@@ -66,10 +38,16 @@ class Scanner {
   /// @throws Error "disk-full", "data-failed"
   std::optional<Job> start(const ScanSettings& settings);
 
-  /// Asks the scan of that id to stop. @return false if it does not run
+  /// Goes on with a scan that was paused or interrupted, at the stop where that was, unless one
+  /// runs: nothing then.
+  /// @throws Error "no-such-scan", "not-paused", "data-failed"
+  std::optional<Job> resume(std::string_view id);
+
+  /// Asks the scan of that id to stop, or ends it if it is paused or interrupted.
+  /// @return false if it has ended already
   bool cancel(std::string_view id);
 
-  Status status() const;
+  Status status() const { return board_.status(); }
 
   /// Waits until no scan runs, but no longer than `patience`.
   Status wait_until_done(std::chrono::milliseconds patience) const;
@@ -78,7 +56,11 @@ class Scanner {
   /// @throws Error "sensor-..."  if it sees nothing
   std::shared_ptr<const View> view();
 
-  std::shared_ptr<const Preview> preview() const { return preview_.get(); }
+  /// Looks, unless a scan runs, whether a device that failed works again.
+  /// @throws Error "sensor-...", "turntable-..."  if it does not
+  void expect_ready();
+
+  std::shared_ptr<const Preview> preview() const { return board_.preview().get(); }
 
   /// Leave to reconstruct outside of a scan, for as long as it lives. There is one, as memory is
   /// for one octree. A scan that starts asks for it back, and waits until it has it.
@@ -125,30 +107,27 @@ class Scanner {
   };
   enum class Demand { none, view, loan, scan };
 
+  void give_order(const Job& job);
   void work(const std::stop_token& stop);
   Demand wait_for_demand(const std::stop_token& stop);
   void look(Rig& rig, const std::stop_token& stop);
   void look_for_turntable(Rig& rig);
   void run_order(Rig& rig, const std::stop_token& stop);
+  void run_until_it_ends(Job& job, Rig& rig, const std::stop_token& stop);
+  void attempt(Job& job, Rig& rig, const std::stop_token& stop);
   void lend(Rig& rig, const std::stop_token& stop);
   void end_loan();
   void let_go(Rig& rig);
-  void report(Phase phase, int snapshots_done);
+  void save_platform_angle(double angle_deg);
   void finish(Job job);
-  void set_sensor_ready(const std::string& name);
-  void set_turntable_ready();
-  void set_device_failed(const Failure& failure);
-  void set_view(const DepthFrame& frame, double depth_unit);
-  void set_preview(const std::string& id, const Reconstruction& seen, int snapshots);
   void take_leave_back();
 
   RigOptions rig_options_;
   Limits limits_;
   const ScanStore& store_;
-  Latest<Status> status_;
-  Latest<View> view_;
-  Latest<Preview> preview_;
-  mutable std::mutex mutex_;  // guards order_, leave_, loan_ and view_wanted_until_
+  StatusBoard board_;
+  mutable std::mutex mutex_;  // guards order_, leave_, loan_ and view_wanted_until_, and the
+                              // job.json of scans that do not run
   std::condition_variable_any wake_;
   std::optional<Order> order_;             // the one job slot: full while a scan waits or runs
   std::optional<std::stop_source> leave_;  // full while somebody has leave

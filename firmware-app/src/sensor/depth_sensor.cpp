@@ -1,6 +1,7 @@
 #include "sensor/depth_sensor.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include "sensor/sensor_device.hpp"
 
@@ -8,6 +9,8 @@ namespace octurn {
 
 DepthSensor::DepthSensor(const std::string& uri)
     : device_(std::filesystem::is_directory(uri) ? open_recording(uri) : open_openni_device(uri)) {}
+
+DepthSensor::DepthSensor(std::unique_ptr<SensorDevice> device) : device_(std::move(device)) {}
 
 DepthSensor::~DepthSensor() = default;
 

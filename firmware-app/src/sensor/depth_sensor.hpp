@@ -34,6 +34,7 @@ class DepthSensor {
   /// @throws Error "sensor-missing" if there is none, "sensor-failed" if it does not start,
   ///               "recording-malformed"
   explicit DepthSensor(const std::string& uri);
+  explicit DepthSensor(std::unique_ptr<SensorDevice> device);
   ~DepthSensor();
   DepthSensor(const DepthSensor&) = delete;
   DepthSensor& operator=(const DepthSensor&) = delete;

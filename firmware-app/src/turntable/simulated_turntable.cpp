@@ -12,8 +12,8 @@ using std::chrono::duration;
 using std::chrono::steady_clock;
 
 SimulatedTurntable::SimulatedTurntable(std::function<void(double)> turned, double speed,
-                                       Motion motion)
-    : turned_(std::move(turned)), speed_(speed), motion_(motion) {}
+                                       Motion motion, int position)
+    : turned_(std::move(turned)), speed_(speed), motion_(motion), position_(position) {}
 
 bool SimulatedTurntable::move_to(int position, std::stop_token stop) {
   constexpr auto tick = std::chrono::milliseconds(10);

@@ -17,12 +17,14 @@ class SimulatedTurntable final : public Turntable {
   ///                wrapped) about 100 times a second while it moves, and where it stops; called by
   ///                the thread that moves it
   /// @param speed   times faster than life
+  /// @param position  where it stands
   explicit SimulatedTurntable(std::function<void(double)> turned, double speed = 1,
-                              Motion motion = {});
+                              Motion motion = {}, int position = 0);
 
   int steps_per_turn() const override { return motion_.steps_per_turn; }
   bool move_to(int position, std::stop_token stop) override;
   int position() const override { return position_; }
+  int late_pulses() const override { return 0; }
   void release() override {}
 
  private:
@@ -33,7 +35,7 @@ class SimulatedTurntable final : public Turntable {
   std::function<void(double)> turned_;
   double speed_;
   Motion motion_;
-  int position_ = 0;
+  int position_;
   std::mutex mutex_;  // guards nothing: what the condition needs to wait
   std::condition_variable_any wake_;
 };

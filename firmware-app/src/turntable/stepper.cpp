@@ -42,10 +42,11 @@ std::vector<int> way_to(int target, const Standing& from, int take_up_steps) {
   return {std::min(target, from.position) - take_up_steps, target};
 }
 
-Stepper::Stepper(const StepperSettings& settings, SetLine set_line)
+Stepper::Stepper(const StepperSettings& settings, SetLine set_line, int position)
     : settings_(settings),
       motion_(motion_of(settings)),
       set_line_(std::move(set_line)),
+      position_(position),
       worker_([this](const std::stop_token& end) { work(end); }) {}
 
 bool Stepper::move_to(int position, std::stop_token stop) {

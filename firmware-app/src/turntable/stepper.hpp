@@ -38,7 +38,8 @@ class Stepper final : public Turntable {
 
   /// @param set_line  sets a line of the driver; called by one thread at a time. What it throws,
   ///                  `move_to` and `release` throw
-  Stepper(const StepperSettings& settings, SetLine set_line);
+  /// @param position  where it stands
+  Stepper(const StepperSettings& settings, SetLine set_line, int position = 0);
   ~Stepper() override = default;
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -46,6 +47,7 @@ class Stepper final : public Turntable {
   int steps_per_turn() const override { return motion_.steps_per_turn; }
   bool move_to(int position, std::stop_token stop) override;
   int position() const override { return position_; }
+  int late_pulses() const override { return late().count; }
   void release() override;
 
   /// The late pulses of all moves.
@@ -70,7 +72,7 @@ class Stepper final : public Turntable {
   StepperSettings settings_;
   Motion motion_;
   SetLine set_line_;
-  std::atomic<int> position_ = 0;
+  std::atomic<int> position_;
   mutable std::mutex mutex_;  // guards what follows, and is held during a move
   std::condition_variable_any wake_;
   Order* order_ = nullptr;

@@ -22,6 +22,9 @@ class Turntable {
   /// Where it stands, in microsteps.
   virtual int position() const = 0;
 
+  /// Pulses that came late so far, and slowed it down; none is lost by that.
+  virtual int late_pulses() const = 0;
+
   /// Lets go of the platform. The next move takes hold again.
   virtual void release() = 0;
 };

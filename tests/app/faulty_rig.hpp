@@ -1,0 +1,177 @@
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/simulated_frames.hpp"
+#include "octurn/error.hpp"
+#include "scan/latest.hpp"
+#include "scan/plan.hpp"
+#include "scan/rig.hpp"
+#include "sensor/sensor_device.hpp"
+
+namespace octurn {
+
+enum class Fault { none, silent, unplugged, half_blind, line_refused };
+
+/// A real stepper on lines that only count, under a sensor that sees what stands on a platform so
+/// turned. Either fails as a test wants, from one stop of a scan on, until it is mended.
+///
+/// Where the platform stands is known from the motor's pulses alone, whatever the program thinks.
+class FaultyRig {
+ public:
+  static constexpr int steps = 800;
+
+  FaultyRig(int stops, int position = 0) : stops_(stops), position_(position) {
+    static const std::vector<DepthFrame> four_sides = seen_at_stops(4);
+    seen_ = stops == 4 ? four_sides : seen_at_stops(stops);
+  }
+
+  RigOptions options(double speed) {
+    return {.speed = speed,
+            .stepper = StepperSettings{.speed_steps_per_second = 5000,
+                                       .start_speed_steps_per_second = 5000,
+                                       .ramp_steps_per_second2 = 1e6,
+                                       .settle_time = std::chrono::milliseconds(0)},
+            .open_sensor =
+                [this](const std::string&) {
+                  if (fails(Fault::unplugged)) {
+                    throw Error("sensor-missing", "none is plugged in", "Plug it in.");
+                  }
+                  return std::make_unique<DepthSensor>(std::make_unique<Sensor>(*this));
+                },
+            .open_lines = [this](const StepperSettings&) { return opened_lines(); }};
+  }
+
+  /// @param lasts  until it mends itself
+  void fail(Fault fault, int stop,
+            std::chrono::steady_clock::duration lasts = std::chrono::hours(1)) {
+    fault_stop_ = stop;
+    lasts_ = lasts;
+    begun_ = false;
+    fault_ = fault;
+  }
+  void mend() { fault_ = Fault::none; }
+
+  bool is_motor_on() const { return motor_on_; }
+  int position() const { return position_; }
+  int moves_without_motor() const { return moves_without_motor_; }
+
+  /// Of the sensor that is opened next.
+  void set_lens(const Intrinsics& lens) { lens_.set(lens); }
+
+  /// Makes each pulse late by this.
+  void set_pulse_delay(std::chrono::milliseconds delay) { pulse_delay_ = delay; }
+
+  /// Called at each frame, on the thread that takes it.
+  std::function<void(int stop)> on_frame = [](int) {};
+
+ private:
+  class Sensor final : public SensorDevice {
+   public:
+    explicit Sensor(FaultyRig& rig) : rig_(rig) {}
+    const std::string& name() const override { return name_; }
+    const Intrinsics& intrinsics() const override { return intrinsics_; }
+    std::optional<TimedFrame> read(const std::stop_token& stop) override {
+      return stop.stop_requested()
+                 ? std::nullopt
+                 : std::optional(
+                       TimedFrame{.frame = rig_.look(), .time = std::chrono::steady_clock::now()});
+    }
+    std::optional<Tilt> tilt() const override { return std::nullopt; }
+    void show_angle(double /*angle*/) override {}
+
+   private:
+    FaultyRig& rig_;
+    std::string name_ = "sensor of a test";
+    Intrinsics intrinsics_ = *rig_.lens_.get();
+  };
+
+  static std::vector<DepthFrame> seen_at_stops(int stops) {
+    DepthSensor sensor("octurn-simulator://?noise=0&speed=50");
+    std::vector<DepthFrame> seen;
+    for (const int position : stop_positions(0, steps, stops)) {
+      seen.push_back(frame_at(sensor, 2 * std::numbers::pi * position / steps).frame);
+    }
+    return seen;
+  }
+
+  /// Whether that is what fails now: it begins at its stop, and then lasts.
+  bool fails(Fault fault) {
+    const auto now = std::chrono::steady_clock::now();
+    if (fault_ != fault) {
+      return false;
+    }
+    const int stop = stop_positions(0, steps, stops_)[static_cast<std::size_t>(fault_stop_)];
+    const int begin = fault == Fault::line_refused ? std::max(stop - 3, 0) : stop;  // on the way
+    if (!begun_ && position_ >= begin) {
+      begin_ = now;
+      begun_ = true;
+    }
+    return begun_ && now - begin_.load() < lasts_.load();
+  }
+
+  DepthFrame look() {
+    if (fails(Fault::silent)) {
+      throw Error("sensor-silent", "no frame came", "Plug it in again.");
+    }
+    if (fails(Fault::unplugged)) {
+      throw Error("sensor-lost", "it is gone", "Plug it in again.");
+    }
+    const std::vector<int> at = stop_positions(0, steps, stops_);
+    const auto stop = std::ranges::find(at, position_ % steps) - at.begin();
+    if (stop == stops_) {
+      throw std::logic_error("a frame between two stops, at " + std::to_string(position_));
+    }
+    on_frame(static_cast<int>(stop));
+    DepthFrame frame = seen_[static_cast<std::size_t>(stop)];
+    if (fails(Fault::half_blind)) {
+      std::fill_n(frame.depth.begin(), frame.depth.size() / 2, std::uint16_t{0});
+    }
+    return frame;
+  }
+
+  Stepper::SetLine opened_lines() {
+    if (fails(Fault::line_refused)) {
+      throw Error("turntable-failed", "line GPIO17 is used by another program", "End it.");
+    }
+    // The motor's own pull-up switches it off when the lines are let go.
+    auto lines = std::shared_ptr<void>(nullptr, [this](void*) { motor_on_ = false; });
+    return [this, lines, forward = true](Stepper::Line line, bool high) mutable {
+      if (fails(Fault::line_refused)) {
+        throw Error("turntable-failed", "line GPIO17 cannot be set", "Look at its wire.");
+      }
+      if (line == Stepper::Line::enable) {
+        motor_on_ = !high;
+      } else if (line == Stepper::Line::direction) {
+        forward = high;
+      } else if (high) {
+        std::this_thread::sleep_for(pulse_delay_.load());
+        moves_without_motor_ += motor_on_ ? 0 : 1;
+        position_ += forward ? 1 : -1;
+      }
+    };
+  }
+
+  int stops_;
+  std::vector<DepthFrame> seen_ = {};
+  std::atomic<int> position_;
+  std::atomic<bool> motor_on_ = false;
+  std::atomic<int> moves_without_motor_ = 0;
+  std::atomic<std::chrono::milliseconds> pulse_delay_ = {};
+  Latest<Intrinsics> lens_ = {};
+  std::atomic<Fault> fault_ = Fault::none;
+  std::atomic<int> fault_stop_ = 0;
+  std::atomic<bool> begun_ = false;
+  std::atomic<std::chrono::steady_clock::duration> lasts_ = {};
+  std::atomic<std::chrono::steady_clock::time_point> begin_ = {};
+};
+
+}  // namespace octurn

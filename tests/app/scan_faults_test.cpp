@@ -1,0 +1,296 @@
+// Scans whose hardware fails at every one of their stops.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/faulty_rig.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/scanner.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr int stops = 4;
+constexpr double speed = 500;         // of patience: 30 s are 60 ms
+constexpr double patient_speed = 20;  // 30 s are 1.5 s
+
+ScanSettings settings(Method method = Method::solid) {
+  return {.snapshots = stops, .frames = 2, .method = method, .leaf_size = 0.004};
+}
+
+Job ended(const Scanner& scanner) {
+  const Status status = scanner.wait_until_done(20s);
+  EXPECT_FALSE(status.busy());
+  return *status.job;
+}
+
+/// The model of a scan that nothing disturbs.
+std::string undisturbed_model(Method method = Method::solid) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  FaultyRig rig(stops);
+  Scanner scanner(rig.options(speed), {}, store);
+  scanner.start(settings(method));
+  const Job job = ended(scanner);
+  EXPECT_EQ(job.state, JobState::finished);
+  return content_of(store.model_file(job.id));
+}
+
+int stored_snapshots(const ScanStore& store, const Job& job) {
+  if (job.snapshots_done == 0) {
+    return 0;
+  }
+  const Scan scan = read_scan(store.folder(job.id));
+  for (const Shot& shot : scan.shots) {
+    read_snapshot(store.folder(job.id), scan, shot);
+  }
+  return static_cast<int>(scan.shots.size());
+}
+
+struct Case {
+  Fault fault;
+  int first_stop;  // at which it can be told
+  std::string code;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& fault) { return out << fault.code; }
+
+class ScanFaults : public ::testing::TestWithParam<Case> {};
+
+TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
+  const Case& fault = GetParam();
+  const std::string model = undisturbed_model();
+  for (int stop = fault.first_stop; stop < stops; ++stop) {
+    SCOPED_TRACE(stop);
+    const TemporaryFolder folder;
+    const ScanStore store(folder.path());
+    FaultyRig rig(stops);
+    Scanner scanner(rig.options(speed), {}, store);
+    rig.fail(fault.fault, stop);
+    scanner.start(settings());
+    const Job paused = ended(scanner);
+    ASSERT_EQ(paused.state, JobState::paused);
+    EXPECT_EQ(paused.failure->code, fault.code);
+    EXPECT_NE(paused.failure->hint.find("resume"), std::string::npos) << paused.failure->hint;
+    EXPECT_EQ(paused.snapshots_done, stop);
+    EXPECT_EQ(stored_snapshots(store, paused), stop);
+    EXPECT_EQ(json_of(*store.find(paused.id)), json_of(paused));
+    EXPECT_FALSE(rig.is_motor_on());
+
+    rig.mend();
+    EXPECT_EQ(scanner.resume(paused.id)->state, JobState::running);
+    const Job done = ended(scanner);
+    ASSERT_EQ(done.state, JobState::finished) << (done.failure ? done.failure->detail : "");
+    EXPECT_FALSE(done.failure);
+    EXPECT_EQ(done.snapshots_done, stops);
+    EXPECT_TRUE(content_of(store.model_file(done.id)) == model);
+    EXPECT_FALSE(rig.is_motor_on());
+  }
+}
+
+TEST_P(ScanFaults, ThatPassDoNotEvenPauseAScan) {
+  const std::string model = undisturbed_model();
+  for (int stop = GetParam().first_stop; stop < stops; ++stop) {
+    SCOPED_TRACE(stop);
+    const TemporaryFolder folder;
+    const ScanStore store(folder.path());
+    FaultyRig rig(stops);
+    Scanner scanner(rig.options(patient_speed), {}, store);
+    rig.fail(GetParam().fault, stop, 250ms);  // 5 s at that speed
+    scanner.start(settings());
+    const Job done = ended(scanner);
+    ASSERT_EQ(done.state, JobState::finished) << done.failure->detail;
+    EXPECT_FALSE(done.failure);
+    EXPECT_TRUE(content_of(store.model_file(done.id)) == model);
+    EXPECT_EQ(rig.moves_without_motor(), 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ScanFaults,
+                         ::testing::Values(Case{Fault::silent, 0, "sensor-silent"},
+                                           Case{Fault::unplugged, 0, "sensor-missing"},
+                                           Case{Fault::half_blind, 1, "sensor-blind"},
+                                           Case{Fault::line_refused, 0, "turntable-failed"}));
+
+class PausedScan : public ::testing::Test {
+ protected:
+  /// A scan that waits at stop 2.
+  Job pause() {
+    rig_.fail(Fault::unplugged, 2);
+    scanner_.start(settings());
+    const Job job = ended(scanner_);
+    EXPECT_EQ(job.state, JobState::paused);
+    return job;
+  }
+
+  TemporaryFolder folder_ = {};
+  ScanStore store_{folder_.path()};
+  FaultyRig rig_{stops};
+  Scanner scanner_{rig_.options(speed), {}, store_};
+};
+
+TEST_F(PausedScan, PausesAgainIfNothingWasMended) {
+  const Job job = pause();
+  ASSERT_TRUE(scanner_.resume(job.id));
+  EXPECT_EQ(ended(scanner_).state, JobState::paused);
+  EXPECT_EQ(stored_snapshots(store_, *store_.find(job.id)), 2);
+}
+
+TEST_F(PausedScan, IsEndedByACancelAndKeepsItsSnapshots) {
+  const Job job = pause();
+  EXPECT_TRUE(scanner_.cancel(job.id));
+  EXPECT_EQ(scanner_.status().job->state, JobState::cancelled);
+  const Job stored = *store_.find(job.id);
+  EXPECT_EQ(stored.state, JobState::cancelled);
+  EXPECT_FALSE(stored.failure);
+  EXPECT_EQ(stored_snapshots(store_, stored), 2);
+  EXPECT_FALSE(scanner_.cancel(job.id));
+  EXPECT_EQ(code_thrown_by([&] { scanner_.resume(job.id); }), "not-paused");
+}
+
+TEST_F(PausedScan, GoesOnWithItsOwnSensorOnly) {
+  const Job job = pause();
+  rig_.mend();
+  rig_.set_lens({.fx = 580});
+  ASSERT_TRUE(scanner_.resume(job.id));
+  const Job other = ended(scanner_);
+  EXPECT_EQ(other.state, JobState::paused);
+  EXPECT_EQ(other.failure->code, "sensor-other");
+  rig_.set_lens({});
+  ASSERT_TRUE(scanner_.resume(job.id));
+  EXPECT_EQ(ended(scanner_).state, JobState::finished);
+}
+
+TEST_F(PausedScan, CountsTheLatePulsesOfAllItsParts) {
+  rig_.set_pulse_delay(2ms);
+  const Job job = pause();
+  const int late = job.late_pulses;
+  EXPECT_GT(late, FaultyRig::steps / 2 - 10);  // to stop 2, of 4
+  rig_.mend();
+  ASSERT_TRUE(scanner_.resume(job.id));
+  const Job done = ended(scanner_);
+  EXPECT_GT(done.late_pulses, late + FaultyRig::steps / 4 - 10);
+  EXPECT_EQ(store_.find(job.id)->late_pulses, done.late_pulses);
+}
+
+TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {
+  const Job job = pause();
+  rig_.mend();
+  const auto other = scanner_.start(settings());
+  ASSERT_TRUE(other);
+  EXPECT_FALSE(scanner_.resume(job.id));  // which runs
+  EXPECT_EQ(ended(scanner_).state, JobState::finished);
+  ASSERT_TRUE(scanner_.resume(job.id));
+  EXPECT_EQ(ended(scanner_).state, JobState::finished);
+  EXPECT_TRUE(content_of(store_.model_file(job.id)) == content_of(store_.model_file(other->id)));
+}
+
+TEST_F(PausedScan, IsStillPausedForTheNextRunOfTheProgram) {
+  const Job job = pause();
+  const TemporaryFolder folder;
+  fs::copy(folder_.path(), folder.path(), fs::copy_options::recursive);
+  const ScanStore store(folder.path());
+  FaultyRig rig(stops, rig_.position());
+  Scanner scanner(rig.options(speed), {}, store);
+  EXPECT_EQ(store.find(job.id)->state, JobState::paused);
+  ASSERT_TRUE(scanner.resume(job.id));
+  EXPECT_EQ(ended(scanner).state, JobState::finished);
+  EXPECT_TRUE(content_of(store.model_file(job.id)) == undisturbed_model());
+}
+
+TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
+  const TemporaryFolder folder;
+  const ScanStore store(folder.path());
+  FaultyRig rig(stops);
+  rig.fail(Fault::silent, 1);
+  Scanner patient(rig.options(1), {}, store);
+  patient.start(settings());
+  Status status = patient.status();
+  while (status.busy() && !status.job->failure) {
+    std::this_thread::yield();
+    status = patient.status();
+  }
+  EXPECT_EQ(status.job->state, JobState::running);
+  EXPECT_EQ(status.job->failure->code, "sensor-silent");
+  const auto asked = std::chrono::steady_clock::now();
+  EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits for the next attempt
+  EXPECT_EQ(ended(patient).state, JobState::cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, 5s);
+  EXPECT_FALSE(rig.is_motor_on());
+}
+
+TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
+  for (int stop = 0; stop < stops; ++stop) {
+    SCOPED_TRACE(stop);
+    const TemporaryFolder folder;
+    const ScanStore store(folder.path());
+    FaultyRig rig(stops);
+    std::atomic<Scanner*> scanning = nullptr;
+    rig.on_frame = [&](int now) {
+      Scanner* const scanner = scanning;
+      const Status status = scanner == nullptr ? Status{} : scanner->status();
+      if (status.busy() && now == stop) {
+        scanner->cancel(status.job->id);
+      }
+    };
+    Scanner scanner(rig.options(speed), {}, store);
+    scanning = &scanner;
+    scanner.start(settings());
+    const Job job = ended(scanner);
+    EXPECT_EQ(job.state, JobState::cancelled);
+    EXPECT_EQ(job.snapshots_done, stop);
+    EXPECT_EQ(stored_snapshots(store, job), stop);
+    EXPECT_FALSE(rig.is_motor_on());
+    EXPECT_EQ(code_thrown_by([&] { scanner.resume(job.id); }), "not-paused");
+  }
+}
+
+class KilledScan : public ::testing::TestWithParam<Method> {};
+
+/// What is on the disk at a stop is what a kill, or a power cut, would leave there.
+TEST_P(KilledScan, GoesOnFromAnyStop) {
+  const std::string model = undisturbed_model(GetParam());
+  std::array<TemporaryFolder, stops> left;
+  std::array<int, stops> left_at = {};
+  {
+    const TemporaryFolder folder;
+    const ScanStore store(folder.path());
+    FaultyRig rig(stops);
+    std::array<bool, stops> copied = {};
+    rig.on_frame = [&](int stop) {
+      const auto at = static_cast<std::size_t>(stop);
+      if (!store.list().empty() && !std::exchange(copied[at], true)) {
+        fs::copy(folder.path(), left[at].path(), fs::copy_options::recursive);
+        left_at[at] = rig.position();
+      }
+    };
+    Scanner scanner(rig.options(speed), {}, store);
+    scanner.start(settings(GetParam()));
+    ASSERT_EQ(ended(scanner).state, JobState::finished);
+  }
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    SCOPED_TRACE(stop);
+    const ScanStore store(left[stop].path());
+    const Job interrupted = store.list().at(0);
+    EXPECT_EQ(interrupted.state, JobState::interrupted);
+    EXPECT_EQ(interrupted.snapshots_done, static_cast<int>(stop));
+    FaultyRig rig(stops, left_at[stop]);
+    Scanner scanner(rig.options(speed), {}, store);
+    ASSERT_TRUE(scanner.resume(interrupted.id));
+    const Job done = ended(scanner);
+    ASSERT_EQ(done.state, JobState::finished) << done.failure->detail;
+    EXPECT_TRUE(content_of(store.model_file(done.id)) == model);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, KilledScan, ::testing::Values(Method::solid, Method::intersection));
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,50 @@
+import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import {promisify} from 'node:util';
+
+import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
+import {ask, lifelike, startScanner} from './scanner.js';
+
+test('a scan that was interrupted by the scanner\'s end is resumed on the page, and finished', async (t) => {
+  const scanner = await startScanner(t, lifelike);
+  const {page} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
+  const snapshots = 8;
+  await chooseQuickScan(page, snapshots);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
+  await scanner.end('SIGKILL');
+  await scanner.restart();
+
+  await page.getByText('Scan interrupted', {exact: true}).waitFor();
+  await picture(page, 'interrupted-phone');
+  await page.getByRole('button', {name: 'Resume'}).click();
+  await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  await page.getByRole('link', {name: 'Download STL'}).first().waitFor();
+  assert.ok(await page.getByRole('button', {name: 'Resume'}).isHidden());
+  const {scans: [scan]} = await ask(scanner, 'scans');
+  assert.equal(scan.state, 'finished');
+  assert.equal(scan.snapshots_done, snapshots);
+});
+
+test('a scan whose sensor fails pauses, says why, and can be ended with what it has', async (t) => {
+  // As a sensor, a recording that has frames for every other stop only.
+  const recordings = await startScanner(t);  // for its folder
+  const turn = join(recordings.data, 'turn');
+  await promisify(execFile)(process.env.OCTURN_PROGRAM,
+      ['record', '--simulate', '--simulate-speed', '20', '-o', turn, '--snapshots', '2', '--frames', '1']);
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '10', '--sensor', turn]});
+  const {page} = await openPage(await openBrowser(t), scanner.url);
+  await chooseQuickScan(page, 4);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await page.getByText('Trying stop 2 of 4 again').waitFor();
+  await page.getByText('Scan paused', {exact: true}).waitFor();
+  assert.match(await page.locator('#trouble').innerText(), /no frame at 90[^]*resume the scan/);
+  await picture(page, 'paused');
+
+  await page.getByRole('button', {name: 'End scan'}).click();
+  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+  assert.ok(await page.getByRole('button', {name: 'Resume'}).isHidden());
+  assert.ok(await page.getByRole('link', {name: 'Download STL of 1 snapshot'}).isVisible());
+});

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "emulation/kinect_on_desk.hpp"
+#include "octurn/depth_frame.hpp"
+#include "sensor/depth_sensor.hpp"
+
+namespace octurn {
+
+/// What a simulated Kinect sees.
+inline DepthFrame simulated_frame() {
+  DepthSensor sensor("octurn-simulator://?noise=0");
+  return sensor.read({}).value().frame;
+}
+
+/// The readings that an emulated Kinect has to see for it.
+inline Readings readings_of(const DepthFrame& frame) {
+  Readings readings;
+  for (const std::uint16_t depth : frame.depth) {
+    readings.push_back(depth == 0
+                           ? std::uint16_t{2047}
+                           : static_cast<std::uint16_t>(std::lround(1089.40 - 3454890.0 / depth)));
+  }
+  return readings;
+}
+
+}  // namespace octurn

@@ -71,7 +71,7 @@ Config read_config(const std::filesystem::path& file) {
   }
 }
 
-Config config_of(const std::optional<std::filesystem::path>& file) {
+Config chosen_config(const std::optional<std::filesystem::path>& file) {
   if (file) {
     return read_config(*file);
   }

@@ -35,6 +35,6 @@ Config read_config(const std::filesystem::path& file);
 
 /// The configuration in the file that the command line names, or in the default one if that is
 /// there, or the defaults.
-Config config_of(const std::optional<std::filesystem::path>& file);
+Config chosen_config(const std::optional<std::filesystem::path>& file);
 
 }  // namespace octurn

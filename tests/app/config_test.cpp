@@ -67,7 +67,7 @@ TEST(Config, RefusesWhatIsNoJson) {
 
 TEST(Config, NeedNotExistUnlessItIsNamed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(code_thrown_by([&] { config_of(folder.path() / "none.json"); }), "bad-config");
+  EXPECT_EQ(code_thrown_by([&] { chosen_config(folder.path() / "none.json"); }), "bad-config");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ SensorLook look_from_shell(const Patient& patient, const std::stop_token& stop) 
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
-  const Config config = config_of(arguments.config_file);
+  const Config config = chosen_config(arguments.config_file);
   const std::filesystem::path data = arguments.data.value_or(config.data);
   const Patient patient{.rig = rig_options(arguments.rig, config.turntable),
                         .scan = config.scan,

@@ -34,7 +34,7 @@ TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
 }  // namespace
 
 void record(const RecordArguments& arguments) {
-  const Config config = config_of(arguments.config_file);
+  const Config config = chosen_config(arguments.config_file);
   const RigOptions options = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
   const Interruption interruption;

@@ -84,7 +84,7 @@ void copy_model(const std::filesystem::path& from, const std::filesystem::path& 
 }  // namespace
 
 void scan(const ScanArguments& arguments) {
-  const Config config = config_of(arguments.config_file);
+  const Config config = chosen_config(arguments.config_file);
   const ScanSettings settings = settings_from(json_of(arguments.settings), config.scan);
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks

@@ -43,7 +43,7 @@ void wait(Api& api) {
 }  // namespace
 
 void serve(const ServeArguments& arguments) {
-  Config config = config_of(arguments.config_file);
+  Config config = chosen_config(arguments.config_file);
   config.http.address = arguments.address.value_or(config.http.address);
   config.http.port = arguments.port.value_or(config.http.port);
   const RigOptions rig = rig_options(arguments.rig, config.turntable);

@@ -192,19 +192,22 @@ class Fusion {
     const int leaves = field_.cell_leaves();
     std::array<std::uint16_t, FieldBrick::samples> through;
     std::size_t seen_through = 0;
+    const int base = cell.x * leaves % Brick::side + cell.y * leaves % Brick::side * Brick::side +
+                     cell.z * leaves % Brick::side * Brick::side * Brick::side;
     for (int z = 0; z < leaves; ++z) {
-      for (int y = 0; y < leaves; ++y) {
-        const Cell leaf{cell.x * leaves, cell.y * leaves + y, cell.z * leaves + z};
-        Point p = point(static_cast<float>(leaf.x) + 0.5F, static_cast<float>(leaf.y) + 0.5F,
-                        static_cast<float>(leaf.z) + 0.5F);
-        int index = leaf.x % Brick::side + leaf.y % Brick::side * Brick::side +
-                    leaf.z % Brick::side * Brick::side * Brick::side;
-        for (int x = 0; x < leaves; ++x, ++index) {
-          if (look_at(p, brick, static_cast<std::size_t>(index), samples)) {
-            through[seen_through++] = static_cast<std::uint16_t>(index);
+      for (int y = 0; y < leaves; y += Column::samples) {
+        Column column = column_at({cell.x * leaves, cell.y * leaves + y, cell.z * leaves + z});
+        const int end = std::min(leaves - y, Column::samples);
+        for (int x = 0; x < leaves; ++x) {
+          find_pixels(column);
+          for (int i = 0; i < end; ++i) {
+            const int index = base + x + (y + i + z * Brick::side) * Brick::side;
+            if (look_at(column, i, brick, static_cast<std::size_t>(index), samples)) {
+              through[seen_through++] = static_cast<std::uint16_t>(index);
+            }
           }
-          for (std::size_t i = 0; i < 3; ++i) {
-            p[i] += step_[0][i];
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            column.p[axis] += step_[0][axis];
           }
         }
       }
@@ -218,20 +221,42 @@ class Fusion {
     }
   }
 
-  /// @return whether the sample at `p` was seen through
-  bool look_at(const Point& p, const Cell& brick, std::size_t index, FieldBrick*& samples) {
-    if (p[2] <= nearest_z) {
-      return false;
+  /// Four samples that follow each other along y, taken together; of the smallest cells two are not
+  /// looked at.
+  struct Column {
+    static constexpr int samples = 4;
+    std::array<Eigen::Array4f, 3> p;  // sensor's frame
+    Eigen::Array4i u;
+    Eigen::Array4i v;
+  };
+
+  Column column_at(const Cell& leaf) const {
+    const Eigen::Array4f y = static_cast<float>(leaf.y) + Eigen::Array4f(0.5F, 1.5F, 2.5F, 3.5F);
+    Column column;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float start = origin_[axis] + (static_cast<float>(leaf.x) + 0.5F) * step_[0][axis];
+      const float up = (static_cast<float>(leaf.z) + 0.5F) * step_[2][axis];
+      column.p[axis] = start + y * step_[1][axis] + up;
     }
-    const float nearness = 1.0F / p[2];
-    const float at_u = p[0] * nearness * fx_ + cx_;
-    const float at_v = p[1] * nearness * fy_ + cy_;
-    if (!(at_u > -1 && at_v > -1 && at_u < width_ && at_v < height_)) {
-      return false;
-    }
-    const int u = nearest_pixel(at_u);
-    const int v = nearest_pixel(at_v);
-    if (u < 0 || v < 0 || u >= sighting_.lens().width || v >= sighting_.lens().height) {
+    return column;
+  }
+
+  void find_pixels(Column& column) const {
+    const Eigen::Array4f nearness = 1.0F / column.p[2].max(nearest_z);
+    const Eigen::Array4f u = (column.p[0] * nearness * fx_ + cx_).max(-1.0F).min(width_);
+    const Eigen::Array4f v = (column.p[1] * nearness * fy_ + cy_).max(-1.0F).min(height_);
+    column.u = (u + (before_first + 0.5F)).cast<int>() - before_first;
+    column.v = (v + (before_first + 0.5F)).cast<int>() - before_first;
+  }
+
+  /// @return whether a sample was seen through
+  bool look_at(const Column& column, int y, const Cell& brick, std::size_t index,
+               FieldBrick*& samples) {
+    const Point p{column.p[0][y], column.p[1][y], column.p[2][y]};
+    const int u = column.u[y];
+    const int v = column.v[y];
+    if (p[2] <= nearest_z || u < 0 || v < 0 || u >= sighting_.lens().width ||
+        v >= sighting_.lens().height) {
       return false;
     }
     const Sight& sight = sighting_.at(u, v);

@@ -1,6 +1,7 @@
 #include "octurn/leaf_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <functional>
 
@@ -174,6 +175,38 @@ void LeafSet::keep_part() {
       assign(row(y, z), run, false);
     }
   });
+}
+
+void LeafSet::remove_spurs() {
+  const std::vector<std::uint64_t> no_leaves(words_);
+  const auto row_or_none = [&](int y, int z) {
+    const bool is_there = y >= 0 && z >= 0 && y < size_.y && z < size_.z;
+    return is_there ? std::span<const std::uint64_t>(row(y, z)) : std::span(no_leaves);
+  };
+  for (bool removed = true; removed;) {
+    removed = false;
+    for (int z = 0; z < size_.z; ++z) {
+      for (int y = 0; y < size_.y; ++y) {
+        const auto leaves = row(y, z);
+        const std::array beside{row_or_none(y - 1, z), row_or_none(y + 1, z), row_or_none(y, z - 1),
+                                row_or_none(y, z + 1)};
+        for (std::size_t i = 0; i < words_; ++i) {
+          std::uint64_t any = leaves[i] << 1 | (i > 0 ? leaves[i - 1] >> 63 : 0);
+          std::uint64_t two = 0;
+          const auto count = [&](std::uint64_t neighbours) {
+            two |= any & neighbours;
+            any |= neighbours;
+          };
+          count(leaves[i] >> 1 | (i + 1 < words_ ? leaves[i + 1] << 63 : 0));
+          for (const auto& other : beside) {
+            count(other[i]);
+          }
+          removed = removed || (leaves[i] & ~two) != 0;
+          leaves[i] &= two;
+        }
+      }
+    }
+  }
 }
 
 LeafSet LeafSet::cropped() const {

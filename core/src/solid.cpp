@@ -202,6 +202,7 @@ SurfaceCount Solid::surface(const SnapshotSource& snapshots, const FacetSink& si
   LeafSet part = filled.inside();
   part.keep_part();
   part = part.cropped();
+  part.remove_spurs();
   part.fill_cavities();
   SurfaceCount count{.leaves = part.count(), .facets = 0, .parts = part.count_parts()};
   const FacetSink counted = [&](std::span<const Facet> facets) {

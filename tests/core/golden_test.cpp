@@ -89,12 +89,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"tower_scan", intersection(0.002), 87336, 0xb64d3c95e521210bU},
                     Golden{"tower_scan", intersection(0.001), 348860, 0x343286fd1d4d3509U},
                     Golden{"tower_scan", intersection(0.0005, 8), 21608, 0x21cb0ba7ab681d39U},
-                    Golden{"figure_scan", solid(0.004), 5386, 0x273b884557db3eddU},
-                    Golden{"figure_scan", solid(0.002, 0), 26756, 0xcebc1e8023322ed1U},
-                    Golden{"figure_scan", solid(0.001), 33214, 0xf6965bcd9ece0703U},
-                    Golden{"tower_scan", solid(0.002), 7340, 0xbe5bd538bc82edc4U},
-                    Golden{"tower_scan", solid(0.001, 0), 59100, 0xbd83d4d972490c93U},
-                    Golden{"tower_scan", solid(0.001, 0.0002), 3764, 0xb6a1b96bd603291aU}),
+                    Golden{"figure_scan", solid(0.004), 5348, 0xc0458f0bdd7fa455U},
+                    Golden{"figure_scan", solid(0.002, 0), 26668, 0xdee6f431a6d5ea38U},
+                    Golden{"figure_scan", solid(0.001), 32922, 0x1782a694397862ddU},
+                    Golden{"tower_scan", solid(0.002), 7324, 0x8fdb0b92b20b1394U},
+                    Golden{"tower_scan", solid(0.001, 0), 59044, 0x7206da261c1c93a7U},
+                    Golden{"tower_scan", solid(0.001, 0.0002), 3742, 0x20283d8a3e5a2331U}),
     name_of_golden);
 
 }  // namespace

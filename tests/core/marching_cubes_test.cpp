@@ -146,8 +146,8 @@ TEST(MarchingCubes, KeepsVerticesApart) {
 
 TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
   const Shape shape = ball({0.0002, -0.0003, 0.0141}, 0.01);
-  DistanceField field(FieldShape(
-      1.0, 10, {.min = {-0.012, -0.012, 0.002}, .max = {0.012, 0.012, 0.026}}, 0.0035));
+  DistanceField field(
+      FieldShape(1.0, 10, {.min = {-0.012, -0.012, 0.002}, .max = {0.012, 0.012, 0.026}}, 0.0035));
   for (int z = 1; z + 1 < field.size().z; ++z) {
     for (int y = 1; y + 1 < field.size().y; ++y) {
       for (int x = 1; x + 1 < field.size().x; ++x) {

@@ -37,8 +37,8 @@ class LeafSet {
   /// largest, or the largest of all if none is. Leaves of a part meet in faces.
   void keep_part();
 
-  /// Removes needles one leaf thick, from their ends: leaves that meet no more than one other, again
-  /// and again. What is thin along one axis only, stays.
+  /// Removes needles one leaf thick, from their ends: leaves that meet no more than one other,
+  /// again and again. What is thin along one axis only, stays.
   void remove_spurs();
 
   /// The same leaves in a smaller box, which leaves one leaf free, at least, around them in x and

@@ -1,11 +1,13 @@
-// Starts the image, scans in it, and says what it cost. Arguments: the machine, and the folder of its card.
+// Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, and how often power is
+// cut then.
 
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {measure} from '../tests/e2e/mesh_file.js';
 import {Guest, secondsSince} from './guest.mjs';
+import {cutPower} from './power_cuts.mjs';
 
-const [machine, card] = process.argv.slice(2);
+const [machine, card, cuts] = process.argv.slice(2);
 const patience = machine === 'virt' ? 240 : 480;  // seconds, on a machine with other work
 
 const say = (text) => console.log(`boot-test: ${text}`);
@@ -62,6 +64,11 @@ async function test(guest) {
 const guest = await Guest.start(machine, card);
 try {
   await test(guest);
+  await guest.run('sync');
+  await guest.cutPower();
+  if (Number(cuts) > 0) {
+    await cutPower(machine, card, Number(cuts), patience, say);
+  }
   say('passed');
 } catch (error) {
   console.error(`boot-test: failed: ${error.message}`);

@@ -17,6 +17,11 @@ const require = (condition, text) => {
   }
 };
 
+// So that a test that is ended ends QEMU too.
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+  process.once(signal, () => process.exit(1));
+}
+
 async function scan(guest) {
   const {id} = await guest.ask('scans', 'POST', {snapshots: 8, frames: 3, leaf_size_mm: 2});
   const begin = performance.now();
@@ -72,6 +77,8 @@ try {
   say('passed');
 } catch (error) {
   console.error(`boot-test: failed: ${error.message}`);
+  const inside = 'systemctl --no-pager --plain list-jobs; systemctl --no-pager --plain --failed; journalctl -b -p warning --no-pager | tail -n 40';
+  console.error(await guest.run(inside).catch(String));
   process.exitCode = 1;
 } finally {
   await guest.cutPower();

@@ -57,7 +57,9 @@ export class Guest {
     const line = (await readFile(`${card}/cmdline.txt`, 'utf8')).trim().replace(/console=\S+ */g, '');
     // A shell on the console, which no image has of itself, is what this test looks inside with.
     const kernel = [line, `console=${machine.console}`, `systemd.debug_shell=${machine.console}`,
-      `systemd.mask=serial-getty@${machine.console}.service`, 'systemd.show_status=0', ...machine.kernel];
+      `systemd.mask=serial-getty@${machine.console}.service`, 'systemd.show_status=0',
+      // An emulated machine on a busy one takes its time, and systemd's clock does not wait.
+      'systemd.default_device_timeout_sec=600', 'systemd.default_timeout_start_sec=600', ...machine.kernel];
     const guest = new Guest();
     guest.start = performance.now();
     guest.url = `http://127.0.0.1:${port}/`;

@@ -8,7 +8,7 @@ import {Guest, secondsSince} from './guest.mjs';
 import {cutPower} from './power_cuts.mjs';
 
 const [machine, card, cuts] = process.argv.slice(2);
-const patience = machine === 'virt' ? 240 : 480;  // seconds, on a machine with other work
+const patience = machine === 'virt' ? 600 : 900;  // seconds, on a machine with other work
 
 const say = (text) => console.log(`boot-test: ${text}`);
 const require = (condition, text) => {

@@ -1,0 +1,100 @@
+// Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, and how often power is
+// cut then.
+
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {measure} from '../tests/e2e/mesh_file.js';
+import {Guest, secondsSince} from './guest.mjs';
+import {cutPower} from './power_cuts.mjs';
+
+const [machine, card, cuts] = process.argv.slice(2);
+const patience = machine === 'virt' ? 600 : 900;  // seconds, on a machine with other work
+
+const say = (text) => console.log(`boot-test: ${text}`);
+const require = (condition, text) => {
+  if (!condition) {
+    throw new Error(text);
+  }
+};
+
+// So that a test that is ended ends QEMU too.
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+  process.once(signal, () => process.exit(1));
+}
+
+/** Once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
+async function startedScan(guest) {
+  const begin = performance.now();
+  for (;;) {
+    try {
+      return await guest.ask('scans', 'POST', {snapshots: 8, frames: 3, leaf_size_mm: 2});
+    } catch (error) {
+      if (!error.message.includes('sensor-silent') || secondsSince(begin) > patience) {
+        throw error;
+      }
+    }
+    await sleep(500);
+  }
+}
+
+async function scan(guest) {
+  const {id} = await startedScan(guest);
+  const begin = performance.now();
+  for (;;) {
+    const scan = await guest.ask(`scans/${id}`);
+    if (scan.state !== 'running') {
+      require(scan.state === 'finished', `the scan ${scan.state}: ${JSON.stringify(scan.error)}`);
+      return {seconds: secondsSince(begin), model: scan.model};
+    }
+    require(secondsSince(begin) < patience, `the scan is not done after ${patience} s: ${JSON.stringify(scan)}`);
+    await sleep(500);
+  }
+}
+
+async function test(guest) {
+  say(`${machine}: the page after ${(await guest.page(patience)).toFixed(1)} s`);
+  const {version, sensor} = await guest.ask('status');
+  require(sensor.simulated, `octurn.txt asks for the simulated rig, and the sensor is ${JSON.stringify(sensor)}`);
+  say(`octurn ${version}, on the simulated rig as octurn.txt asks`);
+
+  const {seconds, model} = await scan(guest);
+  const response = await fetch(`${guest.url}Scan.stl`, {signal: AbortSignal.timeout(60000)});
+  const mesh = measure(Buffer.from(await response.arrayBuffer()));
+  require(mesh.triangles > 1000, `the model has ${mesh.triangles} triangles`);
+  require(mesh.openEdges === 0, `the model has ${mesh.openEdges} open edges`);
+  require(mesh.volume > 0, 'the model is inside out');
+  require(model.watertight, 'the daemon does not call its model watertight');
+  say(`a scan of 8 snapshots in ${seconds.toFixed(1)} s: ${mesh.triangles} triangles, closed, ${(mesh.volume / 1000).toFixed(1)} cm3`);
+
+  const bytes = Number(await guest.run('cat /sys/fs/cgroup/system.slice/octurn.service/memory.peak', patience));
+  require(bytes > 1e6, 'the daemon has no memory');
+  const peak = await guest.run('sed -n "s/^VmHWM:[^0-9]*//p" /proc/$(systemctl show -P MainPID octurn)/status');
+  say(`the daemon's peak memory: ${peak} resident, ${(bytes / 1048576).toFixed(0)} MiB with its files in the cache`);
+
+  const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
+  require(failed === '', `failed units: ${failed}`);
+  const name = await guest.run('cat /proc/sys/kernel/hostname');
+  require(name === 'boot-test', `octurn.txt gives the name boot-test, and it is ${name}`);
+  const size = Number(await guest.run('df --output=size -m /var/lib/octurn | tail -n 1'));
+  require(size > 200, `the data partition has not grown: ${size} MiB`);
+  const lost = await guest.run('journalctl -b -q -p err --no-pager -o cat | head -n 20');
+  say(`data partition of ${size} MiB, no failed units, errors in the journal: ${lost || 'none'}`);
+}
+
+const guest = await Guest.start(machine, card);
+try {
+  await test(guest);
+  await guest.run('sync');
+  await guest.cutPower();
+  if (Number(cuts) > 0) {
+    await cutPower(machine, card, Number(cuts), patience, say);
+  }
+  say('passed');
+} catch (error) {
+  console.error(`boot-test: failed: ${error.message}`);
+  const inside = 'systemctl --no-pager --plain list-jobs; systemctl --no-pager --plain --failed; journalctl -b -p warning --no-pager | tail -n 40';
+  console.error(await guest.run(inside).catch(String));
+  process.exitCode = 1;
+} finally {
+  await guest.cutPower();
+}

@@ -1,0 +1,139 @@
+// A machine in QEMU that starts from a card as the Raspberry Pi's firmware would start it.
+
+import {spawn} from 'node:child_process';
+import {once} from 'node:events';
+import {createWriteStream} from 'node:fs';
+import {readFile} from 'node:fs/promises';
+import {createServer} from 'node:net';
+import {setTimeout as sleep} from 'node:timers/promises';
+
+/** What differs between QEMU's machines: its options, and the name of the console that is QEMU's standard output. */
+const machines = {
+  virt: {
+    console: 'ttyAMA0',
+    options: ({card, forward}) => [
+      '-M', 'virt', '-cpu', 'cortex-a53', '-smp', '2', '-m', '1024',
+      '-serial', 'stdio',
+      '-drive', `if=none,id=card,format=raw,file=${card}/card.img`, '-device', 'virtio-blk-pci,drive=card',
+      '-netdev', `user,id=net,${forward}`, '-device', 'virtio-net-pci,netdev=net,romfile=',
+      '-device', 'virtio-rng-pci',
+    ],
+    kernel: [],
+  },
+  raspi3b: {
+    console: 'ttyS1',
+    options: ({card, forward}) => [
+      '-M', 'raspi3b', '-dtb', `${card}/bcm2837-rpi-3-b.dtb`,
+      '-serial', 'null', '-serial', 'stdio',
+      '-drive', `if=sd,format=raw,file=${card}/card.img`,
+      '-netdev', `user,id=net,${forward}`, '-device', 'usb-net,netdev=net',
+    ],
+    kernel: ['systemd.watchdog_sec=0'],  // the emulated watchdog fires as soon as it is set
+  },
+};
+
+/** @returns {Promise<number>} a port of this machine's loopback that nobody uses */
+async function freePort() {
+  const server = createServer().listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const {port} = server.address();
+  server.close();
+  await once(server, 'close');
+  return port;
+}
+
+/** Seconds since `start`, of performance.now(). */
+export const secondsSince = (start) => (performance.now() - start) / 1000;
+
+export class Guest {
+  #qemu;
+  #said = '';
+  #commands = 0;
+
+  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img, kernel and initrd */
+  static async start(name, card) {
+    const port = await freePort();
+    const machine = machines[name];
+    const line = (await readFile(`${card}/cmdline.txt`, 'utf8')).trim().replace(/console=\S+ */g, '');
+    // A shell on the console, which no image has of itself, is what this test looks inside with.
+    const kernel = [line, `console=${machine.console}`, `systemd.debug_shell=${machine.console}`,
+      `systemd.mask=serial-getty@${machine.console}.service`, 'systemd.show_status=0',
+      // An emulated machine on a busy one takes its time, and systemd's clock does not wait.
+      'systemd.default_device_timeout_sec=600', 'systemd.default_timeout_start_sec=600', ...machine.kernel];
+    const guest = new Guest();
+    guest.start = performance.now();
+    guest.url = `http://127.0.0.1:${port}/`;
+    guest.#qemu = spawn('qemu-system-aarch64', [
+      '-display', 'none', '-monitor', 'none', '-no-reboot', '-accel', 'tcg,thread=multi',
+      '-kernel', `${card}/vmlinuz`, '-initrd', `${card}/initrd.img`, '-append', kernel.join(' '),
+      ...machine.options({card, forward: `hostfwd=tcp:127.0.0.1:${port}-:80`}),
+    ], {stdio: ['pipe', 'pipe', 'inherit']});
+    process.once('exit', () => guest.#qemu.kill('SIGKILL'));
+    const log = createWriteStream(`${card}/console.log`);
+    guest.#qemu.stdout.setEncoding('utf8').on('data', (text) => {
+      guest.#said += text;
+      log.write(text);
+    });
+    return guest;
+  }
+
+  /** Polls `ready`, which resolves to undefined until it has an answer. */
+  async #until(what, seconds, ready) {
+    const begin = performance.now();
+    while (secondsSince(begin) < seconds) {
+      const answer = await ready();
+      if (answer !== undefined) {
+        return answer;
+      }
+      if (this.#qemu.exitCode !== null) {
+        throw new Error(`QEMU ended with ${this.#qemu.exitCode} before ${what}`);
+      }
+      await sleep(100);
+    }
+    throw new Error(`no ${what} within ${seconds} s; the console ends:\n${this.#said.slice(-2000)}`);
+  }
+
+  /** @returns {Promise<number>} seconds from power-on to the page */
+  async page(seconds) {
+    return this.#until('page', seconds, async () => {
+      try {
+        const response = await fetch(this.url, {signal: AbortSignal.timeout(3000)});
+        return (await response.text()).includes('<title>') ? secondsSince(this.start) : undefined;
+      } catch {
+        return undefined;  // QEMU accepts connections before the guest does
+      }
+    });
+  }
+
+  /** Asks the API. @returns {Promise<any>} */
+  async ask(path, method = 'GET', body = undefined) {
+    const response = await fetch(`${this.url}api/v1/${path}`, {
+      method, headers: {'Content-Type': 'application/json'}, body: body && JSON.stringify(body),
+      signal: AbortSignal.timeout(60000)});
+    if (!response.ok) {
+      throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
+    }
+    return response.json();
+  }
+
+  /** Runs a command in the guest, as root. @returns {Promise<string>} what it prints */
+  async run(command, seconds = 60) {
+    const name = `command-${++this.#commands}`;
+    const begin = this.#said.length;
+    // The console echoes the line, so the marks are not in it as they are printed.
+    this.#qemu.stdin.write(`\nprintf '<%s\\n' ${name}; ${command}; printf '%s>\\n' ${name}\n`);
+    const output = new RegExp(`<${name}\\r?\\n([^]*?)${name}>`);
+    return this.#until(`answer to "${command}"`, seconds, () => {
+      const text = this.#said.slice(begin).replace(/\x1b\[[0-9;?]*[a-zA-Z]|\x1b\][^\x07\x1b]*(\x07|\x1b\\)/g, '');
+      return output.exec(text)?.[1].replaceAll('\r', '').trim();
+    });
+  }
+
+  /** The plug is pulled. */
+  async cutPower() {
+    if (this.#qemu.exitCode === null && this.#qemu.signalCode === null) {
+      this.#qemu.kill('SIGKILL');
+      await once(this.#qemu, 'exit');
+    }
+  }
+}

@@ -1,0 +1,15 @@
+# shellcheck shell=sh
+# The card, read by the steps that make it. MBR, since a Pi 3 knows no other; sizes in MiB.
+#
+#   1  FAT    the Pi's firmware, octurn.txt, and in a/ and b/ the kernels of the two roots
+#   2  root a squashfs
+#   3  root b squashfs, for updates
+#   4  data   ext4, made at the first start, when it has grown to the end of the card
+
+# shellcheck disable=SC2034
+{
+  signature=4f637475 # of the partition table: how the initrd knows the card; fstab has it too
+  boot_size=192
+  root_size=256
+  data_size=8
+}

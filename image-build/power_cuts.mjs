@@ -1,0 +1,55 @@
+// Pulls the plug while a scan is written, and looks what is left of it.
+
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {Guest, secondsSince} from './guest.mjs';
+
+/**
+ * A scan until power fails, at some moment of its first 20 seconds.
+ * @returns {Promise<{id: string, snapshots: number}>} what the daemon said it had stored by then
+ */
+async function interruptedScan(guest) {
+  const {id} = await guest.ask('scans', 'POST', {snapshots: 60, frames: 1});
+  const begin = performance.now();
+  const end = Math.random() * 20;
+  let snapshots = 0;
+  while (secondsSince(begin) < end) {
+    snapshots = (await guest.ask(`scans/${id}`)).snapshots_done;
+    await sleep(Math.random() * 200);
+  }
+  await guest.cutPower();
+  return {id, snapshots};
+}
+
+/**
+ * @param {'virt' | 'raspi3b'} machine
+ * @param {string} card
+ * @param {number} cuts
+ * @param {number} patience  seconds for a start
+ * @param {(text: string) => void} say
+ */
+export async function cutPower(machine, card, cuts, patience, say) {
+  const stored = [];
+  let guest = await Guest.start(machine, card);
+  try {
+    await guest.page(patience);
+    for (let cut = 1; cut <= cuts; ++cut) {
+      stored.push(await interruptedScan(guest));
+      guest = await Guest.start(machine, card);
+      const seconds = await guest.page(patience);
+      for (const {id, snapshots} of stored) {
+        const scan = await guest.ask(`scans/${id}`);
+        if (scan.state !== 'interrupted' || scan.snapshots_done < snapshots) {
+          throw new Error(`${snapshots} snapshots were stored, and the scan is ${JSON.stringify(scan)}`);
+        }
+      }
+      const errors = await guest.run('journalctl -b -k -o cat | grep -iE "(EXT4-fs|FAT-fs|SQUASHFS|I/O).*error"');
+      if (errors) {
+        throw new Error(`file systems: ${errors}`);
+      }
+      say(`power cut ${cut} after ${stored.at(-1).snapshots} snapshots: all there, the page after ${seconds.toFixed(1)} s`);
+    }
+  } finally {
+    await guest.cutPower();
+  }
+}

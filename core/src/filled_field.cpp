@@ -10,6 +10,20 @@ namespace {
 // snapshot saw to the model.
 constexpr float free_distance = 0.8F * FieldShape::ticks;
 
+std::size_t sample_of(const Cell& leaf) {
+  return static_cast<std::size_t>((leaf.x & 7) | (leaf.y & 7) << 3 | (leaf.z & 7) << 6);
+}
+
+/// A bit for each of the leaves of a brick's row.
+template <typename IsInside>
+std::uint64_t bits_of(IsInside is_inside) {
+  std::uint64_t bits = 0;
+  for (int x = 0; x < Brick::side; ++x) {
+    bits |= (is_inside(x) ? std::uint64_t{1} : 0) << x;
+  }
+  return bits;
+}
+
 constexpr int sweeps = 10;  // over each grid of the harmonic fill, there and back
 
 }  // namespace
@@ -222,25 +236,32 @@ float FilledField::interpolated(const Cell& leaf) const {
                       between(leaf.z - low_.z, grid_.size.z));
 }
 
-FilledField::Value FilledField::at(const Cell& leaf) const {
-  const Cell above{leaf.x, leaf.y, std::max(leaf.z, foot_)};
+/// What is known of a leaf. @param brick  that it lies in, if there is one
+Sighted FilledField::sighted(const Cell& leaf, const SeenBrick* brick) const {
+  if (brick != nullptr) {
+    return brick->at(sample_of(leaf));
+  }
   const Cell& low = field_.low();
-  const Cell position{(above.x >> 3) - low.x, (above.y >> 3) - low.y, (above.z >> 3) - low.z};
   const int a_brick = field_.cells_a_brick();
   const int leaves = field_.cell_leaves();
-  const Cell cell{above.x / leaves - low.x * a_brick, above.y / leaves - low.y * a_brick,
-                  above.z / leaves - low.z * a_brick};
+  const bool is_free =
+      field_.is_free({leaf.x / leaves - low.x * a_brick, leaf.y / leaves - low.y * a_brick,
+                      leaf.z / leaves - low.z * a_brick});
+  return is_free ? Sighted::free : Sighted::unknown;
+}
+
+const SeenBrick* FilledField::brick_at(const Cell& leaf) const {
+  const Cell& low = field_.low();
+  return field_.find({(leaf.x >> 3) - low.x, (leaf.y >> 3) - low.y, (leaf.z >> 3) - low.z});
+}
+
+FilledField::Value FilledField::at(const Cell& leaf) const {
+  const Cell above{leaf.x, leaf.y, std::max(leaf.z, foot_)};
+  const SeenBrick* const brick = brick_at(above);
+  const Sighted sighted = this->sighted(above, brick);
   Value value;
-  Sighted sighted = Sighted::unknown;
-  if (const SeenBrick* brick = field_.find(position)) {
-    const auto sample =
-        static_cast<std::size_t>((above.x & 7) | (above.y & 7) << 3 | (above.z & 7) << 6);
-    sighted = brick->at(sample);
-    value.distance = static_cast<float>(brick->distance[sample]);
-  } else if (field_.is_free(cell)) {
-    sighted = Sighted::free;
-  }
   if (sighted == Sighted::seen) {
+    value.distance = static_cast<float>(brick->distance[sample_of(above)]);
     value.seen = true;
   } else if (sighted == Sighted::free) {
     value.distance = FieldShape::ticks;
@@ -291,38 +312,23 @@ FilledField::Side FilledField::side_of(const Cell& brick) const {
 /// Eight leaves of a row that lie in one brick, `first` the first of them: a bit for each at which
 /// the distance is negative.
 std::uint64_t FilledField::inside(const Cell& first) const {
-  std::uint64_t bits = 0;
   if (first.z < foot_) {
-    for (int x = 0; x < Brick::side; ++x) {
-      bits |= (at({first.x + x, first.y, first.z}).distance < 0 ? std::uint64_t{1} : 0) << x;
-    }
-    return bits;
+    return bits_of([&](int x) { return at({first.x + x, first.y, first.z}).distance < 0; });
   }
-  const Cell& low = field_.low();
-  const int leaves = field_.cell_leaves();
-  const Cell corner{low.x * Brick::side, low.y * Brick::side, low.z * Brick::side};
-  const SeenBrick* const brick =
-      field_.find({(first.x >> 3) - low.x, (first.y >> 3) - low.y, (first.z >> 3) - low.z});
-  const auto sample = static_cast<std::size_t>((first.y & 7) << 3 | (first.z & 7) << 6);
+  const SeenBrick* const brick = brick_at(first);
   const Between y = between(first.y - low_.y, grid_.size.y);
   const Between z = between(first.z - low_.z, grid_.size.z);
-  for (int x = 0; x < Brick::side; ++x) {
-    const auto i = sample + static_cast<std::size_t>(x);
-    Sighted sighted = Sighted::unknown;
-    if (brick != nullptr) {
-      sighted = brick->at(i);
-    } else if (field_.is_free({(first.x + x - corner.x) / leaves, (first.y - corner.y) / leaves,
-                               (first.z - corner.z) / leaves})) {
-      sighted = Sighted::free;
+  return bits_of([&](int x) {
+    const Cell leaf{first.x + x, first.y, first.z};
+    switch (sighted(leaf, brick)) {
+      case Sighted::seen:
+        return brick->distance[sample_of(leaf)] < 0;
+      case Sighted::free:
+        return false;
+      default:
+        return interpolated(between(leaf.x - low_.x, grid_.size.x), y, z) < 0;
     }
-    const bool is_inside =
-        sighted == Sighted::seen
-            ? brick->distance[i] < 0
-            : sighted != Sighted::free &&
-                  interpolated(between(first.x + x - low_.x, grid_.size.x), y, z) < 0;
-    bits |= (is_inside ? std::uint64_t{1} : 0) << x;
-  }
-  return bits;
+  });
 }
 
 LeafSet FilledField::inside() const {

@@ -187,36 +187,47 @@ class Fusion {
     }
   }
 
+  /// Samples of a cell, by where they stand in their brick.
+  struct Through {
+    std::array<std::uint16_t, FieldBrick::samples> samples;
+    std::size_t count = 0;
+  };
+
   /// Looks at each sample of a cell.
   void enter_cell(const Cell& brick, const Cell& cell, FieldBrick*& samples) {
     const int leaves = field_.cell_leaves();
-    std::array<std::uint16_t, FieldBrick::samples> through;
-    std::size_t seen_through = 0;
-    const int base = cell.x * leaves % Brick::side + cell.y * leaves % Brick::side * Brick::side +
-                     cell.z * leaves % Brick::side * Brick::side * Brick::side;
+    Through through;
     for (int z = 0; z < leaves; ++z) {
       for (int y = 0; y < leaves; y += Column::samples) {
-        Column column = column_at({cell.x * leaves, cell.y * leaves + y, cell.z * leaves + z});
-        const int end = std::min(leaves - y, Column::samples);
-        for (int x = 0; x < leaves; ++x) {
-          find_pixels(column);
-          for (int i = 0; i < end; ++i) {
-            const int index = base + x + (y + i + z * Brick::side) * Brick::side;
-            if (look_at(column, i, brick, static_cast<std::size_t>(index), samples)) {
-              through[seen_through++] = static_cast<std::uint16_t>(index);
-            }
-          }
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            column.p[axis] += step_[0][axis];
-          }
-        }
+        look_along_x({cell.x * leaves, cell.y * leaves + y, cell.z * leaves + z},
+                     std::min(leaves - y, Column::samples), brick, samples, through);
       }
     }
-    if (seen_through == static_cast<std::size_t>(leaves * leaves * leaves)) {
+    if (through.count == static_cast<std::size_t>(leaves * leaves * leaves)) {
       count(field_.free_cell(cell));
     } else if (samples != nullptr) {
-      for (std::size_t i = 0; i < seen_through; ++i) {
-        count(samples->free[through[i]]);
+      for (std::size_t i = 0; i < through.count; ++i) {
+        count(samples->free[through.samples[i]]);
+      }
+    }
+  }
+
+  /// Looks at those rows of a cell along x that begin at `first` and after it in y.
+  void look_along_x(const Cell& first, int rows, const Cell& brick, FieldBrick*& samples,
+                    Through& through) {
+    Column column = column_at(first);
+    const int start = first.x % Brick::side + first.y % Brick::side * Brick::side +
+                      first.z % Brick::side * Brick::side * Brick::side;
+    for (int x = 0; x < field_.cell_leaves(); ++x) {
+      find_pixels(column);
+      for (int row = 0; row < rows; ++row) {
+        const int index = start + x + row * Brick::side;
+        if (look_at(column, row, brick, static_cast<std::size_t>(index), samples)) {
+          through.samples[through.count++] = static_cast<std::uint16_t>(index);
+        }
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        column.p[axis] += step_[0][axis];
       }
     }
   }

@@ -178,35 +178,41 @@ void LeafSet::keep_part() {
 }
 
 void LeafSet::remove_spurs() {
-  const std::vector<std::uint64_t> no_leaves(words_);
-  const auto row_or_none = [&](int y, int z) {
-    const bool is_there = y >= 0 && z >= 0 && y < size_.y && z < size_.z;
-    return is_there ? std::span<const std::uint64_t>(row(y, z)) : std::span(no_leaves);
-  };
   for (bool removed = true; removed;) {
     removed = false;
     for (int z = 0; z < size_.z; ++z) {
       for (int y = 0; y < size_.y; ++y) {
-        const auto leaves = row(y, z);
-        const std::array beside{row_or_none(y - 1, z), row_or_none(y + 1, z), row_or_none(y, z - 1),
-                                row_or_none(y, z + 1)};
-        for (std::size_t i = 0; i < words_; ++i) {
-          std::uint64_t any = leaves[i] << 1 | (i > 0 ? leaves[i - 1] >> 63 : 0);
-          std::uint64_t two = 0;
-          const auto count = [&](std::uint64_t neighbours) {
-            two |= any & neighbours;
-            any |= neighbours;
-          };
-          count(leaves[i] >> 1 | (i + 1 < words_ ? leaves[i + 1] << 63 : 0));
-          for (const auto& other : beside) {
-            count(other[i]);
-          }
-          removed = removed || (leaves[i] & ~two) != 0;
-          leaves[i] &= two;
-        }
+        removed = remove_spurs_of(y, z) || removed;
       }
     }
   }
+}
+
+/// Removes the leaves of a row that meet no more than one other. @return whether there were any
+bool LeafSet::remove_spurs_of(int y, int z) {
+  const auto leaves = row(y, z);
+  const auto word = [&](int other_y, int other_z, std::size_t i) {
+    const bool is_there = other_y >= 0 && other_z >= 0 && other_y < size_.y && other_z < size_.z;
+    return is_there ? bits_[first_word(other_y, other_z) + i] : 0;
+  };
+  bool removed = false;
+  for (std::size_t i = 0; i < words_; ++i) {
+    if (leaves[i] == 0) {
+      continue;
+    }
+    std::uint64_t any = 0;
+    std::uint64_t two = 0;
+    for (const std::uint64_t neighbours :
+         {leaves[i] << 1 | (i > 0 ? leaves[i - 1] >> 63 : 0),
+          leaves[i] >> 1 | (i + 1 < words_ ? leaves[i + 1] << 63 : 0), word(y - 1, z, i),
+          word(y + 1, z, i), word(y, z - 1, i), word(y, z + 1, i)}) {
+      two |= any & neighbours;
+      any |= neighbours;
+    }
+    removed = removed || (leaves[i] & ~two) != 0;
+    leaves[i] &= two;
+  }
+  return removed;
 }
 
 LeafSet LeafSet::cropped() const {

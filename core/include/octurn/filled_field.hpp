@@ -70,6 +70,8 @@ class FilledField {
   static void solve(Grid& fine);
   static void relax(Grid& grid);
   static void relax(Grid& grid, int x, int y, int z);
+  Sighted sighted(const Cell& leaf, const SeenBrick* brick) const;
+  const SeenBrick* brick_at(const Cell& leaf) const;
 
   /// The first of two neighbouring cells, and how far it is from its centre to the other's.
   struct Between {

@@ -52,6 +52,8 @@ class LeafSet {
   void fill_cavities();
 
  private:
+  bool remove_spurs_of(int y, int z);
+
   std::size_t first_word(int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) +
             static_cast<std::size_t>(y)) *

@@ -331,27 +331,29 @@ std::uint64_t FilledField::inside(const Cell& first) const {
   });
 }
 
+/// Adds the leaves of a brick, counted from the box's lowest corner, that lie inside.
+void FilledField::add_inside(const Cell& brick, LeafSet& set) const {
+  const Side side = side_of(brick);
+  if (side == Side::outside) {
+    return;
+  }
+  for (int z = brick.z * Brick::side; z < (brick.z + 1) * Brick::side; ++z) {
+    for (int y = brick.y * Brick::side; y < (brick.y + 1) * Brick::side; ++y) {
+      const std::uint64_t bits =
+          side == Side::inside ? 0xff
+                               : inside({low_.x + brick.x * Brick::side, low_.y + y, low_.z + z});
+      set.row(y, z)[static_cast<std::size_t>(brick.x) / 8] |= bits << (brick.x % 8 * Brick::side);
+    }
+  }
+}
+
 LeafSet FilledField::inside() const {
   LeafSet set(low_, end_);
   const Cell& size = set.size();
-  const auto set_brick = [&](const Cell& brick) {
-    const Side side = side_of(brick);
-    if (side == Side::outside) {
-      return;
-    }
-    for (int z = brick.z * Brick::side; z < (brick.z + 1) * Brick::side; ++z) {
-      for (int y = brick.y * Brick::side; y < (brick.y + 1) * Brick::side; ++y) {
-        const std::uint64_t bits =
-            side == Side::inside ? 0xff
-                                 : inside({low_.x + brick.x * Brick::side, low_.y + y, low_.z + z});
-        set.row(y, z)[static_cast<std::size_t>(brick.x) / 8] |= bits << (brick.x % 8 * Brick::side);
-      }
-    }
-  };
   for (int z = 0; z < size.z / Brick::side; ++z) {
     for (int y = 0; y < size.y / Brick::side; ++y) {
       for (int x = 0; x < size.x / Brick::side; ++x) {
-        set_brick({x, y, z});
+        add_inside({x, y, z}, set);
       }
     }
   }

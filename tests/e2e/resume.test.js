@@ -34,7 +34,7 @@ test('a scan whose sensor fails pauses, says why, and can be ended with what it 
   const turn = join(recordings.data, 'turn');
   await promisify(execFile)(process.env.OCTURN_PROGRAM,
       ['record', '--simulate', '--simulate-speed', '20', '-o', turn, '--snapshots', '2', '--frames', '1']);
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '10', '--sensor', turn]});
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '4', '--sensor', turn]});
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 4);
   await page.getByRole('button', {name: 'Start scan'}).click();

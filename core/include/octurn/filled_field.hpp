@@ -84,6 +84,7 @@ class FilledField {
   enum class Side { inside, outside, both };
   Side side_of(const Cell& brick) const;
   std::uint64_t inside(const Cell& first) const;
+  void add_inside(const Cell& brick, LeafSet& set) const;
 
   const SeenField& field_;
   int foot_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,45 +25,92 @@ struct CellBrick {
 
 constexpr Brick no_leaves{};
 
-/// The cell bricks of one layer that have any leaf in them.
-class LayerOfCells {
+/// The bricks of a layer, and of the one above it, that have leaves which are corners of the
+/// layer's pseudo-voxels: of those above only the lowest leaves are. The others may be missing,
+/// where the layer is the last of a slab, and must not matter.
+class CornerBricks {
  public:
-  LayerOfCells(const Octree& octree, int layer) : octree_(octree) {
+  CornerBricks(const Octree& octree, int layer) {
     for (int up = 0; up < 2; ++up) {
-      octree.for_each_brick(layer + up, [&](const Cell& brick, const Brick& leaves) {
-        if (!reaches(leaves, up)) {
-          return;
-        }
-        for (int corner = 0; corner < 4; ++corner) {
-          add({brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
+      octree.for_each_brick(layer + up, [&](const Cell& cell, const Brick& brick) {
+        if (up == 0 || brick.layers[0] != 0) {
+          bricks_.push_back({cell, &brick, up});
+          low_ = {std::min(low_.x, cell.x), std::min(low_.y, cell.y), layer};
+          end_ = {std::max(end_.x, cell.x + 1), std::max(end_.y, cell.y + 1), layer + 2};
         }
       });
     }
+    if (!bricks_.empty()) {
+      places_.resize(2 * static_cast<std::size_t>(end_.x - low_.x) *
+                     static_cast<std::size_t>(end_.y - low_.y));
+    }
+    for (const auto& [cell, brick, up] : bricks_) {
+      places_[place_of(cell)] = brick;
+    }
+  }
+
+  /// Calls `visit(cell, up)` for all of them, those above last.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    for (const auto& [cell, brick, up] : bricks_) {
+      visit(cell, up);
+    }
+  }
+
+  const Brick* find(const Cell& cell) const {
+    const bool is_within =
+        cell.x >= low_.x && cell.y >= low_.y && cell.x < end_.x && cell.y < end_.y;
+    return is_within ? places_[place_of(cell)] : nullptr;
+  }
+
+ private:
+  struct Found {
+    Cell cell;
+    const Brick* brick;
+    int up;
+  };
+
+  std::size_t place_of(const Cell& cell) const {
+    return static_cast<std::size_t>(((cell.z - low_.z) * (end_.y - low_.y) + cell.y - low_.y) *
+                                        (end_.x - low_.x) +
+                                    cell.x - low_.x);
+  }
+
+  std::vector<Found> bricks_ = {};
+  Cell low_{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0};
+  Cell end_ = {};
+  std::vector<const Brick*> places_ = {};  // of the box around them, x before y before z
+};
+
+/// The cell bricks of one layer that have any leaf in them.
+class LayerOfCells {
+ public:
+  LayerOfCells(const Octree& octree, int layer) {
+    const CornerBricks bricks(octree, layer);
+    bricks.for_each([&](const Cell& brick, int up) {
+      for (int corner = 0; corner < 4; ++corner) {
+        add(bricks, {brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
+      }
+    });
   }
 
   const std::vector<CellBrick>& cells() const { return cells_; }
 
  private:
-  /// Whether a brick has leaves that are corners in this layer: of those above it only the lowest
-  /// are. The others may be missing, where the layer is the last of a slab, and must not matter.
-  static bool reaches(const Brick& leaves, int up) { return up == 0 || leaves.layers[0] != 0; }
-
   /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
-  void add(const Cell& position, int corner) {
+  void add(const CornerBricks& bricks, const Cell& position, int corner) {
     CellBrick cell{.position = position, .bricks = {}};
     for (int i = 0; i < 8; ++i) {
       const Brick* brick =
-          octree_.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
-      const bool counts = brick != nullptr && reaches(*brick, i >> 2);
-      if (counts && i < corner) {
+          bricks.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
+      if (brick != nullptr && i < corner) {
         return;
       }
-      cell.bricks[static_cast<std::size_t>(i)] = counts ? brick : &no_leaves;
+      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
     }
     cells_.push_back(cell);
   }
 
-  const Octree& octree_;
   std::vector<CellBrick> cells_ = {};
 };
 

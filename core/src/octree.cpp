@@ -118,12 +118,26 @@ void Octree::merge(const Octree& other) {
   if (other.side_ != side_ || other.levels_ != levels_) {
     throw std::invalid_argument("Octree::merge: octrees of different shape");
   }
-  other.for_each_brick([&](const Cell& cell, const Brick& from) {
-    Brick& to = brick_at(cell);
-    for (std::size_t z = 0; z < to.layers.size(); ++z) {
-      to.layers[z] |= from.layers[z];
+  merge(root_, other, other.root_, height_);
+}
+
+/// Adds what is below a node of another octree to that in the same place here.
+void Octree::merge(std::uint32_t to, const Octree& other, std::uint32_t from, int height) {
+  if (height == 0) {
+    for (std::size_t z = 0; z < Brick::side; ++z) {
+      bricks_[to].layers[z] |= other.bricks_[from].layers[z];
     }
-  });
+    return;
+  }
+  for (std::size_t child = 0; child < 8; ++child) {
+    if (const std::uint32_t below = other.nodes_[from][child]; below != 0) {
+      std::uint32_t& here = nodes_[to][child];
+      if (here == 0) {
+        here = add_child(height);
+      }
+      merge(here, other, below, height - 1);
+    }
+  }
 }
 
 Octree Octree::at_level(int level) const {

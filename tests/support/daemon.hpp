@@ -67,7 +67,7 @@ class Daemon {
   /// Waits until a scan is as wanted; what it is then, wanted or not after 20 s.
   nlohmann::json wait_until(const std::string& scan,
                             const std::function<bool(const nlohmann::json&)>& wanted) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     nlohmann::json now = parsed(get(scan));
     while (!wanted(now) && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::yield();

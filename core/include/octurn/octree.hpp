@@ -119,6 +119,7 @@ class Octree {
 
   Brick& brick_at(const Cell& brick);
   std::uint32_t add_child(int height);
+  void merge(std::uint32_t to, const Octree& other, std::uint32_t from, int height);
   void remove(std::uint32_t index, int height, int low, int layer);
 
   /// Neighbouring samples fall in neighbouring bricks: those set last are found without a descent.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "fork_join.hpp"
@@ -30,56 +31,59 @@ constexpr Brick no_leaves{};
 /// where the layer is the last of a slab, and must not matter.
 class CornerBricks {
  public:
-  CornerBricks(const Octree& octree, int layer) {
+  CornerBricks(const Octree& octree, int layer) : layer_(layer) {
     for (int up = 0; up < 2; ++up) {
       octree.for_each_brick(layer + up, [&](const Cell& cell, const Brick& brick) {
         if (up == 0 || brick.layers[0] != 0) {
-          bricks_.push_back({cell, &brick, up});
-          low_ = {std::min(low_.x, cell.x), std::min(low_.y, cell.y), layer};
-          end_ = {std::max(end_.x, cell.x + 1), std::max(end_.y, cell.y + 1), layer + 2};
+          bricks_.push_back({cell, &brick});
         }
       });
     }
-    if (!bricks_.empty()) {
-      places_.resize(2 * static_cast<std::size_t>(end_.x - low_.x) *
-                     static_cast<std::size_t>(end_.y - low_.y));
+    by_row_ = bricks_;
+    std::ranges::sort(by_row_, {}, [](const Found& found) {
+      return std::tuple(found.cell.y, found.cell.z, found.cell.x);
+    });
+    for (const Found& found : by_row_) {
+      rows_.resize(std::max(rows_.size(), row_of(found.cell) + 2));
+      ++rows_[row_of(found.cell) + 1];
     }
-    for (const auto& [cell, brick, up] : bricks_) {
-      places_[place_of(cell)] = brick;
-    }
+    std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
   }
 
   /// Calls `visit(cell, up)` for all of them, those above last.
   template <typename Visit>
   void for_each(Visit visit) const {
-    for (const auto& [cell, brick, up] : bricks_) {
-      visit(cell, up);
+    for (const Found& found : bricks_) {
+      visit(found.cell, found.cell.z - layer_);
     }
   }
 
   const Brick* find(const Cell& cell) const {
-    const bool is_within =
-        cell.x >= low_.x && cell.y >= low_.y && cell.x < end_.x && cell.y < end_.y;
-    return is_within ? places_[place_of(cell)] : nullptr;
+    if (cell.y < 0 || row_of(cell) + 1 >= rows_.size()) {
+      return nullptr;
+    }
+    const auto row = std::span(by_row_).subspan(rows_[row_of(cell)],
+                                                rows_[row_of(cell) + 1] - rows_[row_of(cell)]);
+    const auto found =
+        std::ranges::lower_bound(row, cell.x, {}, [](const Found& one) { return one.cell.x; });
+    return found != row.end() && found->cell.x == cell.x ? found->brick : nullptr;
   }
 
  private:
   struct Found {
     Cell cell;
     const Brick* brick;
-    int up;
   };
 
-  std::size_t place_of(const Cell& cell) const {
-    return static_cast<std::size_t>(((cell.z - low_.z) * (end_.y - low_.y) + cell.y - low_.y) *
-                                        (end_.x - low_.x) +
-                                    cell.x - low_.x);
+  /// Rows along x, of the layer and of the one above in turn.
+  std::size_t row_of(const Cell& cell) const {
+    return 2 * static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cell.z - layer_);
   }
 
+  int layer_;
   std::vector<Found> bricks_ = {};
-  Cell low_{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(), 0};
-  Cell end_ = {};
-  std::vector<const Brick*> places_ = {};  // of the box around them, x before y before z
+  std::vector<Found> by_row_ = {};
+  std::vector<std::uint32_t> rows_ = {};  // where each begins in `by_row_`, and its end
 };
 
 /// The cell bricks of one layer that have any leaf in them.

@@ -194,14 +194,14 @@ void Scanner::lend(Rig& rig, const std::stop_token& stop) {
     loan = loan_;
     loan->taken = true;
   }
-  const std::stop_callback end_with_the_daemon(stop, [&] { loan->stop.request_stop(); });
   try {
+    const std::stop_callback end_with_the_daemon(stop, [&] { loan->stop.request_stop(); });
     loan->use(rig, loan->stop.get_token());
     loan->used = true;
   } catch (...) {
     loan->failure = std::current_exception();
   }
-  end_loan();
+  end_loan();  // after which the loan is gone
 }
 
 /// Lets whoever waits for the rig go on, with it or without.

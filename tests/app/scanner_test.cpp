@@ -112,14 +112,14 @@ TEST_F(ScannerTest, CountsDownWhatIsLeft) {
 
 TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
   // A snapshot takes two frames, and at least one goes by while the platform turns.
-  Scanner scanner({.sensor_uri = "octurn-simulator://?silent-after=16", .speed = 20}, {}, store_);
-  scanner.start(few_snapshots(6));
+  Scanner scanner({.sensor_uri = "octurn-simulator://?silent-after=40", .speed = 10}, {}, store_);
+  scanner.start(few_snapshots(20));
   const Status silent = wait_until(scanner, [](const Status& status) {
     return status.job->failure.has_value() || !status.busy();
   });
   EXPECT_TRUE(silent.busy());
   EXPECT_EQ(silent.job->failure->code, "sensor-silent");
-  const Status status = scanner.wait_until_done(20s);
+  const Status status = scanner.wait_until_done(80s);
   EXPECT_EQ(status.job->state, JobState::finished);
   EXPECT_FALSE(status.job->failure);
   EXPECT_EQ(status.sensor.state, DeviceStatus::State::ready);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "emulation/kinect_on_desk.hpp"
 #include "emulation/kinect_view.hpp"
@@ -24,13 +25,16 @@ struct Fault {
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
 
-class KinectFaults : public ::testing::TestWithParam<Fault> {
+class KinectFaults : public ::testing::TestWithParam<std::tuple<Fault, int>> {
  protected:
+  static const Fault& fault() { return std::get<0>(GetParam()); }
+  static int stop() { return std::get<1>(GetParam()); }
+
   /// What a scan is once the Kinect has failed after so many snapshots.
   json scan_until(const Daemon& daemon, const std::string& scan, int snapshots,
                   const std::function<bool(const json&)>& wanted) {
     daemon.wait_until(scan, [&](const json& now) { return now["snapshots_done"] >= snapshots; });
-    GetParam().begin(desk_);
+    fault().begin(desk_);
     return daemon.wait_until(scan, wanted);
   }
 
@@ -45,13 +49,13 @@ TEST_P(KinectFaults, PauseAScanThatIsResumedWhenTheyAreMended) {
 
   const std::string scan = daemon.start(settings);
   const json paused =
-      scan_until(daemon, scan, 1, [](const json& now) { return now["state"] != "running"; });
+      scan_until(daemon, scan, stop(), [](const json& now) { return now["state"] != "running"; });
   ASSERT_EQ(paused["state"], "paused") << paused;
-  EXPECT_EQ(paused["error"]["code"], GetParam().code);
-  EXPECT_GE(paused["snapshots_done"], 1);
+  EXPECT_EQ(paused["error"]["code"], fault().code);
+  EXPECT_GE(paused["snapshots_done"], stop());
   EXPECT_EQ(daemon.post(scan + "/resume", "").status, 503);
 
-  GetParam().end(desk_);
+  fault().end(desk_);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
   Reply resumed;
   while (resumed.status != 202 && std::chrono::steady_clock::now() < deadline) {
@@ -67,12 +71,12 @@ TEST_P(KinectFaults, ThatPassDoNotPauseAScan) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path(), {"--sensor", "kinect://"});
   const std::string scan = daemon.start(settings);
-  const json trying = scan_until(daemon, scan, 1, [](const json& now) {
+  const json trying = scan_until(daemon, scan, stop(), [](const json& now) {
     return now["error"] != nullptr || now["state"] != "running";
   });
   EXPECT_EQ(trying["state"], "running");
   EXPECT_EQ(trying["error"]["code"].get<std::string>().substr(0, 7), "sensor-");
-  GetParam().end(desk_);
+  fault().end(desk_);
   const json done = daemon.wait_until_done(scan);
   EXPECT_EQ(done["state"], "finished") << done;
   EXPECT_EQ(done["error"], nullptr);
@@ -85,7 +89,9 @@ const Fault unplugged{"unplugged", [](KinectOnDesk& desk) { desk.unplug(); },
 const Fault damaged{"damaged", [](KinectOnDesk& desk) { desk->lost_packets = 5; },
                     [](KinectOnDesk& desk) { desk->lost_packets = 0; }, "sensor-silent"};
 
-INSTANTIATE_TEST_SUITE_P(Each, KinectFaults, ::testing::Values(silent, unplugged, damaged));
+INSTANTIATE_TEST_SUITE_P(AtEachStop, KinectFaults,
+                         ::testing::Combine(::testing::Values(silent, unplugged, damaged),
+                                            ::testing::Range(0, 4)));
 
 }  // namespace
 }  // namespace octurn

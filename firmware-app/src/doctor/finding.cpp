@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "octurn/units.hpp"
+#include "utc.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -22,14 +22,6 @@ Finding finding(const Check& check, Finding::State state, std::string measured,
           .state = state,
           .measured = std::move(measured),
           .advice = std::move(advice)};
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
 }  // namespace
@@ -88,7 +80,7 @@ json json_of(std::span<const Finding> findings) {
                    {"advice", finding.advice}});
   }
   return {{"version", version()},
-          {"time", utc_now()},
+          {"time", utc_text(std::chrono::system_clock::now(), rfc3339)},
           {"state", name_of(worst(findings))},
           {"findings", std::move(all)}};
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "doctor/system_files.hpp"
 #include "octurn/units.hpp"
+#include "utc.hpp"
 
 namespace octurn {
 namespace {
@@ -83,14 +83,6 @@ std::optional<double> meminfo(const fs::path& root, const std::string& key) {
     lines.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   }
   return std::nullopt;
-}
-
-std::string readable_time(std::chrono::system_clock::time_point time) {
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
-  std::tm utc{};
-  ::gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc)};
 }
 
 }  // namespace
@@ -174,7 +166,7 @@ Finding check_throttling(const fs::path& root) {
 
 Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point now,
                     bool synchronised) {
-  const std::string time = readable_time(now);
+  const std::string time = utc_text(now, "%Y-%m-%d %H:%M UTC");
   if (synchronised || fs::exists(root / "run/systemd/timesync/synchronized")) {
     return clock_set.ok(time + ", from a time server");
   }

@@ -4,7 +4,6 @@
 #include <sys/file.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -22,6 +21,7 @@
 #include "octurn/atomic_file.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "utc.hpp"
 
 namespace octurn {
 namespace {
@@ -44,22 +44,13 @@ constexpr const char* lock_file = "lock";
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
 constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
 
-std::string formatted(Moment moment, const char* format) {
-  const std::time_t time =
-      std::chrono::system_clock::to_time_t(std::chrono::floor<std::chrono::seconds>(moment));
-  std::tm utc{};
-  ::gmtime_r(&time, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), format, &utc)};
-}
-
 std::string id_of(Moment moment) {
   auto fraction = (moment - std::chrono::floor<std::chrono::seconds>(moment)).count();
   std::string digits(4, '0');
   for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, fraction >>= 4) {
     *digit = "0123456789abcdef"[fraction & 0xf];
   }
-  return formatted(moment, "%Y%m%d-%H%M%S-") + digits;
+  return utc_text(moment, "%Y%m%d-%H%M%S-") + digits;
 }
 
 Moment moment_of(const std::string& id) {
@@ -174,7 +165,7 @@ Job ScanStore::create(const ScanSettings& settings) const {
   if (const std::vector<std::string> ids = ids_newest_first(); !ids.empty()) {
     now = std::max(now, moment_of(ids.front()) + Moment::duration(1));
   }
-  Job job{.id = id_of(now), .created = formatted(now, "%Y-%m-%dT%H:%M:%SZ"), .settings = settings};
+  Job job{.id = id_of(now), .created = utc_text(now, rfc3339), .settings = settings};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
   std::error_code error;

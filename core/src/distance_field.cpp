@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace octurn {
 namespace {
@@ -45,30 +44,27 @@ DistanceField::DistanceField(const FieldShape& shape, std::size_t max_bytes)
     : FieldShape(shape),
       max_bytes_(max_bytes),
       layers_{.low = 0, .end = shape.size().z},
-      names_(brick_count()),
+      bricks_(brick_count()),
       free_(cell_count()) {}
 
 void DistanceField::begin(int low, std::size_t max_bytes) {
   max_bytes_ = max_bytes;
   layers_ = {.low = low, .end = size().z};
-  bricks_ = {};
-  std::ranges::fill(names_, 0U);
+  bricks_.clear();
   std::ranges::fill(free_, std::uint8_t{0});
 }
 
 FieldBrick* DistanceField::make(const Cell& brick) {
-  std::uint32_t& name = names_[brick_index(brick)];
-  while (name == 0 && brick.z < layers_.end && bricks_.is_full() &&
+  const std::size_t place = brick_index(brick);
+  FieldBrick* const made = bricks_.find(place);
+  if (made != nullptr) {
+    return made;
+  }
+  while (brick.z < layers_.end && bricks_.is_full() &&
          bytes() + Pool<FieldBrick>::block_bytes > max_bytes_) {
     give_up_layers();
   }
-  if (brick.z >= layers_.end) {
-    return nullptr;
-  }
-  if (name == 0) {
-    name = bricks_.add();
-  }
-  return &bricks_[name];
+  return brick.z < layers_.end ? &bricks_.add(place) : nullptr;
 }
 
 /// Gives up layers from the top, until at most half of the bricks are left, or one layer.
@@ -76,24 +72,23 @@ void DistanceField::give_up_layers() {
   if (layers_.end - layers_.low <= 1) {
     throw OctreeFull();
   }
-  const auto layer = [&](int z) {
-    return std::span(names_).subspan(brick_index({0, 0, z}), brick_index({0, 0, 1}));
-  };
-  const auto bricks_of = [&](int z) {
-    return static_cast<std::size_t>(std::ranges::count_if(layer(z), [](auto n) { return n != 0; }));
+  const auto for_each_in = [&](int z, auto visit) {
+    for (std::size_t place = brick_index({0, 0, z}); place < brick_index({0, 0, z + 1}); ++place) {
+      if (bricks_.find(place) != nullptr) {
+        visit(place);
+      }
+    }
   };
   std::size_t all = 0;
   for (int z = layers_.low; z < layers_.end; ++z) {
-    all += bricks_of(z);
+    for_each_in(z, [&](std::size_t) { ++all; });
   }
   for (std::size_t kept = all; 2 * kept > all && layers_.end - layers_.low > 1;) {
     --layers_.end;
-    kept -= bricks_of(layers_.end);
-    for (std::uint32_t& name : layer(layers_.end)) {
-      if (name != 0) {
-        bricks_.remove(std::exchange(name, 0));
-      }
-    }
+    for_each_in(layers_.end, [&](std::size_t place) {
+      bricks_.remove(place);
+      --kept;
+    });
   }
 }
 

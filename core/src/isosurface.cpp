@@ -43,8 +43,8 @@ class CornerBricks {
     std::ranges::sort(by_row_, {}, [](const Found& found) {
       return std::tuple(found.cell.y, found.cell.z, found.cell.x);
     });
+    rows_.resize(by_row_.empty() ? 0 : row_of(by_row_.back().cell) + 2);
     for (const Found& found : by_row_) {
-      rows_.resize(std::max(rows_.size(), row_of(found.cell) + 2));
       ++rows_[row_of(found.cell) + 1];
     }
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());

@@ -41,7 +41,7 @@ SeenBrick seen(const DistanceField& field, const FieldBrick& from, const Cell& p
 }  // namespace
 
 SeenField::SeenField(const FieldShape& shape)
-    : FieldShape(shape), names_(brick_count()), free_(cell_count()) {}
+    : FieldShape(shape), bricks_(brick_count()), free_(cell_count()) {}
 
 void SeenField::add(const DistanceField& field) {
   const auto& [low, end] = field.layers();
@@ -49,9 +49,7 @@ void SeenField::add(const DistanceField& field) {
     for (int y = 0; y < size().y; ++y) {
       for (int x = 0; x < size().x; ++x) {
         if (const FieldBrick* brick = field.find({x, y, z})) {
-          const std::uint32_t name = bricks_.add();
-          bricks_[name] = seen(field, *brick, {x, y, z});
-          names_[brick_index({x, y, z})] = name;
+          bricks_.add(brick_index({x, y, z})) = seen(field, *brick, {x, y, z});
         }
       }
     }

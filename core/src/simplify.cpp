@@ -145,13 +145,13 @@ void Simplifier::simplify() {
 
 void Simplifier::collapse_edges() {
   // The limit rises, so that what costs little goes first, all over the window.
-  double refused = 0;  // what costs no more was tried in the last pass
+  double refused = 0;  // what costs no more was tried in the last pass; at first all has changed
   changed_.assign(vertices_.size(), 1);
   for (int pass = 0; pass < passes; ++pass) {
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
     const double error = max_error_ * share;
     index_corners();
-    list_collapses(error * error, pass > 0 ? refused : -1);
+    list_collapses(error * error, refused);
     refused = error * error;
     touched_.assign(vertices_.size(), 0);
     changed_.assign(vertices_.size(), 0);

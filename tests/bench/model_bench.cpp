@@ -6,11 +6,11 @@
 #include <stop_token>
 #include <vector>
 
+#include "bench/ball_snapshots.hpp"
 #include "octurn/intersect.hpp"
 #include "octurn/model.hpp"
 #include "octurn/stl_file.hpp"
 #include "octurn/triangulate.hpp"
-#include "support/ball_scan.hpp"
 #include "support/temporary_folder.hpp"
 
 // From points to a file, with eight snapshots of a ball at the size of a Kinect v1's image. The
@@ -19,23 +19,7 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t shots = 8;
 constexpr float threshold = 0.0001F;
-
-const std::vector<Snapshot>& snapshots() {
-  static const std::vector<Snapshot> all = [] {
-    std::vector<Snapshot> made;
-    for (std::size_t i = 0; i < shots; ++i) {
-      made.push_back(ball_snapshot(ball_angle(i, shots), Intrinsics{}));
-    }
-    return made;
-  }();
-  return all;
-}
-
-SnapshotSource source() {
-  return {.count = shots, .read = [](std::size_t i) { return snapshots()[i]; }};
-}
 
 PointGrid clipped_points(const Snapshot& snapshot) {
   PointGrid grid = world_points(snapshot);

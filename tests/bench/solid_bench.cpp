@@ -2,34 +2,16 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "bench/ball_snapshots.hpp"
 #include "octurn/fuse.hpp"
 #include "octurn/solid.hpp"
-#include "support/ball_scan.hpp"
 
 // The solid method, with eight snapshots of a ball at the size of a Kinect v1's image. The argument
 // is the leaf size in micrometres.
 
 namespace octurn {
 namespace {
-
-constexpr std::size_t shots = 8;
-
-const std::vector<Snapshot>& snapshots() {
-  static const std::vector<Snapshot> all = [] {
-    std::vector<Snapshot> made;
-    for (std::size_t i = 0; i < shots; ++i) {
-      made.push_back(ball_snapshot(ball_angle(i, shots), Intrinsics{}));
-    }
-    return made;
-  }();
-  return all;
-}
-
-SnapshotSource source() {
-  return {.count = shots, .read = [](std::size_t i) { return snapshots()[i]; }};
-}
 
 ReconstructOptions options_for(const benchmark::State& state) {
   return {.method = Method::solid,

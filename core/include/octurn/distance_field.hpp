@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "octurn/box.hpp"
+#include "octurn/brick_map.hpp"
 #include "octurn/octree.hpp"
-#include "octurn/pool.hpp"
 
 namespace octurn {
 
@@ -101,13 +100,8 @@ class DistanceField : public FieldShape {
   void begin(int low, std::size_t max_bytes);
 
   /// A brick, if it exists.
-  const FieldBrick* find(const Cell& brick) const {
-    const std::uint32_t name = names_[brick_index(brick)];
-    return name == 0 ? nullptr : &bricks_[name];
-  }
-  FieldBrick* find(const Cell& brick) {
-    return const_cast<FieldBrick*>(std::as_const(*this).find(brick));
-  }
+  const FieldBrick* find(const Cell& brick) const { return bricks_.find(brick_index(brick)); }
+  FieldBrick* find(const Cell& brick) { return bricks_.find(brick_index(brick)); }
 
   /// The same, made if it is missing. Where it does not fit, the field gives up its topmost layers;
   /// nothing if the brick is in one of those. @throws OctreeFull  if there is but one layer
@@ -117,18 +111,15 @@ class DistanceField : public FieldShape {
   std::uint8_t& free_cell(const Cell& cell) { return free_[cell_index(cell)]; }
   std::uint8_t free_cell(const Cell& cell) const { return free_[cell_index(cell)]; }
 
-  std::size_t bytes() const {
-    return bricks_.bytes() + names_.capacity() * sizeof(names_[0]) + free_.capacity();
-  }
+  std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }
 
  private:
   void give_up_layers();
 
   std::size_t max_bytes_;
   BrickLayers layers_ = {};
-  Pool<FieldBrick> bricks_ = {};
-  std::vector<std::uint32_t> names_ = {};  // of bricks in the pool; 0 is none
-  std::vector<std::uint8_t> free_ = {};
+  BrickMap<FieldBrick> bricks_;
+  std::vector<std::uint8_t> free_;
 };
 
 }  // namespace octurn

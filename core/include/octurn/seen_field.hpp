@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "octurn/brick_map.hpp"
 #include "octurn/distance_field.hpp"
-#include "octurn/pool.hpp"
 
 namespace octurn {
 
@@ -43,22 +43,16 @@ class SeenField : public FieldShape {
   void add(const DistanceField& field);
 
   /// A brick, if it exists.
-  const SeenBrick* find(const Cell& brick) const {
-    const std::uint32_t name = names_[brick_index(brick)];
-    return name == 0 ? nullptr : &bricks_[name];
-  }
+  const SeenBrick* find(const Cell& brick) const { return bricks_.find(brick_index(brick)); }
 
   /// Whether any snapshot saw through a cell.
   bool is_free(const Cell& cell) const { return free_[cell_index(cell)] != 0; }
 
-  std::size_t bytes() const {
-    return bricks_.bytes() + names_.capacity() * sizeof(names_[0]) + free_.capacity();
-  }
+  std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }
 
  private:
-  Pool<SeenBrick> bricks_ = {};
-  std::vector<std::uint32_t> names_ = {};  // of bricks in the pool; 0 is none
-  std::vector<std::uint8_t> free_ = {};
+  BrickMap<SeenBrick> bricks_;
+  std::vector<std::uint8_t> free_;
 };
 
 }  // namespace octurn

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "app/few_snapshots.hpp"
 #include "doctor/doctor.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -20,7 +21,22 @@ class LendRig : public ::testing::Test {
  protected:
   static RigOptions rig() { return {.sensor_uri = fast_sensor, .speed = 20}; }
 
+  /// Reads the sensor for as long as it may. @return a thread that does, and has begun to
+  std::thread borrower() {
+    std::thread thread([&] {
+      scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
+        while (lent.sensor().read(stop)) {
+          is_lent_ = true;
+          is_lent_.notify_all();
+        }
+      });
+    });
+    is_lent_.wait(false);
+    return thread;
+  }
+
   TemporaryFolder folder_;
+  std::atomic<bool> is_lent_ = false;
   ScanStore store_{folder_.path()};
   Scanner scanner_{rig(), {}, store_};
 };
@@ -33,22 +49,13 @@ TEST_F(LendRig, LetsTheRigBeUsedBetweenScans) {
 }
 
 TEST_F(LendRig, RefusesDuringAScan) {
-  ASSERT_TRUE(scanner_.start({.snapshots = 200, .frames = 2, .leaf_size = 0.004}));
+  ASSERT_TRUE(scanner_.start(few_snapshots(200)));
   EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));
 }
 
 TEST_F(LendRig, GivesTheRigBackToAScanThatStarts) {
-  std::atomic<bool> is_lent = false;
-  std::thread borrower([&] {
-    scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
-      while (lent.sensor().read(stop)) {
-        is_lent = true;
-        is_lent.notify_all();
-      }
-    });
-  });
-  is_lent.wait(false);
-  EXPECT_TRUE(scanner_.start({.snapshots = 3, .frames = 2, .leaf_size = 0.004}));
+  std::thread borrower = this->borrower();
+  EXPECT_TRUE(scanner_.start(few_snapshots()));
   borrower.join();
   EXPECT_EQ(scanner_.wait_until_done(20s).job->state, JobState::finished);
 }
@@ -76,16 +83,7 @@ TEST_F(LendRig, HandsOnWhatItsUserThrows) {
 }
 
 TEST_F(LendRig, EndsWithTheScanner) {
-  std::atomic<bool> is_lent = false;
-  std::thread borrower([&] {
-    scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
-      while (lent.sensor().read(stop)) {
-        is_lent = true;
-        is_lent.notify_all();
-      }
-    });
-  });
-  is_lent.wait(false);
+  std::thread borrower = this->borrower();
   scanner_.request_stop();
   borrower.join();
   EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "app/few_snapshots.hpp"
 #include "scan/run_scan.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "support/temporary_folder.hpp"
@@ -112,7 +113,7 @@ TEST(OniFile, IsScanned) {
   const std::filesystem::path file = folder.path() / "turn.oni";
   record_oni(file, 3);
   Rig rig({.sensor_uri = file.string(), .speed = 50});
-  const ScanSettings settings{.snapshots = 3, .frames = 2, .leaf_size = 0.004};
+  const ScanSettings settings = few_snapshots();
   const auto model = run_scan(settings, {}, folder.path() / "scan", rig, {}, {});
   ASSERT_TRUE(model.has_value());
   EXPECT_TRUE(model->report.watertight);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <vector>
 
+#include "app/few_snapshots.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -19,10 +20,6 @@ namespace fs = std::filesystem;
 constexpr const char* simulator = "octurn-simulator://?speed=20";
 
 RigOptions rig_of(const std::string& uri = simulator) { return {.sensor_uri = uri, .speed = 20}; }
-
-ScanSettings few_snapshots(int snapshots = 3) {
-  return {.snapshots = snapshots, .frames = 2, .leaf_size = 0.004};
-}
 
 /// The images that a scan folder holds.
 int snapshots_in(const fs::path& folder) {

@@ -4,7 +4,9 @@
 
 #include <fstream>
 #include <functional>
+#include <utility>
 
+#include "app/few_snapshots.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -14,16 +16,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-ScanSettings few_snapshots(int snapshots = 3) {
-  return {.snapshots = snapshots, .frames = 2, .leaf_size = 0.004};
-}
-
 /// Waits until the status is as wanted; what it is then, wanted or not after 20 s.
 Status wait_until(const Scanner& scanner, const std::function<bool(const Status&)>& wanted) {
   const auto deadline = std::chrono::steady_clock::now() + 20s;
   Status status = scanner.status();
   while (!wanted(status) && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::yield();
+    std::this_thread::sleep_for(1ms);
     status = scanner.status();
   }
   return status;
@@ -111,8 +109,11 @@ TEST_F(ScannerTest, CountsDownWhatIsLeft) {
 }
 
 TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
-  // A snapshot takes two frames, and at least one goes by while the platform turns.
-  Scanner scanner({.sensor_uri = "octurn-simulator://?silent-after=40", .speed = 10}, {}, store_);
+  RigOptions options = rig();
+  options.open_sensor = [falls_silent = true](const std::string& uri) mutable {
+    return open_sensor(std::exchange(falls_silent, false) ? uri + "&silent-after=10" : uri);
+  };
+  Scanner scanner(options, {}, store_);
   scanner.start(few_snapshots(20));
   const Status silent = wait_until(scanner, [](const Status& status) {
     return status.job->failure.has_value() || !status.busy();

@@ -3,6 +3,8 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include "octurn/error.hpp"
+
 namespace octurn {
 namespace {
 
@@ -15,6 +17,10 @@ sigset_t ending_signals() {
 }
 
 }  // namespace
+
+void throw_stopped(const std::string& outcome) {
+  throw Error("stopped", "stopped before the end" + (outcome.empty() ? "" : ": " + outcome));
+}
 
 void block_signals() {
   const sigset_t signals = ending_signals();

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <stop_token>
+#include <string>
 #include <thread>
 
 namespace octurn {
@@ -15,6 +16,10 @@ void wait_for_signal();
 
 /// The same, but no longer than `most`. @return whether one came
 bool wait_for_signal(std::chrono::microseconds most);
+
+/// @throws Error "stopped", always: a signal ended the command, which leaves behind what `outcome`
+/// says
+[[noreturn]] void throw_stopped(const std::string& outcome = {});
 
 /// Turns SIGINT and SIGTERM, which are blocked, into a stop request as long as it lives.
 class Interruption {

@@ -17,7 +17,7 @@ using Duration = Time::duration;
 const Time start = Time(1000s);
 
 /// What happened to the line on a system of which each test says how late it is.
-struct Recording {
+struct PulseChanges {
   std::vector<PulseTrain::Change> changes = {};  // `due` is when it happened
   LatePulses late = {};
 
@@ -32,49 +32,51 @@ struct Recording {
   }
 };
 
-Recording record(const Motion& motion, int steps,
-                 const std::function<Duration(std::size_t)>& delay_of_change) {
-  Recording recording;
+PulseChanges changes_of(const Motion& motion, int steps,
+                        const std::function<Duration(std::size_t)>& delay_of_change) {
+  PulseChanges line;
   Time now = start;
   PulseTrain train(motion, steps, now);
   while (const auto change = train.next()) {
-    now = std::max(now, change->due) + delay_of_change(recording.changes.size());
-    recording.changes.push_back({.high = change->high, .due = now});
+    now = std::max(now, change->due) + delay_of_change(line.changes.size());
+    line.changes.push_back({.high = change->high, .due = now});
     train.done(now);
   }
-  recording.late = train.late();
-  return recording;
+  line.late = train.late();
+  return line;
 }
 
 Duration punctual(std::size_t) { return 0s; }
 
 TEST(PulseTrain, RaisesTheLineOnceForEachStepAndLeavesItLow) {
-  const Recording recording = record({}, 800, punctual);
-  ASSERT_EQ(recording.changes.size(), 1600U);
+  const PulseChanges line = changes_of({}, 800, punctual);
+  ASSERT_EQ(line.changes.size(), 1600U);
   for (std::size_t i = 0; i < 1600; ++i) {
-    EXPECT_EQ(recording.changes[i].high, i % 2 == 0);
+    EXPECT_EQ(line.changes[i].high, i % 2 == 0);
   }
 }
 
-TEST(PulseTrain, HasNothingToDoForNoSteps) { EXPECT_TRUE(record({}, 0, punctual).changes.empty()); }
+TEST(PulseTrain, HasNothingToDoForNoSteps) {
+  EXPECT_TRUE(changes_of({}, 0, punctual).changes.empty());
+}
 
 TEST(PulseTrain, TakesTheTimeOfItsRamps) {
-  const Recording recording = record({}, 800, punctual);
+  const PulseChanges line = changes_of({}, 800, punctual);
   // 0.3 s up, 500 steps at 800 a second, 0.3 s down; each step is rounded up to a nanosecond.
-  const Duration taken = recording.rises().back() - start;
+  const Duration taken = line.rises().back() - start;
   EXPECT_GE(taken, 1225ms);
   EXPECT_LE(taken, 1225ms + 800ns);
-  EXPECT_EQ(recording.late.count, 0);
+  EXPECT_EQ(line.late.count, 0);
 }
 
 TEST(PulseTrain, KeepsEachLevelLongEnoughForTheDriver) {
   const Motion fast = {.start_steps_per_second = 5000, .top_steps_per_second = 5000};
   std::mt19937 random(1);
   const auto delays = [&](std::size_t) { return Duration(random() % 2'000'000); };
-  const Recording recording = record(fast, 2000, delays);
-  for (std::size_t i = 1; i < recording.changes.size(); ++i) {
+  const PulseChanges line = changes_of(fast, 2000, delays);
+  for (std::size_t i = 1; i < line.changes.size(); ++i) {
     // 1 us: datasheet of the A4988
-    EXPECT_GE(recording.changes[i].due - recording.changes[i - 1].due, 1us) << i;
+    EXPECT_GE(line.changes[i].due - line.changes[i - 1].due, 1us) << i;
   }
 }
 
@@ -86,8 +88,8 @@ TEST(PulseTrain, NeverCatchesUp) {
     delayed += delay;
     return delay;
   };
-  const std::vector<Time> rises = record({}, 800, delays).rises();
-  const std::vector<Time> undelayed = record({}, 800, punctual).rises();
+  const std::vector<Time> rises = changes_of({}, 800, delays).rises();
+  const std::vector<Time> undelayed = changes_of({}, 800, punctual).rises();
 
   ASSERT_EQ(rises.size(), undelayed.size());
   ASSERT_GT(delayed, 1s);  // or there was nothing to catch up
@@ -99,7 +101,7 @@ TEST(PulseTrain, NeverCatchesUp) {
 TEST(PulseTrain, StartsSlowlyAgainAfterAStandstill) {
   // Of pulse 400, amid the move at full speed: longer than a step at the speed that it starts with.
   const auto delay = [](std::size_t change) { return change == 800 ? Duration(50ms) : 0ms; };
-  const std::vector<Time> rises = record({}, 800, delay).rises();
+  const std::vector<Time> rises = changes_of({}, 800, delay).rises();
   const Duration first = rises[0] - start;
   EXPECT_NEAR(static_cast<double>((rises[401] - rises[400]).count()),
               static_cast<double>(first.count()), 1);  // ns, of rounding
@@ -108,17 +110,17 @@ TEST(PulseTrain, StartsSlowlyAgainAfterAStandstill) {
 
 TEST(PulseTrain, StartsSlowlyAgainAfterALevelThatWasLate) {
   const auto delay = [](std::size_t change) { return change == 801 ? Duration(50ms) : 0ms; };
-  const Recording recording = record({}, 800, delay);
-  const std::vector<Time> rises = recording.rises();
+  const PulseChanges line = changes_of({}, 800, delay);
+  const std::vector<Time> rises = line.rises();
   EXPECT_GT(rises[402] - rises[401], 4ms);  // a step takes 5 ms at first, 1.25 ms at full speed
-  EXPECT_EQ(recording.late.count, 1);
+  EXPECT_EQ(line.late.count, 1);
 }
 
 TEST(PulseTrain, CountsLatePulsesAndTellsTheWorst) {
   const auto delay = [](std::size_t change) {
     return change == 100 ? Duration(2ms) : change == 700 ? Duration(7ms) : Duration(100us);
   };
-  const LatePulses late = record({}, 800, delay).late;
+  const LatePulses late = changes_of({}, 800, delay).late;
   EXPECT_EQ(late.count, 2);
   EXPECT_EQ(late.longest, 7ms);
 }

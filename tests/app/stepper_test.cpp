@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 /// What a driver saw of its lines: E and e for ENABLE high and low, D and d for DIR, S and s for
 /// STEP.
-class Recording {
+class LineChanges {
  public:
   void set(Stepper::Line line, bool high) {
     constexpr std::string_view low_letters = "sde";
@@ -36,7 +36,7 @@ class Recording {
     return static_cast<int>(std::ranges::count(all, 'S'));
   }
 
-  /// Waits for that end of the recording, 20 s at most. @return whether it came
+  /// Waits for that end of them, 20 s at most. @return whether it came
   bool wait_for_end(std::string_view end) const {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, 20s, [&] { return changes_.ends_with(end); });
@@ -59,7 +59,7 @@ class StepperTest : public ::testing::Test {
     return [this](Stepper::Line line, bool high) { recording_.set(line, high); };
   }
 
-  Recording recording_;
+  LineChanges recording_;
 };
 
 TEST_F(StepperTest, SwitchesOnChoosesItsDirectionAndOnlyThenSteps) {

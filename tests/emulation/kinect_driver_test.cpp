@@ -297,11 +297,11 @@ TEST(KinectDriver, EndsItsTrafficWhenItIsClosed) {
 }
 
 /// The readings from which a real Kinect's whole millimetres, cut off and not rounded, have come.
-Readings readings_of(const DepthFrame& frame_mm) {
+Readings readings_from_mm(const DepthFrame& frame) {
   Readings readings(pixels, 2047);
   for (std::size_t i = 0; i < pixels; ++i) {
-    if (frame_mm.depth[i] != 0) {
-      const double reading = std::ceil(1089.408 - 345489.4 / frame_mm.depth[i] - 0.02);
+    if (frame.depth[i] != 0) {
+      const double reading = std::ceil(1089.408 - 345489.4 / frame.depth[i] - 0.02);
       readings[i] = static_cast<std::uint16_t>(reading);
     }
   }
@@ -322,7 +322,7 @@ TEST(KinectDriver, GivesRealFramesAsTheyAre) {
     const std::string png = content_of(entry.path());
     const DepthFrame real =
         decode_depth_png(entry.path().string(), std::as_bytes(std::span(png)), 640, 480);
-    const KinectOnDesk desk({readings_of(real)});
+    const KinectOnDesk desk({readings_from_mm(real)});
     DepthSensor sensor("kinect://");
     const DepthFrame frame = next_frame(sensor);
     for (std::size_t i = 0; i < pixels; ++i) {

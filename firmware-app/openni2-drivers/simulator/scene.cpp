@@ -6,21 +6,17 @@
 
 #include "octurn/units.hpp"
 #include "sensor/nominal_pose.hpp"
+#include "simulator/camera.hpp"
 
 namespace octurn {
 namespace {
 
 constexpr double baseline = 0.075;  // metres from the camera to the projector, along +X
-constexpr Intrinsics camera = {};
 
 /// The projector's picture has the camera's rows, and columns enough for all that the camera sees
 /// from 0.37 m on.
 constexpr int wider = 116;  // pixels; f b / 0.37 m
 constexpr Intrinsics projector = {.width = camera.width + wider, .cx = camera.cx + wider};
-
-std::size_t pixels(const Intrinsics& intrinsics) {
-  return static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
-}
 
 void add_rectangle(Mesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vector3f& side,
                    const Eigen::Vector3f& other_side) {

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "simulator/camera.hpp"
 #include "simulator/disparity.hpp"
 
 namespace octurn {
 namespace {
 
-constexpr Intrinsics camera = {};
-constexpr std::size_t pixels = std::size_t{camera.width} * camera.height;
 constexpr int blind_columns = 8;  // at the right, where the window for comparing leaves the picture
 
 // Parts of the noise field, apart from those that frames draw.
@@ -55,12 +54,12 @@ SimulatedKinect::SimulatedKinect(Mesh object, std::uint32_t seed, double noise)
       distortion_(leftover_distortion(seed)),
       depth_table_(depth_of_readings()),
       lit_(scene_.lit_at(angle_)),
-      still_(pixels) {
+      still_(pixels(camera)) {
   hold_still({.left = 0, .top = 0, .right = camera.width, .bottom = camera.height});
 }
 
 void SimulatedKinect::expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth) {
-  assert(depth.size() == pixels);
+  assert(depth.size() == pixels(camera));
   if (angle != angle_) {
     turn_to(angle);
   }

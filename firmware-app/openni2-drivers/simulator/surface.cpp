@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/camera.hpp"
+
 namespace octurn {
 namespace {
-
-constexpr Intrinsics camera = {};
 
 /// The slope of a surface between a pixel and its neighbours along one axis, 1/m for each pixel,
 /// without those of them that belong to another surface.

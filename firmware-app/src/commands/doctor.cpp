@@ -82,7 +82,7 @@ bool doctor(const DoctorArguments& arguments) {
   const Interruption interruption;
   const SensorLook look = look_from_shell(patient, interruption.token());
   if (interruption.token().stop_requested()) {
-    throw Error("stopped", "stopped before the end");
+    throw_stopped();
   }
   const std::vector<Finding> findings = examine(patient, look);
   if (arguments.json) {

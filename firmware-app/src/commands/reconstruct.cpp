@@ -137,10 +137,6 @@ Json json_of(const ModelReport& report, const ReconstructOptions& options, const
   return json;
 }
 
-[[noreturn]] void stopped() {
-  throw Error("stopped", "stopped before the end: no model was written");
-}
-
 /// Where the model goes: a file that appears whole or not at all, or standard output.
 class ModelOutput {
  public:
@@ -177,7 +173,7 @@ SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& sca
                             const std::stop_token& stop) {
   return {.count = scan.shots.size(), .read = [&, stop](std::size_t i) {
             if (stop.stop_requested()) {
-              stopped();
+              throw_stopped("no model was written");
             }
             bar.show(static_cast<int>(i), static_cast<int>(scan.shots.size()), "snapshots");
             return read_snapshot(folder, scan, scan.shots[i]);
@@ -205,7 +201,7 @@ void reconstruct(const ReconstructArguments& arguments) {
     ModelOutput output(arguments.output, [&] { return reconstruction.count(snapshots).facets; });
     count = reconstruction.surface(snapshots, [&](std::span<const Facet> facets) {
       if (stop.stop_requested()) {
-        stopped();
+        throw_stopped("no model was written");
       }
       if (arguments.json) {
         check.add(facets);

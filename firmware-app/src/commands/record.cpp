@@ -13,17 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void stopped() {
-  throw Error("stopped", "stopped before the end: no recording was written");
-}
-
 /// The next frame whose exposure ended after the platform had settled.
 TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
                          const std::stop_token& stop) {
   for (;;) {
     std::optional<TimedFrame> timed = sensor.read(stop);
     if (!timed) {
-      stopped();
+      throw_stopped("no recording was written");
     }
     if (timed->time > settled) {
       return *std::move(timed);
@@ -50,7 +46,7 @@ void record(const RecordArguments& arguments) {
   for (const int position : stop_positions(turntable.position(), steps, arguments.snapshots)) {
     bar.show(done++, arguments.snapshots, "recording");
     if (!turntable.move_to(position, stop)) {
-      stopped();
+      throw_stopped("no recording was written");
     }
     const Clock::time_point settled = Clock::now();
     for (int frame = 0; frame < arguments.frames; ++frame) {

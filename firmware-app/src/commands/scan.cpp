@@ -59,7 +59,7 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
                            std::to_string(job.settings.snapshots) + " snapshots are in " +
                            folder.string();
   if (!job.failure) {
-    throw Error("stopped", "stopped before the end: " + kept);
+    throw_stopped(kept);
   }
   const std::string resume =
       is_resumable(job.state) ? " The same command does that with --resume " + job.id : "";

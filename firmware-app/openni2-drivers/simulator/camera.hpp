@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+
+#include "octurn/intrinsics.hpp"
+
+namespace octurn {
+
+/// The simulated Kinect's.
+inline constexpr Intrinsics camera = {};
+
+constexpr std::size_t pixels(const Intrinsics& intrinsics) {
+  return static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
+}
+
+}  // namespace octurn

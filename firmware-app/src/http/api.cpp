@@ -102,7 +102,7 @@ const std::vector<Api::Route>& Api::routes() {
 Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions options)
     : scanner_(scanner), store_(store), page_(page), options_(std::move(options)) {}
 
-Response Api::answer(const Request& request) noexcept {
+Response Api::answer(const Request& request) {
   try {
     const auto refused = refusal(request, options_.host_names);
     return refused ? problem(*refused) : dispatch(request);

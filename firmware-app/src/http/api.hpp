@@ -25,8 +25,8 @@ class Api {
  public:
   Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions options);
 
-  /// Never throws: what goes wrong becomes a problem, as application/problem+json.
-  Response answer(const Request& request) noexcept;
+  /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
+  Response answer(const Request& request);
 
  private:
   struct Route;

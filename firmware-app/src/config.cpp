@@ -71,6 +71,17 @@ Config read_config(const std::filesystem::path& file) {
   }
 }
 
+json json_of(const Config& config) {
+  return {{"listen", config.http.address},
+          {"port", config.http.port},
+          {"host_names", config.host_names},
+          {"data", config.data.string()},
+          {"threads", config.limits.threads},
+          {"memory_limit_mb", mb_from_bytes(static_cast<double>(config.limits.memory_bytes))},
+          {"scan", json_of(config.scan)},
+          {"turntable", json_of(config.turntable)}};
+}
+
 Config chosen_config(const std::optional<std::filesystem::path>& file) {
   if (file) {
     return read_config(*file);

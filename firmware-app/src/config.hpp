@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 /// key
 ///                            that is none
 Config read_config(const std::filesystem::path& file);
+
+/// The configuration as `read_config` reads it, every key. No secret is one of them.
+nlohmann::json json_of(const Config& config);
 
 /// The configuration in the file that the command line names, or in the default one if that is
 /// there, or the defaults.

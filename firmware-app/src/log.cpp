@@ -2,16 +2,36 @@
 
 #include <unistd.h>
 
+#include <chrono>
+#include <mutex>
 #include <string>
+
+#include "recent_lines.hpp"
+#include "utc.hpp"
 
 namespace octurn::log {
 namespace {
+
+struct Kept {
+  std::mutex mutex;  // guards lines
+  RecentLines lines{2000, 512};
+};
+
+Kept& kept() {
+  static Kept all;
+  return all;
+}
 
 /// Writes the line in one call, so that lines of different threads do not mix.
 void write_line(char priority, std::string_view component, std::string_view message) {
   std::string line = "<";
   line.append(1, priority).append(">").append(component).append(": ").append(message).append("\n");
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+
+  line.pop_back();
+  const std::string time = utc_text(std::chrono::system_clock::now(), rfc3339);
+  const std::lock_guard lock(kept().mutex);
+  kept().lines.add(time + " " + line);
 }
 
 }  // namespace
@@ -27,6 +47,11 @@ void warning(std::string_view component, std::string_view message) {
 
 void info(std::string_view component, std::string_view message) {
   write_line('6', component, message);
+}
+
+std::string recent() {
+  const std::lock_guard lock(kept().mutex);
+  return kept().lines.text();
 }
 
 }  // namespace octurn::log

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
+
+using nlohmann::json;
 
 Config config_of(const char* text) {
   const TemporaryFolder folder;
@@ -28,6 +32,22 @@ TEST(Config, ReadsEveryKey) {
   EXPECT_EQ(config.limits.memory_bytes, 64U << 20U);
   EXPECT_EQ(config.scan.snapshots, 12);
   EXPECT_EQ(config.turntable.microsteps, 8);
+}
+
+TEST(Config, IsWrittenAsItIsRead) {
+  const json every = json::parse(R"({
+      "listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"], "data": "/srv/scans",
+      "threads": 2, "memory_limit_mb": 64.5, "scan": {},
+      "turntable": {"step_line": "GPIO2", "direction_line": "GPIO3", "enable_line": "GPIO4",
+                    "microstep_lines": ["GPIO9", "GPIO10", "GPIO11"], "microsteps": 8,
+                    "full_steps": 400, "gear_ratio": 2.5, "reversed": true,
+                    "speed_steps_per_s": 900.0, "start_speed_steps_per_s": 100.0,
+                    "ramp_steps_per_s2": 3000.0, "settle_ms": 20, "idle_release_s": 30,
+                    "take_up_steps": 5}})");
+  json written = json_of(config_of(every.dump().c_str()));
+  EXPECT_EQ(written["scan"], json_of(ScanSettings{}));
+  written["scan"] = json::object();
+  EXPECT_EQ(written, every);
 }
 
 TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {

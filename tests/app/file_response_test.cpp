@@ -55,6 +55,11 @@ TEST_F(FileResponse, IsTheWholeFile) {
             "attachment; filename=\"Scan.stl\"; filename*=UTF-8''Scan.stl");
 }
 
+TEST_F(FileResponse, GivesAPlainNameToProgramsOfOldToo) {
+  EXPECT_EQ(attachment("hare-2.stl"),
+            "attachment; filename=\"hare-2.stl\"; filename*=UTF-8''hare-2.stl");
+}
+
 TEST_F(FileResponse, EncodesANameThatAHeaderCannotHold) {
   const Response response =
       file_response({}, folder_.path() / "Scan.stl", "model/stl", "gr\u00fcn\" \r\nX: 1.stl");

@@ -146,6 +146,11 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
   add_config_options(command, arguments.config_file, arguments.data);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of the table");
+  command
+      .add_option("--zip", arguments.zip,
+                  "also write versions, settings, findings and the system's state to this file, to "
+                  "be sent to who helps")
+      ->type_name("FILE");
   command.footer(
       "It never moves the motor. It ends with 0 if there is no fault, with 1 if one is.");
   command.callback([&arguments, &status, simulate] {

@@ -73,7 +73,8 @@ struct DoctorArguments {
   RigArguments rig = {};
   std::optional<std::filesystem::path> config_file = {};
   std::optional<std::filesystem::path> data = {};
-  bool json = false;  ///< one line of JSON in place of the table
+  bool json = false;                              ///< one line of JSON in place of the table
+  std::optional<std::filesystem::path> zip = {};  ///< also an archive for who helps from afar
 };
 
 /// `octurn doctor`: checks the scanner and says what to do about each fault. Never moves the motor.

@@ -3,12 +3,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
+#include "doctor/diagnostics.hpp"
 #include "interruption.hpp"
+#include "octurn/atomic_file.hpp"
 #include "octurn/error.hpp"
+#include "zip_archive.hpp"
 
 namespace octurn {
 namespace {
@@ -71,13 +75,14 @@ SensorLook look_from_shell(const Patient& patient, const std::stop_token& stop) 
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
-  const Config config = chosen_config(arguments.config_file);
-  const std::filesystem::path data = arguments.data.value_or(config.data);
-  const Patient patient{.rig = rig_options(arguments.rig, config.turntable),
-                        .scan = config.scan,
-                        .limits = config.limits,
-                        .data = data,
-                        .lines = is_in_use(data) ? LineOwner::this_program : LineOwner::another};
+  Config config = chosen_config(arguments.config_file);
+  config.data = arguments.data.value_or(config.data);
+  const Patient patient{
+      .rig = rig_options(arguments.rig, config.turntable),
+      .scan = config.scan,
+      .limits = config.limits,
+      .data = config.data,
+      .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // before the first thread, as it asks
   const Interruption interruption;
   const SensorLook look = look_from_shell(patient, interruption.token());
@@ -85,6 +90,10 @@ bool doctor(const DoctorArguments& arguments) {
     throw_stopped();
   }
   const std::vector<Finding> findings = examine(patient, look);
+  if (arguments.zip) {
+    write_file(*arguments.zip,
+               zip_of(diagnostics_of_machine(config, findings), std::chrono::system_clock::now()));
+  }
   if (arguments.json) {
     std::cout << json_of(findings) << '\n';
   } else {

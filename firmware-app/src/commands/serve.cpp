@@ -50,14 +50,13 @@ void serve(const ServeArguments& arguments) {
   load_sensor_drivers();  // before the first thread, as it asks
 
   const Page page(arguments.web ? *arguments.web : page_folder());
-  const std::filesystem::path data = arguments.data.value_or(config.data);
-  const ScanStore store(data);
+  config.data = arguments.data.value_or(config.data);
+  const ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
-  Api api(scanner, store, page,
-          {.defaults = config.scan,
-           .limits = config.limits,
-           .host_names = config.host_names,
-           .patient = {.rig = rig, .scan = config.scan, .limits = config.limits, .data = data}});
+  Api api(
+      scanner, store, page,
+      {.config = config,
+       .patient = {.rig = rig, .scan = config.scan, .limits = config.limits, .data = config.data}});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;

@@ -1,15 +1,21 @@
 #include "http/api.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "doctor/diagnostics.hpp"
+#include "http/file_response.hpp"
 #include "http/preview_image.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
 #include "json_object.hpp"
 #include "log.hpp"
+#include "utc.hpp"
 #include "version.hpp"
+#include "zip_archive.hpp"
 
 namespace octurn {
 namespace {
@@ -22,14 +28,6 @@ Response json_response(const json& body, int status = 200) {
   return {.status = status,
           .headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}},
           .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
-}
-
-json json_of(const DeviceStatus& device) {
-  constexpr std::array<std::string_view, 3> states{"ready", "missing", "failed"};
-  return {{"state", states[static_cast<std::size_t>(device.state)]},
-          {"name", device.name},
-          {"simulated", device.simulated},
-          {"message", device.failure.detail}};
 }
 
 [[noreturn]] void throw_busy() {
@@ -85,6 +83,7 @@ const std::vector<Api::Route>& Api::routes() {
       {"GET", "/api/v1/status", &Api::status},
       {"GET", "/api/v1/settings", &Api::settings},
       {"GET", "/api/v1/doctor", &Api::doctor},
+      {"GET", "/api/v1/diagnostics.zip", &Api::diagnostics},
       {"GET", "/api/v1/preview/depth.png", &Api::preview},
       {"GET", "/api/v1/scans", &Api::list},
       {"POST", "/api/v1/scans", &Api::start},
@@ -104,7 +103,7 @@ Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions 
 
 Response Api::answer(const Request& request) {
   try {
-    const auto refused = refusal(request, options_.host_names);
+    const auto refused = refusal(request, options_.config.host_names);
     return refused ? problem(*refused) : dispatch(request);
   } catch (const Error& error) {
     return problem(failure_of(error));
@@ -161,11 +160,29 @@ Response Api::status(const Request& /*request*/, std::string_view /*id*/) {
 }
 
 Response Api::settings(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response({{"defaults", json_of(options_.defaults)}});
+  return json_response({{"defaults", json_of(options_.config.scan)}});
 }
 
 Response Api::doctor(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response(octurn::json_of(examine(options_.patient, scanner_)));
+  return json_response(json_of(examine(options_.patient, scanner_)));
+}
+
+Response Api::diagnostics(const Request& /*request*/, std::string_view /*id*/) {
+  const std::vector<Finding> findings = examine(options_.patient, scanner_);
+  std::vector<Job> scans = store_.list();
+  const Status now = scanner_.status();
+  for (Job& job : scans) {
+    job = current(std::move(job), now);
+  }
+  std::vector<ArchivedFile> files = diagnostics_of_machine(options_.config, findings);
+  std::ranges::move(diagnostics_of_daemon(now, scans, log::recent()), std::back_inserter(files));
+
+  const auto time = std::chrono::system_clock::now();
+  const std::string name = "octurn-diagnostics-" + utc_text(time, "%Y%m%d-%H%M%S") + ".zip";
+  return {.headers = {{"Content-Type", "application/zip"},
+                      {"Content-Disposition", attachment(name)},
+                      {"Cache-Control", "no-store"}},
+          .body = zip_of(files, time)};
 }
 
 Response Api::preview(const Request& /*request*/, std::string_view /*id*/) {
@@ -185,7 +202,7 @@ Response Api::list(const Request& /*request*/, std::string_view /*id*/) {
 }
 
 Response Api::start(const Request& request, std::string_view /*id*/) {
-  const ScanSettings settings = settings_from(body_of(request), options_.defaults);
+  const ScanSettings settings = settings_from(body_of(request), options_.config.scan);
   scanner_.expect_ready();
   const std::optional<Job> job = scanner_.start(settings);
   if (!job) {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config.hpp"
 #include "doctor/doctor.hpp"
 #include "http/message.hpp"
 #include "http/page.hpp"
@@ -13,10 +14,8 @@
 namespace octurn {
 
 struct ApiOptions {
-  ScanSettings defaults = {};                ///< for what a start does not say
-  Limits limits = {};                        ///< of models that are made while they are sent
-  std::vector<std::string> host_names = {};  ///< that the page may be opened by, besides local ones
-  Patient patient = {};                      ///< what the doctor checks
+  Config config = {};    ///< in force
+  Patient patient = {};  ///< what the doctor checks
 };
 
 /// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
@@ -37,6 +36,7 @@ class Api {
   Response status(const Request& request, std::string_view id);
   Response settings(const Request& request, std::string_view id);
   Response doctor(const Request& request, std::string_view id);
+  Response diagnostics(const Request& request, std::string_view id);
   Response preview(const Request& request, std::string_view id);
   Response newest_model(const Request& request, std::string_view id);
   Response list(const Request& request, std::string_view id);

@@ -87,7 +87,9 @@ std::string percent_encoded(std::string_view text) {
 }  // namespace
 
 std::string attachment(std::string_view name) {
-  return "attachment; filename=\"Scan.stl\"; filename*=UTF-8''" + percent_encoded(name);
+  const std::string encoded = percent_encoded(name);
+  const std::string plain = encoded == name ? encoded : "Scan.stl";  // for programs of old
+  return "attachment; filename=\"" + plain + "\"; filename*=UTF-8''" + encoded;
 }
 
 bool has_tag(std::string_view list, std::string_view tag) {

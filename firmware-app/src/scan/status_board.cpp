@@ -1,6 +1,8 @@
 #include "scan/status_board.hpp"
 
 #include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,14 @@ DeviceStatus::State state_for(const std::string& code) {
 }
 
 }  // namespace
+
+nlohmann::json json_of(const DeviceStatus& device) {
+  constexpr std::array<std::string_view, 3> states{"ready", "missing", "failed"};
+  return {{"state", states[static_cast<std::size_t>(device.state)]},
+          {"name", device.name},
+          {"simulated", device.simulated},
+          {"message", device.failure.detail}};
+}
 
 StatusBoard::StatusBoard(const RigOptions& rig) {
   status_.update([&](Status& status) {

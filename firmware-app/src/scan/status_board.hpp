@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,9 @@ struct DeviceStatus {
   bool simulated = false;
   Failure failure = {};  ///< what is wrong, or empty
 };
+
+/// A device as the API has it.
+nlohmann::json json_of(const DeviceStatus& device);
 
 struct Status {
   DeviceStatus sensor = {};

@@ -23,6 +23,8 @@ struct TimedFrame {
 /// @throws Error "sensor-failed"
 void load_sensor_drivers();
 
+std::string openni_version();
+
 class SensorDevice;
 
 /// A depth camera: a Kinect v1, a simulated one, any sensor that OpenNI2 knows, or a recording that

@@ -308,6 +308,12 @@ void OpenNiDevice::show_angle(double angle) {
 
 void load_sensor_drivers() { static const OpenNi loaded; }
 
+std::string openni_version() {
+  const openni::Version version = openni::OpenNI::getVersion();
+  return std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+         std::to_string(version.maintenance) + "." + std::to_string(version.build);
+}
+
 std::unique_ptr<SensorDevice> open_openni_device(const std::string& uri) {
   return std::make_unique<OpenNiDevice>(uri);
 }

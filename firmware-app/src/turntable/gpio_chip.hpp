@@ -8,6 +8,9 @@
 
 namespace octurn {
 
+/// Of libgpiod.
+std::string gpiod_version();
+
 /// A line that this program drives, and its level from the moment that it does.
 struct OutputLine {
   unsigned offset = 0;  ///< on its chip

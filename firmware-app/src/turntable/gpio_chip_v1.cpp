@@ -16,6 +16,8 @@ struct CloseChip {
 
 }  // namespace
 
+std::string gpiod_version() { return gpiod_version_string(); }
+
 struct GpioChip::Handles {
   std::unique_ptr<gpiod_chip, CloseChip> chip;
   gpiod_line_bulk driven = GPIOD_LINE_BULK_INITIALIZER;

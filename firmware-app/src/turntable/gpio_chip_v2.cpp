@@ -33,6 +33,8 @@ gpiod_line_value value_of(bool high) {
 
 }  // namespace
 
+std::string gpiod_version() { return gpiod_api_version(); }
+
 struct GpioChip::Handles {
   Owned<gpiod_chip, gpiod_chip_close> chip;
   Owned<gpiod_line_request, gpiod_line_request_release> request = {};

@@ -114,6 +114,24 @@ StepperSettings stepper_settings_from(const json& object) {
   return settings;
 }
 
+json json_of(const StepperSettings& settings) {
+  using std::chrono::duration_cast;
+  return {{"step_line", settings.step_line},
+          {"direction_line", settings.direction_line},
+          {"enable_line", settings.enable_line},
+          {"microstep_lines", settings.microstep_lines},
+          {"microsteps", settings.microsteps},
+          {"full_steps", settings.full_steps},
+          {"gear_ratio", settings.gear_ratio},
+          {"reversed", settings.reversed},
+          {"speed_steps_per_s", settings.speed_steps_per_second},
+          {"start_speed_steps_per_s", settings.start_speed_steps_per_second},
+          {"ramp_steps_per_s2", settings.ramp_steps_per_second2},
+          {"settle_ms", settings.settle_time.count()},
+          {"idle_release_s", duration_cast<std::chrono::seconds>(settings.idle_release).count()},
+          {"take_up_steps", settings.take_up_steps}};
+}
+
 Motion motion_of(const StepperSettings& settings) {
   const double steps = settings.full_steps * settings.microsteps * settings.gear_ratio;
   return {.steps_per_turn = static_cast<int>(std::lround(steps)),

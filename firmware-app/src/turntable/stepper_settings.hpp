@@ -33,6 +33,9 @@ struct StepperSettings {
 ///                             that is none
 StepperSettings stepper_settings_from(const nlohmann::json& object);
 
+/// What `stepper_settings_from` reads, every key.
+nlohmann::json json_of(const StepperSettings& settings);
+
 /// With steps of the platform's turn: the whole number that is nearest.
 Motion motion_of(const StepperSettings& settings);
 

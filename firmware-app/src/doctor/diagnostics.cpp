@@ -1,0 +1,148 @@
+#include "doctor/diagnostics.hpp"
+
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "doctor/system_files.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "turntable/gpio_chip.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t most_of_a_file = std::size_t{16} << 10U;  // of the system, bytes
+constexpr std::size_t most_of_scans = std::size_t{1} << 20U;    // bytes
+
+// Nothing that tells one machine from others of its kind: no serial number, address or host name.
+constexpr std::array system_files{
+    "etc/os-release",
+    "proc/device-tree/model",
+    "proc/version",
+    "proc/uptime",
+    "proc/loadavg",
+    "proc/meminfo",
+    "proc/self/status",
+    "proc/modules",
+    "sys/devices/platform/soc/soc:firmware/get_throttled",
+};
+
+struct DeviceFile {
+  const char* folder;
+  const char* name;
+};
+constexpr std::array device_files{
+    DeviceFile{"sys/class/thermal", "type"},
+    DeviceFile{"sys/class/thermal", "temp"},
+    DeviceFile{"sys/class/hwmon", "name"},
+    DeviceFile{"sys/class/hwmon", "in0_lcrit_alarm"},
+    DeviceFile{"sys/bus/usb/devices", "idVendor"},
+    DeviceFile{"sys/bus/usb/devices", "idProduct"},
+    DeviceFile{"sys/bus/usb/devices", "bcdDevice"},
+    DeviceFile{"sys/bus/usb/devices", "product"},
+    DeviceFile{"sys/bus/usb/devices", "speed"},
+};
+
+ArchivedFile json_file(std::string name, const json& content) {
+  return {.name = std::move(name),
+          .content = content.dump(1, ' ', false, json::error_handler_t::replace) + "\n"};
+}
+
+/// The real files of the shared libraries that this program has loaded: most of their names end
+/// with a version.
+std::set<std::string> loaded_libraries(const fs::path& root) {
+  std::set<std::string> libraries;
+  std::ifstream maps(root / "proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t path = line.find('/');
+    if (path != line.npos && line.find(".so", path) != line.npos) {
+      libraries.insert(line.substr(path));
+    }
+  }
+  return libraries;
+}
+
+json versions(const fs::path& root) {
+  utsname kernel{};
+  ::uname(&kernel);
+  return {{"octurn", version()},
+          {"openni2", openni_version()},
+          {"libgpiod", gpiod_version()},
+          {"libraries", loaded_libraries(root)},
+          {"kernel", std::string(kernel.sysname) + " " + kernel.release},
+          {"machine", kernel.machine}};
+}
+
+/// As `head` shows several files.
+void append(std::string& text, const fs::path& root, const fs::path& file) {
+  std::string content(most_of_a_file, '\0');
+  std::ifstream stream(root / file, std::ios::binary);
+  stream.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(stream.gcount()));
+  std::erase(content, '\0');  // which ends what the device tree says
+  if (!content.empty()) {
+    text.append("==> /").append(file.string()).append(" <==\n").append(content);
+    text.append(content.ends_with('\n') ? "\n" : "\n\n");
+  }
+}
+
+std::string system_text(const fs::path& root) {
+  std::string text;
+  for (const char* const file : system_files) {
+    append(text, root, file);
+  }
+  for (const auto& [folder, name] : device_files) {
+    for (const fs::path& device : entries(root / folder)) {
+      append(text, root, fs::path(folder) / device.filename() / name);
+    }
+  }
+  return text;
+}
+
+/// As many of the newest as may be.
+json scans_without_names(std::span<const Job> scans) {
+  json all = json::array();
+  std::size_t bytes = 0;
+  for (const Job& job : scans) {
+    json scan = json_of(job);
+    scan.erase("name");
+    bytes += scan.dump(1, ' ', false, json::error_handler_t::replace).size();
+    if (bytes > most_of_scans) {
+      break;
+    }
+    all.push_back(std::move(scan));
+  }
+  const std::size_t left_out = scans.size() - all.size();
+  return {{"scans", std::move(all)}, {"left_out", left_out}};
+}
+
+}  // namespace
+
+std::vector<ArchivedFile> diagnostics_of_machine(const Config& config,
+                                                 std::span<const Finding> findings,
+                                                 const fs::path& root) {
+  return {json_file("versions.json", versions(root)),
+          json_file("settings.json", json_of(config)),
+          json_file("doctor.json", json_of(findings)),
+          {.name = "system.txt", .content = system_text(root)}};
+}
+
+std::vector<ArchivedFile> diagnostics_of_daemon(const Status& status, std::span<const Job> scans,
+                                                std::string log) {
+  return {json_file("devices.json",
+                    {{"sensor", json_of(status.sensor)}, {"turntable", json_of(status.turntable)}}),
+          json_file("scans.json", scans_without_names(scans)),
+          {.name = "log.txt", .content = std::move(log)}};
+}
+
+}  // namespace octurn

@@ -1,0 +1,144 @@
+#include "doctor/diagnostics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/temporary_folder.hpp"
+#include "support/zip.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+json json_in(const std::vector<ArchivedFile>& files, const char* name) {
+  return json::parse(content_in(files, name), nullptr, false);
+}
+
+Job job_of(const std::string& id, const std::string& name) {
+  return {.id = id, .name = name, .state = JobState::failed, .created = "2026-11-21T08:15:00Z"};
+}
+
+std::vector<std::string> names_of(const std::vector<ArchivedFile>& files) {
+  std::vector<std::string> names;
+  for (const ArchivedFile& file : files) {
+    names.push_back(file.name);
+  }
+  return names;
+}
+
+TEST(Diagnostics, HasTheMachinesFilesInOneOrder) {
+  const TemporaryFolder root;
+  EXPECT_EQ(
+      names_of(diagnostics_of_machine({}, {}, root.path())),
+      (std::vector<std::string>{"versions.json", "settings.json", "doctor.json", "system.txt"}));
+}
+
+TEST(Diagnostics, TellsVersions) {
+  const json versions = json_in(diagnostics_of_machine({}, {}), "versions.json");
+  EXPECT_EQ(versions["octurn"], version());
+  EXPECT_TRUE(versions["openni2"].get<std::string>().starts_with("2.")) << versions;
+  EXPECT_GE(versions["libgpiod"].get<std::string>().size(), 3U) << versions;
+  EXPECT_TRUE(versions["kernel"].get<std::string>().starts_with("Linux ")) << versions;
+  EXPECT_NE(versions["libraries"].dump().find("/libcivetweb.so."), std::string::npos) << versions;
+}
+
+/// The file is one that Octurn can be given.
+TEST(Diagnostics, TellsSettingsAsTheirFileHasThem) {
+  Config config;
+  config.http.port = 8123;
+  config.turntable.gear_ratio = 4;
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json",
+      content_in(diagnostics_of_machine(config, {}), "settings.json"));
+  const Config again = read_config(folder.path() / "octurn.json");
+  EXPECT_EQ(again.http.port, 8123);
+  EXPECT_EQ(again.turntable.gear_ratio, 4);
+}
+
+TEST(Diagnostics, TellsWhatTheDoctorFound) {
+  const std::vector<Finding> findings{
+      {.check = "disk", .state = Finding::State::fault, .measured = "nothing free"}};
+  const json report = json_in(diagnostics_of_machine({}, findings), "doctor.json");
+  EXPECT_EQ(report["state"], "fault");
+  EXPECT_EQ(report["findings"][0]["measured"], "nothing free");
+}
+
+TEST(Diagnostics, ShowsTheSystemsFilesAsTheyAre) {
+  const TemporaryFolder root;
+  put(root.path() / "etc/os-release", "ID=debian\n");
+  put(root.path() / "proc/device-tree/model", std::string_view("Raspberry Pi 4\0", 15));
+  put(root.path() / "sys/devices/platform/soc/soc:firmware/get_throttled", "50005\n");
+  put(root.path() / "sys/class/thermal/thermal_zone0/temp", "61234\n");
+  put(root.path() / "sys/bus/usb/devices/1-1.2/idProduct", "02ae\n");
+  EXPECT_EQ(content_in(diagnostics_of_machine({}, {}, root.path()), "system.txt"),
+            "==> /etc/os-release <==\nID=debian\n\n"
+            "==> /proc/device-tree/model <==\nRaspberry Pi 4\n\n"
+            "==> /sys/devices/platform/soc/soc:firmware/get_throttled <==\n50005\n\n"
+            "==> /sys/class/thermal/thermal_zone0/temp <==\n61234\n\n"
+            "==> /sys/bus/usb/devices/1-1.2/idProduct <==\n02ae\n\n");
+}
+
+TEST(Diagnostics, LeavesOutWhatTellsOneMachineFromOthers) {
+  const TemporaryFolder root;
+  for (const char* const file :
+       {"etc/hostname", "etc/machine-id", "proc/cpuinfo", "proc/cmdline", "proc/self/environ",
+        "proc/device-tree/serial-number", "sys/bus/usb/devices/1-1/serial"}) {
+    put(root.path() / file, "private\n");
+  }
+  for (const ArchivedFile& file : diagnostics_of_machine({}, {}, root.path())) {
+    EXPECT_EQ(file.content.find("private"), std::string::npos) << file.name;
+  }
+}
+
+TEST(Diagnostics, TellsDevicesScansAndLogOfADaemon) {
+  const Status status{.sensor = {.state = DeviceStatus::State::failed,
+                                 .name = "Kinect v1",
+                                 .failure = {.detail = "no frame for 2 s"}}};
+  Job failed = job_of("20261121-081500-3f2a", "");
+  failed.failure = Failure{.code = "sensor-silent", .detail = "no frame for 2 s"};
+  const std::vector<Job> scans{failed};
+  const std::vector<ArchivedFile> files = diagnostics_of_daemon(status, scans, "said\n");
+  EXPECT_EQ(names_of(files), (std::vector<std::string>{"devices.json", "scans.json", "log.txt"}));
+  EXPECT_EQ(json_in(files, "devices.json")["sensor"]["message"], "no frame for 2 s");
+  const json scan = json_in(files, "scans.json")["scans"][0];
+  EXPECT_EQ(scan["id"], failed.id);
+  EXPECT_EQ(scan["state"], "failed");
+  EXPECT_EQ(scan["error"]["code"], "sensor-silent");
+  EXPECT_EQ(scan["settings"]["snapshots"], 36);
+  EXPECT_EQ(content_in(files, "log.txt"), "said\n");
+}
+
+TEST(Diagnostics, LeavesOutWhatAPersonCalledAScan) {
+  const std::vector<Job> scans{job_of("20261121-081500-3f2a", "private")};
+  for (const ArchivedFile& file : diagnostics_of_daemon({}, scans, "")) {
+    EXPECT_EQ(file.content.find("private"), std::string::npos) << file.name;
+  }
+}
+
+TEST(Diagnostics, IsBoundedHoweverMuchThereIs) {
+  const TemporaryFolder root;
+  for (const char* const file : {"etc/os-release", "proc/modules", "proc/meminfo"}) {
+    put(root.path() / file, std::string(1U << 20U, 'x'));
+  }
+  std::vector<Job> scans(5000, job_of("20261121-081500-3f2a", ""));
+  scans.front().id = "20261121-090000-0000";
+  std::vector<ArchivedFile> files = diagnostics_of_machine({}, {}, root.path());
+  for (ArchivedFile& file : diagnostics_of_daemon({}, scans, "")) {
+    files.push_back(std::move(file));
+  }
+  std::size_t bytes = 0;
+  for (const ArchivedFile& file : files) {
+    bytes += file.content.size();
+  }
+  EXPECT_LT(bytes, 3U << 20U);  // so that a log of 1 MiB has its place
+  const json stored = json_in(files, "scans.json");
+  EXPECT_EQ(stored["scans"][0]["id"], "20261121-090000-0000");
+  EXPECT_GT(stored["scans"].size(), 500U);
+  EXPECT_EQ(stored["scans"].size() + stored["left_out"].get<std::size_t>(), scans.size());
+}
+
+}  // namespace
+}  // namespace octurn

@@ -25,7 +25,7 @@ unsigned dos_time(const std::string& archive) {
 TEST(ZipArchive, GivesBackItsFilesInTheirOrder) {
   std::string large;
   for (int i = 0; i < 100'000; ++i) {
-    large += std::to_string(i * i);
+    large += std::to_string(i);
   }
   const std::vector<ArchivedFile> files{{"z.txt", "last by name"},
                                         {"empty", ""},

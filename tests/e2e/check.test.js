@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
 import {openBrowser, openPage, picture} from './browser.js';
@@ -45,10 +46,26 @@ async function checkDuringScan(scanner, browser) {
   await ask(scanner, `scans/${id}/cancel`, 'POST');
 }
 
+/** The link gives the zip file, under its own name, while the page stays. */
+async function downloadDiagnostics(scanner, browser) {
+  const {page, faults} = await openPage(browser, scanner.url);
+  const link = page.getByRole('link', {name: 'Download diagnostics'});
+  const [arrived] = await Promise.all([page.waitForEvent('download'), link.click()]);
+  assert.match(arrived.suggestedFilename(), /^octurn-diagnostics-\d{8}-\d{6}\.zip$/);
+  const content = await readFile(await arrived.path());
+  assert.equal(content.toString('latin1', 0, 4), 'PK\x03\x04');
+  for (const name of ['versions.json', 'doctor.json', 'log.txt']) {
+    assert.ok(content.includes(name), name);
+  }
+  assert.ok(await button(page).isVisible());
+  assert.deepEqual(faults, []);
+}
+
 test('the scanner is checked on the page', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t);
   await t.test('by the keyboard alone, with progress and focus kept', () => checkByKeyboard(scanner, browser));
+  await t.test('diagnostics are a file to download', () => downloadDiagnostics(scanner, browser));
   await t.test('a scan is not disturbed', () => checkDuringScan(scanner, browser));
 });
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "support/daemon.hpp"
@@ -65,7 +64,9 @@ TEST(Diagnostics, AnswerHeadWithoutABody) {
 TEST(Diagnostics, AreNotForOtherHosts) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  EXPECT_EQ(daemon.get(path, {{"Host", "evil.example"}}).status, 421);
+  const std::string rebound =
+      std::string("GET ") + path + " HTTP/1.1\r\nHost: evil.example\r\n\r\n";
+  EXPECT_EQ(reply_to(daemon.port(), rebound).status, 421);
 }
 
 TEST(Diagnostics, LeaveAScanAlone) {

@@ -182,11 +182,14 @@ TEST_F(SharedBunny, StaysBelow64MbAtAnEighthOfAMillimetre) {
 
 TEST_F(SharedBunny, AsASolidStaysBelow64MbAtHalfAMillimetreWithTheSameBytes) {
   const Outcome free = outcome_of(command(scan_, "0.5", {"--method", "solid"}));
-  const Outcome tight = outcome_of(
-      command(scan_, "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "64"}));
-  EXPECT_EQ(tight.status, 0) << tight.errors;
-  EXPECT_LT(tight.peak_bytes, 64 * mb);
-  EXPECT_EQ(tight.model, free.model);
+  for (const char* const threads : {"1", "2"}) {
+    SCOPED_TRACE(threads);
+    const Outcome tight = outcome_of(command(
+        scan_, "0.5", {"--method", "solid", "--threads", threads, "--memory-limit-mb", "64"}));
+    EXPECT_EQ(tight.status, 0) << tight.errors;
+    EXPECT_LT(tight.peak_bytes, 64 * mb);
+    EXPECT_EQ(tight.model, free.model);
+  }
 }
 
 TEST_F(SharedBunny, StaysBelow24MbAtHalfAMillimetreWithTheSameBytes) {

@@ -37,6 +37,7 @@ Config config_from(const json& object) {
   Config config = defaults();
   config.http.address = keys.text("listen").value_or(config.http.address);
   config.http.port = keys.whole_number("port", 0, 65535).value_or(config.http.port);
+  config.http.password_file = keys.text("password_file").value_or("");
   config.data = keys.text("data").value_or(config.data.string());
   config.limits.threads = keys.whole_number("threads", 1, 256).value_or(config.limits.threads);
   if (const auto mb = keys.number("memory_limit_mb", 32, 1e6)) {

@@ -184,6 +184,16 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
   command.callback([&] { reconstruct(arguments); });
 }
 
+void add_password(CLI::App& program, std::filesystem::path& file) {
+  CLI::App& command = *program.add_subcommand("password", "gives the page a password");
+  command
+      .add_option("FILE", file,
+                  "what it is kept in, for password_file of octurn.json; made if it is not there")
+      ->required();
+  command.footer("Reads the password from standard input, a line. The user is octurn.");
+  command.callback([&file] { set_password(file); });
+}
+
 int fail(const std::string& message, const std::string& hint, int status) {
   std::cerr << "octurn: " << message << (hint.empty() ? "" : " (" + hint + ")") << '\n';
   return status;
@@ -201,12 +211,14 @@ int run(int argc, char** argv) {
   RecordArguments record_arguments;
   DoctorArguments doctor_arguments;
   ReconstructArguments reconstruct_arguments;
+  std::filesystem::path password_file;
   int status = 0;
   add_serve(program, serve_arguments);
   add_scan(program, scan_arguments);
   add_record(program, record_arguments);
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
+  add_password(program, password_file);
 
   block_signals();
   try {

@@ -99,6 +99,10 @@ struct ReconstructArguments {
 /// `octurn reconstruct`: a model from a scan folder.
 void reconstruct(const ReconstructArguments& arguments);
 
+/// `octurn password`: reads a password, a line, from standard input, and writes the file that
+/// `password_file` of the configuration names.
+void set_password(const std::filesystem::path& file);
+
 /// Reads the command line and does what it says.
 /// @return the exit status: 0, 1 if it failed, which one line on standard error explains, 2 for bad
 ///         usage

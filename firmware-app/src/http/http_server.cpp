@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "http/password_file.hpp"
 #include "http/problem.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -160,13 +161,25 @@ std::optional<std::string> read_body(mg_connection* connection, long long announ
 struct Service {
   HttpServer::Answer answer;
   std::chrono::milliseconds patience;
+  std::filesystem::path password_file;
 };
+
+/// Whether a request proves to know the password, if there is one. The file is read each time, so
+/// that a new password counts at once.
+bool is_let_in(mg_connection* connection, const std::filesystem::path& password_file) {
+  return password_file.empty() ||
+         mg_check_digest_access_authentication(connection, page_realm, password_file.c_str()) > 0;
+}
 
 /// The server's answer to one request; civetweb's callbacks are C, and nothing may be thrown
 /// through them.
 int answer_request(mg_connection* connection) noexcept {
   const mg_request_info& info = *mg_get_request_info(connection);
-  const auto& [answer, patience] = *static_cast<const Service*>(info.user_data);
+  const auto& [answer, patience, password_file] = *static_cast<const Service*>(info.user_data);
+  if (!is_let_in(connection, password_file)) {
+    mg_send_digest_access_authentication_request(connection, page_realm);
+    return 401;
+  }
   Request request = head_from(info);
   Response response;
   if (auto body = read_body(connection, info.content_length, patience)) {
@@ -205,11 +218,17 @@ struct HttpServer::Server {
 };
 
 HttpServer::HttpServer(const HttpOptions& options, Answer answer)
-    : server_(std::make_unique<Server>(
-          Server{.service = {.answer = std::move(answer), .patience = options.patience},
-                 .address = options.address == "0.0.0.0" ? "127.0.0.1"
-                            : options.address == "::"    ? "::1"
-                                                         : options.address})) {
+    : server_(std::make_unique<Server>(Server{.service = {.answer = std::move(answer),
+                                                          .patience = options.patience,
+                                                          .password_file = options.password_file},
+                                              .address = options.address == "0.0.0.0" ? "127.0.0.1"
+                                                         : options.address == "::"
+                                                             ? "::1"
+                                                             : options.address})) {
+  if (!options.password_file.empty() && ::access(options.password_file.c_str(), R_OK) != 0) {
+    throw Error("bad-password-file", options.password_file.string() + ": cannot be read",
+                "`octurn password` makes it; the user that this program runs as must own it.");
+  }
   const bool v6 = options.address.find(':') != std::string::npos;
   const std::string address = v6 ? "[" + options.address + "]" : options.address;
   const std::string listening = address + ":" + std::to_string(options.port);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@ namespace octurn {
 struct HttpOptions {
   std::string address = "0.0.0.0";  ///< to listen on; the default is every one of this machine
   int port = 8080;                  ///< 0: any free one
+  std::filesystem::path password_file = {};  ///< who may open it; empty: everybody
   std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< with a client that stalls
 };
 
@@ -23,7 +25,7 @@ class HttpServer {
   using Answer = std::function<Response(const Request&)>;
 
   /// @param answer  called by any thread of the pool; must not throw
-  /// @throws Error "port-in-use", "listen-failed"
+  /// @throws Error "listen-failed", "bad-password-file"
   HttpServer(const HttpOptions& options, Answer answer);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

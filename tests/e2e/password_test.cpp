@@ -1,0 +1,74 @@
+// The page's password, as its owner gives it.
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+
+#include "support/daemon.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `octurn password FILE` with that on its standard input. @return its exit status
+int give_password(const fs::path& file, const std::string& typed) {
+  Program program({"/bin/sh", "-c", "printf '%s\\n' \"$1\" | \"$0\" password \"$2\"",
+                   OCTURN_PROGRAM, typed, file.string()});
+  return program.wait();
+}
+
+fs::path config_with_password(const fs::path& folder) {
+  put(folder / "octurn.json", R"({"password_file": ")" + (folder / "password").string() + R"("})");
+  return folder / "octurn.json";
+}
+
+TEST(PasswordCommand, WritesAFileThatOnlyItsOwnerReads) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "password";
+  ASSERT_EQ(give_password(file, "open sesame"), 0);
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  const std::string first = content_of(file);
+  EXPECT_EQ(first.find("sesame"), std::string::npos);
+  ASSERT_EQ(give_password(file, "another"), 0);
+  EXPECT_NE(content_of(file), first);
+  EXPECT_EQ(content_of(file).size(), first.size());
+}
+
+TEST(PasswordCommand, RefusesNoPasswordAndKeepsTheOneThereIs) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "password";
+  ASSERT_EQ(give_password(file, "open sesame"), 0);
+  const std::string first = content_of(file);
+  EXPECT_EQ(give_password(file, ""), 1);
+  EXPECT_EQ(content_of(file), first);
+  EXPECT_EQ(give_password(folder.path() / "nowhere" / "password", "a"), 1);
+}
+
+TEST(Serve, ShowsNothingWithoutThePassword) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(give_password(folder.path() / "password", "open sesame"), 0);
+  const Daemon daemon(folder.path(), {"--config", config_with_password(folder.path())});
+  for (const char* const path : {"/", "/api/v1/status", "/Scan.stl", "/nowhere"}) {
+    const Reply reply = daemon.get(path);
+    EXPECT_EQ(reply.status, 401) << path;
+    EXPECT_EQ(reply.header("WWW-Authenticate").find("Digest "), 0U) << path;
+    EXPECT_EQ(reply.body.find("Octurn</title>"), std::string::npos) << path;
+  }
+  EXPECT_EQ(daemon.post("/api/v1/scans").status, 401);
+  EXPECT_EQ(daemon.get("/", {{"Authorization", "Digest username=\"octurn\""}}).status, 401);
+  EXPECT_EQ(daemon.get("/", {{"Authorization", "Basic b2N0dXJuOm9wZW4gc2VzYW1l"}}).status, 401);
+}
+
+TEST(Serve, DoesNotStartWithoutTheFileOfItsPassword) {
+  const TemporaryFolder folder;
+  Program program(
+      Daemon::command(folder.path(), {"--config", config_with_password(folder.path())}));
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(program.errors().find("octurn password"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -76,6 +76,7 @@ json json_of(const Config& config) {
   return {{"listen", config.http.address},
           {"port", config.http.port},
           {"host_names", config.host_names},
+          {"password_file", config.http.password_file.string()},
           {"data", config.data.string()},
           {"threads", config.limits.threads},
           {"memory_limit_mb", mb_from_bytes(static_cast<double>(config.limits.memory_bytes))},

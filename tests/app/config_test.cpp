@@ -21,12 +21,14 @@ Config config_of(const char* text) {
 TEST(Config, ReadsEveryKey) {
   const Config config =
       config_of(R"({"listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"],
+                                      "password_file": "/srv/password",
                                       "data": "/srv/scans", "threads": 2, "memory_limit_mb": 64,
                                       "scan": {"snapshots": 12},
                                       "turntable": {"microsteps": 8}})");
   EXPECT_EQ(config.http.address, "127.0.0.1");
   EXPECT_EQ(config.http.port, 80);
   EXPECT_EQ(config.host_names, std::vector<std::string>{"octurn.example"});
+  EXPECT_EQ(config.http.password_file, "/srv/password");
   EXPECT_EQ(config.data, "/srv/scans");
   EXPECT_EQ(config.limits.threads, 2);
   EXPECT_EQ(config.limits.memory_bytes, 64U << 20U);
@@ -37,7 +39,7 @@ TEST(Config, ReadsEveryKey) {
 TEST(Config, IsWrittenAsItIsRead) {
   const json every = json::parse(R"({
       "listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"], "data": "/srv/scans",
-      "threads": 2, "memory_limit_mb": 64.5, "scan": {},
+      "password_file": "/srv/password", "threads": 2, "memory_limit_mb": 64.5, "scan": {},
       "turntable": {"step_line": "GPIO2", "direction_line": "GPIO3", "enable_line": "GPIO4",
                     "microstep_lines": ["GPIO9", "GPIO10", "GPIO11"], "microsteps": 8,
                     "full_steps": 400, "gear_ratio": 2.5, "reversed": true,

@@ -26,23 +26,8 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
   process.once(signal, () => process.exit(1));
 }
 
-/** Once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
-async function startedScan(guest) {
-  const begin = performance.now();
-  for (;;) {
-    try {
-      return await guest.ask('scans', 'POST', {snapshots: 8, frames: 3, leaf_size_mm: 2});
-    } catch (error) {
-      if (!error.message.includes('sensor-silent') || secondsSince(begin) > patience) {
-        throw error;
-      }
-    }
-    await sleep(500);
-  }
-}
-
 async function scan(guest) {
-  const {id} = await startedScan(guest);
+  const {id} = await guest.startScan({snapshots: 8, frames: 3, leaf_size_mm: 2}, patience);
   const begin = performance.now();
   for (;;) {
     const scan = await guest.ask(`scans/${id}`);

@@ -136,6 +136,20 @@ export class Guest {
     return response.json();
   }
 
+  /** Starts a scan, once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
+  async startScan(settings, seconds) {
+    return this.#until('scan', seconds, async () => {
+      try {
+        return await this.ask('scans', 'POST', settings);
+      } catch (error) {
+        if (!error.message.includes('sensor-silent')) {
+          throw error;
+        }
+      }
+      return undefined;
+    });
+  }
+
   /** Runs a command in the guest, as root. @returns {Promise<string>} what it prints */
   async run(command, seconds = 60) {
     const name = `command-${++this.#commands}`;

@@ -73,9 +73,12 @@ export class Guest {
       '-display', 'none', '-monitor', 'none', '-no-reboot', '-accel', 'tcg,thread=multi',
       '-kernel', `${card}/vmlinuz`, '-initrd', `${card}/initrd.img`, '-append', kernel.join(' '),
       ...machine.options({card, forward: `hostfwd=tcp:127.0.0.1:${port}-:80`}),
-    ], {stdio: ['pipe', 'pipe', 'inherit']});
-    process.once('exit', () => guest.#qemu.kill('SIGKILL'));
+    ], {stdio: 'pipe'});
+    const end = () => guest.#qemu.kill('SIGKILL');
+    process.once('exit', end);
+    guest.#qemu.once('exit', () => process.off('exit', end));
     const log = createWriteStream(`${card}/console.log`);
+    guest.#qemu.stderr.pipe(log);
     guest.#qemu.stdout.setEncoding('utf8').on('data', (text) => {
       guest.#said += text;
       log.write(text);

@@ -78,7 +78,7 @@ export class Guest {
     process.once('exit', end);
     guest.#qemu.once('exit', () => process.off('exit', end));
     const log = createWriteStream(`${card}/console.log`);
-    guest.#qemu.stderr.pipe(log);
+    guest.#qemu.stderr.pipe(log, {end: false});
     guest.#qemu.stdout.setEncoding('utf8').on('data', (text) => {
       guest.#said += text;
       log.write(text);

@@ -1,14 +1,18 @@
 // Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, and how often power is
 // cut then.
 
+import {readFile} from 'node:fs/promises';
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {measure} from '../tests/e2e/mesh_file.js';
-import {Guest, secondsSince} from './guest.mjs';
+import {Guest, readCard, secondsSince} from './guest.mjs';
 import {cutPower} from './power_cuts.mjs';
 
 const [machine, card, cuts] = process.argv.slice(2);
 const patience = machine === 'virt' ? 600 : 900;  // seconds, on a machine with other work
+
+// IEEE 802.11's example of a password and the key made of it, annex J.4.1
+const wifi = {password: 'password', key: 'f42c6fc52df0ebef9ebb4b90b38a5f902e83fe1b135a70e23aed762e9710a12e'};
 
 const say = (text) => console.log(`boot-test: ${text}`);
 const require = (condition, text) => {
@@ -22,23 +26,8 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
   process.once(signal, () => process.exit(1));
 }
 
-/** Once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
-async function startedScan(guest) {
-  const begin = performance.now();
-  for (;;) {
-    try {
-      return await guest.ask('scans', 'POST', {snapshots: 8, frames: 3, leaf_size_mm: 2});
-    } catch (error) {
-      if (!error.message.includes('sensor-silent') || secondsSince(begin) > patience) {
-        throw error;
-      }
-    }
-    await sleep(500);
-  }
-}
-
 async function scan(guest) {
-  const {id} = await startedScan(guest);
+  const {id} = await guest.startScan({snapshots: 8, frames: 3, leaf_size_mm: 2}, patience);
   const begin = performance.now();
   for (;;) {
     const scan = await guest.ask(`scans/${id}`);
@@ -51,12 +40,7 @@ async function scan(guest) {
   }
 }
 
-async function test(guest) {
-  say(`${machine}: the page after ${(await guest.page(patience)).toFixed(1)} s`);
-  const {version, sensor} = await guest.ask('status');
-  require(sensor.simulated, `octurn.txt asks for the simulated rig, and the sensor is ${JSON.stringify(sensor)}`);
-  say(`octurn ${version}, on the simulated rig as octurn.txt asks`);
-
+async function testScan(guest) {
   const {seconds, model} = await scan(guest);
   const response = await fetch(`${guest.url}Scan.stl`, {signal: AbortSignal.timeout(60000)});
   const mesh = measure(Buffer.from(await response.arrayBuffer()));
@@ -70,22 +54,71 @@ async function test(guest) {
   require(bytes > 1e6, 'the daemon has no memory');
   const peak = await guest.run('sed -n "s/^VmHWM:[^0-9]*//p" /proc/$(systemctl show -P MainPID octurn)/status');
   say(`the daemon's peak memory: ${peak} resident, ${(bytes / 1048576).toFixed(0)} MiB with its files in the cache`);
+}
 
-  const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
-  require(failed === '', `failed units: ${failed}`);
-  const name = await guest.run('cat /proc/sys/kernel/hostname');
-  require(name === 'boot-test', `octurn.txt gives the name boot-test, and it is ${name}`);
+async function testDoctor(guest) {
+  const {state, findings} = await guest.ask('doctor');
+  require(findings.length > 5, `the doctor has only ${findings.length} findings`);
+  const bad = findings.filter((finding) => finding.state !== 'ok').map(({state, name, measured}) => `${state} ${name}: ${measured}`);
+  require(state !== 'fault', `the doctor finds ${bad.join('; ')}`);
+  say(`octurn doctor: ${state}, ${findings.length} findings; not ok: ${bad.join('; ') || 'none'}`);
+}
+
+async function testSystem(guest) {
+  // The name as the others in the network know it: avahi's, which is another after a conflict.
+  const name = await guest.run('cat /proc/sys/kernel/hostname; busctl call org.freedesktop.Avahi / org.freedesktop.Avahi.Server GetHostName');
+  require(/^boot-test\s+s "boot-test"$/.test(name), `octurn.txt gives the name boot-test, and it is ${name}`);
+  const key = await guest.run('stat -c %a /data/wifi; cat /data/wifi');
+  require(key === `600\n49454545 ${wifi.key}`, `of the WiFi is kept: ${key}`);
+  const used = await guest.run('grep psk= /etc/wpa_supplicant/wpa_supplicant-wlan0.conf');
+  require(used === `psk=${wifi.key}`, `wpa_supplicant's key is ${used}`);
   const size = Number(await guest.run('df --output=size -m /var/lib/octurn | tail -n 1'));
   require(size > 200, `the data partition has not grown: ${size} MiB`);
-  const lost = await guest.run('journalctl -b -q -p err --no-pager -o cat | head -n 20');
-  say(`data partition of ${size} MiB, no failed units, errors in the journal: ${lost || 'none'}`);
+  const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
+  require(failed === '', `failed units: ${failed}`);
+  const errors = await guest.run('journalctl -b -q -p err --no-pager -o cat | head -n 20');
+  say(`data partition of ${size} MiB, no failed units, errors in the journal: ${errors || 'none'}`);
+}
+
+/** Waits for a file on the card, which is not there before it is complete. */
+async function cardHas(name) {
+  const begin = performance.now();
+  while (!await readCard(card, name).catch(() => '')) {
+    require(secondsSince(begin) < patience, `no ${name} on the card after ${patience} s`);
+    await sleep(500);
+  }
+}
+
+/** What the scanner's owner sees when the card, of a scanner of this version, is in another computer. */
+async function testCard(version) {
+  const settings = await readCard(card, 'octurn.txt');
+  const given = await readFile(`${card}/octurn.txt`, 'utf8');
+  require(settings === given.replace(`= ${wifi.password}`, '= ********'), `octurn.txt is\n${settings}`);
+  const status = await readCard(card, 'octurn-status.txt');
+  for (const line of ['The page: http://boot-test.local', 'http://10.0.2.15', `Octurn ${version}`, 'there is no setting colour']) {
+    require(status.includes(line), `octurn-status.txt lacks "${line}":\n${status}`);
+  }
+  say('on the card: octurn.txt without the password, octurn-status.txt with address and the wrong line');
+}
+
+async function test(guest) {
+  const seconds = await guest.page(patience);
+  say(`${machine}: the page after ${seconds.toFixed(1)} s, ${(await guest.processorSeconds()).toFixed(1)} s of processor time`);
+  const {version, sensor} = await guest.ask('status');
+  require(sensor.simulated, `octurn.txt asks for the simulated rig, and the sensor is ${JSON.stringify(sensor)}`);
+  say(`octurn ${version}, on the simulated rig as octurn.txt asks`);
+  await testScan(guest);
+  await testDoctor(guest);
+  await testSystem(guest);
+  await cardHas('octurn-status.txt');
+  await guest.run('sync');
+  await guest.cutPower();
+  await testCard(version);
 }
 
 const guest = await Guest.start(machine, card);
 try {
   await test(guest);
-  await guest.run('sync');
-  await guest.cutPower();
   if (Number(cuts) > 0) {
     await cutPower(machine, card, Number(cuts), patience, say);
   }

@@ -1,18 +1,19 @@
 // A machine in QEMU that starts from a card as the Raspberry Pi's firmware would start it.
 
-import {spawn} from 'node:child_process';
+import {execFile, spawn} from 'node:child_process';
 import {once} from 'node:events';
 import {createWriteStream} from 'node:fs';
 import {readFile} from 'node:fs/promises';
 import {createServer} from 'node:net';
 import {setTimeout as sleep} from 'node:timers/promises';
+import {promisify} from 'node:util';
 
 /** What differs between QEMU's machines: its options, and the name of the console that is QEMU's standard output. */
 const machines = {
   virt: {
     console: 'ttyAMA0',
     options: ({card, forward}) => [
-      '-M', 'virt', '-cpu', 'cortex-a53', '-smp', '2', '-m', '1024',
+      '-M', 'virt', '-cpu', 'max,pauth-impdef=on', '-smp', '2', '-m', '1024',
       '-serial', 'stdio',
       '-drive', `if=none,id=card,format=raw,file=${card}/card.img`, '-device', 'virtio-blk-pci,drive=card',
       '-netdev', `user,id=net,${forward}`, '-device', 'virtio-net-pci,netdev=net,romfile=',
@@ -42,6 +43,11 @@ async function freePort() {
   return port;
 }
 
+/** A file of the FAT partition. @param {string} card  the folder with card.img */
+export async function readCard(card, name) {
+  return (await promisify(execFile)('mtype', ['-i', `${card}/card.img@@1M`, `::${name}`])).stdout;
+}
+
 /** Seconds since `start`, of performance.now(). */
 export const secondsSince = (start) => (performance.now() - start) / 1000;
 
@@ -67,9 +73,12 @@ export class Guest {
       '-display', 'none', '-monitor', 'none', '-no-reboot', '-accel', 'tcg,thread=multi',
       '-kernel', `${card}/vmlinuz`, '-initrd', `${card}/initrd.img`, '-append', kernel.join(' '),
       ...machine.options({card, forward: `hostfwd=tcp:127.0.0.1:${port}-:80`}),
-    ], {stdio: ['pipe', 'pipe', 'inherit']});
-    process.once('exit', () => guest.#qemu.kill('SIGKILL'));
+    ], {stdio: 'pipe'});
+    const end = () => guest.#qemu.kill('SIGKILL');
+    process.once('exit', end);
+    guest.#qemu.once('exit', () => process.off('exit', end));
     const log = createWriteStream(`${card}/console.log`);
+    guest.#qemu.stderr.pipe(log, {end: false});
     guest.#qemu.stdout.setEncoding('utf8').on('data', (text) => {
       guest.#said += text;
       log.write(text);
@@ -95,14 +104,28 @@ export class Guest {
 
   /** @returns {Promise<number>} seconds from power-on to the page */
   async page(seconds) {
-    return this.#until('page', seconds, async () => {
+    let found;
+    const ask = async () => {
       try {
         const response = await fetch(this.url, {signal: AbortSignal.timeout(3000)});
-        return (await response.text()).includes('<title>') ? secondsSince(this.start) : undefined;
+        if ((await response.text()).includes('<title>')) {
+          found ??= secondsSince(this.start);
+        }
       } catch {
-        return undefined;  // QEMU accepts connections before the guest does
+        // QEMU accepts connections before the guest does, and these are lost: so others are made meanwhile.
       }
+    };
+    return this.#until('page', seconds, async () => {
+      ask();
+      await sleep(400);
+      return found;
     });
+  }
+
+  /** @returns {Promise<number>} seconds of this machine's processors that the guest has had, however busy these are */
+  async processorSeconds() {
+    const fields = (await readFile(`/proc/${this.#qemu.pid}/stat`, 'utf8')).replace(/^.*\) /, '').split(' ');
+    return (Number(fields[11]) + Number(fields[12])) / 100;  // user and system, in the hundredths that the kernel tells
   }
 
   /** Asks the API. @returns {Promise<any>} */
@@ -114,6 +137,20 @@ export class Guest {
       throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
     }
     return response.json();
+  }
+
+  /** Starts a scan, once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
+  async startScan(settings, seconds) {
+    return this.#until('scan', seconds, async () => {
+      try {
+        return await this.ask('scans', 'POST', settings);
+      } catch (error) {
+        if (!error.message.includes('sensor-silent')) {
+          throw error;
+        }
+      }
+      return undefined;
+    });
   }
 
   /** Runs a command in the guest, as root. @returns {Promise<string>} what it prints */

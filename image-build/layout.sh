@@ -8,7 +8,7 @@
 
 # shellcheck disable=SC2034
 {
-  signature=4f637475 # of the partition table: how the initrd knows the card; fstab has it too
+  signature=4f637475 # of the partition table: how the initrd knows the card
   boot_size=192
   root_size=256
   data_size=8

@@ -2,14 +2,19 @@
 
 import {setTimeout as sleep} from 'node:timers/promises';
 
-import {Guest, secondsSince} from './guest.mjs';
+import {Guest, readCard, secondsSince} from './guest.mjs';
+
+// As octurn-wifi.service does when there is a password, but again and again. What is written is what was there.
+const writeSettings = `{ unshare --mount sh -ec '. /usr/lib/octurn/card.sh; cd /run/octurn-settings; cp octurn.txt written;
+  while :; do write_card octurn.txt written; done' >/run/writing 2>&1 & }`.replace(/\s+/g, ' ');
 
 /**
- * A scan until power fails, at some moment of its first 20 seconds.
+ * A scan, and settings that are written, until power fails at some moment of the first 20 seconds.
  * @returns {Promise<{id: string, snapshots: number}>} what the daemon said it had stored by then
  */
-async function interruptedScan(guest) {
-  const {id} = await guest.ask('scans', 'POST', {snapshots: 60, frames: 1});
+async function interruptedScan(guest, patience) {
+  await guest.run(writeSettings);
+  const {id} = await guest.startScan({snapshots: 60, frames: 1}, patience);
   const begin = performance.now();
   const end = Math.random() * 20;
   let snapshots = 0;
@@ -29,15 +34,21 @@ async function interruptedScan(guest) {
  * @param {(text: string) => void} say
  */
 export async function cutPower(machine, card, cuts, patience, say) {
+  const settings = await readCard(card, 'octurn.txt');
   const stored = [];
   let guest = await Guest.start(machine, card);
   try {
     await guest.page(patience);
     for (let cut = 1; cut <= cuts; ++cut) {
-      stored.push(await interruptedScan(guest));
+      stored.push(await interruptedScan(guest, patience));
+      const left = await readCard(card, 'octurn.txt');
+      if (left !== settings) {
+        throw new Error(`octurn.txt is after a power cut\n${left}`);
+      }
       guest = await Guest.start(machine, card);
       const seconds = await guest.page(patience);
-      for (const {id, snapshots} of stored) {
+      // A scan that had stored nothing yet may be gone.
+      for (const {id, snapshots} of stored.filter((scan) => scan.snapshots > 0)) {
         const scan = await guest.ask(`scans/${id}`);
         if (scan.state !== 'interrupted' || scan.snapshots_done < snapshots) {
           throw new Error(`${snapshots} snapshots were stored, and the scan is ${JSON.stringify(scan)}`);

@@ -28,6 +28,12 @@ constexpr std::size_t page_bytes = 4096;  // past the page cache, disks read fro
                    : "Check that the folder exists and that this program may write to it.");
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+}  // namespace
+
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) {
@@ -39,12 +45,6 @@ void sync_folder(const std::filesystem::path& folder) {
     fail(folder, "sync", number);
   }
 }
-
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
-
-}  // namespace
 
 AtomicFile::AtomicFile(std::filesystem::path target)
     : target_(std::move(target)),

@@ -47,6 +47,9 @@ class AtomicFile {
   std::uint64_t written_ = 0;
 };
 
+/// Makes the names in a folder survive a power cut. @throws Error  if the disk does not take it
+void sync_folder(const std::filesystem::path& folder);
+
 /// Writes a small file whole or not at all. @throws Error  if the disk does not take it
 void write_file(const std::filesystem::path& target, std::string_view content);
 

@@ -178,6 +178,7 @@ Job ScanStore::create(const ScanSettings& settings) const {
   if (error) {
     fail(folder(job.id), "make the folder", error);
   }
+  sync_folder(scans_);
   return job;
 }
 

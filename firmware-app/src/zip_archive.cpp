@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <new>
 
 namespace octurn {
@@ -55,9 +56,7 @@ bool add(zipFile zip, const ArchivedFile& file, const zip_fileinfo& info) {
          zipCloseFileInZip(zip) == ZIP_OK;
 }
 
-}  // namespace
-
-std::string zip_of(std::span<const ArchivedFile> files, system_clock::time_point time) {
+std::string archive_of(std::span<const ArchivedFile> files, system_clock::time_point time) {
   MemoryStream memory;
   zlib_filefunc_def functions{};
   fill_fopen_filefunc(&functions);
@@ -76,6 +75,13 @@ std::string zip_of(std::span<const ArchivedFile> files, system_clock::time_point
     throw std::bad_alloc();
   }
   return {memory.bytes, memory.size};
+}
+
+}  // namespace
+
+// minizip takes 70 KB of stack, and the HTTP server's threads have 100 KB.
+std::string zip_of(std::span<const ArchivedFile> files, system_clock::time_point time) {
+  return std::async(std::launch::async, archive_of, files, time).get();
 }
 
 }  // namespace octurn

@@ -47,8 +47,7 @@ export async function cutPower(machine, card, cuts, patience, say) {
       }
       guest = await Guest.start(machine, card);
       const seconds = await guest.page(patience);
-      // A scan that had stored nothing yet may be gone.
-      for (const {id, snapshots} of stored.filter((scan) => scan.snapshots > 0)) {
+      for (const {id, snapshots} of stored) {
         const scan = await guest.ask(`scans/${id}`);
         if (scan.state !== 'interrupted' || scan.snapshots_done < snapshots) {
           throw new Error(`${snapshots} snapshots were stored, and the scan is ${JSON.stringify(scan)}`);

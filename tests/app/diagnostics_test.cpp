@@ -13,10 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-json json_in(const std::vector<ArchivedFile>& files, const char* name) {
-  return json::parse(content_in(files, name), nullptr, false);
-}
-
 Job job_of(const std::string& id, const std::string& name) {
   return {.id = id, .name = name, .state = JobState::failed, .created = "2026-11-21T08:15:00Z"};
 }

@@ -90,7 +90,7 @@ TEST_F(LendRig, EndsWithTheScanner) {
 }
 
 TEST_F(LendRig, LetsTheDoctorLookAtTheSensor) {
-  const auto findings = examine({.rig = rig(), .data = folder_.path()}, scanner_);
+  const auto findings = examine({.rig = rig(), .config = {.data = folder_.path()}}, scanner_);
   EXPECT_EQ(findings[0].check, "sensor");
   EXPECT_EQ(findings[0].state, Finding::State::ok);
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/surface.hpp"
 #include "octurn/error.hpp"
 #include "octurn/mesh_check.hpp"
 #include "octurn/scan_folder.hpp"
@@ -37,10 +38,6 @@ std::vector<Facet> surface_of(const ReconstructOptions& options, const SnapshotS
     facets.insert(facets.end(), some.begin(), some.end());
   });
   return facets;
-}
-
-bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
-  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 TEST(Reconstruction, StaysWithinALeafOfTheBall) {

@@ -37,10 +37,6 @@ MeshCheck checked(const std::vector<Facet>& facets) {
   return check;
 }
 
-bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
-  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
-}
-
 /// The greatest distance of a seen corner to the shape, but for those near the platform, metres.
 double worst_of(const std::vector<Facet>& facets, const Shape& shape) {
   double worst = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -23,6 +24,10 @@ inline std::vector<Facet> surface_of(const LeafSet& set, const FilledField& fill
     }
   });
   return facets;
+}
+
+inline bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 /// What a slicer would find in a surface, counted in the most obvious way.

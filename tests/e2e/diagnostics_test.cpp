@@ -14,10 +14,6 @@ using nlohmann::json;
 
 constexpr const char* path = "/api/v1/diagnostics.zip";
 
-json json_in(const std::vector<ArchivedFile>& files, const char* name) {
-  return json::parse(content_in(files, name), nullptr, false);
-}
-
 TEST(Diagnostics, AreAFileThatTellsOfTheDaemon) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());

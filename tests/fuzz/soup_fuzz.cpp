@@ -129,10 +129,6 @@ std::vector<Facet> surface_by_slabs(const std::vector<Corners>& soup, int levels
   return facets;
 }
 
-bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b) {
-  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

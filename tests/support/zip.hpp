@@ -4,6 +4,7 @@
 #include <minizip/unzip.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,11 @@ inline std::string content_in(const std::vector<ArchivedFile>& files, std::strin
   }
   ADD_FAILURE() << "no " << name;
   return "";
+}
+
+/// The same of a file of JSON.
+inline nlohmann::json json_in(const std::vector<ArchivedFile>& files, std::string_view name) {
+  return nlohmann::json::parse(content_in(files, name), nullptr, false);
 }
 
 }  // namespace octurn

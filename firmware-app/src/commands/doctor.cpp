@@ -79,9 +79,7 @@ bool doctor(const DoctorArguments& arguments) {
   config.data = arguments.data.value_or(config.data);
   const Patient patient{
       .rig = rig_options(arguments.rig, config.turntable),
-      .scan = config.scan,
-      .limits = config.limits,
-      .data = config.data,
+      .config = config,
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // before the first thread, as it asks
   const Interruption interruption;

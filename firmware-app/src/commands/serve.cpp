@@ -53,10 +53,7 @@ void serve(const ServeArguments& arguments) {
   config.data = arguments.data.value_or(config.data);
   const ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
-  Api api(
-      scanner, store, page,
-      {.config = config,
-       .patient = {.rig = rig, .scan = config.scan, .limits = config.limits, .data = config.data}});
+  Api api(scanner, store, page, {.rig = rig, .config = config});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;

@@ -36,9 +36,9 @@ std::vector<Finding> check_turntable(const Patient& patient) {
 
 std::vector<Finding> check_machine(const Patient& patient) {
   const auto& root = patient.root;
-  return {check_data_folder(patient.data),
-          check_disk(free_bytes_in(patient.data), most_bytes_of(patient.scan)),
-          check_memory(root, patient.limits.memory_bytes),
+  return {check_data_folder(patient.config.data),
+          check_disk(free_bytes_in(patient.config.data), most_bytes_of(patient.config.scan)),
+          check_memory(root, patient.config.limits.memory_bytes),
           check_temperature(root),
           check_supply(root),
           check_throttling(root),
@@ -49,7 +49,7 @@ std::vector<Finding> check_machine(const Patient& patient) {
 
 std::vector<Finding> examine(const Patient& patient, const SensorLook& look) {
   std::vector<Finding> findings =
-      check_sensor(look, patient.scan.clip, patient.scan.platform_from_sensor);
+      check_sensor(look, patient.config.scan.clip, patient.config.scan.platform_from_sensor);
   if (is_on_usb(patient.rig.sensor_uri)) {
     findings.push_back(check_usb(patient.root));
   }

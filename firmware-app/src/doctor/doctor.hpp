@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "config.hpp"
 #include "doctor/finding.hpp"
 #include "doctor/sensor_look.hpp"
 #include "doctor/turntable_checks.hpp"
-#include "scan/scan_settings.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
@@ -14,9 +14,7 @@ namespace octurn {
 /// A scanner to be checked.
 struct Patient {
   RigOptions rig = {};
-  ScanSettings scan = {};  ///< what its scans are made with: clip box and calibration among them
-  Limits limits = {};
-  std::filesystem::path data = {};  ///< folder of its scans
+  Config config = {};  ///< in force
   LineOwner lines = LineOwner::another;
   std::filesystem::path root = "/";  ///< that /dev, /proc, /run and /sys are in
 };

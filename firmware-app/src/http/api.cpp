@@ -98,12 +98,12 @@ const std::vector<Api::Route>& Api::routes() {
   return all;
 }
 
-Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions options)
-    : scanner_(scanner), store_(store), page_(page), options_(std::move(options)) {}
+Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient)
+    : scanner_(scanner), store_(store), page_(page), patient_(std::move(patient)) {}
 
 Response Api::answer(const Request& request) {
   try {
-    const auto refused = refusal(request, options_.config.host_names);
+    const auto refused = refusal(request, patient_.config.host_names);
     return refused ? problem(*refused) : dispatch(request);
   } catch (const Error& error) {
     return problem(failure_of(error));
@@ -160,22 +160,19 @@ Response Api::status(const Request& /*request*/, std::string_view /*id*/) {
 }
 
 Response Api::settings(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response({{"defaults", json_of(options_.config.scan)}});
+  return json_response({{"defaults", json_of(patient_.config.scan)}});
 }
 
 Response Api::doctor(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response(json_of(examine(options_.patient, scanner_)));
+  return json_response(json_of(examine(patient_, scanner_)));
 }
 
 Response Api::diagnostics(const Request& /*request*/, std::string_view /*id*/) {
-  const std::vector<Finding> findings = examine(options_.patient, scanner_);
-  std::vector<Job> scans = store_.list();
-  const Status now = scanner_.status();
-  for (Job& job : scans) {
-    job = current(std::move(job), now);
-  }
-  std::vector<ArchivedFile> files = diagnostics_of_machine(options_.config, findings);
-  std::ranges::move(diagnostics_of_daemon(now, scans, log::recent()), std::back_inserter(files));
+  const std::vector<Finding> findings = examine(patient_, scanner_);
+  const std::vector<Job> scans = scans_now();
+  std::vector<ArchivedFile> files = diagnostics_of_machine(patient_.config, findings);
+  std::ranges::move(diagnostics_of_daemon(scanner_.status(), scans, log::recent()),
+                    std::back_inserter(files));
 
   const auto time = std::chrono::system_clock::now();
   const std::string name = "octurn-diagnostics-" + utc_text(time, "%Y%m%d-%H%M%S") + ".zip";
@@ -193,16 +190,14 @@ Response Api::preview(const Request& /*request*/, std::string_view /*id*/) {
 
 Response Api::list(const Request& /*request*/, std::string_view /*id*/) {
   json scans = json::array();
-  const std::vector<Job> stored = store_.list();
-  const Status now = scanner_.status();
-  for (const Job& job : stored) {
-    scans.push_back(described(current(job, now)));
+  for (const Job& job : scans_now()) {
+    scans.push_back(described(job));
   }
   return json_response({{"scans", scans}});
 }
 
 Response Api::start(const Request& request, std::string_view /*id*/) {
-  const ScanSettings settings = settings_from(body_of(request), options_.config.scan);
+  const ScanSettings settings = settings_from(body_of(request), patient_.config.scan);
   scanner_.expect_ready();
   const std::optional<Job> job = scanner_.start(settings);
   if (!job) {
@@ -276,6 +271,15 @@ Job Api::find(std::string_view id) const {
                 "GET /api/v1/scans lists them.");
   }
   return current(*std::move(stored), scanner_.status());
+}
+
+std::vector<Job> Api::scans_now() const {
+  std::vector<Job> scans = store_.list();
+  const Status now = scanner_.status();
+  for (Job& job : scans) {
+    job = current(std::move(job), now);
+  }
+  return scans;
 }
 
 }  // namespace octurn

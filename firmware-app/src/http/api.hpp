@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "config.hpp"
 #include "doctor/doctor.hpp"
 #include "http/message.hpp"
 #include "http/page.hpp"
@@ -13,16 +12,12 @@
 
 namespace octurn {
 
-struct ApiOptions {
-  Config config = {};    ///< in force
-  Patient patient = {};  ///< what the doctor checks
-};
-
 /// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
 /// thread may call it.
 class Api {
  public:
-  Api(Scanner& scanner, const ScanStore& store, const Page& page, ApiOptions options);
+  /// @param patient  this scanner, with the configuration in force
+  Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient);
 
   /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
   Response answer(const Request& request);
@@ -56,10 +51,13 @@ class Api {
   /// The scan of that id as it is now. @throws Error "no-such-scan"
   Job find(std::string_view id) const;
 
+  /// All scans as they are now, the newest first.
+  std::vector<Job> scans_now() const;
+
   Scanner& scanner_;
   const ScanStore& store_;
   const Page& page_;
-  ApiOptions options_;
+  Patient patient_;
 };
 
 }  // namespace octurn

@@ -71,7 +71,7 @@ Response Api::made_model(const Request& request, const Job& job) {
     }
   }
   ReconstructOptions options =
-      reconstruct_options(settings_from(numbers, job.settings), options_.config.limits);
+      reconstruct_options(settings_from(numbers, job.settings), patient_.config.limits);
   options.level = level;
   if (job.state != JobState::running && job.snapshots_done == 0) {
     throw Error("no-model", "this scan has no snapshots", "Start a new scan.");

@@ -5,6 +5,8 @@
 #   2  root a squashfs
 #   3  root b squashfs, for updates
 #   4  data   ext4, made at the first start, when it has grown to the end of the card
+#
+# The sector after the MBR tells how the last update went: see initrd/init.
 
 # shellcheck disable=SC2034
 {

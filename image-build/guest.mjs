@@ -48,6 +48,13 @@ export async function readCard(card, name) {
   return (await promisify(execFile)('mtype', ['-i', `${card}/card.img@@1M`, `::${name}`])).stdout;
 }
 
+/** Copies what the Pi's firmware reads, the kernel of the system that config.txt names, to the folder of the card. */
+async function readSystem(card) {
+  const system = (await readCard(card, 'config.txt')).match(/^os_prefix=(.*)$/m)[1];
+  const files = ['vmlinuz', 'initrd.img', 'cmdline.txt', 'bcm2837-rpi-3-b.dtb'].map((file) => `::${system}${file}`);
+  await promisify(execFile)('mcopy', ['-n', '-i', `${card}/card.img@@1M`, ...files, card]);
+}
+
 /** Seconds since `start`, of performance.now(). */
 export const secondsSince = (start) => (performance.now() - start) / 1000;
 
@@ -56,8 +63,9 @@ export class Guest {
   #said = '';
   #commands = 0;
 
-  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img, kernel and initrd */
+  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img */
   static async start(name, card) {
+    await readSystem(card);
     const port = await freePort();
     const machine = machines[name];
     const line = (await readFile(`${card}/cmdline.txt`, 'utf8')).trim().replace(/console=\S+ */g, '');
@@ -166,9 +174,20 @@ export class Guest {
     });
   }
 
+  /** Waits until the machine starts again by itself, which ends QEMU. */
+  async restarts(seconds) {
+    if (!this.#ended()) {
+      await once(this.#qemu, 'exit', {signal: AbortSignal.timeout(seconds * 1000)});
+    }
+  }
+
+  #ended() {
+    return this.#qemu.exitCode !== null || this.#qemu.signalCode !== null;
+  }
+
   /** The plug is pulled. */
   async cutPower() {
-    if (this.#qemu.exitCode === null && this.#qemu.signalCode === null) {
+    if (!this.#ended()) {
       this.#qemu.kill('SIGKILL');
       await once(this.#qemu, 'exit');
     }

@@ -1,0 +1,104 @@
+// The initrd of the card, started by QEMU as a Pi's firmware would start it: which system it hands over to, and what of an
+// update it undoes.
+
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {open, readFile, writeFile} from 'node:fs/promises';
+import {before, beforeEach, test} from 'node:test';
+
+import {Guest, readCard} from '../../../image-build/guest.mjs';
+
+const folder = process.env.OCTURN_CARD;
+const image = `${folder}/card.img`;
+process.env.MTOOLS_SKIP_CHECK = '1';
+
+async function onImage(work) {
+  const file = await open(image, 'r+');
+  try {
+    return await work(file);
+  } finally {
+    await file.close();
+  }
+}
+const read = (position, length) => onImage(async (file) => (await file.read({buffer: Buffer.alloc(length), position})).buffer);
+const write = (position, bytes) => onImage((file) => file.write(bytes, 0, bytes.length, position));
+
+/** First byte of a partition, and the byte after its last. @param {number} number  1 to 4 */
+async function partition(number) {
+  const entry = await read(446 + (number - 1) * 16, 16);
+  const begin = entry.readUInt32LE(8) * 512;
+  return {begin, end: begin + entry.readUInt32LE(12) * 512};
+}
+
+const setMark = (text) => write(512, Buffer.from(text.padEnd(512, '\0')));
+const namedSlot = async () => (await readCard(folder, 'config.txt')).at('os_prefix='.length);
+async function nameSlot(slot) {
+  const text = await readCard(folder, 'config.txt');
+  await writeFile(`${folder}/config.txt`, text.replace(/^os_prefix=./, `os_prefix=${slot}`));
+  execFileSync('mcopy', ['-o', '-i', `${image}@@1M`, `${folder}/config.txt`, '::']);
+}
+
+/** Switches the machine on. @returns {Promise<string>} what it said until it started again */
+async function start() {
+  const guest = await Guest.start('virt', folder);
+  try {
+    await guest.restarts(120);
+  } finally {
+    await guest.cutPower();
+  }
+  return readFile(`${folder}/console.log`, 'utf8');
+}
+
+before(async () => {
+  execFileSync(`${import.meta.dirname}/make`, [process.env.OCTURN_DEBIAN, folder], {stdio: 'inherit'});
+  const first = await partition(2);
+  const second = await partition(3);
+  await write(second.begin, await read(first.begin, first.end - first.begin));
+});
+
+beforeEach(async () => {
+  await setMark('');
+  await nameSlot('a');
+});
+
+test('a new card starts its first system, and its last partition fills it', async () => {
+  assert.match(await start(), /SYSTEM a of \/dev\/vda, id [0-9a-f]{32}, mark ''/);
+  assert.equal((await partition(4)).end, 1 << 30);
+});
+
+test('an update is tried once, then the system before it is back', async () => {
+  await setMark('try=b 1.2.3\n');
+  await nameSlot('b');
+  assert.match(await start(), /SYSTEM b .* mark 'tried=b 1\.2\.3'/);
+  assert.equal(await namedSlot(), 'b');
+  assert.doesNotMatch(await start(), /SYSTEM/);
+  assert.equal(await namedSlot(), 'a');
+  assert.match(await start(), /SYSTEM a .* mark 'tried=b 1\.2\.3'/);
+});
+
+test('an update that was kept starts again', async () => {
+  await setMark('kept=b 1.2.3\n');
+  await nameSlot('b');
+  assert.match(await start(), /SYSTEM b .* mark 'kept=b 1\.2\.3'/);
+  assert.equal(await namedSlot(), 'b');
+});
+
+test('an update whose root is damaged is undone', async () => {
+  const {begin} = await partition(3);
+  const root = await read(begin, 4096);
+  await write(begin, Buffer.alloc(root.length));
+  await setMark('try=b 1.2.3\n');
+  await nameSlot('b');
+  assert.doesNotMatch(await start(), /SYSTEM/);
+  assert.equal(await namedSlot(), 'b');
+  assert.doesNotMatch(await start(), /SYSTEM/);
+  assert.equal(await namedSlot(), 'a');
+  assert.match(await start(), /SYSTEM a/);
+  await write(begin, root);
+});
+
+test('an update that lost power before config.txt named it leaves the system as it was', async () => {
+  await setMark('try=b 1.2.3\n');
+  assert.match(await start(), /SYSTEM a .* mark 'try=b 1\.2\.3'/);
+  assert.equal(await namedSlot(), 'a');
+});

@@ -46,7 +46,12 @@ export async function testUpdates(machine, card, updates, patience, say) {
   const storedScans = async () => JSON.stringify((await guest.ask('scans')).scans.map(({id, snapshots_done}) => [id, snapshots_done]));
   /** The page is served by the system of this slot, and has every scan and setting. */
   const isOn = async (slot) => {
-    const update = await guest.ask('update');
+    const begin = performance.now();
+    let update = await guest.ask('update');
+    while (!update.slot && secondsSince(begin) < patience) {
+      await sleep(300);
+      update = await guest.ask('update');
+    }
     require(update.slot === slot, `the system is not ${slot}: ${JSON.stringify(update)}`);
     const line = await guest.run('cat /proc/cmdline; cat /proc/sys/kernel/hostname');
     require(line.includes(`octurn.slot=${slot}`) && line.endsWith('boot-test'), `the system that runs is: ${line}`);

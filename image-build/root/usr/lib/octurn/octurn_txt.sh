@@ -71,7 +71,7 @@ read_settings() {
   done <"${2:-$file}"
 }
 
-# change_file COMMAND...: makes octurn.txt what the command prints when it is given the file, on the card, too. Needs card.sh.
+# change_file COMMAND...: makes octurn.txt, on the card, too, what the command prints when it gets the file. Needs card.sh.
 change_file() (
   exec 8>"$run/lock"
   flock 8

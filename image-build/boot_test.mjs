@@ -1,5 +1,5 @@
-// Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, how often power is
-// cut then, and the folder of the updates that it gets then, if any.
+// Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, and how often power is
+// cut then.
 
 import {readFile} from 'node:fs/promises';
 import {setTimeout as sleep} from 'node:timers/promises';
@@ -7,9 +7,8 @@ import {setTimeout as sleep} from 'node:timers/promises';
 import {measure} from '../tests/e2e/mesh_file.js';
 import {Guest, readCard, secondsSince} from './guest.mjs';
 import {cutPower} from './power_cuts.mjs';
-import {testUpdates} from './update_test.mjs';
 
-const [machine, card, cuts, updates] = process.argv.slice(2);
+const [machine, card, cuts] = process.argv.slice(2);
 const patience = machine === 'virt' ? 600 : 900;  // seconds, on a machine with other work
 
 // IEEE 802.11's example of a password and the key made of it, annex J.4.1
@@ -120,9 +119,6 @@ async function test(guest) {
 const guest = await Guest.start(machine, card);
 try {
   await test(guest);
-  if (updates) {
-    await testUpdates(machine, card, updates, patience, say);
-  }
   if (Number(cuts) > 0) {
     await cutPower(machine, card, Number(cuts), patience, say);
   }

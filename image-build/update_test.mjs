@@ -1,115 +1,122 @@
-// Gives a scanner updates through its page's API, and looks which system it ends on.
+// Gives a scanner updates by its page's interface, and looks which system it ends on. Arguments: the machine, the folder of
+// its card, and the folder of the updates good, dying, short and strange.
 
 import {openAsBlob} from 'node:fs';
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {Guest, secondsSince} from './guest.mjs';
 
-/**
- * @param {'virt' | 'raspi3b'} machine
- * @param {string} card
- * @param {string} updates  the folder of good, dying, short and strange
- * @param {number} patience  seconds for a start
- * @param {(text: string) => void} say
- */
-export async function testUpdates(machine, card, updates, patience, say) {
-  const require = (condition, text) => {
-    if (!condition) {
-      throw new Error(text);
-    }
-  };
-  let guest;
-  let scans;
+const [machine, card, updates] = process.argv.slice(2);
+const patience = 600;  // seconds, on a machine with other work
 
-  /** Switches on what is off. */
-  const start = async () => {
-    guest = await Guest.start(machine, card);
-    return guest.page(patience);
-  };
-  const send = async (name) => {
-    const response = await fetch(`${guest.url}api/v1/update`, {
-      method: 'PUT', headers: {'Content-Type': 'application/octet-stream'}, body: await openAsBlob(`${updates}/${name}`),
-      signal: AbortSignal.timeout(patience * 1000)});
-    require(response.status === 202, `the update "${name}": ${response.status} ${await response.text()}`);
-  };
-  const reaches = async (state) => {
-    const begin = performance.now();
-    for (;;) {
-      const update = await guest.ask('update');
-      if (update.state === state) {
-        return update;
-      }
-      require(secondsSince(begin) < patience, `after ${patience} s the update is not ${state}: ${JSON.stringify(update)}`);
-      await sleep(300);
-    }
-  };
-  const storedScans = async () => JSON.stringify((await guest.ask('scans')).scans.map(({id, snapshots_done}) => [id, snapshots_done]));
-  /** The page is served by the system of this slot, and has every scan and setting. */
-  const isOn = async (slot) => {
-    const begin = performance.now();
-    let update = await guest.ask('update');
-    while (!update.slot && secondsSince(begin) < patience) {
-      await sleep(300);
-      update = await guest.ask('update');
-    }
-    require(update.slot === slot, `the system is not ${slot}: ${JSON.stringify(update)}`);
-    const line = await guest.run('cat /proc/cmdline; cat /proc/sys/kernel/hostname');
-    require(line.includes(`octurn.slot=${slot}`) && line.endsWith('boot-test'), `the system that runs is: ${line}`);
-    require(await storedScans() === scans, `the scans were ${scans}, and are ${await storedScans()}`);
-  };
-
-  const refuses = async (name, reason) => {
-    await send(name);
-    const {error} = await reaches('failed');
-    require(error.includes(reason), `the update "${name}" is refused: ${error}`);
-    await isOn('a');
-    say(`update "${name}" refused: ${error}`);
-  };
-  const losesPower = async () => {
-    await send('good');
-    await reaches('installing');
-    await sleep(Math.random() * 4000);
-    await guest.cutPower();
-    await start();
-    await isOn('a');
-    say('power cut while an update was written: the system before it is back');
-  };
-  const goesBack = async () => {
-    await send('dying');
-    const begin = performance.now();
-    await guest.restarts(patience);  // into the update
-    guest = await Guest.start(machine, card);
-    await guest.restarts(patience);  // since its daemon dies
-    guest = await Guest.start(machine, card);
-    await guest.restarts(patience);  // since it is not tried twice
-    await start();
-    const {error} = await reaches('returned');
-    await isOn('a');
-    say(`update "dying": the system before it is back ${secondsSince(begin).toFixed(0)} s later: ${error}`);
-  };
-  const keeps = async () => {
-    await send('good');
-    const begin = performance.now();
-    await guest.restarts(patience);
-    const seconds = await start();
-    await reaches('kept');
-    await isOn('b');
-    say(`update "good": its page after ${seconds.toFixed(1)} s, kept after ${secondsSince(begin).toFixed(0)} s`);
-    await guest.cutPower();
-    await start();
-    await isOn('b');
-    say('after a power cut the update still runs');
-  };
-
-  try {
-    await start();
-    scans = await storedScans();
-    await refuses('strange', 'not signed');
-    await refuses('short', 'cut short');
-    await losesPower();
-    await goesBack();
-    await keeps();
-  } finally {
-    await guest?.cutPower();
+const say = (text) => console.log(`update-test: ${text}`);
+const require = (condition, text) => {
+  if (!condition) {
+    throw new Error(text);
   }
+};
+
+// So that a test that is ended ends QEMU too.
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+  process.once(signal, () => process.exit(1));
+}
+
+let guest;
+let scans;
+
+/** Switches on what is off. */
+const start = async () => {
+  guest = await Guest.start(machine, card);
+  return guest.page(patience);
+};
+const send = async (name) => {
+  const response = await fetch(`${guest.url}api/v1/update`, {
+    method: 'PUT', headers: {'Content-Type': 'application/octet-stream'}, body: await openAsBlob(`${updates}/${name}`),
+    signal: AbortSignal.timeout(patience * 1000)});
+  require(response.status === 202, `the update "${name}": ${response.status} ${await response.text()}`);
+};
+const reaches = async (state) => {
+  const begin = performance.now();
+  for (;;) {
+    const update = await guest.ask('update');
+    if (update.state === state) {
+      return update;
+    }
+    require(secondsSince(begin) < patience, `after ${patience} s the update is not ${state}: ${JSON.stringify(update)}`);
+    await sleep(300);
+  }
+};
+const storedScans = async () => JSON.stringify((await guest.ask('scans')).scans.map(({id, snapshots_done}) => [id, snapshots_done]));
+/** The page is served by the system of this slot, and has every scan and setting. */
+const isOn = async (slot) => {
+  const begin = performance.now();
+  let update = await guest.ask('update');
+  while (!update.slot && secondsSince(begin) < patience) {
+    await sleep(300);
+    update = await guest.ask('update');
+  }
+  require(update.slot === slot, `the system is not ${slot}: ${JSON.stringify(update)}`);
+  const line = await guest.run('cat /proc/cmdline; cat /proc/sys/kernel/hostname');
+  require(line.includes(`octurn.slot=${slot}`) && line.endsWith('boot-test'), `the system that runs is: ${line}`);
+  require(await storedScans() === scans, `the scans were ${scans}, and are ${await storedScans()}`);
+};
+
+const refuses = async (name, reason) => {
+  await send(name);
+  const {error} = await reaches('failed');
+  require(error.includes(reason), `the update "${name}" is refused: ${error}`);
+  await isOn('a');
+  say(`update "${name}" refused: ${error}`);
+};
+const losesPower = async () => {
+  await send('good');
+  await reaches('installing');
+  await sleep(Math.random() * 4000);
+  await guest.cutPower();
+  await start();
+  await isOn('a');
+  say('power cut while an update was written: the system before it is back');
+};
+const goesBack = async () => {
+  await send('dying');
+  const begin = performance.now();
+  await guest.restarts(patience);  // into the update
+  guest = await Guest.start(machine, card);
+  await guest.restarts(patience);  // since its daemon dies
+  guest = await Guest.start(machine, card);
+  await guest.restarts(patience);  // since it is not tried twice
+  await start();
+  const {error} = await reaches('returned');
+  await isOn('a');
+  say(`update "dying": the system before it is back ${secondsSince(begin).toFixed(0)} s later: ${error}`);
+};
+const keeps = async () => {
+  await send('good');
+  const begin = performance.now();
+  await guest.restarts(patience);
+  const seconds = await start();
+  await reaches('kept');
+  await isOn('b');
+  say(`update "good": its page after ${seconds.toFixed(1)} s, kept after ${secondsSince(begin).toFixed(0)} s`);
+  await guest.cutPower();
+  await start();
+  await isOn('b');
+  say('after a power cut the update still runs');
+};
+
+try {
+  await start();
+  scans = await storedScans();
+  await refuses('strange', 'not signed');
+  await refuses('short', 'cut short');
+  await losesPower();
+  await goesBack();
+  await keeps();
+  say('passed');
+} catch (error) {
+  console.error(`update-test: failed: ${error.message}`);
+  console.error(await guest?.run('systemctl --no-pager --plain --failed; journalctl -b -u "octurn*" --no-pager | tail -n 60').catch(String));
+  process.exitCode = 1;
+} finally {
+  await guest?.cutPower();
 }

@@ -8,7 +8,10 @@ card=/boot/firmware
 mount_card() {
   exec 9>/run/card/lock
   flock 9
-  mount -t vfat -o "$1,noatime,nodev,nosuid,noexec,umask=0077" /run/card/1 "$card"
+  mount -t vfat -o "$1,noatime,nodev,nosuid,noexec,umask=0077" /run/card/1 "$card" || {
+    exec 9>&-
+    return 1
+  }
 }
 
 unmount_card() {
@@ -18,7 +21,7 @@ unmount_card() {
 
 # read_card NAME TO: copies a file of the card, if it is there.
 read_card() {
-  mount_card ro
+  mount_card ro || return
   [ ! -f "$card/$1" ] || cp "$card/$1" "$2"
   unmount_card
 }
@@ -26,7 +29,7 @@ read_card() {
 # write_card NAME FROM: makes a file of the card the same as FROM. It takes the place of the old one when it is complete
 # on the card; then the old one's bytes, that may have been secret, are overwritten.
 write_card() {
-  mount_card rw,sync
+  mount_card rw,sync || return
   cp "$2" "$card/$1.new"
   exec 3<>"$card/$1"
   mv -f "$card/$1.new" "$card/$1"

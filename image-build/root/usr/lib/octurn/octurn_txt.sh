@@ -5,13 +5,20 @@
 # shellcheck disable=SC2154
 run=$root/run/octurn-settings
 file=$run/octurn.txt
+stars='********' # in place of a password that is known
 carriage_return=$(printf '\r')
 byte_order_mark=$(printf '\357\273\277')
 
-# complain TEXT: for the journal, and for octurn-status.txt.
+# forget_complaints: what this program has found wrong before.
+forget_complaints() {
+  mkdir -p "$run/errors"
+  : >"$run/errors/${0##*/}"
+}
+
+# complain TEXT: a warning in the journal, and for octurn-status.txt.
 complain() {
-  printf 'octurn.txt: %s\n' "$*"
-  printf 'octurn.txt: %s\n' "$*" >>"$run/errors"
+  printf '<4>octurn.txt: %s\n' "$*"
+  printf 'octurn.txt: %s\n' "$*" >>"$run/errors/${0##*/}"
 }
 
 # trim TEXT: sets $trimmed to it, without the blanks around it.
@@ -37,23 +44,44 @@ read_line() {
   trim "${line%%=*}"
   case $trimmed in
     name) name=$value ;;
+    page_password) page_password=$value ;;
     wifi_name) wifi_name=$value ;;
     wifi_password) wifi_password=$value ;;
     wifi_country) wifi_country=$value ;;
+    time_zone) time_zone=$value ;;
+    ssh_key) ssh_keys="$ssh_keys${value:+$value
+}" ;;
     rig) rig=$value ;;
+    *[!A-Za-z_-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     *) "$1" "line $number: there is no setting $trimmed" ;;
   esac
 }
 
-# read_settings REPORT: sets a variable for each setting, empty if there is none, and calls REPORT for other lines. Without
-# any other program, of which each takes its time while a machine starts.
+# read_settings REPORT [FILE]: sets a variable for each setting, empty if there is none, and calls REPORT for other lines.
+# Without any other program, of which each takes its time while a machine starts.
+# shellcheck disable=SC2034
 read_settings() {
-  name='' wifi_name='' wifi_password='' wifi_country='' rig=''
+  name='' page_password='' wifi_name='' wifi_password='' wifi_country='' time_zone='' ssh_keys='' rig=''
   number=0
   while IFS= read -r line || [ -n "$line" ]; do
     number=$((number + 1))
     line=${line#"$byte_order_mark"}
     line=${line%"$carriage_return"}
     read_line "$1"
-  done <"$file"
+  done <"${2:-$file}"
+}
+
+# change_file COMMAND...: makes octurn.txt, on the card, too, what the command prints when it gets the file. Needs card.sh.
+change_file() (
+  exec 8>"$run/lock"
+  flock 8
+  "$@" <"$file" >"$file.new"
+  [ -n "$root" ] || write_card octurn.txt "$file.new"
+  mv "$file.new" "$file"
+)
+
+# hide SETTING: puts stars in the place of what it says.
+hide() {
+  change_file \
+    sed "s/^\($byte_order_mark\|\)\([[:space:]]*$1[[:space:]]*=[[:space:]]*\)[^[:space:]\r][^\r]*/\1\2$stars/"
 }

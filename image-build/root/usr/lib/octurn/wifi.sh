@@ -1,0 +1,72 @@
+# shellcheck shell=sh
+# Read by what applies the WiFi of octurn.txt, after octurn_txt.sh and answer.sh.
+
+# shellcheck disable=SC2154
+kept=$root/data/wifi # lines with a WiFi's name in hexadecimal and its key, the newest first
+configuration=$root/etc/wpa_supplicant/wpa_supplicant-wlan0.conf
+# shellcheck disable=SC2034 # for whoever reads this file
+hotspot=Octurn-$(head -c 4 /etc/machine-id | tr '[:lower:]' '[:upper:]') # the scanner's own WiFi
+
+hexadecimal() { printf '%s' "$1" | od -An -v -tx1 | tr -d ' \n'; }
+
+# key NAME PASSWORD: the 256 bits that WPA2 makes of both, in hexadecimal. Some routers print these as the password.
+key() {
+  if printf '%s' "$2" | grep -qxE '[0-9a-fA-F]{64}'; then
+    printf '%s\n' "$2"
+  else
+    printf '%s\n' "$2" | wpa_passphrase "$1" | sed -n 's/^[[:space:]]*psk=//p'
+  fi
+}
+
+# find_key REPORT: sets $key, empty for an open WiFi; fails if the password is none.
+# shellcheck disable=SC2154
+find_key() {
+  key=
+  case $wifi_password in
+    '') return 0 ;;
+    "$stars")
+      key=$(sed -n "s/^$network //p" "$kept" 2>/dev/null | head -n 1) || true
+      [ -n "$key" ] || "$1" "wifi_password = $stars: the password of this WiFi is not known here: write it again"
+      ;;
+    *)
+      key=$(key "$wifi_name" "$wifi_password" 2>/dev/null) || true
+      [ -n "$key" ] ||
+        "$1" "wifi_password has ${#wifi_password} letters: 8 to 63 without accents, or none for an open WiFi"
+      ;;
+  esac
+  [ -n "$key" ]
+}
+
+# find_wifi REPORT: of the settings that were read, sets $network, the name in hexadecimal, $country and $key; fails if it
+# cannot be joined with these, and calls REPORT for what is wrong.
+find_wifi() {
+  if [ "$(printf %s "$wifi_name" | wc -c)" -gt 32 ]; then
+    "$1" "wifi_name = $wifi_name: at most 32 bytes"
+    return 1
+  fi
+  country=$(echo "$wifi_country" | tr '[:lower:]' '[:upper:]')
+  case $country in
+    [A-Z][A-Z]) ;;
+    *)
+      "$1" "wifi_country = $wifi_country: two letters, such as DE; the WiFi may not be found without"
+      country=
+      ;;
+  esac
+  network=$(hexadecimal "$wifi_name")
+  find_key "$1"
+}
+
+# keep: makes what comes in the known keys; fails if there is no data partition.
+keep() {
+  { [ -n "$root" ] || mountpoint -q /data; } &&
+    cat >"$kept.new" && sync "$kept.new" && mv "$kept.new" "$kept" && sync "${kept%/*}"
+}
+
+# answer_wifi STATE [ERROR [HOTSPOT]]: for the daemon, and so for the page.
+answer_wifi() {
+  {
+    printf 'state = %s\nname = %s\ncountry = %s\n' "$1" "$wifi_name" "$wifi_country"
+    [ -z "${2-}" ] || printf 'error = %s\n' "$2"
+    [ -z "${3-}" ] || printf 'hotspot = %s\n' "$3"
+  } | answer wifi
+}

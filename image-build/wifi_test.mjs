@@ -1,0 +1,171 @@
+// Starts the image with three simulated radios: the scanner's, a router's and a phone's. The scanner joins the router, is a
+// hotspot when that is gone, and joins another router that the phone tells it. Argument: the folder of the card.
+
+import {execFile} from 'node:child_process';
+import {writeFile} from 'node:fs/promises';
+import {setTimeout as sleep} from 'node:timers/promises';
+import {promisify} from 'node:util';
+
+import {Guest, readCard, secondsSince} from './guest.mjs';
+import {makeSshKey, testSettings} from './settings_test.mjs';
+
+const card = process.argv[2];
+const patience = 600;  // seconds, on a machine with other work
+
+const say = (text) => console.log(`wifi-test: ${text}`);
+const require = (condition, text) => {
+  if (!condition) {
+    throw new Error(text);
+  }
+};
+
+// So that a test that is ended ends QEMU too.
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+  process.once(signal, () => process.exit(1));
+}
+
+/** Waits until `ask` resolves to something true, and returns that. */
+async function until(what, ask) {
+  const begin = performance.now();
+  for (;;) {
+    const answer = await ask();
+    if (answer) {
+      return answer;
+    }
+    require(secondsSince(begin) < patience, `${what}: not within ${patience} s`);
+    await sleep(1000);
+  }
+}
+
+/** What the appliance tells the daemon of its WiFi. @returns {Promise<Record<string, string>>} */
+async function wifi(guest) {
+  const lines = (await guest.run('cat /run/octurn-appliance/wifi')).split('\n');
+  return Object.fromEntries(lines.map((line) => line.split(/ = ?/, 2)));
+}
+
+/** Waits for a state of the WiFi, and says how long it took. */
+async function reaches(guest, state, name) {
+  const begin = performance.now();
+  let answer;
+  await until(`WiFi ${state} ${name}`, async () => {
+    answer = await wifi(guest);
+    return answer.state === state && answer.name === name;
+  }).catch((error) => {
+    throw new Error(`${error.message}; it is ${JSON.stringify(answer)}`);
+  });
+  say(`${state} ${name} after ${secondsSince(begin).toFixed(0)} s${answer.error ? `: ${answer.error}` : ''}`);
+  return answer;
+}
+
+/** A radio does something else from now on. */
+async function use(guest, radio, network) {
+  await guest.run(`printf 'ctrl_interface=/run/wpa_supplicant\\nnetwork={\\n${network.join('\\n')}\\n}\\n' >/run/${radio}.conf; ` +
+    `wpa_cli -i ${radio} terminate >/dev/null 2>&1; sleep 1; wpa_supplicant -B -D nl80211 -i ${radio} -c /run/${radio}.conf >/dev/null`);
+}
+
+/** A router with WPA2, whose DHCP gives addresses of 192.168.78. */
+const startRouter = (guest, name, password) => use(guest, 'wlan2', ['mode=2', `ssid="${name}"`, `psk="${password}"`,
+  'key_mgmt=WPA-PSK', 'proto=RSN', 'pairwise=CCMP', 'frequency=2412']);
+
+const address = (guest, radio, net) => until(`address of ${radio} in ${net}`, async () =>
+  (await guest.run(`ip -4 -o address show ${radio}`)).match(new RegExp(`inet (${net}\\.\\d+)/`))?.[1]);
+
+/** Simulated radios. Neither a router's nor a phone's network is this machine's way to anywhere. */
+async function plugRadios(guest) {
+  const network = (name, lines) => `printf '[Match]\\nName=${name}\\n${lines.join('\\n')}\\n' >/run/systemd/network/10-${name}.network`;
+  await guest.run(['mkdir -p /run/systemd/network',
+    network('wlan1', ['[Network]', 'DHCP=ipv4', '[DHCPv4]', 'UseRoutes=no', 'UseGateway=no']),
+    network('wlan2', ['[Network]', 'Address=192.168.78.1/24', 'DHCPServer=yes', '[DHCPServer]', 'EmitRouter=no', 'EmitDNS=no']),
+    'networkctl reload', 'modprobe mac80211_hwsim radios=3'].join('; '));
+  await until('radios', () => guest.run('[ -e /sys/class/net/wlan2 ] && echo yes'));
+}
+
+/** Sends what the phone and the scanner say to each other through the air, although both are this machine. */
+async function separate(guest, phone) {
+  await guest.run(['for name in all wlan0 wlan1; do echo 1 >/proc/sys/net/ipv4/conf/$name/accept_local; ' +
+    'echo 0 >/proc/sys/net/ipv4/conf/$name/rp_filter; done',
+    'ip rule add pref 1 iif wlan0 lookup local', 'ip rule add pref 1 iif wlan1 lookup local',
+    `ip route add 192.168.77.1 dev wlan1 src ${phone} table 71`, 'ip rule add pref 2 to 192.168.77.1 iif lo lookup 71',
+    `ip route add ${phone} dev wlan0 src 192.168.77.1 table 72`, `ip rule add pref 2 to ${phone} iif lo lookup 72`,
+    'ip rule add pref 3 lookup local', 'ip rule del pref 0'].join('; '));
+}
+
+async function testHotspot(guest, hotspot) {
+  await use(guest, 'wlan1', [`ssid="${hotspot}"`, 'key_mgmt=NONE']);
+  const phone = await address(guest, 'wlan1', '192.168.77');
+  await separate(guest, phone);
+  const received = async () => Number(await guest.run('cat /sys/class/net/wlan1/statistics/rx_bytes'));
+  const before = await received();
+  const page = await guest.run('timeout 60 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
+    'printf \'GET / HTTP/1.1\\r\\nHost: 192.168.77.1\\r\\nConnection: close\\r\\n\\r\\n\' >&3; cat <&3" | wc -c', 90);
+  const through = await received() - before;
+  require(Number(page) > 1000 && through > Number(page), `of the page there are ${page} bytes, and ${through} came by air`);
+  const names = await guest.run('journalctl -b -u avahi-daemon -o cat | grep -c "interface wlan0.IPv4 with address 192.168.77.1"');
+  require(Number(names) > 0, 'avahi answers nobody in the hotspot');
+  say(`a phone in ${hotspot} gets the address ${phone} and the page of ${page} bytes`);
+}
+
+/** As the daemon asks for it. */
+async function request(guest, name, password) {
+  await guest.run('setpriv --reuid=octurn --regid=octurn --clear-groups sh -c "umask 077; cd /run/octurn-appliance/requests; ' +
+    `printf 'wifi_name = ${name}\\nwifi_password = ${password}\\nwifi_country = DE\\n' >.wifi; mv .wifi wifi"`);
+}
+
+async function testWifi(guest) {
+  await plugRadios(guest);
+  await startRouter(guest, 'IEEE', 'password');
+  await reaches(guest, 'joined', 'IEEE');
+  say(`its address there is ${await address(guest, 'wlan0', '192.168.78')}`);
+  const networks = await guest.run('cat /run/octurn-appliance/networks');
+  require(/^bssid .*\n[^]*\[WPA2-PSK-CCMP\].*\tIEEE$/m.test(networks), `networks are\n${networks}`);
+
+  await guest.run('wpa_cli -i wlan2 terminate; ip link set eth0 down');
+  const {hotspot, error} = await reaches(guest, 'hotspot', 'IEEE');
+  require(/^Octurn-[0-9A-F]{4}$/.test(hotspot), `the hotspot is ${hotspot}`);
+  require(error.includes('IEEE was not found'), `the error is ${error}`);
+  await testHotspot(guest, hotspot);
+
+  await startRouter(guest, 'Workshop', 'right password');
+  await request(guest, 'Workshop', 'wrong password');
+  await reaches(guest, 'joining', 'Workshop');
+  const refused = await reaches(guest, 'hotspot', 'Workshop');
+  require(refused.error.includes('Is the password right?'), `the error is ${refused.error}`);
+  await request(guest, 'Workshop', 'right password');
+  await reaches(guest, 'joined', 'Workshop');
+  await address(guest, 'wlan0', '192.168.78');
+  const left = await guest.run('ip -4 -o address show wlan0 | grep -c 192.168.77.1');
+  require(left === '0', 'the hotspot\'s address is still there');
+}
+
+/** The card, after all that. */
+async function testCard(guest) {
+  const settings = await readCard(card, 'octurn.txt');
+  for (const line of ['wifi_name = Workshop', 'wifi_password = ********', 'wifi_country = DE', 'page_password = ********', 'rig = simulated']) {
+    require(settings.split('\n').includes(line), `octurn.txt lacks "${line}":\n${settings}`);
+  }
+  require(!/IEEE|sesame|right password/.test(settings), `octurn.txt is\n${settings}`);
+  const errors = await guest.run('setpriv --reuid=octurn --regid=octurn --clear-groups cat /run/octurn-appliance/errors');
+  require(/^--- octurn [^]*IEEE was not found/.test(errors), `of errors is kept\n${errors}`);
+  const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
+  require(failed === '', `failed units: ${failed}`);
+  say('octurn.txt has the WiFi of the page, and stars; what went wrong is kept; no failed unit');
+}
+
+const key = makeSshKey();
+await writeFile(`${card}/octurn.txt`, ['rig = simulated', 'wifi_name = IEEE', 'wifi_password = password', 'wifi_country = DE',
+  'time_zone = Europe/Berlin', `ssh_key = ${key.line}`, ''].join('\n'));
+await promisify(execFile)('mcopy', ['-o', '-i', `${card}/card.img@@1M`, `${card}/octurn.txt`, '::octurn.txt']);
+const guest = await Guest.start('virt', card);
+try {
+  say(`the page after ${(await guest.page(patience)).toFixed(1)} s`);
+  await testSettings(guest, key, {say, require});
+  await testWifi(guest);
+  await testCard(guest);
+  say('passed');
+} catch (error) {
+  console.error(`wifi-test: failed: ${error.message}`);
+  console.error(await guest.run('systemctl --no-pager --plain --failed; journalctl -b -u "octurn*" -u systemd-networkd --no-pager | tail -n 60').catch(String));
+  process.exitCode = 1;
+} finally {
+  await guest.cutPower();
+}

@@ -49,6 +49,7 @@
  * @property {Device} sensor
  * @property {Device} turntable
  * @property {number} disk_free_bytes
+ * @property {boolean} appliance  it has updates and WiFi
  * @property {Scan | null} scan
  * @property {string | null} newest
  *
@@ -64,6 +65,27 @@
  * @property {string} time
  * @property {'ok' | 'warning' | 'fault'} state
  * @property {Finding[]} findings
+ *
+ * @typedef {Object} Update
+ * @property {string} version  that runs
+ * @property {string} slot
+ * @property {'none' | 'receiving' | 'installing' | 'restarting' | 'failed' | 'trial' | 'kept' | 'returned'} state
+ * @property {string} update_version
+ * @property {string} error
+ *
+ * @typedef {Object} Network
+ * @property {string} name
+ * @property {number} signal_dbm
+ * @property {boolean} secured
+ *
+ * @typedef {Object} Wifi
+ * @property {'none' | 'joining' | 'joined' | 'failed' | 'hotspot'} state
+ * @property {string} name
+ * @property {string} country
+ * @property {string} hotspot
+ * @property {string} error
+ * @property {string} host  the scanner's name
+ * @property {Network[]} networks  strongest first
  */
 
 const root = '/api/v1/';
@@ -200,3 +222,36 @@ export async function model(url, signal) {
   const {body} = await request(url, {signal, cache: 'default'});
   return /** @type {ReadableStream<Uint8Array>} */ (body);
 }
+
+/** @returns {Promise<Update>} of the appliance alone */
+export const update = () => json('update');
+
+/** @returns {Promise<Wifi>} of the appliance alone */
+export const wifi = () => json('wifi');
+
+/** @param {{name: string, password?: string, country: string}} wanted @returns {Promise<Wifi>} */
+export const joinWifi = (wanted) => json('wifi', sending('PUT', wanted));
+
+/**
+ * Sends an update, which may take minutes.
+ *
+ * @param {Blob} file
+ * @param {(sent: number) => void} onProgress  bytes so far
+ * @param {AbortSignal} signal
+ * @returns {Promise<Update>}
+ */
+export const sendUpdate = (file, onProgress, signal) => new Promise((resolve, reject) => {
+  const request = new XMLHttpRequest();  // fetch does not tell how much is sent
+  request.open('PUT', `${root}update`);
+  request.setRequestHeader('Content-Type', 'application/octet-stream');
+  request.upload.addEventListener('progress', ({loaded}) => onProgress(loaded));
+  request.addEventListener('load', () => {
+    const headers = {'Content-Type': request.getResponseHeader('Content-Type') ?? ''};
+    const response = new Response(request.responseText, {status: request.status, headers});
+    (response.ok ? response.json() : problemOf(response).then((problem) => Promise.reject(problem))).then(resolve, reject);
+  });
+  request.addEventListener('error', () => reject(unreachable()));
+  request.addEventListener('abort', () => reject(signal.reason));
+  signal.addEventListener('abort', () => request.abort());
+  request.send(file);
+});

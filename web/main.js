@@ -1,6 +1,7 @@
 // Asks the scanner, keeps the state, and has it shown.
 
 import * as api from './api.js';
+import {seeStatus, watchAppliance} from './appliance.js';
 import {watchCamera} from './camera.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
@@ -96,6 +97,7 @@ async function look() {
   const before = actions;
   try {
     const status = await api.status();
+    seeStatus(status);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
     if (before !== actions || state.isPending) {
@@ -160,3 +162,4 @@ prepareStage();
 prepareDoctor();
 watch();
 watchCamera();
+watchAppliance();

@@ -46,7 +46,7 @@ void sync_folder(const std::filesystem::path& folder) {
   }
 }
 
-AtomicFile::AtomicFile(std::filesystem::path target)
+AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
     : target_(std::move(target)),
       block_(static_cast<std::byte*>(std::aligned_alloc(page_bytes, block_bytes)), &std::free) {
   if (!block_) {
@@ -62,7 +62,7 @@ AtomicFile::AtomicFile(std::filesystem::path target)
   prefix += target_.filename().string() + '.' + std::to_string(::getpid());
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
     temporary_ = folder_of(target_) / (prefix + "-" + std::to_string(attempt));
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
     if (descriptor_ < 0 && errno != EEXIST) {
       fail(target_, "write", errno);
     }
@@ -136,8 +136,9 @@ void AtomicFile::commit() {
   sync_folder(folder_of(target_));
 }
 
-void write_file(const std::filesystem::path& target, std::string_view content) {
-  AtomicFile file(target);
+void write_file(const std::filesystem::path& target, std::string_view content,
+                unsigned permissions) {
+  AtomicFile file(target, permissions);
   file.write(std::as_bytes(std::span(content)));
   file.commit();
 }

@@ -28,6 +28,12 @@ void block_signals() {
   ::signal(SIGPIPE, SIG_IGN);  // a reader that has gone shows in what write returns
 }
 
+void unblock_signals() {
+  const sigset_t signals = ending_signals();
+  ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  ::signal(SIGPIPE, SIG_DFL);
+}
+
 void wait_for_signal() {
   const sigset_t signals = ending_signals();
   int signal = 0;

@@ -11,6 +11,9 @@ namespace octurn {
 /// called before the first thread.
 void block_signals();
 
+/// Undoes that, for a program that this process becomes.
+void unblock_signals();
+
 /// Waits for SIGINT or SIGTERM, which are blocked.
 void wait_for_signal();
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -109,6 +110,33 @@ TEST(HttpServer, RefusesABodyThatIsTooLarge) {
     chunks += "400\r\n" + std::string(1024, 'x') + "\r\n";
   }
   EXPECT_EQ(reply_to(server.port(), chunks + "0\r\n\r\n").status, 413);
+}
+
+TEST(HttpServer, LeavesAnUploadToItsOwner) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, [](const Request& request) {
+    std::array<std::byte, 1000> part{};
+    std::size_t bytes = 0;
+    for (std::size_t got = 1; got > 0; bytes += got) {
+      got = request.upload.read(part);
+    }
+    return Response{.body = std::to_string(bytes) + " of " +
+                            std::to_string(request.upload.length.value_or(0)) + " not " +
+                            std::to_string(request.body.size())};
+  });
+  const std::string head =
+      "PUT / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n"
+      "Content-Type: application/octet-stream\r\n\r\n";
+  EXPECT_EQ(reply_to(server.port(), head + std::string(200'000, 'x')).body,
+            "200000 of 200000 not 0");
+}
+
+TEST(HttpServer, AnswersAnUploadThatItDoesNotWant) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0},
+                          [](const Request&) { return Response{.status = 409}; });
+  const std::string head =
+      "PUT / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5000000\r\n"
+      "Content-Type: application/octet-stream\r\n\r\n";
+  EXPECT_EQ(reply_to(server.port(), head + std::string(5'000'000, 'x')).status, 409);
 }
 
 TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {

@@ -63,6 +63,13 @@ TEST(SameOrigin, RefusesWhatAFormCanSend) {
   EXPECT_EQ(code(post({})), "wrong-content-type");
 }
 
+TEST(SameOrigin, TakesAnUploadWhereOneIsExpected) {
+  const Request upload = post({{"Content-Type", "application/octet-stream"}});
+  EXPECT_EQ(code(upload), "wrong-content-type");
+  EXPECT_EQ(refusal(upload, ours, upload_type), std::nullopt);
+  EXPECT_NE(refusal(post({{"Content-Type", "application/json"}}), ours, upload_type), std::nullopt);
+}
+
 TEST(SameOrigin, LetsADeleteGoWithoutAType) {
   Request request = post({});
   request.method = "DELETE";

@@ -1,26 +1,13 @@
 // The page for everyone: on a phone, with a keyboard, with a screen reader, in both colour schemes.
 
 import assert from 'node:assert/strict';
-import {readFile} from 'node:fs/promises';
-import {createRequire} from 'node:module';
 import {test} from 'node:test';
 
+import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
-
-const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-/** What axe finds wrong, one line each. */
-async function complaints(page) {
-  await page.evaluate(axe);
-  const {violations} = await page.evaluate(() => globalThis.axe.run());
-  return violations.map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target).join(', ')}`);
-}
-
-/** By how much the page is wider than the screen, pixels. */
-const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 
 /** The states of the page, each with how to get there. */
 const states = {

@@ -17,8 +17,9 @@ namespace octurn {
 /// time, and leaves the machine's memory to others.
 class AtomicFile {
  public:
+  /// @param permissions  of the file, less what the process withholds from all (umask)
   /// @throws Error  if the folder cannot be written to
-  explicit AtomicFile(std::filesystem::path target);
+  explicit AtomicFile(std::filesystem::path target, unsigned permissions = 0666);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -51,6 +52,7 @@ class AtomicFile {
 void sync_folder(const std::filesystem::path& folder);
 
 /// Writes a small file whole or not at all. @throws Error  if the disk does not take it
-void write_file(const std::filesystem::path& target, std::string_view content);
+void write_file(const std::filesystem::path& target, std::string_view content,
+                unsigned permissions = 0666);
 
 }  // namespace octurn

@@ -87,6 +87,11 @@ void add_serve(CLI::App& program, ServeArguments& arguments) {
       ->check(CLI::Range(0, 65535));
   command.add_option("--web", arguments.web, "folder of the page (the one built or installed)")
       ->type_name("DIR");
+  command
+      .add_option("--appliance", arguments.appliance,
+                  "this machine is Octurn's image: folder through which the page has updates and "
+                  "WiFi done")
+      ->type_name("DIR");
   command.callback([&arguments, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
     serve(arguments);
@@ -194,6 +199,14 @@ void add_password(CLI::App& program, std::filesystem::path& file) {
   command.callback([&file] { set_password(file); });
 }
 
+void add_update(CLI::App& program, std::filesystem::path& file) {
+  CLI::App& command =
+      *program.add_subcommand("update", "installs an update of the appliance's image, as root");
+  command.add_option("FILE", file, "octurn.update, as image-build makes it")->required();
+  command.footer("The page does the same. The scanner then starts again.");
+  command.callback([&file] { install_update(file); });
+}
+
 int fail(const std::string& message, const std::string& hint, int status) {
   std::cerr << "octurn: " << message << (hint.empty() ? "" : " (" + hint + ")") << '\n';
   return status;
@@ -212,6 +225,7 @@ int run(int argc, char** argv) {
   DoctorArguments doctor_arguments;
   ReconstructArguments reconstruct_arguments;
   std::filesystem::path password_file;
+  std::filesystem::path update_file;
   int status = 0;
   add_serve(program, serve_arguments);
   add_scan(program, scan_arguments);
@@ -219,6 +233,7 @@ int run(int argc, char** argv) {
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
   add_password(program, password_file);
+  add_update(program, update_file);
 
   block_signals();
   try {

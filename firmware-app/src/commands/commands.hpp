@@ -28,6 +28,7 @@ struct ServeArguments {
   std::optional<int> port = {};
   std::optional<std::filesystem::path> data = {};
   std::optional<std::filesystem::path> web = {};
+  std::optional<std::filesystem::path> appliance = {};  ///< folder of an Appliance
 };
 
 /// `octurn serve`: the daemon. Returns after SIGTERM or SIGINT.
@@ -102,6 +103,10 @@ void reconstruct(const ReconstructArguments& arguments);
 /// `octurn password`: reads a password, a line, from standard input, and writes the file that
 /// `password_file` of the configuration names.
 void set_password(const std::filesystem::path& file);
+
+/// `octurn update`: becomes the appliance's own program that installs an update.
+/// @throws Error  if this is no appliance, or not root
+[[noreturn]] void install_update(const std::filesystem::path& file);
 
 /// Reads the command line and does what it says.
 /// @return the exit status: 0, 1 if it failed, which one line on standard error explains, 2 for bad

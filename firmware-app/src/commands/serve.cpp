@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "appliance/appliance.hpp"
 #include "commands/commands.hpp"
 #include "http/api.hpp"
 #include "http/http_server.hpp"
@@ -53,7 +54,11 @@ void serve(const ServeArguments& arguments) {
   config.data = arguments.data.value_or(config.data);
   const ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
-  Api api(scanner, store, page, {.rig = rig, .config = config});
+  std::optional<Appliance> appliance;
+  if (arguments.appliance) {
+    appliance.emplace(*arguments.appliance);
+  }
+  Api api(scanner, store, page, {.rig = rig, .config = config}, appliance ? &*appliance : nullptr);
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;

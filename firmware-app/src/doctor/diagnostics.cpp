@@ -145,4 +145,10 @@ std::vector<ArchivedFile> diagnostics_of_daemon(const Status& status, std::span<
           {.name = "log.txt", .content = std::move(log)}};
 }
 
+std::vector<ArchivedFile> diagnostics_of_appliance(const Appliance& appliance) {
+  std::string errors = appliance.errors();
+  return errors.empty() ? std::vector<ArchivedFile>{}
+                        : std::vector{ArchivedFile{.name = "errors.txt", .content = errors}};
+}
+
 }  // namespace octurn

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "appliance/appliance.hpp"
 #include "config.hpp"
 #include "doctor/finding.hpp"
 #include "scan/job.hpp"
@@ -28,5 +29,8 @@ std::vector<ArchivedFile> diagnostics_of_machine(const Config& config,
 /// @param log    its last lines
 std::vector<ArchivedFile> diagnostics_of_daemon(const Status& status, std::span<const Job> scans,
                                                 std::string log);
+
+/// `errors.txt`, if there are any.
+std::vector<ArchivedFile> diagnostics_of_appliance(const Appliance& appliance);
 
 }  // namespace octurn

@@ -8,6 +8,7 @@
 
 #include "doctor/diagnostics.hpp"
 #include "http/file_response.hpp"
+#include "http/json_body.hpp"
 #include "http/preview_image.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
@@ -23,19 +24,10 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t longest_name = 100;  // of a scan, bytes
-
-Response json_response(const json& body, int status = 200) {
-  return {.status = status,
-          .headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}},
-          .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
-}
+constexpr std::string_view update_path = "/api/v1/update";
 
 [[noreturn]] void throw_busy() {
   throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
-}
-
-json body_of(const Request& request) {
-  return request.body.empty() ? json::object() : parse_json(request.body, "bad-json", "the body");
 }
 
 /// A scan as it is now: the one that was started last as the scanner has it, the others as stored.
@@ -94,16 +86,27 @@ const std::vector<Api::Route>& Api::routes() {
       {"POST", "/api/v1/scans/{id}/resume", &Api::resume},
       {"GET", "/api/v1/scans/{id}/Scan.stl", &Api::model},
       {"GET", "/api/v1/scans/{id}/preview.stl", &Api::surface_so_far},
+      {"GET", update_path, &Api::update},
+      {"PUT", update_path, &Api::take_update},
+      {"GET", "/api/v1/wifi", &Api::wifi},
+      {"PUT", "/api/v1/wifi", &Api::join_wifi},
   };
   return all;
 }
 
-Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient)
-    : scanner_(scanner), store_(store), page_(page), patient_(std::move(patient)) {}
+Api::Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient,
+         Appliance* appliance)
+    : scanner_(scanner),
+      store_(store),
+      page_(page),
+      patient_(std::move(patient)),
+      appliance_(appliance) {}
 
 Response Api::answer(const Request& request) {
   try {
-    const auto refused = refusal(request, patient_.config.host_names);
+    const std::string_view body_type =
+        request.path == update_path ? upload_type : "application/json";
+    const auto refused = refusal(request, patient_.config.host_names, body_type);
     return refused ? problem(*refused) : dispatch(request);
   } catch (const Error& error) {
     return problem(failure_of(error));
@@ -146,6 +149,7 @@ Response Api::status(const Request& /*request*/, std::string_view /*id*/) {
             {"sensor", json_of(now.sensor)},
             {"turntable", json_of(now.turntable)},
             {"disk_free_bytes", store_.free_bytes()},
+            {"appliance", appliance_ != nullptr},
             {"scan", nullptr},
             {"newest", nullptr}};
   if (now.busy()) {
@@ -173,6 +177,9 @@ Response Api::diagnostics(const Request& /*request*/, std::string_view /*id*/) {
   std::vector<ArchivedFile> files = diagnostics_of_machine(patient_.config, findings);
   std::ranges::move(diagnostics_of_daemon(scanner_.status(), scans, log::recent()),
                     std::back_inserter(files));
+  if (appliance_ != nullptr) {
+    std::ranges::move(diagnostics_of_appliance(*appliance_), std::back_inserter(files));
+  }
 
   const auto time = std::chrono::system_clock::now();
   const std::string name = "octurn-diagnostics-" + utc_text(time, "%Y%m%d-%H%M%S") + ".zip";
@@ -198,6 +205,7 @@ Response Api::list(const Request& /*request*/, std::string_view /*id*/) {
 
 Response Api::start(const Request& request, std::string_view /*id*/) {
   const ScanSettings settings = settings_from(body_of(request), patient_.config.scan);
+  expect_no_update();
   scanner_.expect_ready();
   const std::optional<Job> job = scanner_.start(settings);
   if (!job) {
@@ -244,6 +252,7 @@ Response Api::cancel(const Request& /*request*/, std::string_view id) {
 
 Response Api::resume(const Request& /*request*/, std::string_view id) {
   const Job job = find(id);
+  expect_no_update();
   if (is_resumable(job.state) && job.snapshots_done < job.settings.snapshots) {
     scanner_.expect_ready();
   }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/appliance.hpp"
 #include "doctor/doctor.hpp"
 #include "http/message.hpp"
 #include "http/page.hpp"
@@ -16,8 +17,10 @@ namespace octurn {
 /// thread may call it.
 class Api {
  public:
-  /// @param patient  this scanner, with the configuration in force
-  Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient);
+  /// @param patient    this scanner, with the configuration in force
+  /// @param appliance  that it is; null: none
+  Api(Scanner& scanner, const ScanStore& store, const Page& page, Patient patient,
+      Appliance* appliance = nullptr);
 
   /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
   Response answer(const Request& request);
@@ -44,6 +47,10 @@ class Api {
   Response model(const Request& request, std::string_view id);
   Response made_model(const Request& request, const Job& job);
   Response surface_so_far(const Request& request, std::string_view id);
+  Response update(const Request& request, std::string_view id);
+  Response take_update(const Request& request, std::string_view id);
+  Response wifi(const Request& request, std::string_view id);
+  Response join_wifi(const Request& request, std::string_view id);
 
   /// A scan as web/API.md has it.
   nlohmann::json described(const Job& job) const;
@@ -54,10 +61,17 @@ class Api {
   /// All scans as they are now, the newest first.
   std::vector<Job> scans_now() const;
 
+  /// @throws Error "not-an-appliance"
+  Appliance& appliance() const;
+
+  /// @throws Error "busy"  if this machine may start again at any moment
+  void expect_no_update() const;
+
   Scanner& scanner_;
   const ScanStore& store_;
   const Page& page_;
   Patient patient_;
+  Appliance* appliance_;
 };
 
 }  // namespace octurn

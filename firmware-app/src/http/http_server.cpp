@@ -3,6 +3,7 @@
 #include <civetweb.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <future>
@@ -157,6 +158,18 @@ std::optional<std::string> read_body(mg_connection* connection, long long announ
   return body;
 }
 
+/// The body of a request, to be read as it comes. What is not read of it, civetweb drops.
+ByteSource upload_from(mg_connection* connection, long long announced) {
+  std::optional<std::uint64_t> length;
+  if (announced >= 0) {
+    length = static_cast<std::uint64_t>(announced);
+  }
+  return {.length = length, .read = [connection](std::span<std::byte> buffer) {
+            const int got = mg_read(connection, buffer.data(), buffer.size());
+            return static_cast<std::size_t>(std::max(got, 0));
+          }};
+}
+
 /// What the callbacks work with.
 struct Service {
   HttpServer::Answer answer;
@@ -182,7 +195,10 @@ int answer_request(mg_connection* connection) noexcept {
   }
   Request request = head_from(info);
   Response response;
-  if (auto body = read_body(connection, info.content_length, patience)) {
+  if (is_of_type(request.header("Content-Type").value_or(""), upload_type)) {
+    request.upload = upload_from(connection, info.content_length);
+    response = answer(request);
+  } else if (auto body = read_body(connection, info.content_length, patience)) {
     request.body = *std::move(body);
     response = answer(request);
   } else {

@@ -19,7 +19,8 @@ struct HttpOptions {
 };
 
 /// Serves HTTP on civetweb, with a pool of threads of its own: receives requests within limits of
-/// size and time, hands each to `answer`, and sends what it returns. Ends with its destructor.
+/// size and time, hands each to `answer`, and sends what it returns. A body of upload_type is for
+/// `answer` to read. Ends with its destructor.
 class HttpServer {
  public:
   using Answer = std::function<Response(const Request&)>;

@@ -17,6 +17,8 @@
 
 namespace octurn {
 
+inline constexpr std::string_view upload_type = "application/octet-stream";
+
 /// Names and values, in order.
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
@@ -26,13 +28,30 @@ inline bool same_token(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// A request, whole.
+/// Whether a Content-Type is this one, whatever its parameters.
+inline bool is_of_type(std::string_view content_type, std::string_view type) {
+  content_type = content_type.substr(0, content_type.find(';'));
+  while (content_type.ends_with(' ')) {
+    content_type.remove_suffix(1);
+  }
+  return same_token(content_type, type);
+}
+
+/// A body that is read as it comes, since it is too large to be held.
+struct ByteSource {
+  std::optional<std::uint64_t> length = {};  ///< as announced
+  /// Fills a buffer from its begin. @return how many bytes; 0: no more come
+  std::function<std::size_t(std::span<std::byte>)> read = {};
+};
+
+/// A request. Its body is whole, or, if it is of upload_type, yet to be read.
 struct Request {
   std::string method = "GET";
   std::string path = "/";  ///< decoded, without the query
   std::string query = {};  ///< what follows the "?", as it came
   Headers headers = {};
   std::string body = {};
+  ByteSource upload = {};
 
   /// The value of the first header of that name.
   std::optional<std::string_view> header(std::string_view name) const {

@@ -1,7 +1,6 @@
 #include "http/password_file.hpp"
 
 #include <civetweb.h>
-#include <sys/stat.h>
 
 #include <array>
 
@@ -9,21 +8,6 @@
 #include "octurn/error.hpp"
 
 namespace octurn {
-namespace {
-
-/// Files that are made as long as it lives are their owner's alone.
-class OwnFiles {
- public:
-  OwnFiles() = default;
-  ~OwnFiles() { ::umask(before_); }
-  OwnFiles(const OwnFiles&) = delete;
-  OwnFiles& operator=(const OwnFiles&) = delete;
-
- private:
-  mode_t before_ = ::umask(S_IRWXG | S_IRWXO);
-};
-
-}  // namespace
 
 void write_password_file(const std::filesystem::path& file, const std::string& password) {
   constexpr std::size_t most = 100;
@@ -34,8 +18,7 @@ void write_password_file(const std::filesystem::path& file, const std::string& p
   std::array<char, 33> hash{};
   mg_md5(hash.data(), page_user, ":", page_realm, ":", password.c_str(), nullptr);
   const std::string line = std::string(page_user) + ":" + page_realm + ":" + hash.data() + "\n";
-  const OwnFiles only;
-  write_file(file, line);
+  write_file(file, line, 0600);
 }
 
 }  // namespace octurn

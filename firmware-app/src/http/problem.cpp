@@ -17,10 +17,13 @@ constexpr std::array kinds{
     Kind{"bad-json", 400, "The body is not what is expected here"},
     Kind{"bad-name", 400, "The name cannot be used"},
     Kind{"bad-settings", 400, "A setting is wrong"},
+    Kind{"bad-wifi", 400, "The WiFi cannot be joined like this"},
+    Kind{"cut-short", 400, "The file did not come whole"},
     Kind{"memory-limit", 400, "The model does not fit into the memory"},
     Kind{"wrong-origin", 403, "The request comes from another site"},
     Kind{"not-found", 404, "There is nothing here"},
     Kind{"no-such-scan", 404, "There is no such scan"},
+    Kind{"not-an-appliance", 404, "This is no Octurn appliance"},
     Kind{"no-preview", 404, "There is nothing to show yet"},
     Kind{"model-empty", 404, "There is nothing to build"},
     Kind{"no-model", 404, "There is no finished model"},
@@ -28,6 +31,7 @@ constexpr std::array kinds{
     Kind{"busy", 409, "The scanner is busy"},
     Kind{"not-running", 409, "The scan is not running"},
     Kind{"not-paused", 409, "The scan cannot be resumed"},
+    Kind{"length-required", 411, "The length is missing"},
     Kind{"changed", 412, "It is no longer what was asked for"},
     Kind{"too-large", 413, "The request is too large"},
     Kind{"wrong-content-type", 415, "The body is of the wrong type"},
@@ -36,6 +40,7 @@ constexpr std::array kinds{
     Kind{"disk-full", 503, "The disk is full"},
     Kind{"sensor-", 503, "The sensor does not work"},
     Kind{"turntable-", 503, "The turntable does not work"},
+    Kind{"no-space", 507, "There is not enough room"},
 };
 
 Kind kind_of(std::string_view code) {

@@ -45,17 +45,10 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
   return scheme != std::string_view::npos && same_token(origin.substr(scheme + 3), host);
 }
 
-bool is_json(std::string_view content_type) {
-  std::string_view type = content_type.substr(0, content_type.find(';'));
-  while (type.ends_with(' ')) {
-    type.remove_suffix(1);
-  }
-  return same_token(type, "application/json");
-}
-
 }  // namespace
 
-std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names) {
+std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
+                               std::string_view body_type) {
   const std::string_view host = request.header("Host").value_or("");
   if (!is_ours(host_name(host), host_names)) {
     return Failure{.code = "wrong-host",
@@ -72,10 +65,11 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                    .detail = "the request comes from " + std::string(*origin),
                    .hint = "Use the scanner's own page."};
   }
-  if (request.method != "DELETE" && !is_json(request.header("Content-Type").value_or(""))) {
+  if (request.method != "DELETE" &&
+      !is_of_type(request.header("Content-Type").value_or(""), body_type)) {
     return Failure{.code = "wrong-content-type",
-                   .detail = request.method + " needs Content-Type: application/json",
-                   .hint = "Send JSON, and say so."};
+                   .detail = request.method + " needs Content-Type: " + std::string(body_type),
+                   .hint = "Send that, and say so."};
   }
   return std::nullopt;
 }

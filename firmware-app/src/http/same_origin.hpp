@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "http/message.hpp"
 #include "scan/job.hpp"
@@ -13,10 +14,12 @@ namespace octurn {
 ///
 /// Any page that a browser has open may send requests here. Two rules keep other sites out: the
 /// `Host` must be a name that nobody else can own (an address, a name of the local network, or one
-/// of `host_names`), which defeats DNS rebinding; and what changes something must carry
-/// `Content-Type: application/json`, which no form can send, and an `Origin`, if any, of this host.
+/// of `host_names`), which defeats DNS rebinding; and what changes something must carry a
+/// `Content-Type` that no form can send, and an `Origin`, if any, of this host.
 ///
+/// @param body_type  that `Content-Type`: JSON, or upload_type
 /// @return why not, or nothing
-std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names);
+std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
+                               std::string_view body_type = "application/json");
 
 }  // namespace octurn

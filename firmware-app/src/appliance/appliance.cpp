@@ -1,0 +1,201 @@
+#include "appliance/appliance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_of_an_answer = std::size_t{256} << 10U;  // bytes; root's are far smaller
+constexpr unsigned for_root_alone = 0600;
+constexpr auto patience_with_root = std::chrono::seconds(30);
+
+/// The end of a file, which may not be there.
+std::string end_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  const auto bytes = static_cast<std::streamoff>(stream.tellg());
+  std::string text(
+      std::min<std::size_t>(bytes > 0 ? static_cast<std::size_t>(bytes) : 0, most_of_an_answer),
+      '\0');
+  stream.seekg(bytes - static_cast<std::streamoff>(text.size()));
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t begin = std::min(text.find_first_not_of(blanks), text.size());
+  return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+}
+
+using Settings = std::map<std::string, std::string, std::less<>>;
+
+/// An answer's lines `key = value`.
+Settings settings_in(const fs::path& file) {
+  Settings settings;
+  std::ifstream stream(file, std::ios::binary);
+  for (std::string line; std::getline(stream, line) && line.size() < most_of_an_answer;) {
+    if (const std::size_t equals = line.find('='); equals != std::string::npos) {
+      const std::string_view whole = line;
+      settings.insert_or_assign(std::string(trimmed(whole.substr(0, equals))),
+                                std::string(trimmed(whole.substr(equals + 1))));
+    }
+  }
+  return settings;
+}
+
+std::string value_in(const Settings& settings, std::string_view key) {
+  const auto found = settings.find(key);
+  return found == settings.end() ? "" : found->second;
+}
+
+/// The state of an answer, if it is one of these.
+template <std::size_t count>
+std::string state_of(const Settings& settings, const std::array<std::string_view, count>& known) {
+  const std::string state = value_in(settings, "state");
+  return std::ranges::find(known, state) == known.end() ? "none" : state;
+}
+
+[[noreturn]] void throw_no_space() {
+  throw Error("no-space", "there is no room for the update in the scanner's memory",
+              "Switch the scanner off and on, and try again.");
+}
+
+/// Does something with a file in memory, where a full disk is something else.
+template <typename Action>
+void in_memory(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    if (error.code() == "disk-full") {
+      throw_no_space();
+    }
+    throw;
+  }
+}
+
+}  // namespace
+
+Appliance::Appliance(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code ignored;  // without the folder a request says what is wrong
+  for (const fs::directory_entry& entry : fs::directory_iterator(request(""), ignored)) {
+    if (entry.path().filename().string().starts_with('.')) {
+      fs::remove(entry.path(), ignored);
+    }
+  }
+}
+
+fs::path Appliance::request(std::string_view name) const { return folder_ / "requests" / name; }
+
+UpdateState Appliance::update() const {
+  UpdateState update = answered_update();
+  return is_receiving_ ? UpdateState{.slot = update.slot, .state = "receiving"} : update;
+}
+
+/// As root tells it; what it has yet to take counts as taken.
+UpdateState Appliance::answered_update() const {
+  constexpr std::array<std::string_view, 6> states{"installing", "restarting", "failed",
+                                                   "trial",      "kept",       "returned"};
+  std::error_code ignored;
+  const bool is_waiting = fs::exists(request("update"), ignored);  // asked before it is answered
+  const Settings answer = settings_in(folder_ / "update");
+  UpdateState update{.slot = value_in(answer, "slot"),
+                     .state = state_of(answer, states),
+                     .version = value_in(answer, "version"),
+                     .error = value_in(answer, "error")};
+  const bool is_answered = update.state == "installing" || update.state == "restarting";
+  return is_waiting && !is_answered ? UpdateState{.slot = update.slot, .state = "installing"}
+                                    : update;
+}
+
+bool Appliance::is_updating() const {
+  const std::string state = update().state;
+  return state == "receiving" || state == "installing" || state == "restarting";
+}
+
+/// The WiFi that was asked for, until root has answered: it takes the request away long before.
+std::optional<WifiRequest> Appliance::unanswered_wifi() const {
+  const std::scoped_lock lock(mutex_);
+  std::error_code ignored;  // no answer is older than any request
+  const bool is_waiting = asked_ && std::chrono::steady_clock::now() < asked_->until &&
+                          fs::last_write_time(folder_ / "wifi", ignored) < asked_->time;
+  return is_waiting ? std::optional(asked_->wifi) : std::nullopt;
+}
+
+WifiState Appliance::wifi() const {
+  constexpr std::array<std::string_view, 4> states{"joining", "joined", "failed", "hotspot"};
+  const auto asked = unanswered_wifi();  // looked at before the answer
+  const Settings answer = settings_in(folder_ / "wifi");
+  WifiState wifi{.state = state_of(answer, states),
+                 .name = value_in(answer, "name"),
+                 .country = value_in(answer, "country"),
+                 .hotspot = value_in(answer, "hotspot"),
+                 .error = value_in(answer, "error"),
+                 .networks = wifi_networks(end_of(folder_ / "networks"))};
+  if (asked) {
+    wifi.state = "joining";
+    wifi.name = asked->name;
+    wifi.country = asked->country;
+    wifi.error = {};
+  }
+  return wifi;
+}
+
+std::string Appliance::errors() const { return end_of(folder_ / "errors"); }
+
+void Appliance::ask_for_wifi(const WifiRequest& wifi) {
+  const std::scoped_lock lock(mutex_);
+  const Asked asked{.wifi = {.name = wifi.name, .country = wifi.country},
+                    .time = fs::file_time_type::clock::now(),
+                    .until = std::chrono::steady_clock::now() + patience_with_root};
+  write_file(request("wifi"), text_of(wifi), for_root_alone);
+  asked_ = asked;
+}
+
+Appliance::Upload::Turn::Turn(std::atomic<bool>& is_taken) : is_taken_(is_taken) {
+  if (is_taken.exchange(true)) {
+    throw Error("busy", "another update is being received", "Wait for its end.");
+  }
+}
+
+Appliance::Upload::Upload(Appliance& appliance, std::uint64_t bytes)
+    : turn_(appliance.is_receiving_), file_(appliance.place_for_update(bytes), for_root_alone) {}
+
+void Appliance::Upload::write(std::span<const std::byte> bytes) {
+  in_memory([&] { file_.write(bytes); });
+}
+
+void Appliance::Upload::commit() {
+  in_memory([&] { file_.commit(); });
+}
+
+fs::path Appliance::place_for_update(std::uint64_t bytes) const {
+  if (bytes > Upload::most_bytes) {
+    throw Error("too-large", "an update has at most 160 MiB, and this file has more",
+                "Choose the file octurn.update.");
+  }
+  const std::string state = answered_update().state;
+  if (state == "installing" || state == "restarting") {
+    throw Error("busy", "another update is being installed", "Wait for its end.");
+  }
+  if (state == "trial") {
+    throw Error("busy", "the last update is still on trial", "Try again in a few minutes.");
+  }
+  std::error_code unknown;  // then writing tells
+  if (const fs::space_info memory = fs::space(request(""), unknown);
+      !unknown && memory.available < bytes) {
+    throw_no_space();
+  }
+  return request("update");
+}
+
+}  // namespace octurn

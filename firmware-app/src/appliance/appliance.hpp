@@ -1,0 +1,108 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "appliance/wifi_networks.hpp"
+#include "appliance/wifi_request.hpp"
+#include "octurn/atomic_file.hpp"
+
+namespace octurn {
+
+/// What has become of an update.
+struct UpdateState {
+  std::string slot = {};  ///< the system that runs, "a" or "b"; empty: not known yet
+  /// "none", "receiving" by this program, "installing", "restarting", "failed", "trial", "kept" or
+  /// "returned"
+  std::string state = "none";
+  std::string version = {};  ///< of the update, as far as it is known
+  std::string error = {};    ///< what is wrong and what to do, or empty
+};
+
+struct WifiState {
+  std::string state = "none";  ///< or "joining", "joined", "failed", "hotspot"
+  std::string name = {};       ///< of the WiFi to join, or empty
+  std::string country = {};    ///< two letters, or empty
+  std::string hotspot = {};    ///< the name of the scanner's own WiFi while that is on, or empty
+  std::string error = {};      ///< what is wrong and what to do, or empty
+  std::vector<WifiNetwork> networks = {};
+};
+
+/// The machine that Octurn's image makes, as far as this program has to do with it: root's answers
+/// in a folder, which are read, and requests below it, which root takes. Any thread may call it.
+class Appliance {
+ public:
+  /// Removes what an earlier process left unfinished. @param folder  of the answers
+  explicit Appliance(std::filesystem::path folder);
+  Appliance(const Appliance&) = delete;
+  Appliance& operator=(const Appliance&) = delete;
+
+  UpdateState update() const;
+  WifiState wifi() const;
+
+  /// Errors of this start and of earlier ones, the newest last; the end of it, if it is long.
+  std::string errors() const;
+
+  /// Whether an update is on its way, and the machine may start again at any moment.
+  bool is_updating() const;
+
+  /// Asks root to join a WiFi. @throws Error  if the request cannot be written
+  void ask_for_wifi(const WifiRequest& request);
+
+  /// An update on its way to root, which gets it whole or not at all. There is one at a time.
+  class Upload {
+   public:
+    static constexpr std::uint64_t most_bytes = std::uint64_t{160} << 20U;
+
+    /// @throws Error "busy", "too-large", "no-space"
+    Upload(Appliance& appliance, std::uint64_t bytes);
+
+    /// @throws Error "no-space"
+    void write(std::span<const std::byte> bytes);
+    void commit();
+
+   private:
+    /// Sets a flag as long as it lives.
+    class Turn {
+     public:
+      explicit Turn(std::atomic<bool>& is_taken);
+      ~Turn() { is_taken_ = false; }
+      Turn(const Turn&) = delete;
+      Turn& operator=(const Turn&) = delete;
+
+     private:
+      std::atomic<bool>& is_taken_;
+    };
+
+    Turn turn_;
+    AtomicFile file_;
+  };
+
+ private:
+  std::filesystem::path request(std::string_view name) const;
+  struct Asked {
+    WifiRequest wifi = {};
+    std::filesystem::file_time_type time = {};
+    std::chrono::steady_clock::time_point until = {};
+  };
+
+  UpdateState answered_update() const;
+  std::optional<WifiRequest> unanswered_wifi() const;
+  std::filesystem::path place_for_update(std::uint64_t bytes) const;
+
+  std::filesystem::path folder_;
+  std::atomic<bool> is_receiving_ = false;  // true as long as there is an Upload
+  mutable std::mutex mutex_;                // guards asked_
+  std::optional<Asked> asked_ = {};         // the last request for a WiFi
+};
+
+}  // namespace octurn

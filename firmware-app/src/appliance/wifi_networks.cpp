@@ -1,0 +1,126 @@
+#include "appliance/wifi_networks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <system_error>
+
+#include "appliance/wifi_request.hpp"
+
+namespace octurn {
+namespace {
+
+/// Takes what comes before the first `separator`, and the separator, off the begin of a text.
+std::string_view take_until(char separator, std::string_view& text) {
+  const std::string_view taken = text.substr(0, text.find(separator));
+  text.remove_prefix(std::min(taken.size() + 1, text.size()));
+  return taken;
+}
+
+template <typename Number>
+std::optional<Number> number_of(std::string_view text, int base) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number)
+                                                                  : std::nullopt;
+}
+
+/// The byte that an escape stands for, which is taken off: `\xc3`, `\"`, `\\`, `\e`, `\n`, `\r`,
+/// `\t` (wpa_supplicant, printf_encode in src/utils/common.c).
+std::optional<char> take_escape(std::string_view& text) {
+  constexpr std::string_view letters = R"("\enrt)";
+  constexpr std::array bytes{'"', '\\', '\x1b', '\n', '\r', '\t'};
+  if (text.starts_with('x') && text.size() >= 3) {
+    const auto byte = number_of<unsigned char>(text.substr(1, 2), 16);
+    text.remove_prefix(3);
+    return byte ? std::optional(static_cast<char>(*byte)) : std::nullopt;
+  }
+  const std::size_t letter = text.empty() ? letters.npos : letters.find(text.front());
+  if (letter == letters.npos) {
+    return std::nullopt;
+  }
+  text.remove_prefix(1);
+  return bytes[letter];
+}
+
+std::optional<std::string> unescaped(std::string_view text) {
+  std::string bytes;
+  while (!text.empty()) {
+    const char c = text.front();
+    text.remove_prefix(1);
+    const std::optional<char> byte = c == '\\' ? take_escape(text) : c;
+    if (!byte) {
+      return std::nullopt;
+    }
+    bytes += *byte;
+  }
+  return bytes;
+}
+
+/// Whether a text is UTF-8 (RFC 3629, section 4).
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const auto lead = static_cast<unsigned char>(text.front());
+    const std::size_t size = lead < 0x80U                    ? 1
+                             : lead >= 0xc2U && lead < 0xe0U ? 2
+                             : (lead & 0xf0U) == 0xe0U       ? 3
+                             : lead >= 0xf0U && lead < 0xf5U ? 4
+                                                             : 0;
+    if (size == 0 || text.size() < size) {
+      return false;
+    }
+    for (const char c : text.substr(1, size - 1)) {
+      if ((static_cast<unsigned char>(c) & 0xc0U) != 0x80U) {
+        return false;
+      }
+    }
+    const auto second = static_cast<unsigned char>(size > 1 ? text[1] : 0);
+    if ((lead == 0xe0U && second < 0xa0U) || (lead == 0xedU && second >= 0xa0U) ||
+        (lead == 0xf0U && second < 0x90U) || (lead == 0xf4U && second >= 0x90U)) {
+      return false;  // longer than need be, half of a pair, or beyond what there is
+    }
+    text.remove_prefix(size);
+  }
+  return true;
+}
+
+/// A line: bssid, frequency, signal, flags, name, with tabs between.
+std::optional<WifiNetwork> network_in(std::string_view line) {
+  take_until('\t', line);
+  take_until('\t', line);
+  const auto signal_dbm = number_of<int>(take_until('\t', line), 10);
+  const std::string_view flags = take_until('\t', line);
+  const std::optional<std::string> name = unescaped(line);
+  if (!signal_dbm || !name || !is_wifi_name(*name) || !is_utf8(*name)) {
+    return std::nullopt;
+  }
+  const auto has = [&](std::string_view flag) { return flags.find(flag) != flags.npos; };
+  return WifiNetwork{.name = *name,
+                     .signal_dbm = *signal_dbm,
+                     .secured = has("WPA") || has("WEP") || has("RSN") || has("SAE")};
+}
+
+}  // namespace
+
+std::vector<WifiNetwork> wifi_networks(std::string_view scan_results) {
+  std::vector<WifiNetwork> networks;
+  take_until('\n', scan_results);  // the head of the table
+  while (!scan_results.empty()) {
+    if (auto network = network_in(take_until('\n', scan_results))) {
+      networks.push_back(*std::move(network));
+    }
+  }
+  std::ranges::stable_sort(networks, std::ranges::greater(), &WifiNetwork::signal_dbm);
+  std::vector<WifiNetwork> strongest;
+  for (WifiNetwork& network : networks) {
+    if (std::ranges::find(strongest, network.name, &WifiNetwork::name) == strongest.end()) {
+      strongest.push_back(std::move(network));
+    }
+  }
+  return strongest;
+}
+
+}  // namespace octurn

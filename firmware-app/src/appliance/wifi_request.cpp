@@ -1,0 +1,101 @@
+#include "appliance/wifi_request.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "json_object.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t longest_wifi_name = 32;            // bytes: IEEE 802.11-2020, 9.4.2.2
+constexpr std::size_t shortest_password = 8;             // characters: IEEE 802.11-2020, annex J.4
+constexpr std::size_t longest_password = 63;             // as above
+constexpr std::size_t digits_of_key = 64;                // of the 256 bits that are made of it
+constexpr std::string_view known_password = "********";  // octurn.txt: the password that is known
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
+bool is_printable_ascii(char c) { return c >= ' ' && c <= '~'; }
+bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
+bool is_hexadecimal(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'F') || (c >= 'a' && c <= 'f');
+}
+bool has_blanks_around(std::string_view text) {
+  return text.starts_with(' ') || text.ends_with(' ');
+}
+
+std::string name_in(JsonObject& keys) {
+  const auto name = keys.text("name");
+  if (!name || !is_wifi_name(*name)) {
+    throw Error("bad-wifi",
+                "\"name\" must be text of 1 to 32 bytes on one line, without blanks around it",
+                "It is the name of the WiFi as others see it.");
+  }
+  return *name;
+}
+
+std::optional<std::string> password_in(JsonObject& keys) {
+  const json* const value = keys.find("password");
+  if (value == nullptr) {
+    return std::nullopt;
+  }
+  const std::string password = value->is_string() ? value->get<std::string>() : "";
+  const bool is_key =
+      password.size() == digits_of_key && std::ranges::all_of(password, is_hexadecimal);
+  const bool is_passphrase = password.size() >= shortest_password &&
+                             password.size() <= longest_password &&
+                             std::ranges::all_of(password, is_printable_ascii);
+  if (!is_key && !is_passphrase) {
+    throw Error("bad-wifi",
+                "\"password\" must be text of 8 to 63 letters, digits and signs without accents",
+                "Look for typing errors; leave it out if the WiFi is open.");
+  }
+  if (has_blanks_around(password)) {
+    throw Error("bad-wifi", "\"password\" has a blank at its begin or its end",
+                "Octurn cannot keep it so: give the WiFi another password.");
+  }
+  if (password == known_password) {
+    throw Error("bad-wifi", "\"password\" is eight stars, which stand for one that is not shown",
+                "Write the password itself.");
+  }
+  return password;
+}
+
+std::string country_in(JsonObject& keys) {
+  std::string country = keys.text("country").value_or("");
+  if (country.size() != 2 || !std::ranges::all_of(country, is_letter)) {
+    throw Error("bad-wifi", "\"country\" must be two letters, such as DE",
+                "It tells which channels are allowed where the scanner is.");
+  }
+  const auto capital = [](char c) { return c >= 'a' ? static_cast<char>(c - 32) : c; };
+  std::ranges::transform(country, country.begin(), capital);
+  return country;
+}
+
+}  // namespace
+
+bool is_wifi_name(std::string_view name) {
+  return !name.empty() && name.size() <= longest_wifi_name &&
+         !std::ranges::any_of(name, is_control) && !has_blanks_around(name);
+}
+
+WifiRequest wifi_request_from(const json& body) {
+  JsonObject keys(body, "bad-wifi", "");
+  WifiRequest request{
+      .name = name_in(keys), .password = password_in(keys), .country = country_in(keys)};
+  keys.refuse_unread();
+  return request;
+}
+
+std::string text_of(const WifiRequest& request) {
+  std::string text = "wifi_name = " + request.name + "\n";
+  if (request.password) {
+    text += "wifi_password = " + *request.password + "\n";
+  }
+  return text + "wifi_country = " + request.country + "\n";
+}
+
+}  // namespace octurn

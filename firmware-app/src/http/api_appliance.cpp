@@ -1,0 +1,122 @@
+// What the API answers on the appliance: updates and WiFi.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "http/api.hpp"
+#include "http/json_body.hpp"
+#include "log.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t part_bytes = std::size_t{64} << 10U;  // bytes of an update, held at a time
+
+json json_of(const UpdateState& update) {
+  return {{"version", version()},
+          {"slot", update.slot},
+          {"state", update.state},
+          {"update_version", update.version},
+          {"error", update.error}};
+}
+
+std::string host_name() {
+  std::array<char, 65> name{};  // HOST_NAME_MAX and its end
+  ::gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+json json_of(const WifiState& wifi) {
+  json networks = json::array();
+  for (const WifiNetwork& network : wifi.networks) {
+    networks.push_back(
+        {{"name", network.name}, {"signal_dbm", network.signal_dbm}, {"secured", network.secured}});
+  }
+  return {{"state", wifi.state},     {"name", wifi.name},   {"country", wifi.country},
+          {"hotspot", wifi.hotspot}, {"error", wifi.error}, {"networks", std::move(networks)},
+          {"host", host_name()}};
+}
+
+/// @throws Error "cut-short", and what the upload throws
+void copy(const ByteSource& source, Appliance::Upload& upload) {
+  std::vector<std::byte> buffer(part_bytes);
+  std::uint64_t left = *source.length;
+  while (left > 0) {
+    const std::size_t most = std::min<std::uint64_t>(buffer.size(), left);
+    const std::size_t got = source.read(std::span(buffer).first(most));
+    if (got == 0) {
+      throw Error("cut-short",
+                  std::to_string(*source.length - left) + " of " + std::to_string(*source.length) +
+                      " bytes of the update have arrived",
+                  "Send the file again.");
+    }
+    upload.write(std::span(buffer).first(got));
+    left -= got;
+  }
+}
+
+}  // namespace
+
+Appliance& Api::appliance() const {
+  if (appliance_ == nullptr) {
+    throw Error(
+        "not-an-appliance", "updates and WiFi are not Octurn's business on this machine",
+        "It has them on a Raspberry Pi with the image of image-build; here the system does.");
+  }
+  return *appliance_;
+}
+
+void Api::expect_no_update() const {
+  if (appliance_ != nullptr && appliance_->is_updating()) {
+    throw Error("busy", "an update is being installed", "Wait for its end.");
+  }
+}
+
+Response Api::update(const Request& /*request*/, std::string_view /*id*/) {
+  return json_response(json_of(appliance().update()));
+}
+
+Response Api::take_update(const Request& request, std::string_view /*id*/) {
+  const auto expect_no_scan = [this] {
+    if (scanner_.status().busy()) {
+      throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
+    }
+  };
+  Appliance& machine = appliance();
+  if (!request.upload.length) {
+    throw Error("length-required", "the update comes without its length",
+                "Send it with Content-Length, not in chunks.");
+  }
+  expect_no_scan();
+  {
+    Appliance::Upload upload(machine, *request.upload.length);
+    copy(request.upload, upload);
+    expect_no_scan();  // that began meanwhile
+    upload.commit();
+  }
+  log::info("appliance",
+            "an update of " + std::to_string(*request.upload.length) + " bytes is to be installed");
+  return json_response(json_of(machine.update()), 202);
+}
+
+Response Api::wifi(const Request& /*request*/, std::string_view /*id*/) {
+  return json_response(json_of(appliance().wifi()));
+}
+
+Response Api::join_wifi(const Request& request, std::string_view /*id*/) {
+  Appliance& machine = appliance();
+  const WifiRequest wanted = wifi_request_from(body_of(request));
+  machine.ask_for_wifi(wanted);
+  log::info("appliance", "a WiFi is to be joined");
+  return json_response(json_of(machine.wifi()), 202);
+}
+
+}  // namespace octurn

@@ -1,0 +1,204 @@
+// WiFi and updates, from the page to the files in which the appliance's root finds what it is asked for. The test is root.
+
+import assert from 'node:assert/strict';
+import {mkdir, mkdtemp, readdir, readFile, rename, rm, stat, writeFile} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {test} from 'node:test';
+
+import {complaints, overflow} from './access.js';
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, startScanner} from './scanner.js';
+
+const networks = [
+  'bssid / frequency / signal level / flags / ssid',
+  '02:00:00:00:00:01\t2412\t-48\t[WPA2-PSK-CCMP][ESS]\tHome',
+  '02:00:00:00:00:02\t2437\t-63\t[WPA2-PSK-CCMP][ESS]\tCaf\\xc3\\xa9 am Eck',
+  '02:00:00:00:00:03\t2462\t-71\t[ESS]\tGuests',
+  '02:00:00:00:00:04\t2462\t-82\t[WPA2-PSK-CCMP][ESS]\tA neighbour with a very long name',
+].join('\n');
+
+/** An appliance: a scanner, and what root does there. */
+async function startAppliance(t) {
+  const folder = await mkdtemp(join(tmpdir(), 'octurn-appliance-'));
+  t.after(() => rm(folder, {recursive: true, force: true}));
+  await mkdir(join(folder, 'requests'));
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '8', '--appliance', folder]});
+  return {
+    ...scanner,
+    answer: async (name, settings) => {
+      const text = typeof settings === 'string' ? settings : Object.entries(settings).map(([key, value]) => `${key} = ${value}`).join('\n');
+      await writeFile(join(folder, '.new'), `${text}\n`);
+      await rename(join(folder, '.new'), join(folder, name));
+    },
+    /** Takes a request away. */
+    take: async (name) => {
+      const file = join(folder, 'requests', name);
+      const content = await readFile(file);
+      assert.equal((await stat(file)).mode & 0o777, 0o600);
+      await rm(file);
+      assert.deepEqual(await readdir(join(folder, 'requests')), []);
+      return content;
+    },
+  };
+}
+
+/** Nobody is shut out of this state of the page, and it fits. */
+async function look(page, name) {
+  assert.deepEqual(await complaints(page), [], name);
+  assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+  await picture(page, name);
+}
+
+const firstSection = (page) => page.evaluate(() => document.getElementById('main').firstElementChild.id);
+
+async function joinWifi(appliance, browser, screen, colorScheme) {
+  await appliance.answer('networks', networks);
+  await appliance.answer('wifi', {state: 'hotspot', country: 'DE', hotspot: 'Octurn-1A2B'});
+  const {page, faults} = await openPage(browser, appliance.url, {screen, colorScheme});
+  const wifi = page.getByRole('region', {name: 'WiFi'});
+  await wifi.getByText('The scanner has a WiFi of its own, “Octurn-1A2B”').waitFor();
+  assert.equal(await firstSection(page), 'wifi', 'it comes first');
+  assert.deepEqual(await wifi.locator('.network-name').allInnerTexts(),
+      ['Home', 'Café am Eck', 'Guests', 'A neighbour with a very long name', 'Another, by its name']);
+  await look(page, `wifi-hotspot-${screen}`);
+
+  await wifi.getByRole('radio', {name: /^Guests, open/}).check();
+  assert.ok(await wifi.getByLabel('Password', {exact: true}).isHidden());
+  await wifi.getByRole('radio', {name: /^Home, with a password, 4 of 4/}).check();
+  assert.equal(await wifi.getByLabel('Country').inputValue(), 'DE');
+  await wifi.getByLabel('Password', {exact: true}).fill('short');
+  await wifi.getByRole('button', {name: 'Join'}).click();
+  await assert.rejects(appliance.take('wifi'), {code: 'ENOENT'});
+  await wifi.getByLabel('Password', {exact: true}).fill('open sesame');
+  await wifi.getByRole('button', {name: 'Show the password'}).click();
+  assert.equal(await wifi.getByLabel('Password', {exact: true}).getAttribute('type'), 'text');
+  await look(page, `wifi-chosen-${screen}`);
+  await wifi.getByRole('button', {name: 'Join'}).click();
+  await wifi.getByText('Joining “Home”…').waitFor();
+  assert.match(await wifi.locator('#wifi-joining').innerText(), /Put this device into “Home”, too, and open http:\/\/.+\.local/);
+  assert.equal(String(await appliance.take('wifi')), 'wifi_name = Home\nwifi_password = open sesame\nwifi_country = DE\n');
+  await look(page, `wifi-joining-${screen}`);
+
+  await appliance.answer('wifi', {state: 'hotspot', name: 'Home', country: 'DE', hotspot: 'Octurn-1A2B', error: 'The password is wrong.'});
+  await wifi.getByRole('alert').filter({hasText: '“Home” could not be joined'}).waitFor();
+  assert.ok(await wifi.getByRole('radio', {name: /^Home/}).isChecked());
+  await look(page, `wifi-failed-${screen}`);
+
+  await wifi.getByRole('radio', {name: 'Another, by its name'}).check();
+  await wifi.getByLabel('Name of the WiFi').fill('Workshop');
+  await wifi.getByLabel('Country').selectOption('AT');
+  await wifi.getByRole('button', {name: 'Join'}).click();
+  await wifi.getByText('Joining “Workshop”…').waitFor();
+  assert.equal(String(await appliance.take('wifi')), 'wifi_name = Workshop\nwifi_country = AT\n');
+  await appliance.answer('wifi', {state: 'joined', name: 'Workshop', country: 'AT'});
+  await wifi.getByText('The scanner is in “Workshop”.').waitFor();
+  assert.notEqual(await firstSection(page), 'wifi', 'it has gone to its place at the end');
+  await look(page, `wifi-joined-${screen}`);
+  await wifi.getByRole('button', {name: 'Join another WiFi'}).click();
+  assert.ok(await wifi.getByRole('radio').first().isVisible());
+  assert.deepEqual(faults, []);
+  await page.context().close();
+}
+
+async function installUpdate(appliance, browser, screen, colorScheme) {
+  const bundle = Buffer.alloc(20_000_000, 'octurn ');
+  await appliance.answer('update', {slot: 'a', state: 'none'});
+  await appliance.answer('wifi', {state: 'joined', name: 'Home', country: 'DE'});
+  const {page} = await openPage(browser, appliance.url, {screen, colorScheme});
+  const update = page.getByRole('region', {name: 'Update'});
+  await update.getByText(/^Octurn .* is in use\.$/).waitFor();
+  await look(page, `update-idle-${screen}`);
+  await update.getByLabel(/Choose a/).setInputFiles({name: 'octurn.update', mimeType: 'application/octet-stream', buffer: bundle});
+  await update.getByText('20 MB').waitFor();
+  await look(page, `update-chosen-${screen}`);
+  await update.getByRole('button', {name: 'Install'}).click();
+  await update.getByText('Checking and writing…').waitFor();
+  await assert.rejects(ask(appliance, 'scans', 'POST', {}), /an update is being installed/);
+  await look(page, `update-installing-${screen}`);
+
+  await appliance.answer('update', {slot: 'a', state: 'failed', version: '', error: 'This is no update for this scanner.'});
+  assert.ok(bundle.equals(await appliance.take('update')));
+  await update.getByText('This is no update for this scanner. Nothing was changed.').waitFor();
+  await look(page, `update-failed-${screen}`);
+
+  await update.getByLabel(/Choose a/).setInputFiles({name: 'octurn.update', mimeType: 'application/octet-stream', buffer: bundle});
+  await update.getByRole('button', {name: 'Install'}).click();
+  await update.getByText('Checking and writing…').waitFor();
+  await appliance.answer('update', {slot: 'a', state: 'restarting', version: '0.2.0'});
+  await appliance.take('update');
+  await update.getByText('Starting again…').waitFor();
+  await appliance.end();
+  await page.getByRole('alert').filter({hasText: 'The scanner starts again.'}).waitFor();
+  await look(page, `update-restarting-${screen}`);
+
+  await appliance.answer('update', {slot: 'b', state: 'trial', version: '0.2.0'});
+  await appliance.restart();
+  await update.getByText('Trying the new version…').waitFor();
+  await page.locator('#away').waitFor({state: 'hidden'});
+  await page.reload();
+  await appliance.answer('update', {slot: 'b', state: 'kept', version: '0.2.0'});
+  await update.getByText('Octurn 0.2.0 is running').waitFor();
+  await look(page, `update-kept-${screen}`);
+  await appliance.answer('update', {slot: 'a', state: 'returned', version: '0.2.0', error: 'The update to 0.2.0 did not work.'});
+  await update.getByText('The update to 0.2.0 did not start; the earlier version is back').waitFor();
+  await look(page, `update-returned-${screen}`);
+  await page.context().close();
+}
+
+/** While a file is on its way it can be called back; a slow network is made for that. */
+async function cancelUpdate(appliance, browser) {
+  await appliance.answer('update', {slot: 'a', state: 'none'});
+  const {page} = await openPage(browser, appliance.url);
+  const network = await page.context().newCDPSession(page);
+  await network.send('Network.emulateNetworkConditions', {offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 1e6});
+  const update = page.getByRole('region', {name: 'Update'});
+  await update.getByLabel('Choose a file').setInputFiles({name: 'octurn.update', mimeType: '', buffer: Buffer.alloc(40_000_000)});
+  await update.getByRole('button', {name: 'Install'}).click();
+  await update.getByText(/^[1-9].* of 40 MB$/).waitFor();
+  await look(page, 'update-sending-desktop');
+  await update.getByRole('button', {name: 'Cancel'}).click();
+  await update.getByRole('button', {name: 'Install'}).waitFor();
+  while ((await ask(appliance, 'update')).state !== 'none') {
+    await new Promise((done) => {
+      setTimeout(done, 50);
+    });
+  }
+  await assert.rejects(appliance.take('update'), {code: 'ENOENT'});
+  await page.context().close();
+}
+
+/** A page of the version before is loaded again when the scanner has another one. */
+async function meetNewVersion(appliance, browser) {
+  const {page} = await openPage(browser, appliance.url);
+  await page.locator('#update-summary').filter({hasText: 'is in use'}).waitFor();
+  await page.evaluate(() => {
+    globalThis.isOld = true;
+  });
+  await page.route('**/api/v1/update', async (route) => {
+    const body = await (await route.fetch()).json();
+    await route.fulfill({json: {...body, version: '9.9.9'}});
+  });
+  await page.waitForFunction(() => !globalThis.isOld);
+  await page.getByText('Octurn 9.9.9 is in use.').waitFor();
+  await page.context().close();
+}
+
+test('the appliance is updated, and joins a WiFi, by its page', async (t) => {
+  const appliance = await startAppliance(t);
+  const browser = await openBrowser(t);
+  for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
+    await t.test(`a WiFi is joined on a ${screen}`, () => joinWifi(appliance, browser, screen, colorScheme));
+    await t.test(`an update is installed on a ${screen}`, () => installUpdate(appliance, browser, screen, colorScheme));
+  }
+  await t.test('an update on its way is called back', () => cancelUpdate(appliance, browser));
+  await t.test('a page of the version before is loaded again', () => meetNewVersion(appliance, browser));
+});
+
+test('elsewhere the page has neither', async (t) => {
+  const {page, faults} = await openPage(await openBrowser(t), (await startScanner(t)).url);
+  await page.getByRole('list', {name: 'Devices'}).getByText('ready').first().waitFor();
+  assert.ok(await page.locator('#wifi').isHidden());
+  assert.ok(await page.locator('#update').isHidden());
+  assert.deepEqual(faults, []);
+});

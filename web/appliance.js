@@ -1,0 +1,51 @@
+// Updates and WiFi, which the page has where it is the appliance's.
+
+import * as api from './api.js';
+import {element, setText, show} from './dom.js';
+import {isUpdating, prepareUpdate, showScanning, showUpdate, showUpdateAway, updateAway} from './update.js';
+import {isJoining, prepareWifi, showWifi, wifiAway} from './wifi.js';
+
+const usual = {title: 'The scanner does not answer.', text: 'Trying again until it does. A scan goes on without this page.'};
+
+let isAppliance = false;
+
+/** @param {import('./api.js').Status} status */
+export function seeStatus({appliance, scan}) {
+  isAppliance = appliance;
+  showScanning(scan !== null);
+}
+
+/** What the banner says when the scanner does not answer: that may be as it should. */
+function explainAway() {
+  const {title, text} = updateAway() ?? wifiAway() ?? usual;
+  setText(element('away-title'), title);
+  setText(element('away-text'), text);
+}
+
+async function look() {
+  try {
+    const [update, wifi] = await Promise.all([api.update(), api.wifi()]);
+    showUpdate(update);
+    showWifi(wifi);
+    show(element('wifi'), true);
+    show(element('appliance'), true);
+  } catch {
+    showUpdateAway();
+  }
+  explainAway();
+}
+
+/** Looks again and again, for as long as the page is open. */
+export async function watchAppliance() {
+  prepareUpdate();
+  prepareWifi();
+  for (;;) {
+    if (isAppliance && !document.hidden) {
+      await look();
+    }
+    const pause = isAppliance && !isUpdating() && !isJoining() ? 3000 : 1000;
+    await new Promise((done) => {
+      setTimeout(done, pause);
+    });
+  }
+}

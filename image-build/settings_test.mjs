@@ -35,13 +35,13 @@ async function testSsh(guest, key, require) {
   const nobody = await login('');
   require(nobody.includes('No auth methods could be used'), `without a key, SSH says ${nobody}`);
   const file = await guest.run('stat -c "%a %n" /data/ssh /data/ssh/*');
-  require(file === '700 /data/ssh\n600 /data/ssh/host_key', `the host's key is ${file}`);
+  require(file === '700 /data/ssh\n600 /data/ssh/host_key\n600 /data/ssh/host_key.pub', `the host's key is ${file}`);
 }
 
 async function testPassword(guest, require) {
   require((await fetch(guest.url)).status === 200, 'the page asks for a password that nobody has set');
   await guest.run('echo "page_password = open sesame" >>/run/octurn-settings/octurn.txt; ' +
-    'systemctl restart octurn-page-password; systemctl restart octurn');
+    ': >/run/octurn-settings/page-password; systemctl restart octurn-page-password; systemctl restart octurn');
   require((await fetch(guest.url)).status === 401, 'the page asks for no password');
   for (const [password, status] of [['open sesame', 200], ['sesame', 401]]) {
     const answered = await open(guest.url, password);

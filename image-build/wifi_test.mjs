@@ -75,7 +75,8 @@ async function plugRadios(guest) {
   const network = (name, lines) => `printf '[Match]\\nName=${name}\\n${lines.join('\\n')}\\n' >/run/systemd/network/10-${name}.network`;
   await guest.run(['mkdir -p /run/systemd/network',
     network('wlan1', ['[Network]', 'DHCP=ipv4', '[DHCPv4]', 'UseRoutes=no', 'UseGateway=no']),
-    network('wlan2', ['[Network]', 'Address=192.168.78.1/24', 'DHCPServer=yes', '[DHCPServer]', 'EmitRouter=no', 'EmitDNS=no']),
+    network('wlan2', ['[Network]', 'Address=192.168.78.1/24', 'DHCPServer=yes', '[DHCPServer]', 'EmitRouter=no',
+      'EmitDNS=no', 'PersistLeases=no']),
     'networkctl reload', 'modprobe mac80211_hwsim radios=3'].join('; '));
   await until('radios', () => guest.run('[ -e /sys/class/net/wlan2 ] && echo yes'));
 }

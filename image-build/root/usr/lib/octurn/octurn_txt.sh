@@ -11,7 +11,7 @@ byte_order_mark=$(printf '\357\273\277')
 
 # forget_complaints: what this program has found wrong before.
 forget_complaints() {
-  mkdir -p "$run/errors"
+  [ -d "$run/errors" ] || mkdir "$run/errors"
   : >"$run/errors/${0##*/}"
 }
 

@@ -4,8 +4,9 @@
 # shellcheck disable=SC2154
 kept=$root/data/wifi # lines with a WiFi's name in hexadecimal and its key, the newest first
 configuration=$root/etc/wpa_supplicant/wpa_supplicant-wlan0.conf
-# shellcheck disable=SC2034 # for whoever reads this file
-hotspot=Octurn-$(head -c 4 /etc/machine-id | tr '[:lower:]' '[:upper:]') # the scanner's own WiFi
+
+# hotspot: the scanner's own WiFi's name.
+hotspot() { echo "Octurn-$(head -c 4 /etc/machine-id | tr '[:lower:]' '[:upper:]')"; }
 
 hexadecimal() { printf '%s' "$1" | od -An -v -tx1 | tr -d ' \n'; }
 

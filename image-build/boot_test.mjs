@@ -5,26 +5,16 @@ import {readFile} from 'node:fs/promises';
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {measure} from '../tests/e2e/mesh_file.js';
+import {patience, require, runTest, until} from './checks.mjs';
 import {Guest, readCard, secondsSince} from './guest.mjs';
 import {cutPower} from './power_cuts.mjs';
 
 const [machine, card, cuts] = process.argv.slice(2);
-const patience = machine === 'virt' ? 600 : 900;  // seconds, on a machine with other work
 
 // IEEE 802.11's example of a password and the key made of it, annex J.4.1
 const wifi = {password: 'password', key: 'f42c6fc52df0ebef9ebb4b90b38a5f902e83fe1b135a70e23aed762e9710a12e'};
 
 const say = (text) => console.log(`boot-test: ${text}`);
-const require = (condition, text) => {
-  if (!condition) {
-    throw new Error(text);
-  }
-};
-
-// So that a test that is ended ends QEMU too.
-for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
-  process.once(signal, () => process.exit(1));
-}
 
 async function scan(guest) {
   const {id} = await guest.startScan({snapshots: 8, frames: 3, leaf_size_mm: 2}, patience);
@@ -81,13 +71,7 @@ async function testSystem(guest) {
 }
 
 /** Waits for a file on the card, which is not there before it is complete. */
-async function cardHas(name) {
-  const begin = performance.now();
-  while (!await readCard(card, name).catch(() => '')) {
-    require(secondsSince(begin) < patience, `no ${name} on the card after ${patience} s`);
-    await sleep(500);
-  }
-}
+const cardHas = (name) => until(`${name} on the card`, () => readCard(card, name).catch(() => ''));
 
 /** What the scanner's owner sees when the card, of a scanner of this version, is in another computer. */
 async function testCard(version) {
@@ -117,17 +101,9 @@ async function test(guest) {
 }
 
 const guest = await Guest.start(machine, card);
-try {
+await runTest('boot-test', () => guest, async () => {
   await test(guest);
   if (Number(cuts) > 0) {
     await cutPower(machine, card, Number(cuts), patience, say);
   }
-  say('passed');
-} catch (error) {
-  console.error(`boot-test: failed: ${error.message}`);
-  const inside = 'systemctl --no-pager --plain list-jobs; systemctl --no-pager --plain --failed; journalctl -b -p warning --no-pager | tail -n 40';
-  console.error(await guest.run(inside).catch(String));
-  process.exitCode = 1;
-} finally {
-  await guest.cutPower();
-}
+});

@@ -2,6 +2,8 @@
 
 import {createHash, generateKeyPairSync} from 'node:crypto';
 
+import {require} from './checks.mjs';
+
 const field = (bytes) => Buffer.concat([Buffer.from([0, 0, bytes.length >> 8, bytes.length & 255]), bytes]);
 
 /** A new pair of SSH keys. @returns {{line: string, secret: string}} as octurn.txt, and as dropbear's client in base64 */
@@ -27,7 +29,7 @@ async function open(url, password) {
   return response.status;
 }
 
-async function testSsh(guest, key, require) {
+async function testSsh(guest, key) {
   await guest.run(`echo ${key.secret} | base64 -d >/run/key; until systemctl -q is-active octurn-ssh; do sleep 1; done`, 120);
   const login = (options) => guest.run(`dbclient -y ${options} root@127.0.0.1 'id -un' </dev/null 2>&1 | tail -n 1`);
   const root = await login('-i /run/key');
@@ -38,7 +40,7 @@ async function testSsh(guest, key, require) {
   require(file === '700 /data/ssh\n600 /data/ssh/host_key\n600 /data/ssh/host_key.pub', `the host's key is ${file}`);
 }
 
-async function testPassword(guest, require) {
+async function testPassword(guest) {
   require((await fetch(guest.url)).status === 200, 'the page asks for a password that nobody has set');
   await guest.run('echo "page_password = open sesame" >>/run/octurn-settings/octurn.txt; ' +
     ': >/run/octurn-settings/page-password; systemctl restart octurn-page-password; systemctl restart octurn');
@@ -50,10 +52,10 @@ async function testPassword(guest, require) {
 }
 
 /** @param {{secret: string}} key  of which octurn.txt has the other half; octurn.txt asks for Berlin's time, too */
-export async function testSettings(guest, key, {say, require}) {
+export async function testSettings(guest, key, say) {
   const zone = await guest.run('date -d @1750000000 +%H:%M');
   require(zone === '17:06', `in Berlin it was 17:06, and not ${zone}`);
-  await testSsh(guest, key, require);
-  await testPassword(guest, require);
+  await testSsh(guest, key);
+  await testPassword(guest);
   say('the time zone; SSH with the key alone; the page with its password alone');
 }

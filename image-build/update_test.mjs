@@ -4,22 +4,12 @@
 import {openAsBlob} from 'node:fs';
 import {setTimeout as sleep} from 'node:timers/promises';
 
+import {patience, require, runTest, until} from './checks.mjs';
 import {Guest, secondsSince} from './guest.mjs';
 
 const [machine, card, updates] = process.argv.slice(2);
-const patience = 600;  // seconds, on a machine with other work
 
 const say = (text) => console.log(`update-test: ${text}`);
-const require = (condition, text) => {
-  if (!condition) {
-    throw new Error(text);
-  }
-};
-
-// So that a test that is ended ends QEMU too.
-for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
-  process.once(signal, () => process.exit(1));
-}
 
 let guest;
 let scans;
@@ -35,26 +25,18 @@ const send = async (name) => {
     signal: AbortSignal.timeout(patience * 1000)});
   require(response.status === 202, `the update "${name}": ${response.status} ${await response.text()}`);
 };
-const reaches = async (state) => {
-  const begin = performance.now();
-  for (;;) {
-    const update = await guest.ask('update');
-    if (update.state === state) {
-      return update;
-    }
-    require(secondsSince(begin) < patience, `after ${patience} s the update is not ${state}: ${JSON.stringify(update)}`);
-    await sleep(300);
-  }
-};
+/** Waits for a state of the update. */
+const reaches = (state) => until(`update ${state}`, async () => {
+  const update = await guest.ask('update');
+  return update.state === state && update;
+});
 const storedScans = async () => JSON.stringify((await guest.ask('scans')).scans.map(({id, snapshots_done}) => [id, snapshots_done]));
 /** The page is served by the system of this slot, and has every scan and setting. */
 const isOn = async (slot) => {
-  const begin = performance.now();
-  let update = await guest.ask('update');
-  while (!update.slot && secondsSince(begin) < patience) {
-    await sleep(300);
-    update = await guest.ask('update');
-  }
+  const update = await until('which system runs', async () => {
+    const answer = await guest.ask('update');
+    return answer.slot && answer;
+  });
   require(update.slot === slot, `the system is not ${slot}: ${JSON.stringify(update)}`);
   const line = await guest.run('cat /proc/cmdline; cat /proc/sys/kernel/hostname');
   require(line.includes(`octurn.slot=${slot}`) && line.endsWith('boot-test'), `the system that runs is: ${line}`);
@@ -104,7 +86,7 @@ const keeps = async () => {
   say('after a power cut the update still runs');
 };
 
-try {
+await runTest('update-test', () => guest, async () => {
   await start();
   scans = await storedScans();
   await refuses('strange', 'not signed');
@@ -112,11 +94,4 @@ try {
   await losesPower();
   await goesBack();
   await keeps();
-  say('passed');
-} catch (error) {
-  console.error(`update-test: failed: ${error.message}`);
-  console.error(await guest?.run('systemctl --no-pager --plain --failed; journalctl -b -u "octurn*" --no-pager | tail -n 60').catch(String));
-  process.exitCode = 1;
-} finally {
-  await guest?.cutPower();
-}
+});

@@ -3,39 +3,14 @@
 
 import {execFile} from 'node:child_process';
 import {writeFile} from 'node:fs/promises';
-import {setTimeout as sleep} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
+import {patience, require, runTest, until} from './checks.mjs';
 import {Guest, readCard, secondsSince} from './guest.mjs';
 import {makeSshKey, testSettings} from './settings_test.mjs';
 
 const card = process.argv[2];
-const patience = 600;  // seconds, on a machine with other work
-
 const say = (text) => console.log(`wifi-test: ${text}`);
-const require = (condition, text) => {
-  if (!condition) {
-    throw new Error(text);
-  }
-};
-
-// So that a test that is ended ends QEMU too.
-for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
-  process.once(signal, () => process.exit(1));
-}
-
-/** Waits until `ask` resolves to something true, and returns that. */
-async function until(what, ask) {
-  const begin = performance.now();
-  for (;;) {
-    const answer = await ask();
-    if (answer) {
-      return answer;
-    }
-    require(secondsSince(begin) < patience, `${what}: not within ${patience} s`);
-    await sleep(1000);
-  }
-}
 
 /** What the appliance tells the daemon of its WiFi. @returns {Promise<Record<string, string>>} */
 async function wifi(guest) {
@@ -157,16 +132,9 @@ await writeFile(`${card}/octurn.txt`, ['rig = simulated', 'wifi_name = IEEE', 'w
   'time_zone = Europe/Berlin', `ssh_key = ${key.line}`, ''].join('\n'));
 await promisify(execFile)('mcopy', ['-o', '-i', `${card}/card.img@@1M`, `${card}/octurn.txt`, '::octurn.txt']);
 const guest = await Guest.start('virt', card);
-try {
+await runTest('wifi-test', () => guest, async () => {
   say(`the page after ${(await guest.page(patience)).toFixed(1)} s`);
-  await testSettings(guest, key, {say, require});
+  await testSettings(guest, key, say);
   await testWifi(guest);
   await testCard(guest);
-  say('passed');
-} catch (error) {
-  console.error(`wifi-test: failed: ${error.message}`);
-  console.error(await guest.run('systemctl --no-pager --plain --failed; journalctl -b -u "octurn*" -u systemd-networkd --no-pager | tail -n 60').catch(String));
-  process.exitCode = 1;
-} finally {
-  await guest.cutPower();
-}
+});

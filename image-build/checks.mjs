@@ -1,0 +1,50 @@
+// What the tests of the image have in common.
+
+import {setTimeout as sleep} from 'node:timers/promises';
+
+import {secondsSince} from './guest.mjs';
+
+/** Seconds that a test waits for anything, on a machine with other work. */
+export const patience = 600;
+
+/** @throws {Error}  unless something is so */
+export function require(condition, text) {
+  if (!condition) {
+    throw new Error(text);
+  }
+}
+
+/** Waits until `ask` resolves to something true, and returns that. */
+export async function until(what, ask) {
+  const begin = performance.now();
+  for (;;) {
+    const answer = await ask();
+    if (answer) {
+      return answer;
+    }
+    require(secondsSince(begin) < patience, `${what}: not within ${patience} s`);
+    await sleep(500);
+  }
+}
+
+/**
+ * Runs a test of the guest that `guest()` gives, and always ends it: also when the test is ended. @param {string} name  of the
+ * test @param {() => import('./guest.mjs').Guest | undefined} guest @param {() => Promise<void>} work
+ */
+export async function runTest(name, guest, work) {
+  for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {
+    process.once(signal, () => process.exit(1));
+  }
+  try {
+    await work();
+    console.log(`${name}: passed`);
+  } catch (error) {
+    console.error(`${name}: failed: ${error.message}`);
+    const inside = 'systemctl --no-pager --plain list-jobs; systemctl --no-pager --plain --failed; ' +
+      'journalctl -b --no-pager -p warning | tail -n 40; journalctl -b -u "octurn*" -u systemd-networkd --no-pager | tail -n 60';
+    console.error(await guest()?.run(inside).catch(String));
+    process.exitCode = 1;
+  } finally {
+    await guest()?.cutPower();
+  }
+}

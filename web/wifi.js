@@ -92,7 +92,7 @@ function showNetworks() {
     setText(part(item, '.network-name'), name);
     part(item, '.network-signal use').setAttribute('href', `icons/symbols.svg#wifi-${barsOf(signal_dbm)}`);
     show(part(item, '.network-lock'), secured);
-    setText(part(item, '.unseen'), `${secured ? ', with a password' : ', open'}, ${barsOf(signal_dbm)} of 4 bars`);
+    setText(part(item, '.unseen'), `${secured ? ' with a password' : ' open'}, ${barsOf(signal_dbm)} of 4 bars`);
   });
 }
 

@@ -11,9 +11,9 @@ export function setText(target, text) {
   }
 }
 
-/** @param {HTMLElement} target @param {boolean} isShown */
+/** @param {Element} target  also of an SVG, which has no property for it @param {boolean} isShown */
 export function show(target, isShown) {
-  target.hidden = !isShown;
+  target.toggleAttribute('hidden', !isShown);
 }
 
 /** @param {string} id  of a template with one element @returns {any} a copy of it */

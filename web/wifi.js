@@ -25,13 +25,17 @@ export function summaryOf({state, name, hotspot}) {
 export const troubleOf = ({state, name, error}) => !error ? null :
   {title: state !== 'joined' && name ? `${quoted(name)} could not be joined` : 'The WiFi was not changed', detail: sentence(error)};
 
+/** What comes if the scanner cannot join a WiFi. Pure. @param {Wifi} wifi */
+const fallbackOf = ({hotspot}) => hotspot ? `If it cannot join, ${quoted(hotspot)} is back in about a minute, and this page says why there.` :
+  'If it cannot join and has no cable, it makes a WiFi of its own in about a minute, where this page says why.';
+
 /** What joining a WiFi means for who looks at this page. Pure. @param {Wifi} wifi @param {string} chosen @param {string} page  its address there */
-export function consequenceOf({state, name, hotspot}, chosen, page) {
+export function consequenceOf(wifi, chosen, page) {
+  const {state, name, hotspot} = wifi;
   const there = chosen ? quoted(chosen) : 'that WiFi';
   const leaves = state === 'hotspot' ? `The scanner leaves ${quoted(hotspot)} and joins ${there}.` :
     state === 'joined' && name !== chosen ? `The scanner leaves ${quoted(name)} and joins ${there}.` : `The scanner joins ${there}.`;
-  return `${leaves} Then put this device into ${there}, too, and open ${page}. ` +
-    'If it cannot join, it makes a WiFi of its own in about a minute, where this page says why.';
+  return `${leaves} Then put this device into ${there}, too, and open ${page}. ${fallbackOf(wifi)}`;
 }
 
 /** How many of four bars a signal is worth. Pure. @param {number} dbm */
@@ -92,7 +96,7 @@ function showNetworks() {
     setText(part(item, '.network-name'), name);
     part(item, '.network-signal use').setAttribute('href', `icons/symbols.svg#wifi-${barsOf(signal_dbm)}`);
     show(part(item, '.network-lock'), secured);
-    setText(part(item, '.unseen'), `${secured ? ', with a password' : ', open'}, ${barsOf(signal_dbm)} of 4 bars`);
+    setText(part(item, '.unseen'), `${secured ? ' with a password' : ' open'}, ${barsOf(signal_dbm)} of 4 bars`);
   });
 }
 
@@ -155,8 +159,9 @@ export function showWifi(news) {
     said = wifi.state;
     isOpen = wifi.state === 'hotspot' || wifi.state === 'failed';
   }
-  if (wifi.state === 'joined') {
+  if (wifi.state === 'joined' && asked) {
     asked = '';
+    element('wifi-password').value = '';
   }
   place();
   render();
@@ -166,8 +171,7 @@ export function showWifi(news) {
 export function wifiAway() {
   return asked && wifi.state === 'joining' ? {
     title: `The scanner joins ${quoted(asked)}.`,
-    text: `Put this device into ${quoted(asked)}, too, and open ${page()}. If the scanner cannot join, it makes a WiFi of its own in ` +
-      'about a minute, where this page says why.',
+    text: `Put this device into ${quoted(asked)}, too, and open ${page()}. ${fallbackOf(wifi)}`,
   } : null;
 }
 
@@ -185,7 +189,6 @@ async function join() {
   try {
     wifi = await api.joinWifi(request);
     said = '';
-    element('wifi-password').value = '';
   } catch (error) {
     const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
     asked = '';

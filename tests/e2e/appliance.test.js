@@ -15,7 +15,7 @@ const networks = [
   '02:00:00:00:00:01\t2412\t-48\t[WPA2-PSK-CCMP][ESS]\tHome',
   '02:00:00:00:00:02\t2437\t-63\t[WPA2-PSK-CCMP][ESS]\tCaf\\xc3\\xa9 am Eck',
   '02:00:00:00:00:03\t2462\t-71\t[ESS]\tGuests',
-  '02:00:00:00:00:04\t2462\t-82\t[WPA2-PSK-CCMP][ESS]\tA neighbour with a very long name',
+  '02:00:00:00:00:04\t2462\t-82\t[WPA2-PSK-CCMP][ESS]\tThe neighbours with a long name',
 ].join('\n');
 
 /** An appliance: a scanner, and what root does there. */
@@ -60,12 +60,12 @@ async function joinWifi(appliance, browser, screen, colorScheme) {
   await wifi.getByText('The scanner has a WiFi of its own, “Octurn-1A2B”').waitFor();
   assert.equal(await firstSection(page), 'wifi', 'it comes first');
   assert.deepEqual(await wifi.locator('.network-name').allInnerTexts(),
-      ['Home', 'Café am Eck', 'Guests', 'A neighbour with a very long name', 'Another, by its name']);
+      ['Home', 'Café am Eck', 'Guests', 'The neighbours with a long name', 'Another, by its name']);
   await look(page, `wifi-hotspot-${screen}`);
 
-  await wifi.getByRole('radio', {name: /^Guests, open/}).check();
+  await wifi.getByRole('radio', {name: /^Guests open, 2 of 4/}).check();
   assert.ok(await wifi.getByLabel('Password', {exact: true}).isHidden());
-  await wifi.getByRole('radio', {name: /^Home, with a password, 4 of 4/}).check();
+  await wifi.getByRole('radio', {name: /^Home with a password, 4 of 4/}).check();
   assert.equal(await wifi.getByLabel('Country').inputValue(), 'DE');
   await wifi.getByLabel('Password', {exact: true}).fill('short');
   await wifi.getByRole('button', {name: 'Join'}).click();

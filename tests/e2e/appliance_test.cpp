@@ -48,6 +48,14 @@ Reply upload(const Daemon& daemon, const std::string& bundle, const std::string&
   return reply_to(daemon.port(), head_of_upload(bundle.size(), more) + bundle);
 }
 
+/// What is answered to a text after which nothing more can come.
+Reply reply_to_all_of(const Daemon& daemon, const std::string& text) {
+  const FileDescriptor socket = connected(daemon.port());
+  send_text(socket, text);
+  ::shutdown(socket.number(), SHUT_WR);
+  return reply_from(receive_all(socket));
+}
+
 /// An upload that has begun, and stands still.
 FileDescriptor begun_upload(const Daemon& daemon, std::size_t bytes, const std::string& part) {
   FileDescriptor socket = connected(daemon.port());
@@ -107,16 +115,10 @@ TEST_F(Appliances, HoldNoMoreThanAPieceOfAnUpdate) {
 
 TEST_F(Appliances, KeepNothingOfAnUpdateThatIsCutShort) {
   const Daemon scanner = daemon();
-  {
-    const FileDescriptor socket = connected(scanner.port());
-    send_text(socket, head_of_upload(100'000) + std::string(99'999, 'x'));
-    ::shutdown(socket.number(), SHUT_WR);
-    const Reply reply = reply_from(receive_all(socket));
-    EXPECT_EQ(reply.status, 400);
-    EXPECT_EQ(parsed(reply)["code"], "cut-short");
-    EXPECT_NE(parsed(reply)["detail"].get<std::string>().find("99999 of 100000"),
-              std::string::npos);
-  }
+  const Reply reply = reply_to_all_of(scanner, head_of_upload(100'000) + std::string(99'999, 'x'));
+  EXPECT_EQ(reply.status, 400);
+  EXPECT_EQ(parsed(reply)["code"], "cut-short");
+  EXPECT_NE(parsed(reply)["detail"].get<std::string>().find("99999 of 100000"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(requests()));
   begun_upload(scanner, 100'000, "lost");  // and gone
   while (parsed(scanner.get(update_path))["state"] != "none") {
@@ -150,7 +152,7 @@ TEST_F(Appliances, TakeNoUpdateWhileAScanRuns) {
 
 TEST_F(Appliances, RefuseUpdatesThatAreNone) {
   const Daemon scanner = daemon();
-  const Reply large = reply_to(scanner.port(), head_of_upload((160U << 20U) + 1));
+  const Reply large = reply_to_all_of(scanner, head_of_upload((160U << 20U) + 1));
   EXPECT_EQ(large.status, 413);
   EXPECT_EQ(parsed(large)["code"], "too-large");
   const Reply chunks = reply_to(

@@ -7,7 +7,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
 import {Guest, readCard, secondsSince} from './guest.mjs';
-import {makeSshKey, testSettings} from './settings_test.mjs';
+import {makeSshKey, testPassword, testSettings} from './settings_test.mjs';
 
 const card = process.argv[2];
 const patience = 600;  // seconds, on a machine with other work
@@ -161,6 +161,9 @@ try {
   say(`the page after ${(await guest.page(patience)).toFixed(1)} s`);
   await testSettings(guest, key, {say, require});
   await testWifi(guest);
+  await guest.run('ip link set eth0 up');
+  await guest.page(patience);
+  await testPassword(guest, {say, require});
   await testCard(guest);
   say('passed');
 } catch (error) {

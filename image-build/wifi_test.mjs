@@ -7,7 +7,7 @@ import {promisify} from 'node:util';
 
 import {patience, require, runTest, until} from './checks.mjs';
 import {Guest, readCard, secondsSince} from './guest.mjs';
-import {makeSshKey, testSettings} from './settings_test.mjs';
+import {makeSshKey, testPassword, testSettings} from './settings_test.mjs';
 
 const card = process.argv[2];
 const say = (text) => console.log(`wifi-test: ${text}`);
@@ -136,5 +136,8 @@ await runTest('wifi-test', () => guest, async () => {
   say(`the page after ${(await guest.page(patience)).toFixed(1)} s`);
   await testSettings(guest, key, say);
   await testWifi(guest);
+  await guest.run('ip link set eth0 up');
+  await guest.page(patience);
+  await testPassword(guest, say);
   await testCard(guest);
 });

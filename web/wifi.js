@@ -210,7 +210,12 @@ function offerCountries() {
 export function prepareWifi() {
   offerCountries();
   const form = element('wifi-form');
-  form.addEventListener('input', showFields);
+  form.addEventListener('input', (/** @type {any} */ {target}) => {
+    if (target.name === 'network') {
+      element('wifi-password').value = '';  // it is another WiFi's
+    }
+    showFields();
+  });
   form.addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
     join();

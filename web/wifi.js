@@ -90,6 +90,8 @@ const chosenName = () => chosen() || element('wifi-name').value.trim();
 
 const isOpenWifi = () => networks.some(({name, secured}) => name === chosen() && !secured);
 
+const farewell = () => `Put this device into ${quoted(asked)}, too, and open ${page()}. ${fallbackOf(wifi)}`;
+
 function showNetworks() {
   list(element('networks'), networks, ({name}) => name, 'network', (item, {name, signal_dbm, secured}) => {
     part(item, 'input').value = name;
@@ -118,7 +120,7 @@ function render() {
   const trouble = isJoining ? null : failure ? {title: 'The scanner was not told', detail: failure} : troubleOf(wifi);
   setText(element('wifi-summary'), isJoining ? summaryOf({...wifi, state: 'joining', name: asked || wifi.name}) : summaryOf(wifi));
   show(element('wifi-joining'), isJoining);
-  setText(part(element('wifi-joining'), 'p'), asked ? wifiAway()?.text ?? '' : 'This takes up to a minute.');
+  setText(part(element('wifi-joining'), 'p'), asked ? farewell() : 'This takes up to a minute.');
   show(element('wifi-trouble'), trouble !== null);
   setText(part(element('wifi-trouble'), 'strong'), trouble?.title ?? '');
   setText(part(element('wifi-trouble'), 'p'), trouble?.detail ?? '');
@@ -171,7 +173,7 @@ export function showWifi(news) {
 export function wifiAway() {
   return asked && wifi.state === 'joining' ? {
     title: `The scanner joins ${quoted(asked)}.`,
-    text: `Put this device into ${quoted(asked)}, too, and open ${page()}. ${fallbackOf(wifi)}`,
+    text: farewell(),
   } : null;
 }
 
@@ -208,7 +210,12 @@ function offerCountries() {
 export function prepareWifi() {
   offerCountries();
   const form = element('wifi-form');
-  form.addEventListener('input', showFields);
+  form.addEventListener('input', (/** @type {any} */ {target}) => {
+    if (target.name === 'network') {
+      element('wifi-password').value = '';  // it is another WiFi's
+    }
+    showFields();
+  });
   form.addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
     join();

@@ -43,6 +43,7 @@ class Appliance {
  public:
   /// Removes what an earlier process left unfinished. @param folder  of the answers
   explicit Appliance(std::filesystem::path folder);
+  ~Appliance() = default;
   Appliance(const Appliance&) = delete;
   Appliance& operator=(const Appliance&) = delete;
 

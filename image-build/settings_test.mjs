@@ -40,16 +40,22 @@ async function testSsh(guest, key) {
   require(file === '700 /data/ssh\n600 /data/ssh/host_key\n600 /data/ssh/host_key.pub', `the host's key is ${file}`);
 }
 
-export async function testPassword(guest, say) {
+async function testPassword(guest) {
   require((await fetch(guest.url)).status === 200, 'the page asks for a password that nobody has set');
-  await guest.run('echo "page_password = open sesame" >>/run/octurn-settings/octurn.txt; ' +
-    ': >/run/octurn-settings/page-password; systemctl restart octurn-page-password; systemctl restart octurn');
+  // As a start does it, but without one.
+  const start = 'systemctl restart octurn-page-password; systemctl restart octurn';
+  await guest.run('cp /etc/octurn/octurn.json /run/; echo "page_password = open sesame" >>/run/octurn-settings/octurn.txt; ' +
+    `: >/run/octurn-settings/page-password; ${start}`);
   require((await fetch(guest.url)).status === 401, 'the page asks for no password');
   for (const [password, status] of [['open sesame', 200], ['sesame', 401]]) {
     const answered = await open(guest.url, password);
     require(answered === status, `with the password ${password} the page answers ${answered}`);
   }
-  say('the page opens with its password alone');
+  const hidden = await guest.run('grep page_password /run/octurn-settings/octurn.txt');
+  require(hidden === 'page_password = ********', `octurn.txt has ${hidden}`);
+  await guest.run('sed -i /page_password/d /run/octurn-settings/octurn.txt; rm /run/octurn-settings/page-password; ' +
+    `cp /run/octurn.json /etc/octurn/; ${start}`);
+  require((await fetch(guest.url)).status === 200, 'the page asks for a password that was taken away');
 }
 
 /** @param {{secret: string}} key  of which octurn.txt has the other half; octurn.txt asks for Berlin's time, too */
@@ -57,5 +63,6 @@ export async function testSettings(guest, key, say) {
   const zone = await guest.run('date -d @1750000000 +%H:%M');
   require(zone === '17:06', `in Berlin it was 17:06, and not ${zone}`);
   await testSsh(guest, key);
-  say('the time zone; SSH with the key alone');
+  await testPassword(guest);
+  say('the time zone; SSH with the key alone; the page with its password alone');
 }

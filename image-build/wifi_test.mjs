@@ -96,8 +96,8 @@ async function testWifi(guest) {
   await startRouter(guest, 'IEEE', 'password');
   await reaches(guest, 'joined', 'IEEE');
   say(`its address there is ${await address(guest, 'wlan0', '192.168.78')}`);
-  const networks = await guest.run('cat /run/octurn-appliance/networks');
-  require(/^bssid .*\n[^]*\[WPA2-PSK-CCMP\].*\tIEEE$/m.test(networks), `networks are\n${networks}`);
+  await until('IEEE among the networks', async () =>
+    /^bssid .*\n[^]*\[WPA2-PSK-CCMP\].*\tIEEE$/m.test(await guest.run('cat /run/octurn-appliance/networks')));
 
   await guest.run('wpa_cli -i wlan2 terminate; ip link set eth0 down');
   const {hotspot, error} = await reaches(guest, 'hotspot', 'IEEE');

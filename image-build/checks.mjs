@@ -4,7 +4,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 
 import {secondsSince} from './guest.mjs';
 
-/** Seconds that a test waits for anything, on a machine with other work. */
+/** Seconds that a test waits for anything on `virt`, on a machine with other work. */
 export const patience = 600;
 
 /** @throws {Error}  unless something is so */
@@ -15,14 +15,14 @@ export function require(condition, text) {
 }
 
 /** Waits until `ask` resolves to something true, and returns that. */
-export async function until(what, ask) {
+export async function until(what, ask, seconds = patience) {
   const begin = performance.now();
   for (;;) {
     const answer = await ask();
     if (answer) {
       return answer;
     }
-    require(secondsSince(begin) < patience, `${what}: not within ${patience} s`);
+    require(secondsSince(begin) < seconds, `${what}: not within ${seconds} s`);
     await sleep(500);
   }
 }

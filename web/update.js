@@ -24,10 +24,7 @@ const phases = /** @type {const} */ (['sending', 'installing', 'restarting', 'tr
 /** What is going on. Pure. @param {State} state @returns {typeof phases[number] | null} */
 export function phaseOf({update, sending, isAway, isFollowed}) {
   const phase = phases.find((name) => name === update.state) ?? null;
-  if (sending) {
-    return 'sending';
-  }
-  if (update.state === 'receiving') {
+  if (sending || update.state === 'receiving') {
     return 'sending';
   }
   return isFollowed && isAway && phase === 'installing' ? 'restarting' : phase;

@@ -4,11 +4,11 @@
 #include <sys/socket.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <thread>
 
 #include "support/daemon.hpp"
+#include "support/upload.hpp"
 #include "support/zip.hpp"
 
 namespace octurn {
@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* update_path = "/api/v1/update";
 constexpr const char* wifi_path = "/api/v1/wifi";
 
 /// A daemon on an appliance of which root has made the folder.
@@ -38,16 +37,6 @@ class Appliances : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-std::string head_of_upload(std::size_t bytes, const std::string& more = "") {
-  return std::string("PUT ") + update_path + " HTTP/1.1\r\nHost: localhost\r\n" +
-         "Content-Type: application/octet-stream\r\nContent-Length: " + std::to_string(bytes) +
-         "\r\n" + more + "\r\n";
-}
-
-Reply upload(const Daemon& daemon, const std::string& bundle, const std::string& more = "") {
-  return reply_to(daemon.port(), head_of_upload(bundle.size(), more) + bundle);
-}
-
 /// What is answered to a text after which nothing more can come.
 Reply reply_to_all_of(const Daemon& daemon, const std::string& text) {
   const FileDescriptor socket = connected(daemon.port());
@@ -64,17 +53,6 @@ FileDescriptor begun_upload(const Daemon& daemon, std::size_t bytes, const std::
     std::this_thread::yield();
   }
   return socket;
-}
-
-std::size_t peak_memory_bytes(const Daemon& daemon) {
-  std::ifstream status("/proc/" + std::to_string(const_cast<Daemon&>(daemon).program().process()) +
-                       "/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmHWM:")) {
-      return std::stoul(line.substr(6)) * 1024;
-    }
-  }
-  return 0;
 }
 
 TEST_F(Appliances, HandAnUpdateToRoot) {
@@ -101,16 +79,6 @@ TEST_F(Appliances, HandAnUpdateToRoot) {
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_EQ(failed["update_version"], "0.2.0");
   EXPECT_EQ(failed["error"], "It is not signed.");
-}
-
-TEST_F(Appliances, HoldNoMoreThanAPieceOfAnUpdate) {
-  const Daemon scanner = daemon();
-  EXPECT_EQ(upload(scanner, std::string(1'000'000, 'x')).status, 202);
-  fs::remove(requests() / "update");
-  const std::size_t before = peak_memory_bytes(scanner);
-  EXPECT_EQ(upload(scanner, std::string(100'000'000, 'x')).status, 202);
-  EXPECT_GT(before, 0U);
-  EXPECT_LT(peak_memory_bytes(scanner), before + 50'000'000);
 }
 
 TEST_F(Appliances, KeepNothingOfAnUpdateThatIsCutShort) {

@@ -10,6 +10,7 @@
 #include "support/shared_folder.hpp"
 #include "support/small_scan.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/upload.hpp"
 
 // `octurn reconstruct --memory-limit-mb N` keeps its promise: the kernel gives it no more memory
 // than that, and what it had resident in the end was less.
@@ -130,12 +131,6 @@ TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
   }
 }
 
-/// The most memory that a process has had resident so far, bytes.
-std::size_t peak_memory(const Program& program) {
-  const std::string status = content_of("/proc/" + std::to_string(program.process()) + "/status");
-  return std::stoul(status.substr(status.find("VmHWM:") + 6)) * 1024;
-}
-
 /// How much more memory than for coarse models a daemon takes for those of 0.1 mm: one that is
 /// counted for a download, and one that is scanned until it would be written.
 std::size_t memory_for_fine_models(const std::string& config) {
@@ -145,7 +140,7 @@ std::size_t memory_for_fine_models(const std::string& config) {
   const std::string scan = daemon.start(
       R"({"snapshots": 12, "frames": 2, "leaf_size_mm": 4, "method": "intersection"})");
   EXPECT_EQ(daemon.wait_until_done(scan)["state"], "finished");
-  const std::size_t before = peak_memory(daemon.program());
+  const std::size_t before = daemon.peak_memory();
   const Reply counted = request(daemon.port(), "HEAD", scan + "/Scan.stl?leaf_size_mm=0.1");
   EXPECT_EQ(counted.status, 200) << counted.header("Content-Length");
   const std::string fine = daemon.start(
@@ -155,12 +150,25 @@ std::size_t memory_for_fine_models(const std::string& config) {
   });
   daemon.post(fine + "/cancel", "");
   EXPECT_EQ(daemon.wait_until_done(fine)["snapshots_done"], 12);
-  return peak_memory(daemon.program()) - before;
+  return daemon.peak_memory() - before;
 }
 
 // Without a limit it takes 37 MB, so that a daemon which ignored it would fail here.
 TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
   EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
+}
+
+TEST(Memory, HoldsNoMoreThanAPieceOfAnUpdate) {
+  const TemporaryFolder folder;
+  const fs::path appliance = folder.path() / "appliance";
+  fs::create_directories(appliance / "requests");
+  const Daemon daemon(folder.path(), {"--appliance", appliance});
+  EXPECT_EQ(upload(daemon, std::string(1'000'000, 'x')).status, 202);
+  fs::remove(appliance / "requests/update");
+  const std::size_t before = daemon.peak_memory();
+  EXPECT_EQ(upload(daemon, std::string(100'000'000, 'x')).status, 202);
+  EXPECT_GT(before, 0U);
+  EXPECT_LT(daemon.peak_memory(), before + 20'000'000);
 }
 
 class SharedBunny : public ::testing::Test {

@@ -49,6 +49,13 @@ class Daemon {
   int port() const { return port_; }
   Program& program() { return program_; }
 
+  /// The most memory that it has had resident so far, bytes.
+  std::size_t peak_memory() const {
+    const std::string status =
+        content_of("/proc/" + std::to_string(program_.process()) + "/status");
+    return std::stoul(status.substr(status.find("VmHWM:") + 6)) * 1024;
+  }
+
   Reply get(const std::string& path, const Headers& headers = {}) const {
     return request(port_, "GET", path, "", headers);
   }

@@ -65,6 +65,11 @@ std::string state_of(const Settings& settings, const std::array<std::string_view
   return std::ranges::find(known, state) == known.end() ? "none" : state;
 }
 
+/// Whether root is at an update, and the machine may start again at any moment.
+bool is_being_installed(const UpdateState& update) {
+  return update.state == "installing" || update.state == "restarting";
+}
+
 [[noreturn]] void throw_no_space() {
   throw Error("no-space", "there is no room for the update in the scanner's memory",
               "Switch the scanner off and on, and try again.");
@@ -112,14 +117,13 @@ UpdateState Appliance::answered_update() const {
                      .state = state_of(answer, states),
                      .version = value_in(answer, "version"),
                      .error = value_in(answer, "error")};
-  const bool is_answered = update.state == "installing" || update.state == "restarting";
-  return is_waiting && !is_answered ? UpdateState{.slot = update.slot, .state = "installing"}
-                                    : update;
+  return is_waiting && !is_being_installed(update)
+             ? UpdateState{.slot = update.slot, .state = "installing"}
+             : update;
 }
 
 bool Appliance::is_updating() const {
-  const std::string state = update().state;
-  return state == "receiving" || state == "installing" || state == "restarting";
+  return is_receiving_ || is_being_installed(answered_update());
 }
 
 /// The WiFi that was asked for, until root has answered: it takes the request away long before.
@@ -183,11 +187,11 @@ fs::path Appliance::place_for_update(std::uint64_t bytes) const {
     throw Error("too-large", "an update has at most 160 MiB, and this file has more",
                 "Choose the file octurn.update.");
   }
-  const std::string state = answered_update().state;
-  if (state == "installing" || state == "restarting") {
+  const UpdateState last = answered_update();
+  if (is_being_installed(last)) {
     throw Error("busy", "another update is being installed", "Wait for its end.");
   }
-  if (state == "trial") {
+  if (last.state == "trial") {
     throw Error("busy", "the last update is still on trial", "Try again in a few minutes.");
   }
   std::error_code unknown;  // then writing tells

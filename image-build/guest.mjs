@@ -19,7 +19,7 @@ const machines = {
       '-netdev', `user,id=net,${forward}`, '-device', 'virtio-net-pci,netdev=net,romfile=',
       '-device', 'virtio-rng-pci',
     ],
-    kernel: [],
+    kernel: ['norandmaps'],  // or QEMU 7.2 translates a library anew for each process
   },
   raspi3b: {
     console: 'ttyS1',

@@ -72,9 +72,12 @@ const goesBack = async () => {
   await isOn('a');
   say(`update "dying": the system before it is back ${secondsSince(begin).toFixed(0)} s later: ${error}`);
 };
+/** In a shell on the scanner, with the file that the page's interface has brought there. */
 const keeps = async () => {
+  await guest.run('systemctl stop octurn-update.path');
   await send('good');
   const begin = performance.now();
+  await guest.run('{ octurn update /run/octurn-appliance/requests/update >/run/update.log 2>&1 & }');
   await guest.restarts(patience);
   const seconds = await start();
   await reaches('kept');

@@ -6,8 +6,9 @@
 #   tried  it has been started, once; the initrd undoes it if it is started again like this
 #   kept   it has proven good
 
+read -r command_line </proc/cmdline
 # shellcheck disable=SC2034 # for whoever reads this file
-case " $(cat /proc/cmdline) " in
+case " $command_line " in
   *" octurn.slot=b "*) slot=b other=a other_root=/run/card/2 ;;
   *) slot=a other=b other_root=/run/card/3 ;;
 esac

@@ -33,13 +33,19 @@ class Simplifier {
   struct Quadric {
     std::array<double, 10> terms = {};
     double area = 0;
+
+    void operator+=(const Quadric& other) {
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        terms[i] += other.terms[i];
+      }
+      area += other.area;
+    }
   };
 
   struct Vertex {
     std::array<float, 3> position = {};
     bool seen = false;
     bool fixed = false;  // the surface around it is not all here
-    Quadric quadric = {};
   };
 
   struct Collapse {
@@ -70,6 +76,7 @@ class Simplifier {
   double margin_;
   FacetSink sink_;
   std::vector<Vertex> vertices_ = {};
+  std::vector<Quadric> quadrics_ = {};  // of the vertices; apart, so that those stay in the cache
   std::vector<MeshTriangle> triangles_ = {};
   std::size_t handed_on_ = 0;                            // of them; they are only in the way
   float bottom_ = std::numeric_limits<float>::lowest();  // of what the others may become

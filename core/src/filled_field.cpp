@@ -63,6 +63,8 @@ void FilledField::find_box() {
   low_cell_ = {first.x * a_brick, first.y * a_brick, first.z * a_brick};
   grid_.size = {(last.x + 1 - first.x) * a_brick, (last.y + 1 - first.y) * a_brick,
                 (last.z + 1 - first.z) * a_brick};
+  between_ = {all_between(end_.x - low_.x, grid_.size.x), all_between(end_.y - low_.y, grid_.size.y),
+              all_between(std::max(end_.z, foot_ + 1) - low_.z, grid_.size.z)};
 }
 
 void FilledField::classify() {
@@ -212,13 +214,16 @@ void FilledField::relax(Grid& grid) {
   }
 }
 
-/// Where a leaf, counted from the box's lowest corner, lies between the centres of cells on an
-/// axis.
-FilledField::Between FilledField::between(int leaf, int cells) const {
-  const float at =
-      (static_cast<float>(leaf) + 0.5F) / static_cast<float>(field_.cell_leaves()) - 0.5F;
-  const int first = std::clamp(static_cast<int>(std::max(at, 0.0F)), 0, cells - 2);
-  return {first, std::clamp(at - static_cast<float>(first), 0.0F, 1.0F)};
+/// Where the leaves of the box lie between the centres of cells on an axis.
+std::vector<FilledField::Between> FilledField::all_between(int leaves, int cells) const {
+  std::vector<Between> all;
+  for (int leaf = 0; leaf < leaves; ++leaf) {
+    const float at =
+        (static_cast<float>(leaf) + 0.5F) / static_cast<float>(field_.cell_leaves()) - 0.5F;
+    const int first = std::clamp(static_cast<int>(std::max(at, 0.0F)), 0, cells - 2);
+    all.push_back({first, std::clamp(at - static_cast<float>(first), 0.0F, 1.0F)});
+  }
+  return all;
 }
 
 float FilledField::interpolated(const Between& x, const Between& y, const Between& z) const {
@@ -231,9 +236,11 @@ float FilledField::interpolated(const Between& x, const Between& y, const Betwee
 }
 
 float FilledField::interpolated(const Cell& leaf) const {
-  return interpolated(between(leaf.x - low_.x, grid_.size.x),
-                      between(leaf.y - low_.y, grid_.size.y),
-                      between(leaf.z - low_.z, grid_.size.z));
+  const auto between = [&](std::size_t axis, int from_low) -> const Between& {
+    return between_[axis][static_cast<std::size_t>(from_low)];
+  };
+  return interpolated(between(0, leaf.x - low_.x), between(1, leaf.y - low_.y),
+                      between(2, leaf.z - low_.z));
 }
 
 /// What is known of a leaf. @param brick  that it lies in, if there is one
@@ -316,8 +323,6 @@ std::uint64_t FilledField::inside(const Cell& first) const {
     return bits_of([&](int x) { return at({first.x + x, first.y, first.z}).distance < 0; });
   }
   const SeenBrick* const brick = brick_at(first);
-  const Between y = between(first.y - low_.y, grid_.size.y);
-  const Between z = between(first.z - low_.z, grid_.size.z);
   return bits_of([&](int x) {
     const Cell leaf{first.x + x, first.y, first.z};
     switch (sighted(leaf, brick)) {
@@ -326,7 +331,7 @@ std::uint64_t FilledField::inside(const Cell& first) const {
       case Sighted::free:
         return false;
       default:
-        return interpolated(between(leaf.x - low_.x, grid_.size.x), y, z) < 0;
+        return interpolated(leaf) < 0;
     }
   });
 }

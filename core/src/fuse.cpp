@@ -35,6 +35,9 @@ class Fusion {
         reach_[i] += std::abs(step_[j][i]) / 2;
       }
     }
+    edges_reach_ = {reach_[0], reach_[0], reach_[1], reach_[1]};
+    edges_focal_ = {fx_, -fx_, fy_, -fy_};
+    edges_centre_ = {cx_, cx_, cy_, cy_};
   }
 
   void run() {
@@ -77,18 +80,16 @@ class Fusion {
     if (near <= nearest_z) {
       return Verdict::surface;
     }
-    const auto low_pixel = [&](std::size_t axis, float focal, float centre) {
-      const float edge = middle[axis] - reach_[axis] * side;
-      return pixel(edge / (edge < 0 ? near : far) * focal + centre);
-    };
-    const auto high_pixel = [&](std::size_t axis, float focal, float centre) {
-      const float edge = middle[axis] + reach_[axis] * side;
-      return pixel(edge / (edge < 0 ? far : near) * focal + centre);
-    };
-    const int u0 = low_pixel(0, fx_, cx_);
-    const int u1 = high_pixel(0, fx_, cx_);
-    const int v0 = low_pixel(1, fy_, cy_);
-    const int v1 = high_pixel(1, fy_, cy_);
+    // The least u, the greatest below zero, and so for v: an edge is seen furthest out where it is
+    // nearest, so all are minima.
+    const Eigen::Array4f edge =
+        Eigen::Array4f(middle[0], -middle[0], middle[1], -middle[1]) - edges_reach_ * side;
+    const Eigen::Array4f at = (edge / near).min(edge / far) * edges_focal_ + edges_centre_;
+    const Eigen::Array4i pixels = nearest_pixels(at.max(0.5F - before_first).min(16384.0F));
+    const int u0 = pixels[0];
+    const int u1 = pixels[1];
+    const int v0 = pixels[2];
+    const int v1 = pixels[3];
     if (u1 < 0 || v1 < 0 || u0 >= sighting_.lens().width || v0 >= sighting_.lens().height) {
       return Verdict::nothing;
     }
@@ -104,15 +105,10 @@ class Fusion {
     return near_surface ? Verdict::surface : Verdict::mixed;
   }
 
-  /// The nearest pixel, -1 or less if it is before the first; huge numbers are cut.
-  static int pixel(float at) {
-    return nearest_pixel(std::clamp(at, 0.5F - before_first, 16384.0F));
-  }
-
-  /// The same for numbers that are not huge. Pixels are counted from before the first, so that the
-  /// cast rounds down.
-  static int nearest_pixel(float at) {
-    return static_cast<int>(at + (before_first + 0.5F)) - before_first;
+  /// The nearest pixels, -1 or less before the first, of numbers that are not huge. Pixels are
+  /// counted from before the first, so that the cast rounds down.
+  static Eigen::Array4i nearest_pixels(const Eigen::Array4f& at) {
+    return (at + (before_first + 0.5F)).cast<int>() - before_first;
   }
 
   void descend(const Cell& brick, int bricks) {
@@ -256,8 +252,8 @@ class Fusion {
     const Eigen::Array4f nearness = 1.0F / column.p[2].max(nearest_z);
     const Eigen::Array4f u = (column.p[0] * nearness * fx_ + cx_).max(-1.0F).min(width_);
     const Eigen::Array4f v = (column.p[1] * nearness * fy_ + cy_).max(-1.0F).min(height_);
-    column.u = (u + (before_first + 0.5F)).cast<int>() - before_first;
-    column.v = (v + (before_first + 0.5F)).cast<int>() - before_first;
+    column.u = nearest_pixels(u);
+    column.v = nearest_pixels(v);
   }
 
   /// @return whether a sample was seen through
@@ -329,6 +325,9 @@ class Fusion {
   Point origin_ = {};               // the field's lowest corner, sensor's frame
   std::array<Point, 3> step_ = {};  // over one leaf along each axis
   Point reach_ = {};                // of a leaf from its centre, along the sensor's axes
+  Eigen::Array4f edges_reach_;      // for `look`
+  Eigen::Array4f edges_focal_;
+  Eigen::Array4f edges_centre_;
 };
 
 }  // namespace

@@ -23,15 +23,21 @@ Sighted sighted(const FieldBrick& brick, std::size_t sample, int free) {
 SeenBrick seen(const DistanceField& field, const FieldBrick& from, const Cell& position) {
   const int a_brick = field.cells_a_brick();
   const int leaves = field.cell_leaves();
+  std::array<int, Brick::side> free{};  // of the samples of a row, by their cells
   SeenBrick brick{.distance = from.distance, .sighted = {}};
   std::size_t sample = 0;
   for (int z = 0; z < Brick::side; ++z) {
     for (int y = 0; y < Brick::side; ++y) {
-      for (int x = 0; x < Brick::side; ++x, ++sample) {
-        const int free =
-            field.free_cell({position.x * a_brick + x / leaves, position.y * a_brick + y / leaves,
-                             position.z * a_brick + z / leaves});
-        brick.set(sample, sighted(from, sample, free + from.free[sample]));
+      if (y % leaves == 0) {
+        for (int x = 0; x < Brick::side; ++x) {
+          free[static_cast<std::size_t>(x)] =
+              field.free_cell({position.x * a_brick + x / leaves, position.y * a_brick + y / leaves,
+                               position.z * a_brick + z / leaves});
+        }
+      }
+      for (const int of_cell : free) {
+        brick.set(sample, sighted(from, sample, of_cell + from.free[sample]));
+        ++sample;
       }
     }
   }

@@ -40,30 +40,35 @@ DepthImage metres(const Snapshot& snapshot) {
   return image;
 }
 
-/// Whether enough of a sample's neighbours bear it out.
-bool is_supported(const DepthImage& image, int u, int v) {
-  const float z = image.at(u, v);
-  int support = 0;
-  for (int dv = -1; dv <= 1; ++dv) {
-    for (int du = -1; du <= 1; ++du) {
-      support += std::abs(image.at(u + du, v + dv) - z) <= step_limit ? 1 : 0;
-    }
-  }
-  return z != 0 && support >= least_support;
-}
-
-/// Leaves out samples that too few of their neighbours bear out.
+/// Leaves out samples that too few of their neighbours bear out. This and what else looks at all
+/// samples has loops without branches, which compilers make vectors of.
 DepthImage supported(const DepthImage& image) {
   DepthImage kept{.width = image.width, .height = image.height, .z = {}};
   kept.z.resize(image.z.size());
   for (int v = 1; v + 1 < image.height; ++v) {
+    const float* const row = &image.z[static_cast<std::size_t>(v * image.width)];
+    float* const kept_row = &kept.z[static_cast<std::size_t>(v * image.width)];
     for (int u = 1; u + 1 < image.width; ++u) {
-      if (is_supported(image, u, v)) {
-        kept.z[static_cast<std::size_t>(v * image.width + u)] = image.at(u, v);
+      const float z = row[u];
+      int support = 0;
+      for (int dv = -1; dv <= 1; ++dv) {
+        for (int du = -1; du <= 1; ++du) {
+          support += std::abs(row[dv * image.width + u + du] - z) <= step_limit ? 1 : 0;
+        }
       }
+      kept_row[u] = support >= least_support ? z : 0.0F;
     }
   }
   return kept;
+}
+
+std::vector<float> nearness_of(const DepthImage& image) {
+  std::vector<float> nearness(image.z.size());
+  for (std::size_t i = 0; i < nearness.size(); ++i) {
+    const float inverse = 1.0F / std::max(image.z[i], std::numeric_limits<float>::min());
+    nearness[i] = image.z[i] > 0 ? inverse : 0.0F;
+  }
+  return nearness;
 }
 
 /// A plane fitted to nearness (1 / z), in which planes are linear in u and v, and the noise of a
@@ -134,18 +139,24 @@ Fit fit_plane(const DepthImage& image, const std::vector<float>& nearness, int u
   return fit;
 }
 
-/// The least reading around a pixel: a ray beside an edge is free no further than the edge.
-float least_around(const DepthImage& image, int u, int v) {
-  float least = image.at(u, v);
-  for (int dv = -1; dv <= 1; ++dv) {
-    for (int du = -1; du <= 1; ++du) {
-      const float z = image.at(u + du, v + dv);
-      if (z > 0) {
-        least = std::min(least, z);
-      }
+/// The least reading around each pixel of a row: a ray beside an edge is free no further than the
+/// edge.
+/// @param columns  room for a row
+void find_least_around(const DepthImage& image, int v, std::vector<float>& columns,
+                       std::vector<float>& least) {
+  constexpr float none = std::numeric_limits<float>::max();
+  const float* const row = &image.z[static_cast<std::size_t>(v * image.width)];
+  for (int u = 0; u < image.width; ++u) {
+    float z = none;
+    for (int dv = -1; dv <= 1; ++dv) {
+      const float other = row[dv * image.width + u];
+      z = std::min(z, other > 0 ? other : none);
     }
+    columns[static_cast<std::size_t>(u)] = z;
   }
-  return least;
+  for (std::size_t u = 1; u + 1 < columns.size(); ++u) {
+    least[u] = std::min(columns[u], std::min(columns[u - 1], columns[u + 1]));
+  }
 }
 
 using Ray = std::array<float, 3>;  // from the sensor, of depth 1
@@ -157,15 +168,23 @@ struct Scene {
   Eigen::Matrix3f rotation;
   Eigen::Vector3f centre;
 
-  bool holds(const Ray& ray, float z) const {
-    bool inside = true;
+  /// Whether a reading lies in it, for each pixel of a row.
+  void find_held(const DepthImage& image, int v, const std::vector<float>& ray_x, float ray_y,
+                 std::vector<int>& held) const {
+    const float* const row = &image.z[static_cast<std::size_t>(v * image.width)];
+    std::ranges::fill(held, 1);
     for (int axis = 0; axis < 3; ++axis) {
-      const float at =
-          z * (rotation(axis, 0) * ray[0] + rotation(axis, 1) * ray[1] + rotation(axis, 2)) +
-          centre[axis];
-      inside = inside && at >= low[axis] && at <= high[axis];
+      const float along_x = rotation(axis, 0);
+      const float along_y = rotation(axis, 1) * ray_y;
+      const float along_z = rotation(axis, 2);
+      const float from = centre[axis];
+      const float least = low[axis];
+      const float most = high[axis];
+      for (std::size_t u = 0; u < held.size(); ++u) {
+        const float at = row[u] * (along_x * ray_x[u] + along_y + along_z) + from;
+        held[u] &= (at >= least ? 1 : 0) & (at <= most ? 1 : 0);
+      }
     }
-    return inside;
   }
 };
 
@@ -202,29 +221,37 @@ Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
     throw std::invalid_argument("Sighting: the frame's size is not that of the intrinsics");
   }
   const DepthImage image = supported(metres(snapshot));
-  std::vector<float> nearness(samples);
-  for (std::size_t i = 0; i < samples; ++i) {
-    nearness[i] = image.z[i] > 0 ? 1.0F / image.z[i] : 0.0F;
-  }
+  const std::vector<float> nearness = nearness_of(image);
   Scene scene{.low = clip.min.cast<float>(),
               .high = clip.max.cast<float>(),
               .rotation = snapshot.object_from_sensor.linear().cast<float>(),
               .centre = snapshot.object_from_sensor.translation().cast<float>()};
   scene.low.z() = std::max(scene.low.z(), static_cast<float>(platform_slack));
 
+  const auto width = static_cast<std::size_t>(lens_.width);
+  std::vector<float> ray_x(width);
+  for (std::size_t u = 0; u < width; ++u) {
+    ray_x[u] = static_cast<float>((static_cast<double>(u) - lens_.cx) / lens_.fx);
+  }
+  std::vector<float> columns(width);
+  std::vector<float> least(width);
+  std::vector<int> held(width);
   sights_.resize(samples);
   for (int v = reach; v + reach < lens_.height; ++v) {
+    const auto ray_y = static_cast<float>((v - lens_.cy) / lens_.fy);
+    find_least_around(image, v, columns, least);
+    scene.find_held(image, v, ray_x, ray_y, held);
     for (int u = reach; u + reach < lens_.width; ++u) {
       const float z = image.at(u, v);
       if (z == 0) {
         continue;
       }
-      Sight& sight = sights_[static_cast<std::size_t>(v * lens_.width + u)];
-      sight.free_z = least_around(image, u, v);
-      const Ray ray{static_cast<float>((u - lens_.cx) / lens_.fx),
-                    static_cast<float>((v - lens_.cy) / lens_.fy), 1.0F};
-      if (scene.holds(ray, z)) {
-        set_surface(sight, fit_plane(image, nearness, u, v), lens_, ray, z);
+      const auto column = static_cast<std::size_t>(u);
+      Sight& sight = sights_[static_cast<std::size_t>(v) * width + column];
+      sight.free_z = least[column];
+      if (held[column] != 0) {
+        set_surface(sight, fit_plane(image, nearness, u, v), lens_, {ray_x[column], ray_y, 1.0F},
+                    z);
       }
     }
   }
@@ -233,45 +260,32 @@ Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
 
 namespace {
 
-constexpr Sighting::Range nothing_yet{.least = std::numeric_limits<float>::max(),
-                                      .greatest = 0,
-                                      .nearest_surface = std::numeric_limits<float>::max(),
-                                      .farthest_surface = 0};
-
-void extend(Sighting::Range& range, const Sighting::Range& other) {
-  range.least = std::min(range.least, other.least);
-  range.greatest = std::max(range.greatest, other.greatest);
-  range.nearest_surface = std::min(range.nearest_surface, other.nearest_surface);
-  range.farthest_surface = std::max(range.farthest_surface, other.farthest_surface);
-}
+constexpr float huge = std::numeric_limits<float>::max();
 
 }  // namespace
 
 void Sighting::build_pyramid() {
-  Level level{.width = (lens_.width + 3) / 4, .height = (lens_.height + 3) / 4, .ranges = {}};
-  level.ranges.resize(static_cast<std::size_t>(level.width * level.height), nothing_yet);
+  const Bounds nothing_yet(huge, huge, 0, 0);
+  Level level{.width = (lens_.width + 3) / 4, .height = (lens_.height + 3) / 4, .bounds = {}};
+  level.bounds.resize(static_cast<std::size_t>(level.width * level.height), nothing_yet);
   for (int v = 0; v < lens_.height; ++v) {
-    Range* row = &level.ranges[static_cast<std::size_t>(v / 4 * level.width)];
+    Bounds* row = &level.bounds[static_cast<std::size_t>(v / 4 * level.width)];
     for (int u = 0; u < lens_.width; ++u) {
       const Sight& sight = at(u, v);
-      Range& range = row[u / 4];
-      range.least = std::min(range.least, sight.free_z);
-      range.greatest = std::max(range.greatest, sight.free_z);
-      if (sight.weight > 0) {
-        range.nearest_surface = std::min(range.nearest_surface, sight.free_z);
-        range.farthest_surface = std::max(range.farthest_surface, sight.free_z);
-      }
+      const float z = sight.free_z;
+      const Bounds bounds = sight.weight > 0 ? Bounds(z, z, -z, -z) : Bounds(z, huge, -z, 0);
+      row[u / 4] = row[u / 4].min(bounds);
     }
   }
   pyramid_.push_back(std::move(level));
   while (pyramid_.back().width > 1 || pyramid_.back().height > 1) {
     const Level& fine = pyramid_.back();
-    Level coarse{.width = (fine.width + 1) / 2, .height = (fine.height + 1) / 2, .ranges = {}};
-    coarse.ranges.resize(static_cast<std::size_t>(coarse.width * coarse.height), nothing_yet);
+    Level coarse{.width = (fine.width + 1) / 2, .height = (fine.height + 1) / 2, .bounds = {}};
+    coarse.bounds.resize(static_cast<std::size_t>(coarse.width * coarse.height), nothing_yet);
     for (int v = 0; v < fine.height; ++v) {
       for (int u = 0; u < fine.width; ++u) {
-        extend(coarse.ranges[static_cast<std::size_t>(v / 2 * coarse.width + u / 2)],
-               fine.ranges[static_cast<std::size_t>(v * fine.width + u)]);
+        Bounds& bounds = coarse.bounds[static_cast<std::size_t>(v / 2 * coarse.width + u / 2)];
+        bounds = bounds.min(fine.bounds[static_cast<std::size_t>(v * fine.width + u)]);
       }
     }
     pyramid_.push_back(std::move(coarse));
@@ -279,9 +293,9 @@ void Sighting::build_pyramid() {
 }
 
 Sighting::Range Sighting::range(int u0, int v0, int u1, int v1) const {
-  Range range = nothing_yet;
+  Bounds bounds(huge, huge, 0, 0);
   if (u0 < 0 || v0 < 0 || u1 >= lens_.width || v1 >= lens_.height) {
-    range.least = 0;
+    bounds[0] = 0;
     u0 = std::max(u0, 0);
     v0 = std::max(v0, 0);
     u1 = std::min(u1, lens_.width - 1);
@@ -297,10 +311,13 @@ Sighting::Range Sighting::range(int u0, int v0, int u1, int v1) const {
   const Level& texels = pyramid_[level];
   for (int v = v0 >> shift; v <= v1 >> shift; ++v) {
     for (int u = u0 >> shift; u <= u1 >> shift; ++u) {
-      extend(range, texels.ranges[static_cast<std::size_t>(v * texels.width + u)]);
+      bounds = bounds.min(texels.bounds[static_cast<std::size_t>(v * texels.width + u)]);
     }
   }
-  return range;
+  return {.least = bounds[0],
+          .greatest = -bounds[2],
+          .nearest_surface = bounds[1],
+          .farthest_surface = -bounds[3]};
 }
 
 }  // namespace octurn

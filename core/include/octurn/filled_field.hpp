@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "octurn/leaf_set.hpp"
@@ -78,7 +80,7 @@ class FilledField {
     int first = 0;
     float part = 0;
   };
-  Between between(int leaf, int cells) const;
+  std::vector<Between> all_between(int leaves, int cells) const;
   float interpolated(const Between& x, const Between& y, const Between& z) const;
   float interpolated(const Cell& leaf) const;
   enum class Side { inside, outside, both };
@@ -92,6 +94,7 @@ class FilledField {
   Cell end_ = {};
   Cell low_cell_ = {};
   Grid grid_ = {};
+  std::array<std::vector<Between>, 3> between_ = {};  // of the box's leaves on each axis
 };
 
 }  // namespace octurn

@@ -47,10 +47,13 @@ class Sighting {
  private:
   void build_pyramid();
 
+  /// Least, nearest surface, and the others below zero, so that all are extended by a minimum.
+  using Bounds = Eigen::Array4f;
+
   struct Level {
     int width = 0;
     int height = 0;
-    std::vector<Range> ranges = {};
+    std::vector<Bounds> bounds = {};
   };
 
   Intrinsics lens_;

@@ -65,8 +65,7 @@ DepthImage supported(const DepthImage& image) {
 std::vector<float> nearness_of(const DepthImage& image) {
   std::vector<float> nearness(image.z.size());
   for (std::size_t i = 0; i < nearness.size(); ++i) {
-    const float inverse = 1.0F / std::max(image.z[i], std::numeric_limits<float>::min());
-    nearness[i] = image.z[i] > 0 ? inverse : 0.0F;
+    nearness[i] = image.z[i] > 0 ? 1.0F / image.z[i] : 0.0F;
   }
   return nearness;
 }
@@ -155,7 +154,10 @@ void find_least_around(const DepthImage& image, int v, std::vector<float>& colum
     columns[static_cast<std::size_t>(u)] = z;
   }
   for (std::size_t u = 1; u + 1 < columns.size(); ++u) {
-    least[u] = std::min(columns[u], std::min(columns[u - 1], columns[u + 1]));
+    const float left = columns[u - 1];
+    const float right = columns[u + 1];
+    const float here = columns[u];
+    least[u] = std::min(here, std::min(left, right));
   }
 }
 
@@ -264,17 +266,31 @@ constexpr float huge = std::numeric_limits<float>::max();
 
 }  // namespace
 
+/// @param u1,v1  behind the last pixel
+Sighting::Bounds Sighting::bounds_of(int u0, int v0, int u1, int v1) const {
+  Range range{.least = huge, .greatest = 0, .nearest_surface = huge, .farthest_surface = 0};
+  for (int v = v0; v < v1; ++v) {
+    for (int u = u0; u < u1; ++u) {
+      const Sight& sight = at(u, v);
+      range.least = std::min(range.least, sight.free_z);
+      range.greatest = std::max(range.greatest, sight.free_z);
+      if (sight.weight > 0) {
+        range.nearest_surface = std::min(range.nearest_surface, sight.free_z);
+        range.farthest_surface = std::max(range.farthest_surface, sight.free_z);
+      }
+    }
+  }
+  return {range.least, range.nearest_surface, -range.greatest, -range.farthest_surface};
+}
+
 void Sighting::build_pyramid() {
   const Bounds nothing_yet(huge, huge, 0, 0);
   Level level{.width = (lens_.width + 3) / 4, .height = (lens_.height + 3) / 4, .bounds = {}};
-  level.bounds.resize(static_cast<std::size_t>(level.width * level.height), nothing_yet);
-  for (int v = 0; v < lens_.height; ++v) {
-    Bounds* row = &level.bounds[static_cast<std::size_t>(v / 4 * level.width)];
-    for (int u = 0; u < lens_.width; ++u) {
-      const Sight& sight = at(u, v);
-      const float z = sight.free_z;
-      const Bounds bounds = sight.weight > 0 ? Bounds(z, z, -z, -z) : Bounds(z, huge, -z, 0);
-      row[u / 4] = row[u / 4].min(bounds);
+  level.bounds.reserve(static_cast<std::size_t>(level.width * level.height));
+  for (int v = 0; v < lens_.height; v += 4) {
+    for (int u = 0; u < lens_.width; u += 4) {
+      level.bounds.push_back(
+          bounds_of(u, v, std::min(u + 4, lens_.width), std::min(v + 4, lens_.height)));
     }
   }
   pyramid_.push_back(std::move(level));

@@ -45,10 +45,10 @@ class Sighting {
   Range range(int u0, int v0, int u1, int v1) const;
 
  private:
-  void build_pyramid();
-
   /// Least, nearest surface, and the others below zero, so that all are extended by a minimum.
   using Bounds = Eigen::Array4f;
+  Bounds bounds_of(int u0, int v0, int u1, int v1) const;
+  void build_pyramid();
 
   struct Level {
     int width = 0;

@@ -63,7 +63,8 @@ void FilledField::find_box() {
   low_cell_ = {first.x * a_brick, first.y * a_brick, first.z * a_brick};
   grid_.size = {(last.x + 1 - first.x) * a_brick, (last.y + 1 - first.y) * a_brick,
                 (last.z + 1 - first.z) * a_brick};
-  between_ = {all_between(end_.x - low_.x, grid_.size.x), all_between(end_.y - low_.y, grid_.size.y),
+  between_ = {all_between(end_.x - low_.x, grid_.size.x),
+              all_between(end_.y - low_.y, grid_.size.y),
               all_between(std::max(end_.z, foot_ + 1) - low_.z, grid_.size.z)};
 }
 

@@ -60,6 +60,7 @@ class Simplifier {
   void collapse_edges();
   void index_corners();
   void list_collapses(double limit, double refused);
+  void sort_collapses();
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
   bool may_collapse(const Collapse& collapse) const;
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
@@ -88,8 +89,8 @@ class Simplifier {
   std::vector<std::uint32_t> first_corner_ = {};
   std::vector<std::uint32_t> corners_ = {};  // triangles at each vertex
   std::vector<Collapse> collapses_ = {};
-  std::vector<char> touched_ = {};  // vertices, in this pass
-  std::vector<char> changed_ = {};  // vertices, or triangles at them, in this pass
+  std::vector<char> touched_ = {};         // vertices, in this pass
+  std::vector<char> changed_ = {};         // vertices, or triangles at them, in this pass
   std::vector<Facet> facets_ = {};
 };
 

@@ -16,9 +16,10 @@ namespace {
 
 constexpr int passes = 6;
 constexpr std::size_t window_triangles = 30'000;
-constexpr double least_edge_mm = 0.036;  // slicers meld vertices that are closer
-constexpr double least_turn = 0.5;       // cosine between a triangle's normals before and after
-constexpr float first_reach_mm = 0.5F;   // around a cut, where the surface is left as it was
+constexpr std::size_t collapses_ahead = 6;  // of the one that is tried, to be fetched from memory
+constexpr double least_edge_mm = 0.036;     // slicers meld vertices that are closer
+constexpr double least_turn = 0.5;          // cosine between a triangle's normals before and after
+constexpr float first_reach_mm = 0.5F;      // around a cut, where the surface is left as it was
 
 /// Whether a side or a height is below a slicer's grain, or a height below a twentieth of the
 /// longest side.
@@ -161,7 +162,9 @@ void Simplifier::collapse_edges() {
     touched_.assign(vertices_.size(), 0);
     changed_.assign(vertices_.size(), 0);
     std::size_t done = 0;
-    for (const Collapse& collapse : collapses_) {
+    for (std::size_t i = 0; i < collapses_.size(); ++i) {
+      const Collapse& collapse = collapses_[i];
+      prefetch(collapses_[std::min(i + collapses_ahead, collapses_.size() - 1)]);
       if (touched_[collapse.kept] == 0 && touched_[collapse.gone] == 0 && may_collapse(collapse)) {
         apply(collapse);
         ++done;
@@ -306,6 +309,16 @@ Simplifier::Collapse Simplifier::collapse_of(std::uint32_t a, std::uint32_t b) c
                                  static_cast<float>(best[2])}};
   collapse.cost = std::max(0.0, cost_at(vector_of(collapse.position)) / sum.area);
   return collapse;
+}
+
+/// They come from all over the window, which does not fit in the cache.
+void Simplifier::prefetch(const Collapse& collapse) const {
+  for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
+    __builtin_prefetch(&vertices_[end]);
+    __builtin_prefetch(&quadrics_[end]);
+    __builtin_prefetch(&triangles_[triangles_of(end).front()]);
+    __builtin_prefetch(&triangles_[triangles_of(end).back()]);
+  }
 }
 
 bool Simplifier::may_collapse(const Collapse& collapse) const {

@@ -62,6 +62,7 @@ class Simplifier {
   void list_collapses(double limit, double refused);
   void sort_collapses();
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
+  void prefetch(const Collapse& collapse) const;
   bool may_collapse(const Collapse& collapse) const;
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
   bool turns_over(const Collapse& collapse, std::uint32_t around, std::uint32_t other) const;
@@ -89,8 +90,8 @@ class Simplifier {
   std::vector<std::uint32_t> first_corner_ = {};
   std::vector<std::uint32_t> corners_ = {};  // triangles at each vertex
   std::vector<Collapse> collapses_ = {};
-  std::vector<char> touched_ = {};         // vertices, in this pass
-  std::vector<char> changed_ = {};         // vertices, or triangles at them, in this pass
+  std::vector<char> touched_ = {};  // vertices, in this pass
+  std::vector<char> changed_ = {};  // vertices, or triangles at them, in this pass
   std::vector<Facet> facets_ = {};
 };
 

@@ -56,7 +56,7 @@ install_packages() {
   }
 }
 
-# build PRESET: configures and builds build/PRESET.
+# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it.
 build() {
   say "building build/$1"
   mkdir -p build
@@ -64,5 +64,5 @@ build() {
     cat "build/$1.log" >&2
     return 1
   fi
-  cmake --build --preset "$1" -j "$(nproc)"
+  cmake --build --preset "${2-$1}" -j "$(nproc)"
 }

@@ -22,12 +22,12 @@ const pause = () => new Promise((done) => {
   setTimeout(done, 50);
 });
 
-/** An appliance: a scanner, and what root does there. */
+/** An appliance: a scanner, and what root does there. It is as fast as life: faster it only draws more for its preview. */
 async function startAppliance(t) {
   const folder = await mkdtemp(join(tmpdir(), 'octurn-appliance-'));
   t.after(() => rm(folder, {recursive: true, force: true}));
   await mkdir(join(folder, 'requests'));
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '8', '--appliance', folder]});
+  const scanner = await startScanner(t, {rig: ['--simulate', '--appliance', folder]});
   return {
     ...scanner,
     answer: async (name, settings) => {
@@ -49,6 +49,14 @@ async function startAppliance(t) {
       return content;
     },
   };
+}
+
+/** A file of so many bytes to upload. A browser that is given its name, and not its bytes, has it at once. */
+async function bundle(appliance, bytes) {
+  const file = join(appliance.data, 'octurn.update');
+  const content = Buffer.alloc(bytes, 'octurn ');
+  await writeFile(file, content);
+  return {file, content};
 }
 
 /** Nobody is shut out of this state of the page, and it fits. */
@@ -111,14 +119,14 @@ async function joinWifi(appliance, browser, screen, colorScheme) {
 }
 
 async function installUpdate(appliance, browser, screen, colorScheme) {
-  const bundle = Buffer.alloc(20_000_000, 'octurn ');
+  const {file, content} = await bundle(appliance, 20_000_000);
   await appliance.answer('update', {slot: 'a', state: 'none'});
   await appliance.answer('wifi', {state: 'joined', name: 'Home', country: 'DE'});
   const {page} = await openPage(browser, appliance.url, {screen, colorScheme});
   const update = page.getByRole('region', {name: 'Update'});
   await update.getByText(/^Octurn .* is in use\.$/).waitFor();
   await look(page, `update-idle-${screen}`);
-  await update.getByLabel(/Choose a/).setInputFiles({name: 'octurn.update', mimeType: 'application/octet-stream', buffer: bundle});
+  await update.getByLabel(/Choose a/).setInputFiles(file);
   await update.getByText('20 MB').waitFor();
   await look(page, `update-chosen-${screen}`);
   await update.getByRole('button', {name: 'Install'}).click();
@@ -127,11 +135,11 @@ async function installUpdate(appliance, browser, screen, colorScheme) {
   await look(page, `update-installing-${screen}`);
 
   await appliance.answer('update', {slot: 'a', state: 'failed', version: '', error: 'This is no update for this scanner.'});
-  assert.ok(bundle.equals(await appliance.take('update')));
+  assert.ok(content.equals(await appliance.take('update')));
   await update.getByText('This is no update for this scanner. Nothing was changed.').waitFor();
   await look(page, `update-failed-${screen}`);
 
-  await update.getByLabel(/Choose a/).setInputFiles({name: 'octurn.update', mimeType: 'application/octet-stream', buffer: bundle});
+  await update.getByLabel(/Choose a/).setInputFiles(file);
   await update.getByRole('button', {name: 'Install'}).click();
   await update.getByText('Checking and writing…').waitFor();
   await appliance.answer('update', {slot: 'a', state: 'restarting', version: '0.2.0'});
@@ -162,7 +170,7 @@ async function cancelUpdate(appliance, browser) {
   const network = await page.context().newCDPSession(page);
   await network.send('Network.emulateNetworkConditions', {offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 1e6});
   const update = page.getByRole('region', {name: 'Update'});
-  await update.getByLabel('Choose a file').setInputFiles({name: 'octurn.update', mimeType: '', buffer: Buffer.alloc(40_000_000)});
+  await update.getByLabel('Choose a file').setInputFiles((await bundle(appliance, 40_000_000)).file);
   await update.getByRole('button', {name: 'Install'}).click();
   await update.getByText(/^[1-9].* of 40 MB$/).waitFor();
   await look(page, 'update-sending-desktop');
@@ -193,7 +201,7 @@ async function meetNewVersion(appliance, browser) {
 
 test('the appliance is updated, and joins a WiFi, by its page', async (t) => {
   const appliance = await startAppliance(t);
-  const browser = await openBrowser(t);
+  const browser = await openBrowser(t, {hasWebGl: false}); // no model is looked at
   for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
     await t.test(`a WiFi is joined on a ${screen}`, () => joinWifi(appliance, browser, screen, colorScheme));
     await t.test(`an update is installed on a ${screen}`, () => installUpdate(appliance, browser, screen, colorScheme));

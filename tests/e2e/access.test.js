@@ -81,7 +81,7 @@ async function lookAtLarge(scanner, browser, finished, bytes) {
 }
 
 test('the page is for everyone', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '3']});
   const browser = await openBrowser(t);
   const finished = await scan(scanner, draft);
   for (const [screen, colorScheme] of [['phone', 'dark'], ['desktop', 'light']]) {

@@ -56,12 +56,11 @@ install_packages() {
   }
 }
 
-# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it. Continuous integration
-# has built nothing before, so it compiles sources together, for half the time.
+# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it.
 build() {
   say "building build/$1"
   mkdir -p build
-  if ! cmake --preset "$1" ${CI:+-DCMAKE_UNITY_BUILD=ON} >"build/$1.log" 2>&1; then
+  if ! cmake --preset "$1" >"build/$1.log" 2>&1; then
     cat "build/$1.log" >&2
     return 1
   fi

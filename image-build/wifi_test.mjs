@@ -10,7 +10,6 @@ import {Guest, readCard, secondsSince} from './guest.mjs';
 import {makeSshKey, testSettings} from './settings_test.mjs';
 
 const card = process.argv[2];
-const ip = 'LD_LIBRARY_PATH=/usr/lib/octurn/lib ip';  // as in the image's `status`
 const say = (text) => console.log(`wifi-test: ${text}`);
 
 /** What the appliance tells the daemon of its WiFi. @returns {Promise<Record<string, string>>} */
@@ -44,7 +43,7 @@ const startRouter = (guest, name, password) => use(guest, 'wlan2', ['mode=2', `s
   'key_mgmt=WPA-PSK', 'proto=RSN', 'pairwise=CCMP', 'frequency=2412']);
 
 const address = (guest, radio, net) => until(`address of ${radio} in ${net}`, async () =>
-  (await guest.run(`${ip} -4 -o address show ${radio}`)).match(new RegExp(`inet (${net}\\.\\d+)/`))?.[1]);
+  (await guest.run(`ip -4 -o address show ${radio}`)).match(new RegExp(`inet (${net}\\.\\d+)/`))?.[1]);
 
 /** Simulated radios. Neither a router's nor a phone's network is this machine's way to anywhere. */
 async function plugRadios(guest) {
@@ -93,6 +92,7 @@ async function request(guest, name, password) {
 }
 
 async function testWifi(guest) {
+  await guest.run('export LD_LIBRARY_PATH=/usr/lib/octurn/lib');  // `ip` needs it, as in the image's `status`
   await plugRadios(guest);
   await startRouter(guest, 'IEEE', 'password');
   await reaches(guest, 'joined', 'IEEE');
@@ -100,7 +100,7 @@ async function testWifi(guest) {
   await until('IEEE among the networks', async () =>
     /^bssid .*\n[^]*\[WPA2-PSK-CCMP\].*\tIEEE$/m.test(await guest.run('cat /run/octurn-appliance/networks')));
 
-  await guest.run('wpa_cli -i wlan2 terminate; networkctl down eth0');
+  await guest.run('wpa_cli -i wlan2 terminate; ip link set eth0 down');
   const {hotspot, error} = await reaches(guest, 'hotspot', 'IEEE');
   require(/^Octurn-[0-9A-F]{4}$/.test(hotspot), `the hotspot is ${hotspot}`);
   require(error.includes('IEEE was not found'), `the error is ${error}`);
@@ -114,10 +114,10 @@ async function testWifi(guest) {
   await request(guest, 'Workshop', 'right password');
   await reaches(guest, 'joined', 'Workshop');
   await address(guest, 'wlan0', '192.168.78');
-  const left = await guest.run(`${ip} -4 -o address show wlan0 | grep -c 192.168.77.1`);
+  const left = await guest.run('ip -4 -o address show wlan0 | grep -c 192.168.77.1');
   require(left === '0', 'the hotspot\'s address is still there');
   await unite(guest);
-  await guest.run('networkctl up eth0');
+  await guest.run('ip link set eth0 up');
   await guest.page(patience);
   say('by cable, too, when that is plugged in again');
 }

@@ -89,9 +89,9 @@ const Fault unplugged{"unplugged", [](KinectOnDesk& desk) { desk.unplug(); },
 const Fault damaged{"damaged", [](KinectOnDesk& desk) { desk->lost_packets = 5; },
                     [](KinectOnDesk& desk) { desk->lost_packets = 0; }, "sensor-silent"};
 
-INSTANTIATE_TEST_SUITE_P(AtTheBeginningAndAmid, KinectFaults,
+INSTANTIATE_TEST_SUITE_P(AtEachStop, KinectFaults,
                          ::testing::Combine(::testing::Values(silent, unplugged, damaged),
-                                            ::testing::Values(0, 3)));
+                                            ::testing::Range(0, 4)));
 
 }  // namespace
 }  // namespace octurn

@@ -106,6 +106,12 @@ async function testWifi(guest) {
   require(error.includes('IEEE was not found'), `the error is ${error}`);
   await testHotspot(guest, hotspot);
 
+  await guest.run('wpa_cli -i wlan1 terminate');
+  await startRouter(guest, 'IEEE', 'password');
+  await reaches(guest, 'joined', 'IEEE');  // tried again, as nobody is in the hotspot
+  await guest.run('wpa_cli -i wlan2 terminate');
+  await reaches(guest, 'hotspot', 'IEEE');
+
   await startRouter(guest, 'Workshop', 'right password');
   await request(guest, 'Workshop', 'wrong password');
   await reaches(guest, 'joining', 'Workshop');
@@ -131,6 +137,12 @@ async function testCard(guest) {
   require(!/IEEE|sesame|right password/.test(settings), `octurn.txt is\n${settings}`);
   const errors = await guest.run('setpriv --reuid=octurn --regid=octurn --clear-groups cat /run/octurn-appliance/errors');
   require(/^--- octurn [^]*IEEE was not found/.test(errors), `of errors is kept\n${errors}`);
+  await guest.run('yes old | head -n 20000 >>/data/errors; systemd-cat -t octurn -p warning echo the newest');
+  const [bytes, newest] = await until('the newest error', async () => {
+    const kept = (await guest.run('stat -c %s /data/errors; tail -n 1 /data/errors')).split('\n');
+    return kept[1]?.endsWith('the newest') && kept;
+  });
+  require(Number(bytes) < 65536, `of errors are kept ${bytes} bytes, up to ${newest}`);
   const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
   require(failed === '', `failed units: ${failed}`);
   say('octurn.txt has the WiFi of the page, and stars; what went wrong is kept; no failed unit');

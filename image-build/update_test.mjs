@@ -74,7 +74,7 @@ const goesBack = async () => {
 };
 /** In a shell on the scanner, with the file that the page's interface has brought there. */
 const keeps = async () => {
-  await guest.run('systemctl stop octurn-update.path');
+  await guest.run('systemctl mask --runtime --now octurn-update.path');  // which may not have started yet
   await send('good');
   const begin = performance.now();
   await guest.run('{ octurn update /run/octurn-appliance/requests/update >/run/update.log 2>&1 & }');

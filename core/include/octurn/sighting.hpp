@@ -29,11 +29,11 @@ class Sighting {
   const Intrinsics& lens() const { return lens_; }
   const Eigen::Isometry3d& sensor_from_object() const { return sensor_from_object_; }
 
-  /// @param u,v  in the image
-  const Sight& at(int u, int v) const {
-    return sights_[static_cast<std::size_t>(v) * static_cast<std::size_t>(lens_.width) +
-                   static_cast<std::size_t>(u)];
-  }
+  /// @param u,v  in the image; nothing is known at its edges
+  const Sight& at(int u, int v) const { return at(v * lens_.width + u); }
+
+  /// @param pixel  in row-major order
+  const Sight& at(int pixel) const { return sights_[static_cast<std::size_t>(pixel)]; }
 
   /// Bounds to what a rectangle of pixels says.
   struct Range {

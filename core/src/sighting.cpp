@@ -33,10 +33,9 @@ DepthImage metres(const Snapshot& snapshot) {
   const DepthFrame& frame = snapshot.frame;
   const auto unit = static_cast<float>(snapshot.intrinsics.depth_unit);
   DepthImage image{.width = frame.width, .height = frame.height, .z = {}};
-  image.z.reserve(frame.depth.size());
-  for (const std::uint16_t depth : frame.depth) {
-    image.z.push_back(static_cast<float>(depth) * unit);
-  }
+  image.z.resize(frame.depth.size());
+  std::ranges::transform(frame.depth, image.z.begin(),
+                         [&](std::uint16_t depth) { return static_cast<float>(depth) * unit; });
   return image;
 }
 

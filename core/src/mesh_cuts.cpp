@@ -1,8 +1,11 @@
-#include "mesh_cuts.hpp"
+#include "octurn/mesh_cuts.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
+#include "octurn/corner_index.hpp"
+#include "radix_sort.hpp"
 #include "vector3.hpp"
 
 namespace octurn {
@@ -12,6 +15,7 @@ using Corners = std::array<Vector3, 3>;
 
 constexpr double least_gap = 1e-7;   // millimetres; coordinates are rounded to 1e-5
 constexpr double least_sine = 1e-9;  // of angles that are told from none
+constexpr double clear_sine = 1e-3;  // of angles that no rounding can hide
 
 double square(double a) { return a * a; }
 
@@ -95,109 +99,228 @@ bool are_apart(const Vector3& side, const Vector3& to_a, const Vector3& to_b) {
   return dot(a, b) < 0 || dot(turn, turn) > square(least_sine) * dot(a, a) * dot(b, b);
 }
 
-/// Looks at all pairs whose boxes meet, by a tree of boxes in which each node halves its triangles.
+/// Whether the triangles around a vertex lie side by side over a plane.
+///
+/// Over the plane across the sum of their normals, no triangle is turned over and each spoke is
+/// left by the one triangle and met by the other: so they wind round the vertex, in full turns. If
+/// that is one turn, they are sectors that do not overlap, and meet just in the spokes they share.
+class Fan {
+ public:
+  Fan(std::span<const std::array<float, 3>> vertices, std::span<const MeshTriangle> triangles)
+      : vertices_(vertices), triangles_(triangles), met_at_(vertices.size(), none) {
+    corners_.assign(triangles, vertices.size());
+  }
+
+  bool is_flat(std::uint32_t vertex) {
+    const std::span<const std::uint32_t> around = corners_.triangles_of(vertex);
+    const Vector3 centre = vector_of(vertices_[vertex]);
+    bool is_closed = !around.empty();
+    Vector3 up{};
+    wedges_.clear();
+    for (const std::uint32_t i : around) {
+      const auto [first, second] = spokes_of(i, vertex);
+      is_closed = is_closed && met_at_[first] != vertex;
+      met_at_[first] = vertex;
+      wedges_.push_back({.first = vector_of(vertices_[first]) - centre,
+                         .second = vector_of(vertices_[second]) - centre});
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        up[axis] += wedges_.back().normal[axis];
+      }
+    }
+    for (const std::uint32_t i : around) {
+      std::uint32_t& met = met_at_[spokes_of(i, vertex).second];
+      is_closed = is_closed && met == vertex;
+      met = none;
+    }
+    return is_closed && turns(up) == 1;
+  }
+
+ private:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  struct Spokes {
+    std::uint32_t first;
+    std::uint32_t second;
+  };
+
+  Spokes spokes_of(std::uint32_t triangle, std::uint32_t vertex) const {
+    const MeshTriangle& corners = triangles_[triangle];
+    const std::size_t at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+    return {corners[(at + 1) % 3], corners[(at + 2) % 3]};
+  }
+
+  /// How often the wedges wind round the vertex, seen from `up`; 0 if one may be turned over.
+  int turns(const Vector3& up) const {
+    const Vector3 across = cross(up, wedges_.front().first);
+    const double slack = square(clear_sine) * dot(up, up);
+    int turns = 0;
+    for (const Wedge& wedge : wedges_) {
+      const double above = dot(wedge.normal, up);
+      const double sides = dot(wedge.first, wedge.first) * dot(wedge.second, wedge.second);
+      if (!(above > 0 && square(above) > slack * sides)) {
+        return 0;
+      }
+      turns += dot(across, wedge.first) < 0 && dot(across, wedge.second) >= 0 ? 1 : 0;
+    }
+    return turns;
+  }
+
+  std::span<const std::array<float, 3>> vertices_;
+  std::span<const MeshTriangle> triangles_;
+  CornerIndex corners_ = {};
+  std::vector<std::uint32_t> met_at_;  // by the other end of a spoke
+  std::vector<Wedge> wedges_ = {};
+};
+
+/// Four boxes; at first empty ones, which meet none.
+struct Boxes {
+  static constexpr float far = std::numeric_limits<float>::max();
+  std::array<Eigen::Array4f, 3> low{Eigen::Array4f::Constant(far), Eigen::Array4f::Constant(far),
+                                    Eigen::Array4f::Constant(far)};
+  std::array<Eigen::Array4f, 3> high{-low[0], -low[1], -low[2]};
+
+  void set(std::size_t i, const Bounds& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis][static_cast<Eigen::Index>(i)] = box.low[axis];
+      high[axis][static_cast<Eigen::Index>(i)] = box.high[axis];
+    }
+  }
+  Bounds all() const {
+    return {.low = {low[0].minCoeff(), low[1].minCoeff(), low[2].minCoeff()},
+            .high = {high[0].maxCoeff(), high[1].maxCoeff(), high[2].maxCoeff()}};
+  }
+  /// How far they are from one of others, along the axis where that is most; not above 0 where
+  /// they meet.
+  Eigen::Array4f gaps_to(const Boxes& others, std::size_t i) const {
+    const auto along = [&](std::size_t axis) -> Eigen::Array4f {
+      const auto lane = static_cast<Eigen::Index>(i);
+      return (low[axis] - others.high[axis][lane]).max(others.low[axis][lane] - high[axis]);
+    };
+    return along(0).max(along(1)).max(along(2));
+  }
+};
+
+/// Looks at all pairs whose boxes meet, by a tree of boxes in which each has four others in it.
 class Search {
  public:
   Search(std::span<const std::array<float, 3>> vertices, std::span<const MeshTriangle> triangles,
          std::size_t known)
-      : vertices_(vertices), triangles_(triangles), known_(known), order_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    bounds_.reserve(triangles.size());
-    for (const MeshTriangle& triangle : triangles) {
-      Bounds bounds{.low = vertices[triangle[0]], .high = vertices[triangle[0]]};
-      bounds.extend({vertices[triangle[1]], vertices[triangle[1]]});
-      bounds.extend({vertices[triangle[2]], vertices[triangle[2]]});
-      bounds_.push_back(bounds);
+      : vertices_(vertices), triangles_(triangles), known_(known) {
+    sort();
+    build();
+    Fan fan(vertices, triangles);
+    is_flat_.reserve(vertices.size());
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+      is_flat_.push_back(fan.is_flat(i) ? 1 : 0);
     }
   }
 
   std::vector<Bounds> run() {
     if (!order_.empty()) {
-      nodes_.reserve(2 * order_.size());
-      nodes_.emplace_back();
-      build(0, 0, static_cast<std::uint32_t>(order_.size()));
-      look_within(0);
+      look_between(levels_.size() - 1, 0, 0);
     }
     return std::move(cuts_);
   }
 
  private:
-  static constexpr std::uint32_t few = 4;  // triangles in a leaf of the tree
-
-  struct Node {
-    Bounds bounds = {};
-    std::uint32_t first = 0;  // in `order_`
-    std::uint32_t end = 0;
-    std::uint32_t children = 0;  // two nodes from here; 0: none
-  };
-
-  void build(std::uint32_t at, std::uint32_t first, std::uint32_t end) {
-    Node node{.bounds = bounds_[order_[first]], .first = first, .end = end, .children = 0};
-    for (std::uint32_t i = first + 1; i < end; ++i) {
-      node.bounds.extend(bounds_[order_[i]]);
-    }
-    if (end - first > few) {
-      std::size_t axis = 0;
-      const auto extent = [&](std::size_t i) { return node.bounds.high[i] - node.bounds.low[i]; };
-      for (const std::size_t i : {1U, 2U}) {
-        axis = extent(i) > extent(axis) ? i : axis;
-      }
-      const std::uint32_t middle = first + (end - first) / 2;
-      std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + end,
-                       [&](std::uint32_t a, std::uint32_t b) {
-                         return bounds_[a].low[axis] + bounds_[a].high[axis] <
-                                bounds_[b].low[axis] + bounds_[b].high[axis];
-                       });
-      node.children = static_cast<std::uint32_t>(nodes_.size());
-      nodes_.resize(nodes_.size() + 2);
-      build(node.children, first, middle);
-      build(node.children + 1, middle, end);
-    }
-    nodes_[at] = node;
+  Bounds bounds_of(std::uint32_t triangle) const {
+    const auto& [a, b, c] = triangles_[triangle];
+    Bounds bounds{.low = vertices_[a], .high = vertices_[a]};
+    bounds.extend({vertices_[b], vertices_[b]});
+    bounds.extend({vertices_[c], vertices_[c]});
+    return bounds;
   }
 
-  void look_within(std::uint32_t at) {
-    const Node& node = nodes_[at];
-    if (node.children != 0) {
-      look_within(node.children);
-      look_within(node.children + 1);
-      look_between(node.children, node.children + 1);
-      return;
+  /// Along Morton's curve, which keeps together what is close.
+  void sort() {
+    constexpr int axis_bits = 10;
+    Bounds all{.low = {Boxes::far, Boxes::far, Boxes::far},
+               .high = {-Boxes::far, -Boxes::far, -Boxes::far}};
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      all.extend(bounds_of(i));
     }
-    for (std::uint32_t i = node.first; i < node.end; ++i) {
-      for (std::uint32_t j = i + 1; j < node.end; ++j) {
-        look_at(order_[i], order_[j]);
+    float side = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      side = std::max(side, all.high[axis] - all.low[axis]);
+    }
+    const float scale = side > 0 ? ((1 << axis_bits) - 1) / side : 0.0F;
+    std::vector<Place> places;
+    places.reserve(triangles_.size());
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+      const Bounds bounds = bounds_of(i);
+      std::uint32_t key = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float middle = (bounds.low[axis] + bounds.high[axis]) / 2;
+        key |= spread(static_cast<std::uint32_t>((middle - all.low[axis]) * scale)) << axis;
       }
+      places.push_back({.key = key, .index = i});
+    }
+    radix_sort(places, 3 * axis_bits);
+    order_.reserve(places.size());
+    for (const Place& place : places) {
+      order_.push_back(place.index);
     }
   }
 
-  void look_between(std::uint32_t a, std::uint32_t b) {
-    const Node& one = nodes_[a];
-    const Node& other = nodes_[b];
-    if (!one.bounds.meets(other.bounds)) {
-      return;
+  /// Ten bits, each to three times its place.
+  static std::uint32_t spread(std::uint32_t bits) {
+    bits = (bits | bits << 16) & 0x030000ffU;
+    bits = (bits | bits << 8) & 0x0300f00fU;
+    bits = (bits | bits << 4) & 0x030c30c3U;
+    return (bits | bits << 2) & 0x09249249U;
+  }
+
+  void build() {
+    levels_.emplace_back((order_.size() + 3) / 4);
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      levels_[0][i / 4].set(i % 4, bounds_of(order_[i]));
     }
-    if (one.children == 0 && other.children == 0) {
-      for (std::uint32_t i = one.first; i < one.end; ++i) {
-        for (std::uint32_t j = other.first; j < other.end; ++j) {
-          look_at(order_[i], order_[j]);
-        }
+    while (levels_.back().size() > 1) {
+      const std::vector<Boxes>& below = levels_.back();
+      std::vector<Boxes> level((below.size() + 3) / 4);
+      for (std::size_t i = 0; i < below.size(); ++i) {
+        level[i / 4].set(i % 4, below[i].all());
       }
-    } else if (other.children == 0 ||
-               (one.children != 0 && one.end - one.first >= other.end - other.first)) {
-      look_between(one.children, b);
-      look_between(one.children + 1, b);
-    } else {
-      look_between(a, other.children);
-      look_between(a, other.children + 1);
+      levels_.push_back(std::move(level));
+    }
+  }
+
+  /// Looks at what lies in four boxes of a level with what lies in four others, or in the same.
+  void look_between(std::size_t level, std::size_t a, std::size_t b) {
+    // What meets what follows no pattern: so no branches on that.
+    std::array<std::array<std::size_t, 2>, 16> pairs;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Eigen::Array4f gaps = levels_[level][b].gaps_to(levels_[level][a], i);
+      for (std::size_t j = 0; j < 4; ++j) {
+        pairs[count] = {4 * a + i, 4 * b + j};
+        count += gaps[static_cast<Eigen::Index>(j)] <= 0 && (a != b || i <= j) ? 1 : 0;
+      }
+    }
+    for (const auto& [one, other] : std::span(pairs).first(count)) {
+      if (level > 0) {
+        look_between(level - 1, one, other);
+      } else if (one != other) {
+        look_at(order_[one], order_[other]);
+      }
     }
   }
 
   void look_at(std::uint32_t a, std::uint32_t b) {
-    if ((a >= known_ || b >= known_) && bounds_[a].meets(bounds_[b]) && !are_apart(a, b)) {
-      cuts_.push_back(bounds_[a]);
-      cuts_.push_back(bounds_[b]);
+    if (!share_flat_fan(triangles_[a], triangles_[b]) && (a >= known_ || b >= known_) &&
+        !are_apart(a, b)) {
+      cuts_.push_back(bounds_of(a));
+      cuts_.push_back(bounds_of(b));
     }
+  }
+
+  bool share_flat_fan(const MeshTriangle& a, const MeshTriangle& b) const {
+    bool any = false;
+    for (const std::uint32_t corner : a) {
+      const bool is_common = (corner == b[0]) | (corner == b[1]) | (corner == b[2]);
+      any |= is_common & (is_flat_[corner] != 0);
+    }
+    return any;
   }
 
   bool are_apart(std::uint32_t a, std::uint32_t b) const {
@@ -237,9 +360,9 @@ class Search {
   std::span<const std::array<float, 3>> vertices_;
   std::span<const MeshTriangle> triangles_;
   std::size_t known_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Bounds> bounds_ = {};
-  std::vector<Node> nodes_ = {};
+  std::vector<std::uint32_t> order_ = {};
+  std::vector<std::vector<Boxes>> levels_ = {};  // the lowest, of the triangles, first
+  std::vector<char> is_flat_ = {};               // vertices
   std::vector<Bounds> cuts_ = {};
 };
 

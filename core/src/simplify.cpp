@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
-#include "mesh_cuts.hpp"
+#include "octurn/mesh_cuts.hpp"
+#include "radix_sort.hpp"
 #include "vector3.hpp"
 
 namespace octurn {
@@ -156,7 +156,7 @@ void Simplifier::collapse_edges() {
   for (int pass = 0; pass < passes; ++pass) {
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
     const double error = max_error_ * share;
-    index_corners();
+    corners_.assign(triangles_, vertices_.size());
     list_collapses(error * error, refused);
     refused = error * error;
     touched_.assign(vertices_.size(), 0);
@@ -173,25 +173,6 @@ void Simplifier::collapse_edges() {
     drop_collapsed();
     if (done == 0 && share == 1.0) {
       break;
-    }
-  }
-}
-
-void Simplifier::index_corners() {
-  first_corner_.assign(vertices_.size() + 1, 0);
-  for (const MeshTriangle& triangle : triangles_) {
-    for (const std::uint32_t corner : triangle) {
-      ++first_corner_[corner + 1];
-    }
-  }
-  for (std::size_t i = 1; i < first_corner_.size(); ++i) {
-    first_corner_[i] += first_corner_[i - 1];
-  }
-  corners_.resize(3 * triangles_.size());
-  std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    for (const std::uint32_t corner : triangles_[i]) {
-      corners_[next[corner]++] = static_cast<std::uint32_t>(i);
     }
   }
 }
@@ -220,41 +201,24 @@ void Simplifier::list_collapses(double limit, double refused) {
   sort_collapses();
 }
 
-/// The cheapest first: by the upper half of the bits of their costs, which rise with them, some at
-/// a time; then those that have these in common, which are few.
+/// The cheapest first: by the upper half of the bits of their costs, which rise with them; then
+/// those that have these in common, which are few.
 void Simplifier::sort_collapses() {
-  struct Place {
-    std::uint32_t cost_bits;
-    std::uint32_t index;
-  };
   std::vector<Place> places;
   places.reserve(collapses_.size());
   for (const Collapse& collapse : collapses_) {
-    places.push_back({static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(collapse.cost) >> 32),
-                      static_cast<std::uint32_t>(places.size())});
+    places.push_back(
+        {.key = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(collapse.cost) >> 32),
+         .index = static_cast<std::uint32_t>(places.size())});
   }
-  constexpr int digit_bits = 11;
-  constexpr std::uint32_t digits = 1U << digit_bits;
-  std::vector<Place> sorted(places.size());
-  for (int shift = 0; shift < 32; shift += digit_bits) {
-    std::array<std::uint32_t, digits + 1> next{};
-    for (const Place& place : places) {
-      ++next[(place.cost_bits >> shift) % digits + 1];
-    }
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    for (const Place& place : places) {
-      sorted[next[(place.cost_bits >> shift) % digits]++] = place;
-    }
-    places.swap(sorted);
-  }
+  radix_sort(places, 32);
   const auto order = [&](const Place& place) {
     const Collapse& collapse = collapses_[place.index];
     return std::tuple(collapse.cost, collapse.kept, collapse.gone);
   };
   for (auto first = places.begin(); first != places.end();) {
-    const auto end = std::find_if(first, places.end(), [&](const Place& place) {
-      return place.cost_bits != first->cost_bits;
-    });
+    const auto end = std::find_if(first, places.end(),
+                                  [&](const Place& place) { return place.key != first->key; });
     std::ranges::sort(first, end, {}, order);
     first = end;
   }
@@ -316,8 +280,8 @@ void Simplifier::prefetch(const Collapse& collapse) const {
   for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
     __builtin_prefetch(&vertices_[end]);
     __builtin_prefetch(&quadrics_[end]);
-    __builtin_prefetch(&triangles_[triangles_of(end).front()]);
-    __builtin_prefetch(&triangles_[triangles_of(end).back()]);
+    __builtin_prefetch(&triangles_[corners_.triangles_of(end).front()]);
+    __builtin_prefetch(&triangles_[corners_.triangles_of(end).back()]);
   }
 }
 
@@ -334,7 +298,7 @@ bool Simplifier::may_collapse(const Collapse& collapse) const {
   // The link condition: the ends have just the two neighbours in common that face the edge.
   int common = 0;
   std::size_t around = 0;
-  for (const std::uint32_t i : triangles_of(a)) {
+  for (const std::uint32_t i : corners_.triangles_of(a)) {
     const MeshTriangle& triangle = triangles_[i];
     if (is_gone(triangle)) {
       continue;
@@ -345,7 +309,7 @@ bool Simplifier::may_collapse(const Collapse& collapse) const {
     common += neighbour != b && are_neighbours(neighbour, b) ? 1 : 0;
   }
   // Around the end that stays there must be three triangles or more when two are gone.
-  for (const std::uint32_t i : triangles_of(b)) {
+  for (const std::uint32_t i : corners_.triangles_of(b)) {
     around += is_gone(triangles_[i]) ? 0 : 1;
   }
   return common == 2 && around > 6;
@@ -353,7 +317,7 @@ bool Simplifier::may_collapse(const Collapse& collapse) const {
 
 /// Whether a live triangle at `b` has the corner `a`.
 bool Simplifier::are_neighbours(std::uint32_t a, std::uint32_t b) const {
-  return std::ranges::any_of(triangles_of(b), [&](std::uint32_t i) {
+  return std::ranges::any_of(corners_.triangles_of(b), [&](std::uint32_t i) {
     const MeshTriangle& triangle = triangles_[i];
     return !is_gone(triangle) && (triangle[0] == a || triangle[1] == a || triangle[2] == a);
   });
@@ -363,7 +327,7 @@ bool Simplifier::are_neighbours(std::uint32_t a, std::uint32_t b) const {
 bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
                             std::uint32_t other) const {
   const Vector3 to = vector_of(collapse.position);
-  for (const std::uint32_t i : triangles_of(around)) {
+  for (const std::uint32_t i : corners_.triangles_of(around)) {
     const MeshTriangle& triangle = triangles_[i];
     if (is_gone(triangle) || triangle[0] == other || triangle[1] == other || triangle[2] == other) {
       continue;
@@ -393,11 +357,11 @@ void Simplifier::apply(const Collapse& collapse) {
   // The lists of triangles at other vertices still hold, but for triangles that are gone.
   touched_[collapse.kept] = 1;
   touched_[collapse.gone] = 1;
-  for (const std::uint32_t i : triangles_of(collapse.gone)) {
+  for (const std::uint32_t i : corners_.triangles_of(collapse.gone)) {
     std::ranges::replace(triangles_[i], collapse.gone, collapse.kept);
   }
   for (const std::uint32_t end : {collapse.kept, collapse.gone}) {
-    for (const std::uint32_t i : triangles_of(end)) {
+    for (const std::uint32_t i : corners_.triangles_of(end)) {
       for (const std::uint32_t corner : triangles_[i]) {
         changed_[corner] = 1;
       }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "octurn/corner_index.hpp"
 #include "octurn/isosurface.hpp"
 #include "octurn/marching_cubes.hpp"
 
@@ -58,7 +59,6 @@ class Simplifier {
   void add_quadrics(std::size_t first_triangle);
   void simplify();
   void collapse_edges();
-  void index_corners();
   void list_collapses(double limit, double refused);
   void sort_collapses();
   Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
@@ -69,10 +69,6 @@ class Simplifier {
   void apply(const Collapse& collapse);
   void drop_collapsed();
   void hand_on(float end);
-
-  std::span<const std::uint32_t> triangles_of(std::uint32_t vertex) const {
-    return {&corners_[first_corner_[vertex]], first_corner_[vertex + 1] - first_corner_[vertex]};
-  }
 
   double max_error_;
   double margin_;
@@ -87,8 +83,7 @@ class Simplifier {
   std::uint32_t first_name_ = 0;           // of the vertices of the last two pieces
   std::vector<std::uint32_t> names_ = {};  // where those are in the window
   std::uint32_t last_piece_ = 0;           // name of its first vertex
-  std::vector<std::uint32_t> first_corner_ = {};
-  std::vector<std::uint32_t> corners_ = {};  // triangles at each vertex
+  CornerIndex corners_ = {};
   std::vector<Collapse> collapses_ = {};
   std::vector<char> touched_ = {};  // vertices, in this pass
   std::vector<char> changed_ = {};  // vertices, or triangles at them, in this pass

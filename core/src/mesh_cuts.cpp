@@ -315,12 +315,13 @@ class Search {
   }
 
   bool share_flat_fan(const MeshTriangle& a, const MeshTriangle& b) const {
-    bool any = false;
+    int any = 0;
     for (const std::uint32_t corner : a) {
-      const bool is_common = (corner == b[0]) | (corner == b[1]) | (corner == b[2]);
-      any |= is_common & (is_flat_[corner] != 0);
+      const int is_common =
+          (corner == b[0] ? 1 : 0) | (corner == b[1] ? 1 : 0) | (corner == b[2] ? 1 : 0);
+      any |= is_common & is_flat_[corner];
     }
-    return any;
+    return any != 0;
   }
 
   bool are_apart(std::uint32_t a, std::uint32_t b) const {

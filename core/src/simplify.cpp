@@ -1,5 +1,6 @@
 #include "octurn/simplify.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,22 +21,6 @@ constexpr std::size_t collapses_ahead = 6;  // of the one that is tried, to be f
 constexpr double least_edge_mm = 0.036;     // slicers meld vertices that are closer
 constexpr double least_turn = 0.5;          // cosine between a triangle's normals before and after
 constexpr float first_reach_mm = 0.5F;      // around a cut, where the surface is left as it was
-
-/// Whether a side or a height is below a slicer's grain, or a height below a twentieth of the
-/// longest side.
-bool is_sliver(const std::array<Vector3, 3>& corners) {
-  constexpr double least_square = least_edge_mm * least_edge_mm;
-  double longest = 0;
-  double shortest = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3 side = corners[(i + 1) % 3] - corners[i];
-    longest = std::max(longest, dot(side, side));
-    shortest = std::min(shortest, dot(side, side));
-  }
-  const Vector3 normal = normal_of(corners[0], corners[1], corners[2]);
-  const double height = dot(normal, normal) / longest;
-  return shortest < least_square || height < least_square || height < longest / 400;
-}
 
 /// A box with a point in its middle.
 Bounds around(const std::array<float, 3>& point, float reach) {
@@ -323,30 +308,39 @@ bool Simplifier::are_neighbours(std::uint32_t a, std::uint32_t b) const {
   });
 }
 
-/// Whether a triangle around one end, but not the other, would turn over or shrink to a sliver.
+/// Whether a triangle around one end, but not the other, would turn over or shrink to a sliver: a
+/// side or a height below a slicer's grain, or a height below a twentieth of the longest side.
 bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
                             std::uint32_t other) const {
+  constexpr double least_square = least_edge_mm * least_edge_mm;
+  using BeforeAndAfter = std::array<Eigen::Array2d, 3>;
+  const Vector3 from = vector_of(vertices_[around].position);
   const Vector3 to = vector_of(collapse.position);
+  const BeforeAndAfter ends{Eigen::Array2d(from[0], to[0]), Eigen::Array2d(from[1], to[1]),
+                            Eigen::Array2d(from[2], to[2])};
+  const auto side_to = [&](const Vector3& p) {
+    return BeforeAndAfter{p[0] - ends[0], p[1] - ends[1], p[2] - ends[2]};
+  };
   for (const std::uint32_t i : corners_.triangles_of(around)) {
     const MeshTriangle& triangle = triangles_[i];
-    if (is_gone(triangle) || triangle[0] == other || triangle[1] == other || triangle[2] == other) {
+    const std::size_t at = triangle[0] == around ? 0 : triangle[1] == around ? 1 : 2;
+    const std::uint32_t next = triangle[(at + 1) % 3];
+    const std::uint32_t last = triangle[(at + 2) % 3];
+    if (is_gone(triangle) || next == other || last == other) {
       continue;
     }
-    std::array<Vector3, 3> before;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      before[corner] = vector_of(vertices_[triangle[corner]].position);
-    }
-    std::array<Vector3, 3> after = before;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (triangle[corner] == around) {
-        after[corner] = to;
-      }
-    }
-    const Vector3 was = normal_of(before[0], before[1], before[2]);
-    const Vector3 is = normal_of(after[0], after[1], after[2]);
-    const double along = dot(was, is);
-    if (along <= 0 || along * along < least_turn * least_turn * dot(was, was) * dot(is, is) ||
-        is_sliver(after)) {
+    const Vector3 p = vector_of(vertices_[next].position);
+    const Vector3 q = vector_of(vertices_[last].position);
+    const BeforeAndAfter to_p = side_to(p);
+    const BeforeAndAfter to_q = side_to(q);
+    const BeforeAndAfter normals = cross(to_p, to_q);
+    const double along = normals[0].prod() + normals[1].prod() + normals[2].prod();
+    const Eigen::Array2d squares = dot(normals, normals);
+    const std::array sides{dot(to_p, to_p)[1], dot(to_q, to_q)[1], dot(q - p, q - p)};
+    const double shortest = std::min({sides[0], sides[1], sides[2]});
+    const double longest = std::max({sides[0], sides[1], sides[2]});
+    if (along <= 0 || along * along < least_turn * least_turn * squares.prod() ||
+        shortest < least_square || squares[1] < longest * std::max(least_square, longest / 400)) {
       return true;
     }
   }

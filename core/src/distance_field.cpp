@@ -40,6 +40,17 @@ FieldShape::FieldShape(double side, int levels, const Box& clip, double truncati
   size_ = {bricks(0)[1], bricks(1)[1], bricks(2)[1]};
 }
 
+Box FieldShape::box() const {
+  const auto corner = [&](const Cell& brick) {
+    const auto at = [&](int bricks, std::size_t axis) {
+      return centre(bricks * Brick::side, axis) - leaf_side_ / 2;
+    };
+    return Eigen::Vector3d(at(brick.x, 0), at(brick.y, 1), at(brick.z, 2));
+  };
+  return {.min = corner(low_),
+          .max = corner({low_.x + size_.x, low_.y + size_.y, low_.z + size_.z})};
+}
+
 DistanceField::DistanceField(const FieldShape& shape, std::size_t max_bytes)
     : FieldShape(shape),
       max_bytes_(max_bytes),

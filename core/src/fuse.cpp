@@ -24,11 +24,7 @@ class Fusion {
         width_(sighting.lens().width),
         four_along_y_(std::min(field.cell_leaves(), 4)) {
     const Eigen::Matrix3f rotation = sighting.sensor_from_object().linear().cast<float>();
-    const Eigen::Vector3d origin(
-        field.centre(field.low().x * Brick::side, 0) - field.leaf_side() / 2,
-        field.centre(field.low().y * Brick::side, 1) - field.leaf_side() / 2,
-        field.centre(field.low().z * Brick::side, 2) - field.leaf_side() / 2);
-    const Eigen::Vector3f start = (sighting.sensor_from_object() * origin).cast<float>();
+    const Eigen::Vector3f start = (sighting.sensor_from_object() * field.box().min).cast<float>();
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
       origin_[i] = start[axis];

@@ -13,6 +13,7 @@
 #include "fork_join.hpp"
 #include "in_order.hpp"
 #include "memory_limit.hpp"
+#include "octurn/crop.hpp"
 #include "octurn/error.hpp"
 #include "octurn/filled_field.hpp"
 #include "octurn/fuse.hpp"
@@ -155,7 +156,7 @@ void Solid::add(const SnapshotSource& snapshots, const std::stop_token& stop) tr
   fork_join(threads, [&](int) {
     shots.take_all(
         [&](std::size_t shot, std::optional<Sighting>& sighting) {
-          sighting.emplace(snapshots.read(shot), options_.clip);
+          sighting.emplace(crop(snapshots.read(shot), field_.box()), options_.clip);
         },
         [&](std::optional<Sighting>& sighting) {
           fuse(field_, *sighting);

@@ -51,6 +51,9 @@ class FieldShape {
     return (leaf + 0.5) * leaf_side_ - (axis < 2 ? side_ / 2 : 0.0);
   }
 
+  /// All bricks, metres, platform frame.
+  Box box() const;
+
   /// Whether a brick is one of those around the clip box.
   bool is_border(const Cell& brick) const {
     return brick.x == 0 || brick.y == 0 || brick.z == 0 || brick.x == size_.x - 1 ||

@@ -1,0 +1,75 @@
+#include "octurn/crop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace octurn {
+namespace {
+
+const Box cube{.min = {-0.02, -0.03, 0.5}, .max = {0.03, 0.02, 0.6}};  // metres, sensor's frame
+
+/// Each sample tells where it is.
+Snapshot numbered() {
+  Snapshot snapshot;
+  snapshot.frame = {.width = snapshot.intrinsics.width, .height = snapshot.intrinsics.height};
+  for (int i = 0; i < snapshot.frame.width * snapshot.frame.height; ++i) {
+    snapshot.frame.depth.push_back(static_cast<std::uint16_t>(i % 65521));
+  }
+  return snapshot;
+}
+
+Snapshot moved(double x, double z) {
+  Snapshot snapshot = numbered();
+  snapshot.object_from_sensor.translation() = Eigen::Vector3d(x, 0, z);
+  return snapshot;
+}
+
+TEST(Crop, KeepsWhatSeesTheBoxWhereItWas) {
+  const Snapshot whole = numbered();
+  const Snapshot part = crop(whole, cube);
+  const Intrinsics& lens = part.intrinsics;
+  EXPECT_LT(lens.width, 100);
+  EXPECT_LT(lens.height, 100);
+  ASSERT_EQ(part.frame.width, lens.width);
+  ASSERT_EQ(part.frame.height, lens.height);
+  const double u0 = whole.intrinsics.cx - lens.cx;
+  const double v0 = whole.intrinsics.cy - lens.cy;
+  for (int v = 0; v < lens.height; ++v) {
+    for (int u = 0; u < lens.width; ++u) {
+      const auto at =
+          static_cast<std::size_t>((v + static_cast<int>(v0)) * 640 + u + static_cast<int>(u0));
+      ASSERT_EQ(part.frame.depth[static_cast<std::size_t>(v * lens.width + u)],
+                whole.frame.depth[at]);
+    }
+  }
+  for (const double x : {cube.min.x(), cube.max.x()}) {
+    for (const double y : {cube.min.y(), cube.max.y()}) {
+      const double u = x / cube.min.z() * lens.fx + lens.cx;
+      const double v = y / cube.min.z() * lens.fy + lens.cy;
+      EXPECT_TRUE(u > 3 && u < lens.width - 3) << u;
+      EXPECT_TRUE(v > 3 && v < lens.height - 3) << v;
+    }
+  }
+}
+
+TEST(Crop, EndsAtTheImagesEdges) {
+  const Snapshot part = crop(moved(0.27, 0), cube);
+  EXPECT_EQ(part.intrinsics.cx, 320);
+  EXPECT_LT(part.intrinsics.width, 100);
+}
+
+TEST(Crop, KeepsAllOfASnapshotNearTheBoxOrBesideIt) {
+  EXPECT_EQ(crop(moved(0, 0.48), cube).intrinsics, Intrinsics{});
+  EXPECT_EQ(crop(moved(0, 2), cube).intrinsics, Intrinsics{});
+  EXPECT_EQ(crop(moved(9, 0), cube).intrinsics, Intrinsics{});
+}
+
+TEST(Crop, RefusesAFrameOfAnotherSize) {
+  Snapshot snapshot = numbered();
+  snapshot.frame.depth.pop_back();
+  EXPECT_THROW(crop(snapshot, cube), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -8,7 +8,7 @@
 namespace octurn {
 namespace {
 
-constexpr int around = 4;         // pixels: what a sighting looks at beside one, and rounding
+constexpr int margin = 4;         // pixels: what a sighting looks at beside one, and rounding
 constexpr int grain = 16;         // pixels, to which the window's corner is aligned
 constexpr double nearest = 0.05;  // metres: nearer than any depth sensor sees
 
@@ -22,11 +22,11 @@ struct Span {
     high = std::max(high, at);
   }
   int first(int size) const {
-    return static_cast<int>(std::clamp(low - around, 0.0, static_cast<double>(size))) / grain *
+    return static_cast<int>(std::clamp(low - margin, 0.0, static_cast<double>(size))) / grain *
            grain;
   }
   int end(int size) const {
-    return static_cast<int>(std::ceil(std::clamp(high + around, 0.0, static_cast<double>(size))));
+    return static_cast<int>(std::ceil(std::clamp(high + margin, 0.0, static_cast<double>(size))));
   }
 };
 

@@ -7,7 +7,7 @@
 namespace octurn {
 namespace {
 
-const Box cube{.min = {-0.02, -0.03, 0.5}, .max = {0.03, 0.02, 0.6}};  // metres, sensor's frame
+const Box held{.min = {-0.02, -0.03, 0.5}, .max = {0.03, 0.02, 0.6}};  // metres, sensor's frame
 
 /// Each sample tells where it is.
 Snapshot numbered() {
@@ -27,7 +27,7 @@ Snapshot moved(double x, double z) {
 
 TEST(Crop, KeepsWhatSeesTheBoxWhereItWas) {
   const Snapshot whole = numbered();
-  const Snapshot part = crop(whole, cube);
+  const Snapshot part = crop(whole, held);
   const Intrinsics& lens = part.intrinsics;
   EXPECT_LT(lens.width, 100);
   EXPECT_LT(lens.height, 100);
@@ -43,10 +43,10 @@ TEST(Crop, KeepsWhatSeesTheBoxWhereItWas) {
                 whole.frame.depth[at]);
     }
   }
-  for (const double x : {cube.min.x(), cube.max.x()}) {
-    for (const double y : {cube.min.y(), cube.max.y()}) {
-      const double u = x / cube.min.z() * lens.fx + lens.cx;
-      const double v = y / cube.min.z() * lens.fy + lens.cy;
+  for (const double x : {held.min.x(), held.max.x()}) {
+    for (const double y : {held.min.y(), held.max.y()}) {
+      const double u = x / held.min.z() * lens.fx + lens.cx;
+      const double v = y / held.min.z() * lens.fy + lens.cy;
       EXPECT_TRUE(u > 3 && u < lens.width - 3) << u;
       EXPECT_TRUE(v > 3 && v < lens.height - 3) << v;
     }
@@ -54,21 +54,21 @@ TEST(Crop, KeepsWhatSeesTheBoxWhereItWas) {
 }
 
 TEST(Crop, EndsAtTheImagesEdges) {
-  const Snapshot part = crop(moved(0.27, 0), cube);
+  const Snapshot part = crop(moved(0.27, 0), held);
   EXPECT_EQ(part.intrinsics.cx, 320);
   EXPECT_LT(part.intrinsics.width, 100);
 }
 
 TEST(Crop, KeepsAllOfASnapshotNearTheBoxOrBesideIt) {
-  EXPECT_EQ(crop(moved(0, 0.48), cube).intrinsics, Intrinsics{});
-  EXPECT_EQ(crop(moved(0, 2), cube).intrinsics, Intrinsics{});
-  EXPECT_EQ(crop(moved(9, 0), cube).intrinsics, Intrinsics{});
+  EXPECT_EQ(crop(moved(0, 0.48), held).intrinsics, Intrinsics{});
+  EXPECT_EQ(crop(moved(0, 2), held).intrinsics, Intrinsics{});
+  EXPECT_EQ(crop(moved(9, 0), held).intrinsics, Intrinsics{});
 }
 
 TEST(Crop, RefusesAFrameOfAnotherSize) {
   Snapshot snapshot = numbered();
   snapshot.frame.depth.pop_back();
-  EXPECT_THROW(crop(snapshot, cube), std::invalid_argument);
+  EXPECT_THROW(crop(snapshot, held), std::invalid_argument);
 }
 
 }  // namespace

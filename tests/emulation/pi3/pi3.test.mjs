@@ -90,7 +90,7 @@ test('pulses are never nearer to each other than at full speed, however late the
 test('a stop request ends the move within one step, and the position is known', () => {
   const { said, events } = runs.cancel;
   const stopped = Number(/stopped at ([0-9]+)/.exec(said)[1]);
-  const asked = events.findIndex(({ mark }) => mark === 'TERM');
+  const asked = events.findIndex(({ mark }) => mark === 'STOP');
   assert.ok(stopped > 0 && stopped < 800);
   assert.equal(rises(events).length, stopped);
   assert.ok(asked > 0 && rises(events.slice(asked)).length <= 1);

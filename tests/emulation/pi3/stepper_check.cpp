@@ -1,5 +1,5 @@
 // Runs on the emulated Pi: turns to each position of its command line by Octurn's own stepper on
-// the real GPIO lines, and says where it stands. SIGTERM stops it, which it tells the kernel's trace.
+// the real GPIO lines, and says where it stands. SIGTERM stops it; the kernel's trace is told.
 
 #include <charconv>
 #include <cstring>
@@ -18,9 +18,8 @@ namespace {
 
 void turn(const std::vector<int>& positions) {
   const Interruption interruption;
-  const std::stop_callback tell(interruption.token(), [] {
-    std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n";
-  });
+  const std::stop_callback tell(
+      interruption.token(), [] { std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n"; });
   const StepperSettings settings = {.microstep_lines = {"GPIO22", "GPIO23", "GPIO24"}};
   GpioLines lines(lines_of(settings));
   Stepper stepper(settings, [&](Stepper::Line line, bool high) {

@@ -74,14 +74,14 @@ TEST(DepthSensor, StampsFramesByTheSteadyClock) {
   EXPECT_LE(second, steady_clock::now());
 }
 
-// A busy machine makes gaps longer, and a late frame is not made up for: only the middle one has a
-// lower bound.
+// A busy machine makes gaps longer, and that after a frame that was taken late shorter: only the
+// middle one of several has a lower bound.
 TEST(DepthSensor, SendsThirtyFramesASecondAtMost) {
   EXPECT_GT(gaps_between_frames(32, "1")[15], milliseconds(31));
 }
 
 TEST(DepthSensor, IsSlowerOrFasterThanLifeIfTold) {
-  EXPECT_GT(gaps_between_frames(4, "0.25")[1], milliseconds(125));  // 133 ms, 33 in life
+  EXPECT_GT(gaps_between_frames(8, "0.25")[3], milliseconds(125));  // 133 ms, 33 in life
   EXPECT_LT(gaps_between_frames(4, "100")[1], milliseconds(125));
 }
 

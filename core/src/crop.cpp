@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "depth_limits.hpp"
 
 namespace octurn {
 namespace {
 
-constexpr int margin = 4;         // pixels: what a sighting looks at beside one, and rounding
-constexpr int grain = 16;         // pixels, to which the window's corner is aligned
-constexpr double nearest = 0.05;  // metres: nearer than any depth sensor sees
+constexpr int margin = 4;  // pixels: what a sighting looks at beside one, and rounding
+constexpr int grain =
+    16;  // pixels, to which the window's corner is aligned, as are a sighting's bounds
 
 /// Pixels from `first` up to but without `end`.
 struct Span {
@@ -34,11 +35,7 @@ struct Span {
 
 Snapshot crop(const Snapshot& snapshot, const Box& box) {
   const auto& [frame, lens, object_from_sensor] = snapshot;
-  if (frame.width != lens.width || frame.height != lens.height ||
-      frame.depth.size() !=
-          static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height)) {
-    throw std::invalid_argument("crop: the frame's size is not that of the intrinsics");
-  }
+  check_size(frame, lens, "crop");
   const Eigen::Isometry3d sensor_from_object = object_from_sensor.inverse();
   Span u;
   Span v;
@@ -47,7 +44,7 @@ Snapshot crop(const Snapshot& snapshot, const Box& box) {
         sensor_from_object * Eigen::Vector3d((corner & 1 ? box.max : box.min).x(),
                                              (corner & 2 ? box.max : box.min).y(),
                                              (corner & 4 ? box.max : box.min).z());
-    if (p.z() < nearest) {
+    if (p.z() < nearest_z) {
       return snapshot;
     }
     u.extend(p.x() / p.z() * lens.fx + lens.cx);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "depth_limits.hpp"
+
 namespace octurn {
 namespace {
 
@@ -359,8 +361,8 @@ class Fusion {
     }
   }
 
-  static constexpr int before_first = 1024;      // pixels
-  static constexpr float nearest_z = 0.05F;      // metres: nearer than any depth sensor sees
+  static constexpr int before_first = 1024;  // pixels
+  static constexpr auto nearest_z = static_cast<float>(octurn::nearest_z);
   static constexpr float deepest_behind = 2.5F;  // truncations along the ray, at grazing angles
   static constexpr float free_margin = 1.5F;     // truncations along the ray
 

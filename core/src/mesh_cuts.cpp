@@ -145,7 +145,7 @@ class Fan {
 
   Spokes spokes_of(std::uint32_t triangle, std::uint32_t vertex) const {
     const MeshTriangle& corners = triangles_[triangle];
-    const std::size_t at = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+    const std::size_t at = corner_at(corners, vertex);
     return {corners[(at + 1) % 3], corners[(at + 2) % 3]};
   }
 

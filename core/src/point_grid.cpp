@@ -2,17 +2,15 @@
 
 #include <array>
 #include <cstddef>
-#include <stdexcept>
+
+#include "depth_limits.hpp"
 
 namespace octurn {
 
 PointGrid world_points(const Snapshot& snapshot) {
   const DepthFrame& frame = snapshot.frame;
   const Intrinsics& lens = snapshot.intrinsics;
-  const auto samples = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
-  if (frame.width != lens.width || frame.height != lens.height || frame.depth.size() != samples) {
-    throw std::invalid_argument("world_points: the frame's size is not that of the intrinsics");
-  }
+  check_size(frame, lens, "world_points");
 
   // point = depth * (column_ray[u] + row_ray) + centre: a sample's ray is linear in u and in v.
   // Written out by component: a matrix library may fuse products on one processor and not on
@@ -29,7 +27,7 @@ PointGrid world_points(const Snapshot& snapshot) {
   }
 
   PointGrid grid{.width = lens.width, .height = lens.height, .points = {}};
-  grid.points.resize(samples);
+  grid.points.resize(frame.depth.size());
   auto point = grid.points.begin();
   auto depth = frame.depth.begin();
   for (int v = 0; v < lens.height; ++v) {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+
+#include "depth_limits.hpp"
 
 namespace octurn {
 namespace {
@@ -215,12 +216,7 @@ void set_surface(Sight& sight, const Fit& fit, const Intrinsics& lens, const Ray
 
 Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
     : lens_(snapshot.intrinsics), sensor_from_object_(snapshot.object_from_sensor.inverse()) {
-  const auto samples =
-      static_cast<std::size_t>(lens_.width) * static_cast<std::size_t>(lens_.height);
-  if (snapshot.frame.width != lens_.width || snapshot.frame.height != lens_.height ||
-      snapshot.frame.depth.size() != samples) {
-    throw std::invalid_argument("Sighting: the frame's size is not that of the intrinsics");
-  }
+  check_size(snapshot.frame, lens_, "Sighting");
   const DepthImage image = supported(metres(snapshot));
   const std::vector<float> nearness = nearness_of(image);
   Scene scene{.low = clip.min.cast<float>(),
@@ -237,7 +233,7 @@ Sighting::Sighting(const Snapshot& snapshot, const Box& clip)
   std::vector<float> columns(width);
   std::vector<float> least(width);
   std::vector<int> held(width);
-  sights_.resize(samples);
+  sights_.resize(snapshot.frame.depth.size());
   for (int v = reach; v + reach < lens_.height; ++v) {
     const auto ray_y = static_cast<float>((v - lens_.cy) / lens_.fy);
     find_least_around(image, v, columns, least);

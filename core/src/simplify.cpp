@@ -289,7 +289,7 @@ bool Simplifier::may_collapse(const Collapse& collapse) const {
       continue;
     }
     ++around;
-    const std::size_t at = triangle[0] == a ? 0 : triangle[1] == a ? 1 : 2;
+    const std::size_t at = corner_at(triangle, a);
     const std::uint32_t neighbour = triangle[(at + 1) % 3];  // each follows `a` in one triangle
     common += neighbour != b && are_neighbours(neighbour, b) ? 1 : 0;
   }
@@ -323,7 +323,7 @@ bool Simplifier::turns_over(const Collapse& collapse, std::uint32_t around,
   };
   for (const std::uint32_t i : corners_.triangles_of(around)) {
     const MeshTriangle& triangle = triangles_[i];
-    const std::size_t at = triangle[0] == around ? 0 : triangle[1] == around ? 1 : 2;
+    const std::size_t at = corner_at(triangle, around);
     const std::uint32_t next = triangle[(at + 1) % 3];
     const std::uint32_t last = triangle[(at + 2) % 3];
     if (is_gone(triangle) || next == other || last == other) {

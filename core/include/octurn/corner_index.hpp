@@ -10,6 +10,11 @@
 
 namespace octurn {
 
+/// Which corner of a triangle a vertex is, of one that it has.
+inline std::size_t corner_at(const MeshTriangle& triangle, std::uint32_t vertex) {
+  return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+}
+
 /// The triangles at each vertex of a mesh.
 class CornerIndex {
  public:

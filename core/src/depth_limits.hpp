@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/intrinsics.hpp"
+
+namespace octurn {
+
+/// Metres: nearer than any depth sensor sees.
+inline constexpr double nearest_z = 0.05;
+
+/// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
+inline void check_size(const DepthFrame& frame, const Intrinsics& lens, const char* who) {
+  const auto samples = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
+  if (frame.width != lens.width || frame.height != lens.height || frame.depth.size() != samples) {
+    throw std::invalid_argument(std::string(who) +
+                                ": the frame's size is not that of the intrinsics");
+  }
+}
+
+}  // namespace octurn

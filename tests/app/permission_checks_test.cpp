@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <optional>
 #include <string>
 
 #include "support/temporary_folder.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
@@ -134,6 +136,19 @@ TEST(RealTimeCheck, WarnsWhereItIsRefused) {
   const Finding finding = check_real_time("Operation not permitted");
   EXPECT_EQ(finding.state, State::warning);
   EXPECT_EQ(finding.measured, "not allowed (Operation not permitted)");
+}
+
+/// The number after `key=` in a text. @return nothing if it is not there
+std::optional<int> number_after(const std::string& key, const std::string& text) {
+  const std::size_t at = text.find(key + "=");
+  return at == text.npos ? std::nullopt
+                         : std::optional(std::stoi(text.substr(at + key.size() + 1)));
+}
+
+// With a lower limit the kernel refuses real-time priority altogether.
+TEST(RealTimeCheck, AdvisesThePriorityThatTheUnitAllowsAndTheProgramAsksFor) {
+  EXPECT_EQ(number_after("LimitRTPRIO", content_of(OCTURN_UNIT)), real_time_priority);
+  EXPECT_EQ(number_after("LimitRTPRIO", check_real_time("refused").advice), real_time_priority);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "doctor/system_files.hpp"
 #include "scan/scan_store.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
@@ -121,8 +122,9 @@ Finding check_real_time(const std::string& refusal) {
   return refusal.empty()
              ? real_time.ok("allowed")
              : real_time.warning("not allowed (" + refusal + ")",
-                                 "Allow it with LimitRTPRIO=40 in the service, or rtprio in "
-                                 "limits.conf: else a busy machine turns the platform slowly.");
+                                 "Allow it with LimitRTPRIO=" + std::to_string(real_time_priority) +
+                                     " in the service, or rtprio in limits.conf: else a busy "
+                                     "machine turns the platform slowly.");
 }
 
 }  // namespace octurn

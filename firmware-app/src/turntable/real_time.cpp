@@ -4,12 +4,6 @@
 #include <sched.h>
 
 namespace octurn {
-namespace {
-
-// Above every ordinary program, below the kernel's own threads, which have 50.
-constexpr int real_time_priority = 40;
-
-}  // namespace
 
 int ask_for_real_time_priority() {
   const sched_param parameters{.sched_priority = real_time_priority};

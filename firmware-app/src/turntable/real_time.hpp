@@ -2,11 +2,16 @@
 
 namespace octurn {
 
-/// Lets this thread run when its time has come, whatever else the system has to do.
-/// @return 0, or why the system does not allow it, as errno has it
+/// The SCHED_FIFO priority of the thread that makes the stepper's pulses: above every ordinary
+/// program, below the kernel's own threads, which have 50. Without CAP_SYS_NICE, the kernel refuses
+/// it unless RLIMIT_RTPRIO (LimitRTPRIO= of a systemd unit) is at least as high.
+inline constexpr int real_time_priority = 40;
+
+/// Gives the calling thread `real_time_priority`.
+/// @return 0, or the errno value of the kernel's refusal
 int ask_for_real_time_priority();
 
-/// Has this thread share the processors with every other again.
+/// Gives the calling thread the ordinary time-sharing policy (SCHED_OTHER) again.
 void give_up_real_time_priority();
 
 }  // namespace octurn

@@ -12,6 +12,7 @@
 #include "octurn/atomic_file.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
 
@@ -73,7 +74,7 @@ struct Value {
   double positive() const {
     const double result = number();
     if (result <= 0) {
-      malformed(quoted(name) + " is " + value.dump() + ", not above 0");
+      malformed(quoted(name) + " is not above 0");
     }
     return result;
   }
@@ -81,8 +82,7 @@ struct Value {
   int pixels() const {
     const double side = number();
     if (!value.is_number_integer() || side < 2 || side > max_side) {
-      malformed(quoted(name) + " is " + value.dump() + ", not a whole number from 2 to " +
-                std::to_string(max_side));
+      malformed(quoted(name) + " is not a whole number from 2 to " + std::to_string(max_side));
     }
     return value.get<int>();
   }
@@ -167,10 +167,7 @@ std::string read_bytes(const std::filesystem::path& file) {
 }  // namespace
 
 Scan parse_scan(std::string_view text) {
-  const json document = json::parse(text, nullptr, false);
-  if (document.is_discarded()) {
-    malformed("is not JSON");
-  }
+  const json document = parse_json(text, "scan-malformed", "scan.json");
   const Value root{document, ""};
   if (root.at("format").text() != "octurn-scan") {
     malformed("\"format\" is not \"octurn-scan\"");

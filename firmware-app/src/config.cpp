@@ -6,8 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "json_object.hpp"
 #include "octurn/error.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

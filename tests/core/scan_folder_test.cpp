@@ -217,13 +217,13 @@ TEST(ParseScan, RefusesWhatIsNoObject) {
   expect_refused("\xff\xfe", "not JSON");
 }
 
-TEST(ParseScan, SurvivesDeepNesting) {
+TEST(ParseScan, RefusesDeepNesting) {
   const std::string deep(100'000, '[');
   std::string closed = with("/sensor/width", "deep");
   closed.replace(closed.find("\"deep\""), 6, deep + std::string(deep.size(), ']'));
 
-  expect_refused(deep, "not JSON");
-  expect_refused(closed, "sensor.width");
+  expect_refused(deep, "nested more than 32 deep");
+  expect_refused(closed, "nested more than 32 deep");
 }
 
 TEST(ReadScan, SaysWhichFileIsMissing) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "json_object.hpp"
 #include "octurn/error.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
 namespace {

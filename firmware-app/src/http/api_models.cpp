@@ -5,8 +5,8 @@
 
 #include "http/api.hpp"
 #include "http/file_response.hpp"
-#include "json_object.hpp"
 #include "log.hpp"
+#include "octurn/json_object.hpp"
 #include "scan/model_stream.hpp"
 
 namespace octurn {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "json_object.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "json_object.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

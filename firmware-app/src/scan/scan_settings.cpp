@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "json_object.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
 

@@ -11,14 +11,15 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ratio>
 #include <system_error>
 #include <utility>
 
-#include "json_object.hpp"
 #include "log.hpp"
 #include "octurn/atomic_file.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "utc.hpp"
@@ -39,6 +40,8 @@ constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
 constexpr const char* lock_file = "lock";
+
+constexpr double most = std::numeric_limits<double>::max();
 
 // A 16-bit depth image that does not compress at all, and a fine model.
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
@@ -253,9 +256,15 @@ void ScanStore::remove(std::string_view id) const {
 fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
 
 double ScanStore::platform_angle_deg() const {
-  const json text = json::parse(read_text(platform_).value_or(""), nullptr, false);
-  const json angle = text.is_object() ? text.value("angle_deg", json()) : json();
-  return angle.is_number() && std::isfinite(angle.get<double>()) ? angle.get<double>() : 0;
+  try {
+    const json document =
+        parse_json(read_text(platform_).value_or(""), "platform-malformed", platform_.string());
+    return JsonObject(document, "platform-malformed", "")
+        .number("angle_deg", -most, most)
+        .value_or(0);
+  } catch (const Error&) {
+    return 0;  // as before the first move
+  }
 }
 
 void ScanStore::save_platform_angle_deg(double angle_deg) const {

@@ -15,10 +15,10 @@
 #include <utility>
 
 #include "file_descriptor.hpp"
-#include "json_object.hpp"
 #include "octurn/atomic_file.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

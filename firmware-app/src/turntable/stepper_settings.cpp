@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "json_object.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
 namespace {

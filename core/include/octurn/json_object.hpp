@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -43,7 +44,17 @@ class JsonObject {
   std::set<std::string, std::less<>> read_ = {};
 };
 
-/// Parses a JSON text. @throws Error of that code, which says that `what` is no JSON
+/// Arrays and objects inside one another that a document may have. Copying, comparing and writing
+/// a value recurse by its depth, on stacks as small as 100 KB.
+inline constexpr int max_json_depth = 32;
+
+/// Bytes of a document: 40,000 snapshots with a pose each. As values they take up to 16 times that.
+inline constexpr std::size_t max_json_bytes = std::size_t{16} << 20U;
+
+/// Parses a JSON text from outside. Every reader of JSON in the program goes through here.
+///
+/// @param what  the text's name in messages: "the body"
+/// @throws Error  of that code, if the text is not JSON, too deep or too large
 nlohmann::json parse_json(std::string_view text, const std::string& code, const std::string& what);
 
 }  // namespace octurn

@@ -1,4 +1,4 @@
-#include "json_object.hpp"
+#include "octurn/json_object.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -12,12 +12,38 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_quote = 60;  // of a value in a message, characters
+constexpr std::size_t max_quote = 60;  // of a value in a message, characters
 
+std::string ascii(const json& value) {
+  return value.dump(-1, ' ', true, json::error_handler_t::replace);
+}
+
+/// A scalar as it is, an array or object by its brackets: never recurses.
+std::string outlined(const json& value) {
+  if (!value.is_structured() || value.empty()) {
+    return ascii(value);
+  }
+  return value.is_array() ? "[...]" : "{...}";
+}
+
+/// The first elements of an array or object, outlined.
+std::string first_elements(const json& value) {
+  std::string text;
+  for (const auto& [key, element] : value.items()) {
+    text += text.empty() ? "" : ",";
+    text += (value.is_object() ? ascii(key) + ":" : "") + outlined(element);
+    if (text.size() > max_quote) {
+      break;
+    }
+  }
+  return value.is_array() ? "[" + text + "]" : "{" + text + "}";
+}
+
+/// The beginning of a value, for messages.
 std::string shown(const json& value) {
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > longest_quote) {
-    text.resize(longest_quote);
+  std::string text = value.is_structured() ? first_elements(value) : ascii(value);
+  if (text.size() > max_quote) {
+    text.resize(max_quote);
     text += "...";
   }
   return text;
@@ -109,11 +135,23 @@ void JsonObject::refuse(std::string_view key, const json& value, const std::stri
 
 std::string JsonObject::quoted(std::string_view key) const {
   const std::string dotted = name_.empty() ? std::string(key) : name_ + "." + std::string(key);
-  return json(dotted).dump(-1, ' ', true, json::error_handler_t::replace);
+  return ascii(dotted);
 }
 
 json parse_json(std::string_view text, const std::string& code, const std::string& what) {
-  json document = json::parse(text, nullptr, false);
+  if (text.size() > max_json_bytes) {
+    throw Error(code, what + " has " + std::to_string(text.size()) + " bytes: must have at most " +
+                          std::to_string(max_json_bytes));
+  }
+  const auto expect_shallow = [&](int depth, json::parse_event_t event, const json& /*value*/) {
+    const bool opens =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (opens && depth >= max_json_depth) {
+      throw Error(code, what + " is nested more than " + std::to_string(max_json_depth) + " deep");
+    }
+    return true;
+  };
+  json document = json::parse(text, expect_shallow, false);
   if (document.is_discarded()) {
     throw Error(code, what + " is not JSON");
   }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
@@ -14,6 +12,7 @@
 #include "octurn/error.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/platform_pose.hpp"
+#include "octurn/read_file.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -22,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int max_side = 8192;  // pixels; larger images than any depth sensor's are refused
-constexpr std::uintmax_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
+constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
 
 [[noreturn]] void malformed(const std::string& what) {
   throw Error("scan-malformed", "scan.json: " + what,
@@ -155,13 +154,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file, error) > max_file_bytes) {
     throw Error("scan-malformed", file.string() + ": too large for a file of a scan");
   }
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) {
-    throw Error("read-failed", file.string() + ": cannot be read",
-                "Check that this program may read it.");
-  }
-  return bytes;
+  return read_regular_file(file, max_file_bytes).value_or("");
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <csignal>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "octurn/scan_folder.hpp"
@@ -215,6 +217,100 @@ TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {
     put(folder.path() / "platform.json", text);
     EXPECT_EQ(ScanStore(folder.path()).platform_angle_deg(), 0) << text;
   }
+}
+
+/// What cannot be read in place of a small file, each put there by a call.
+struct Unreadable {
+  const char* what;
+  std::function<void(const fs::path& file)> put;
+};
+
+const std::vector<Unreadable>& unreadable_files() {
+  static const std::vector<Unreadable> all{
+      // Reading a process's own memory at 0 gives EIO, as a bad sector does.
+      {"a bad sector", [](const fs::path& file) { fs::create_symlink("/proc/self/mem", file); }},
+      {"a folder", [](const fs::path& file) { fs::create_directory(file); }},
+      {"a FIFO", [](const fs::path& file) { ASSERT_EQ(::mkfifo(file.c_str(), 0644), 0); }},
+      {"a loop of links", [](const fs::path& file) { fs::create_symlink(file, file); }},
+      {"a huge file", [](const fs::path& file) { put(file, std::string(2U << 20U, ' ')); }}};
+  return all;
+}
+
+TEST(ScanStore, ListsAScanWhoseRecordCannotBeReadAsFailedAndRemovesIt) {
+  for (const Unreadable& unreadable : unreadable_files()) {
+    SCOPED_TRACE(unreadable.what);
+    const TemporaryFolder folder;
+    std::string bad;
+    std::string good;
+    leave_behind(folder.path(), [&](const ScanStore& store) {
+      good = store.create({}).id;
+      bad = store.create({}).id;
+      fs::remove(store.folder(bad) / "job.json");
+      unreadable.put(store.folder(bad) / "job.json");
+    });
+    const ScanStore store(folder.path());
+    const std::vector<Job> jobs = store.list();
+    ASSERT_EQ(jobs.size(), 2U);
+    EXPECT_EQ(jobs[0].id, bad);
+    EXPECT_EQ(jobs[0].state, JobState::failed);
+    EXPECT_EQ(jobs[0].failure->code, "read-failed");
+    EXPECT_EQ(jobs[1].id, good);
+    EXPECT_EQ(jobs[1].state, JobState::interrupted);
+    EXPECT_FALSE(store.newest_finished());
+    store.remove(bad);
+    EXPECT_EQ(store.list().size(), 1U);
+  }
+}
+
+TEST(ScanStore, TakesAScanWhoseNameCannotBeReadAsUnnamed) {
+  for (const Unreadable& unreadable : unreadable_files()) {
+    SCOPED_TRACE(unreadable.what);
+    const TemporaryFolder folder;
+    leave_behind(folder.path(), [&](const ScanStore& store) {
+      unreadable.put(store.folder(store.create({}).id) / "name.txt");
+    });
+    const ScanStore store(folder.path());
+    ASSERT_EQ(store.list().size(), 1U);
+    EXPECT_EQ(store.list()[0].state, JobState::interrupted);
+    EXPECT_EQ(store.list()[0].name, "");
+  }
+}
+
+TEST(ScanStore, StartsWithAPlatformFileThatCannotBeRead) {
+  for (const Unreadable& unreadable : unreadable_files()) {
+    SCOPED_TRACE(unreadable.what);
+    const TemporaryFolder folder;
+    unreadable.put(folder.path() / "platform.json");
+    EXPECT_EQ(ScanStore(folder.path()).platform_angle_deg(), 0);
+  }
+}
+
+TEST(ScanStore, CountsNoSnapshotsWhereScanJsonCannotBeRead) {
+  for (const Unreadable& unreadable : unreadable_files()) {
+    SCOPED_TRACE(unreadable.what);
+    const TemporaryFolder folder;
+    leave_behind(folder.path(), [&](const ScanStore& store) {
+      unreadable.put(store.folder(store.create({}).id) / "scan.json");
+    });
+    const ScanStore store(folder.path());
+    EXPECT_EQ(store.list().at(0).state, JobState::interrupted);
+    EXPECT_EQ(store.list().at(0).snapshots_done, 0);
+  }
+}
+
+TEST(ScanStore, RecoversAndSavesTextThatIsNoUtf8) {
+  const TemporaryFolder folder;
+  leave_behind(folder.path(), [&](const ScanStore& store) {
+    put(store.folder(store.create({}).id) / "name.txt", "abc\xff");
+  });
+  const ScanStore store(folder.path());
+  Job job = store.list().at(0);
+  EXPECT_EQ(job.state, JobState::interrupted);
+  job.state = JobState::failed;
+  job.failure = Failure{.code = "sensor-failed", .detail = "no such sensor: rec\xff\xc3"};
+  store.save(job);
+  EXPECT_EQ(store.find(job.id)->state, JobState::failed);
+  EXPECT_TRUE(store.find(job.id)->failure->detail.starts_with("no such sensor: rec"));
 }
 
 TEST(ScanStore, BelongsToOneProcessAtATime) {

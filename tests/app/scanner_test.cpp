@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <utility>
 
 #include "app/few_snapshots.hpp"
@@ -136,6 +137,55 @@ TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
   const Job job = scan(scanner, few_snapshots());
   EXPECT_EQ(job.state, JobState::paused);
   EXPECT_EQ(job.failure->code, "sensor-missing");
+}
+
+/// What a device's driver throws that is no Error.
+enum class Thrown { exception, number };
+
+[[noreturn]] void throw_one(Thrown thrown) {
+  if (thrown == Thrown::number) {
+    throw 5;  // NOLINT: what a library of others may do
+  }
+  throw std::runtime_error("no such thing: \xff");
+}
+
+TEST_F(ScannerTest, TakesWhateverASensorThrowsAsItsFailure) {
+  for (const Thrown thrown : {Thrown::exception, Thrown::number}) {
+    RigOptions options = rig();
+    options.open_sensor = [=](const std::string&) -> std::unique_ptr<DepthSensor> {
+      throw_one(thrown);
+    };
+    Scanner scanner(options, {}, store_);
+    const Status status = wait_until(
+        scanner, [](const Status& s) { return s.sensor.state == DeviceStatus::State::failed; });
+    EXPECT_EQ(status.sensor.failure.code, "internal");
+    const Job job = scan(scanner, few_snapshots());
+    EXPECT_EQ(job.state, JobState::failed);
+    EXPECT_EQ(store_.find(job.id)->state, JobState::failed);
+  }
+}
+
+TEST_F(ScannerTest, TakesWhateverATurntableThrowsAsItsFailure) {
+  RigOptions options = rig();
+  options.stepper = StepperSettings{};
+  options.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
+    throw_one(Thrown::exception);
+  };
+  Scanner scanner(options, {}, store_);
+  const Status status = wait_until(
+      scanner, [](const Status& s) { return s.turntable.state == DeviceStatus::State::failed; });
+  EXPECT_EQ(status.turntable.failure.code, "internal");
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::failed);
+}
+
+TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {
+  RigOptions options = rig();
+  options.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
+    throw Error("recording-malformed", "recording.json: is missing");
+  };
+  Scanner scanner(options, {}, store_);
+  EXPECT_EQ(code_thrown_by([&] { scanner.view(); }), "recording-malformed");
+  EXPECT_EQ(scanner.status().sensor.failure.detail, "recording.json: is missing");
 }
 
 TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {

@@ -140,6 +140,19 @@ Failure failure_of(const Error& error) {
   return {.code = error.code(), .detail = error.what(), .hint = error.hint()};
 }
 
+Failure current_failure() {
+  const std::string hint = "Please report this.";
+  try {
+    throw;
+  } catch (const Error& error) {
+    return failure_of(error);
+  } catch (const std::exception& error) {
+    return {.code = "internal", .detail = error.what(), .hint = hint};
+  } catch (...) {
+    return {.code = "internal", .detail = "an unknown exception", .hint = hint};
+  }
+}
+
 bool is_device_fault(const Failure& failure) {
   return failure.code.starts_with("sensor-") || failure.code.starts_with("turntable-");
 }

@@ -39,6 +39,9 @@ struct Failure {
 
 Failure failure_of(const Error& error);
 
+/// The exception that is being handled; one that is no Error becomes "internal". Only in a `catch`.
+Failure current_failure();
+
 /// Whether the sensor or the turntable is to blame: what a person can mend while the scan waits.
 bool is_device_fault(const Failure& failure);
 

@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <ratio>
@@ -20,6 +18,7 @@
 #include "log.hpp"
 #include "octurn/atomic_file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/read_file.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "utc.hpp"
@@ -42,6 +41,10 @@ constexpr std::string_view removed = ".removed-";
 constexpr const char* lock_file = "lock";
 
 constexpr double most = std::numeric_limits<double>::max();
+
+constexpr std::size_t max_job_bytes = std::size_t{1} << 20U;  // a hundred times what is written
+constexpr std::size_t max_name_bytes = 4096;
+constexpr std::size_t max_platform_bytes = 4096;
 
 // A 16-bit depth image that does not compress at all, and a fine model.
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
@@ -72,20 +75,24 @@ Moment moment_of(const std::string& id) {
            : "Check that this program may write there, or choose another folder with --data.");
 }
 
-std::optional<std::string> read_text(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    return std::nullopt;
+/// The names in a folder; those that could be read, if the disk fails meanwhile.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  while (!error && entry != fs::directory_iterator()) {
+    names.push_back(entry->path().filename().string());
+    entry.increment(error);
   }
-  return std::string{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return names;
 }
 
 /// Removes what begins with a dot: temporary files, and folders that were not finished.
 void clear_unfinished(const fs::path& folder) {
   std::error_code ignored;  // what cannot be cleared away does no harm
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().filename().string().starts_with('.')) {
-      fs::remove_all(entry.path(), ignored);
+  for (const std::string& name : names_in(folder)) {
+    if (name.starts_with('.')) {
+      fs::remove_all(folder / name, ignored);
     }
   }
 }
@@ -93,8 +100,28 @@ void clear_unfinished(const fs::path& folder) {
 int stored_snapshots(const fs::path& folder) {
   try {
     return static_cast<int>(read_scan(folder).shots.size());
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     return 0;  // it ended before the first snapshot, which writes the first scan.json
+  }
+}
+
+/// As `job.json` has it. Names and messages may hold bytes that are no UTF-8: those are replaced.
+std::string text_of(const Job& job) {
+  return json_of(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+/// @throws Error "job-malformed", "read-failed"
+Job read_job(const fs::path& folder) {
+  return job_from(parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
+                             "job-malformed", "the file"));
+}
+
+/// What a person called a scan; empty if that cannot be read, as the scan itself can be.
+std::string read_name(const fs::path& folder) {
+  try {
+    return read_regular_file(folder / "name.txt", max_name_bytes).value_or("");
+  } catch (const Error&) {
+    return "";
   }
 }
 
@@ -176,7 +203,7 @@ Job ScanStore::create(const ScanSettings& settings) const {
   if (error) {
     fail(beginning, "make the folder", error);
   }
-  write_file(beginning / "job.json", json_of(job).dump(1) + "\n");
+  write_file(beginning / "job.json", text_of(job));
   fs::rename(beginning, folder(job.id), error);
   if (error) {
     fail(folder(job.id), "make the folder", error);
@@ -186,7 +213,7 @@ Job ScanStore::create(const ScanSettings& settings) const {
 }
 
 void ScanStore::save(const Job& job) const {
-  write_file(folder(job.id) / "job.json", json_of(job).dump(1) + "\n");
+  write_file(folder(job.id) / "job.json", text_of(job));
 }
 
 std::vector<Job> ScanStore::list() const {
@@ -200,23 +227,24 @@ std::vector<Job> ScanStore::list() const {
 }
 
 std::optional<Job> ScanStore::find(std::string_view id) const {
-  if (!is_scan_id(id) || !fs::is_directory(folder(id))) {
+  std::error_code unknown;
+  if (!is_scan_id(id) || !fs::is_directory(folder(id), unknown)) {
     return std::nullopt;
   }
   Job job;
   try {
-    job = job_from(
-        parse_json(read_text(folder(id) / "job.json").value_or(""), "job-malformed", "the file"));
-  } catch (const Error& error) {
+    job = read_job(folder(id));
+  } catch (const std::exception& error) {
+    job = {};
     job.state = JobState::failed;
     job.phase = Phase::done;
     job.failure =
-        Failure{.code = "job-malformed",
+        Failure{.code = current_failure().code == "read-failed" ? "read-failed" : "job-malformed",
                 .detail = std::string("job.json: ") + error.what(),
                 .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
   }
   job.id = id;
-  job.name = read_text(folder(id) / "name.txt").value_or("");
+  job.name = read_name(folder(id));
   return job;
 }
 
@@ -258,11 +286,13 @@ fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
 double ScanStore::platform_angle_deg() const {
   try {
     const json document =
-        parse_json(read_text(platform_).value_or(""), "platform-malformed", platform_.string());
+        parse_json(read_regular_file(platform_, max_platform_bytes).value_or("{}"),
+                   "platform-malformed", platform_.string());
     return JsonObject(document, "platform-malformed", "")
         .number("angle_deg", -most, most)
         .value_or(0);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    log::warning("store", error.what());
     return 0;  // as before the first move
   }
 }
@@ -275,9 +305,8 @@ std::uint64_t ScanStore::free_bytes() const { return free_bytes_in(scans_); }
 
 std::vector<std::string> ScanStore::ids_newest_first() const {
   std::vector<std::string> ids;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(scans_, error)) {
-    if (std::string name = entry.path().filename().string(); is_scan_id(name)) {
+  for (std::string& name : names_in(scans_)) {
+    if (is_scan_id(name)) {
       ids.push_back(std::move(name));
     }
   }

@@ -68,9 +68,10 @@ void Scanner::look(Rig& rig, const std::stop_token& stop) {
       board_.set_view(timed->frame, sensor.intrinsics().depth_unit);
       board_.set_sensor_ready(sensor.name());
     }
-  } catch (const Error& error) {
+  } catch (...) {
+    const Failure failure = current_failure();
     rig.close_sensor();
-    board_.set_failed(failure_of(error));
+    board_.set_sensor_failed(failure);
     std::unique_lock lock(mutex_);
     wake_.wait_for(lock, stop, retry_interval, [&] { return order_ || loan_ != nullptr; });
   }
@@ -80,8 +81,8 @@ void Scanner::look_for_turntable(Rig& rig) {
   try {
     rig.turntable();
     board_.set_turntable_ready();
-  } catch (const Error& error) {
-    board_.set_failed(failure_of(error));
+  } catch (...) {
+    board_.set_turntable_failed(current_failure());
   }
 }
 
@@ -167,19 +168,16 @@ void Scanner::attempt(Job& job, Rig& rig, const std::stop_token& stop) {
                                   int snapshots) { board_.set_preview(job.id, seen, snapshots); }});
     job.state = job.model ? JobState::finished : JobState::cancelled;
     job.failure.reset();
-  } catch (const Error& error) {
-    job.failure = failure_of(error);
+  } catch (...) {
+    job.failure = current_failure();
     job.state = is_device_fault(*job.failure) ? JobState::paused : JobState::failed;
-    board_.set_failed(*job.failure);
-    if (error.code().starts_with("sensor-")) {
+    if (job.failure->code.starts_with("sensor-")) {
+      board_.set_sensor_failed(*job.failure);
       rig.close_sensor();
-    } else if (error.code().starts_with("turntable-")) {
+    } else if (job.failure->code.starts_with("turntable-")) {
+      board_.set_turntable_failed(*job.failure);
       rig.close_turntable();
     }
-  } catch (const std::exception& error) {
-    job.state = JobState::failed;
-    job.failure =
-        Failure{.code = "internal", .detail = error.what(), .hint = "Please report this."};
   }
   job.snapshots_done = board_.latest_status().get()->job->snapshots_done;
 }
@@ -217,8 +215,8 @@ void Scanner::end_loan() {
 void Scanner::let_go(Rig& rig) {
   try {
     rig.release_turntable();
-  } catch (const Error& error) {
-    board_.set_failed(failure_of(error));
+  } catch (...) {
+    board_.set_turntable_failed(current_failure());
     rig.close_turntable();  // without its lines the motor is off too
   }
   save_platform_angle(rig.platform_angle_deg());
@@ -228,8 +226,8 @@ void Scanner::let_go(Rig& rig) {
 void Scanner::save_platform_angle(double angle_deg) {
   try {
     store_.save_platform_angle_deg(angle_deg);
-  } catch (const Error& error) {
-    log::warning("scanner", error.what());
+  } catch (...) {
+    log::warning("scanner", current_failure().detail);
   }
 }
 
@@ -245,9 +243,9 @@ void Scanner::finish(Job job) {
   const std::lock_guard lock(mutex_);
   try {
     store_.save(job);
-  } catch (const Error& error) {
+  } catch (...) {
     // On the disk it still runs, and the next start will call it interrupted.
-    log::error("scanner", error.what());
+    log::error("scanner", current_failure().detail);
   }
   board_.set_outcome(job);
   order_.reset();

@@ -22,6 +22,14 @@ DeviceStatus::State state_for(const std::string& code) {
   return code.ends_with("-missing") ? DeviceStatus::State::missing : DeviceStatus::State::failed;
 }
 
+void set_failed(DeviceStatus& device, const Failure& failure) {
+  if (device.failure.detail != failure.detail) {
+    log::warning("scanner", failure.detail);
+  }
+  device.state = state_for(failure.code);
+  device.failure = failure;
+}
+
 }  // namespace
 
 nlohmann::json json_of(const DeviceStatus& device) {
@@ -117,22 +125,13 @@ void StatusBoard::set_turntable_ready() {
   });
 }
 
-void StatusBoard::set_failed(const Failure& failure) {
-  if (!is_device_fault(failure)) {
-    return;  // a disk or a setting
-  }
-  const bool sensor = failure.code.starts_with("sensor-");
-  if (sensor) {
-    view_.set({.time = Clock::now(), .failure = failure});
-  }
-  status_.update([&](Status& status) {
-    DeviceStatus& device = sensor ? status.sensor : status.turntable;
-    if (device.failure.detail != failure.detail) {
-      log::warning("scanner", failure.detail);
-    }
-    device.state = state_for(failure.code);
-    device.failure = failure;
-  });
+void StatusBoard::set_sensor_failed(const Failure& failure) {
+  view_.set({.time = Clock::now(), .failure = failure});
+  status_.update([&](Status& status) { set_failed(status.sensor, failure); });
+}
+
+void StatusBoard::set_turntable_failed(const Failure& failure) {
+  status_.update([&](Status& status) { set_failed(status.turntable, failure); });
 }
 
 void StatusBoard::set_view(const DepthFrame& frame, double depth_unit) {

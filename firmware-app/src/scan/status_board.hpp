@@ -77,8 +77,9 @@ class StatusBoard {
   void set_sensor_ready(const std::string& name);
   void set_turntable_ready();
 
-  /// Tells of the device that the failure is of, if it is of one.
-  void set_failed(const Failure& failure);
+  /// Why the sensor, or the turntable, cannot be used.
+  void set_sensor_failed(const Failure& failure);
+  void set_turntable_failed(const Failure& failure);
 
   void set_view(const DepthFrame& frame, double depth_unit);
   void set_preview(const std::string& id, const Reconstruction& seen, int snapshots);

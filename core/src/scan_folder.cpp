@@ -1,7 +1,6 @@
 #include "octurn/scan_folder.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -23,125 +22,96 @@ using nlohmann::json;
 constexpr int max_side = 8192;  // pixels; larger images than any depth sensor's are refused
 constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
 
-[[noreturn]] void malformed(const std::string& what) {
-  throw Error("scan-malformed", "scan.json: " + what,
-              "The folder is not a scan that this version can read.");
-}
-
-std::string quoted(const std::string& key) { return "\"" + key + "\""; }
+constexpr const char* malformed = "scan-malformed";
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
-/// A value of scan.json and the dotted name of where it stands, for messages.
-struct Value {
-  const json& value;
-  std::string name;
-
-  Value at(const std::string& key) const {
-    if (!value.is_object()) {
-      malformed(quoted(name) + " is no object");
-    }
-    const auto found = value.find(key);
-    const std::string inner = name.empty() ? key : name + "." + key;
-    if (found == value.end()) {
-      malformed(quoted(inner) + " is missing");
-    }
-    return {*found, inner};
+double positive_in(JsonObject& keys, std::string_view key) {
+  const JsonValue value = keys.at(key);
+  if (value.number() <= 0) {
+    value.refuse("above 0");
   }
-
-  Value at(std::size_t index) const {
-    return {value.at(index), name + "[" + std::to_string(index) + "]"};
-  }
-
-  void expect_array(std::size_t size) const {
-    if (!value.is_array() || value.size() != size) {
-      malformed(quoted(name) + " is no array of " + std::to_string(size));
-    }
-  }
-
-  double number() const {
-    if (!value.is_number()) {
-      malformed(quoted(name) + " is no number");
-    }
-    const auto number = value.get<double>();
-    if (!std::isfinite(number)) {
-      malformed(quoted(name) + " is not finite");
-    }
-    return number;
-  }
-
-  double positive() const {
-    const double result = number();
-    if (result <= 0) {
-      malformed(quoted(name) + " is not above 0");
-    }
-    return result;
-  }
-
-  int pixels() const {
-    const double side = number();
-    if (!value.is_number_integer() || side < 2 || side > max_side) {
-      malformed(quoted(name) + " is not a whole number from 2 to " + std::to_string(max_side));
-    }
-    return value.get<int>();
-  }
-
-  std::string text() const {
-    if (!value.is_string()) {
-      malformed(quoted(name) + " is no text");
-    }
-    return value.get<std::string>();
-  }
-
-  Eigen::Vector3d point() const {
-    expect_array(3);
-    return {at(0).number(), at(1).number(), at(2).number()};
-  }
-};
-
-Intrinsics intrinsics_of(const Value& sensor) {
-  return {.width = sensor.at("width").pixels(),
-          .height = sensor.at("height").pixels(),
-          .fx = sensor.at("fx").positive(),
-          .fy = sensor.at("fy").positive(),
-          .cx = sensor.at("cx").number(),
-          .cy = sensor.at("cy").number(),
-          .depth_unit = sensor.at("depth_unit_m").positive()};
+  return value.number();
 }
 
-Eigen::Isometry3d pose_of(const Value& matrix) {
+Intrinsics intrinsics_from(JsonObject& sensor) {
+  return {.width = sensor.at("width").whole_number(2, max_side),
+          .height = sensor.at("height").whole_number(2, max_side),
+          .fx = positive_in(sensor, "fx"),
+          .fy = positive_in(sensor, "fy"),
+          .cx = sensor.at("cx").number(),
+          .cy = sensor.at("cy").number(),
+          .depth_unit = positive_in(sensor, "depth_unit_m")};
+}
+
+Eigen::Isometry3d pose_from(const JsonValue& matrix) {
   Eigen::Matrix4d pose;
-  matrix.expect_array(4);
-  for (int row = 0; row < 4; ++row) {
-    const Value values = matrix.at(static_cast<std::size_t>(row));
-    values.expect_array(4);
-    for (int column = 0; column < 4; ++column) {
-      pose(row, column) = values.at(static_cast<std::size_t>(column)).number();
+  int row = 0;
+  for (const JsonValue& values : matrix.elements(4)) {
+    int column = 0;
+    for (const JsonValue& value : values.elements(4)) {
+      pose(row, column++) = value.number();
     }
+    ++row;
   }
   if (!is_rigid(pose)) {
-    malformed(quoted(matrix.name) + " is no rotation and translation");
+    matrix.refuse("a rotation and a translation");
   }
   return Eigen::Isometry3d(pose);
 }
 
-Box clip_of(const Value& clip) {
-  Box box{.min = clip.at("min").point(), .max = clip.at("max").point()};
+Eigen::Vector3d point_from(const JsonValue& array) {
+  Eigen::Vector3d point;
+  int axis = 0;
+  for (const JsonValue& value : array.elements(3)) {
+    point[axis++] = value.number();
+  }
+  return point;
+}
+
+Box clip_from(const JsonValue& clip) {
+  JsonObject keys(clip);
+  const Box box{.min = point_from(keys.at("min")), .max = point_from(keys.at("max"))};
   if ((box.min.array() >= box.max.array()).any()) {
-    malformed(quoted(clip.name) + " is empty: its \"min\" is not below its \"max\"");
+    clip.refuse("a box: \"min\" below \"max\" on each axis");
   }
   return box;
 }
 
-Shot shot_of(const Value& shot) {
-  const Value file = shot.at("file");
+Shot shot_from(const JsonValue& shot) {
+  JsonObject keys(shot);
+  const JsonValue file = keys.at("file");
   const std::string text = file.text();
   const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
   if (path.empty() || path.is_absolute() || *path.begin() == ".." || !path.has_filename() ||
       path == "." || std::ranges::any_of(text, is_control)) {
-    malformed(quoted(file.name) + " is " + file.value.dump() + ", not a file in the scan's folder");
+    file.refuse("a file in the scan's folder");
   }
-  return {.file = text, .angle = radians_from_degrees(shot.at("angle_deg").number())};
+  return {.file = text, .angle = radians_from_degrees(keys.at("angle_deg").number())};
+}
+
+Scan scan_from(const json& document) {
+  JsonObject root(document, malformed, "");
+  if (const JsonValue format = root.at("format"); format.text() != "octurn-scan") {
+    format.refuse("\"octurn-scan\"");
+  }
+  if (const JsonValue version = root.at("version"); version.number() != 1) {
+    version.refuse("1, which this program reads");
+  }
+  JsonObject sensor(root.at("sensor"));
+  JsonObject calibration(root.at("calibration"));
+  Scan scan{.sensor_name = sensor.at("name").text(),
+            .intrinsics = intrinsics_from(sensor),
+            .platform_from_sensor = pose_from(calibration.at("platform_from_sensor")),
+            .clip = clip_from(root.at("clip_m")),
+            .shots = {}};
+  for (const JsonValue& shot : root.at("snapshots").elements()) {
+    scan.shots.push_back(shot_from(shot));
+  }
+  if (scan.shots.empty()) {
+    throw Error("scan-empty", "\"snapshots\" is empty: there is nothing to reconstruct");
+  }
+  return scan;
 }
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -152,7 +122,7 @@ std::string read_bytes(const std::filesystem::path& file) {
                 "Name a folder that holds a whole scan.");
   }
   if (std::filesystem::file_size(file, error) > max_file_bytes) {
-    throw Error("scan-malformed", file.string() + ": too large for a file of a scan");
+    throw Error(malformed, file.string() + ": too large for a file of a scan");
   }
   return read_regular_file(file, max_file_bytes).value_or("");
 }
@@ -160,32 +130,13 @@ std::string read_bytes(const std::filesystem::path& file) {
 }  // namespace
 
 Scan parse_scan(std::string_view text) {
-  const json document = parse_json(text, "scan-malformed", "scan.json");
-  const Value root{document, ""};
-  if (root.at("format").text() != "octurn-scan") {
-    malformed("\"format\" is not \"octurn-scan\"");
+  try {
+    return scan_from(parse_json(text, malformed, "it"));
+  } catch (const Error& error) {
+    throw Error(
+        error.code(), std::string("scan.json: ") + error.what(),
+        error.code() == malformed ? "The folder is not a scan that this version can read." : "");
   }
-  if (const double version = root.at("version").number(); version != 1) {
-    malformed("\"version\" is " + json(version).dump() + "; this program reads version 1");
-  }
-
-  const Value sensor = root.at("sensor");
-  Scan scan{.sensor_name = sensor.at("name").text(),
-            .intrinsics = intrinsics_of(sensor),
-            .platform_from_sensor = pose_of(root.at("calibration").at("platform_from_sensor")),
-            .clip = clip_of(root.at("clip_m")),
-            .shots = {}};
-  const Value shots = root.at("snapshots");
-  if (!shots.value.is_array()) {
-    malformed("\"snapshots\" is no array");
-  }
-  for (std::size_t i = 0; i < shots.value.size(); ++i) {
-    scan.shots.push_back(shot_of(shots.at(i)));
-  }
-  if (scan.shots.empty()) {
-    throw Error("scan-empty", "scan.json: \"snapshots\" is empty: there is nothing to reconstruct");
-  }
-  return scan;
 }
 
 Scan read_scan(const std::filesystem::path& folder) {

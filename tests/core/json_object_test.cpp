@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "octurn/error.hpp"
@@ -94,6 +95,84 @@ TEST(JsonObject, QuotesADeepValueOnASmallStack) {
         error_thrown_by([&] { JsonObject(object, "bad-text", "").refuse("key", deep, "shallow"); });
     EXPECT_STREQ(error.what(), R"("key" is [[...]]: must be shallow)");
   });
+}
+
+/// What reading a value of `text` says.
+template <typename Read>
+std::string refusal(const char* text, const Read& read) {
+  const json document = parsed_text(text);
+  return error_thrown_by([&] {
+           JsonObject keys(document, "bad-text", "");
+           read(keys);
+         })
+      .what();
+}
+
+TEST(JsonObject, ReadsEachKindOfValue) {
+  const json document =
+      parsed_text(R"({"n": 2.5, "w": -3, "f": true, "t": "é", "a": [1, 2], "o": {"k": 7}})");
+  JsonObject keys(document, "bad-text", "");
+  EXPECT_EQ(keys.at("n").number(2.5, 2.5), 2.5);
+  EXPECT_EQ(keys.at("w").whole_number(-3, -3), -3);
+  EXPECT_EQ(keys.at("w").number(), -3.0);
+  EXPECT_TRUE(keys.at("f").flag());
+  EXPECT_EQ(keys.at("t").text(), "é");
+  EXPECT_EQ(keys.at("a").elements().at(1).whole_number(0, 9), 2);
+  EXPECT_EQ(keys.number("n", 0, 9), 2.5);
+  EXPECT_EQ(keys.text("none"), std::nullopt);
+  EXPECT_FALSE(keys.value("none"));
+  JsonObject inner(keys.at("o"));
+  EXPECT_EQ(inner.whole_number("k", 7, 7), 7);
+  EXPECT_NO_THROW(keys.refuse_unread());
+}
+
+TEST(JsonObject, NamesTheKeyThatIsMissingByWhereItStands) {
+  EXPECT_EQ(refusal("{}", [](JsonObject& keys) { keys.at("port"); }), "\"port\" is missing");
+  EXPECT_EQ(refusal(R"({"a": {"b": [{}]}})",
+                    [](JsonObject& keys) {
+                      JsonObject inner(keys.at("a"));
+                      JsonObject(inner.at("b").elements().at(0)).at("c");
+                    }),
+            "\"a.b[0].c\" is missing");
+}
+
+TEST(JsonObject, SaysWhatAValueMustBe) {
+  const char* const text = R"({"k": [0, "x"], "o": {"n": 1.5}})";
+  const auto on_array = [&](const auto& read) {
+    return refusal(text, [&](JsonObject& keys) { read(keys.at("k")); });
+  };
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.number(); }),
+            R"("k" is [0,"x"]: must be a number)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.text(); }), R"("k" is [0,"x"]: must be text)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.flag(); }),
+            R"("k" is [0,"x"]: must be true or false)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.elements(3); }),
+            R"("k" is [0,"x"]: must be an array of 3)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.elements().at(1).number(1, 2); }),
+            R"("k[1]" is "x": must be a number from 1 to 2)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.elements().at(0).whole_number(1, 2); }),
+            R"("k[0]" is 0: must be a whole number from 1 to 2)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { JsonObject object(k); }),
+            R"("k" is [0,"x"]: must be an object)");
+  EXPECT_EQ(
+      refusal(text, [](JsonObject& keys) { JsonObject(keys.at("o")).at("n").whole_number(1, 2); }),
+      R"("o.n" is 1.5: must be a whole number from 1 to 2)");
+}
+
+TEST(JsonObject, RefusesNumbersThatAreNone) {
+  const json nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_STREQ(error_thrown_by([&] { JsonValue(nan, "k", "bad-text").number(0, 1); }).what(),
+               R"("k" is nan: must be a number from 0 to 1)");
+}
+
+TEST(JsonObject, RefusesKeysThatNobodyHasRead) {
+  const json document = parsed_text(R"({"port": 80, "prot": 81})");
+  JsonObject keys(document, "bad-text", "");
+  keys.at("port");
+  keys.value("host");
+  const Error error = error_thrown_by([&] { keys.refuse_unread(); });
+  EXPECT_STREQ(error.what(), "\"prot\": unknown key");
+  EXPECT_EQ(error.hint(), "The keys are: host, port.");
 }
 
 }  // namespace

@@ -212,8 +212,8 @@ TEST(ParseScan, RefusesEveryTruncatedTextAndTrailingBytes) {
 }
 
 TEST(ParseScan, RefusesWhatIsNoObject) {
-  expect_refused("[]", "no object");
-  expect_refused("7", "no object");
+  expect_refused("[]", "must be an object");
+  expect_refused("7", "must be an object");
   expect_refused("\xff\xfe", "not JSON");
 }
 

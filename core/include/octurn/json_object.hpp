@@ -6,27 +6,66 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace octurn {
 
-/// A JSON object from outside: its keys are read one by one, checked, and those that nobody has
-/// read are refused at the end. Every message names the key, its value and what it must be.
+/// A value of a JSON document from outside, and where it stands. Every message names that place,
+/// the value and what it must be: `"sensor.width" is 0: must be a whole number from 2 to 8192`.
+class JsonValue {
+ public:
+  /// @param value  has to outlive this
+  /// @param name   of its place, "sensor.width" or "snapshots[1]"; empty for the whole document
+  /// @param code   of the errors that this value throws, such as "bad-settings"
+  JsonValue(const nlohmann::json& value, std::string name, std::string code);
+
+  const nlohmann::json& json() const { return value_; }
+  const std::string& name() const { return name_; }
+  const std::string& code() const { return code_; }
+
+  /// The value. @throws Error  if it is of another kind or out of its range
+  double number() const;
+  double number(double min, double max) const;
+  int whole_number(int min, int max) const;
+  bool flag() const;
+  std::string text() const;
+
+  /// An array's elements, named "name[0]" and so on. @throws Error  if it is no array
+  std::vector<JsonValue> elements() const;
+  /// The same, if there are so many of them.
+  std::vector<JsonValue> elements(std::size_t count) const;
+
+  /// @param must  completes "... is VALUE: must be"
+  [[noreturn]] void refuse(const std::string& must) const;
+
+ private:
+  const nlohmann::json& value_;
+  std::string name_;
+  std::string code_;
+};
+
+/// A JSON object from outside: its keys are read one by one, and those that nobody has read can be
+/// refused at the end.
 class JsonObject {
  public:
-  /// @param code  of the errors that this object throws, such as "bad-settings"
-  /// @param name  of the object in messages; empty for the outermost
   /// @throws Error  if it is no object
+  explicit JsonObject(JsonValue object);
   JsonObject(const nlohmann::json& object, std::string code, std::string name);
 
-  /// The value of that key, or null if it is not there.
-  const nlohmann::json* find(std::string_view key);
+  /// The value of a key that must be there. @throws Error  if it is missing
+  JsonValue at(std::string_view key);
 
-  /// The value of that key, or nothing if it is not there.
-  /// @throws Error  if it is of another kind or out of its range
-  std::optional<double> number(std::string_view key, double least, double most);
-  std::optional<int> whole_number(std::string_view key, int least, int most);
+  /// The value of a key, or nothing if it is not there.
+  std::optional<JsonValue> value(std::string_view key);
+
+  /// The same, read. @throws Error  if it is of another kind or out of its range
+  std::optional<double> number(std::string_view key, double min, double max);
+  std::optional<int> whole_number(std::string_view key, int min, int max);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
+
+  /// The JSON of a key, or null if it is not there.
+  const nlohmann::json* find(std::string_view key);
 
   /// @throws Error  if there is a key that nobody has asked for
   void refuse_unread() const;
@@ -36,11 +75,9 @@ class JsonObject {
                            const std::string& must) const;
 
  private:
-  std::string quoted(std::string_view key) const;
+  std::string name_of(std::string_view key) const;
 
-  const nlohmann::json& object_;
-  std::string code_;
-  std::string name_;
+  JsonValue object_;
   std::set<std::string, std::less<>> read_ = {};
 };
 

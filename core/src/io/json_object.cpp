@@ -14,7 +14,16 @@ using nlohmann::json;
 
 constexpr std::size_t max_quote = 60;  // of a value in a message, characters
 
+std::string plain(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 std::string ascii(const json& value) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+    return plain(value.get<double>());  // of the command line: JSON has none
+  }
   return value.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
@@ -49,93 +58,140 @@ std::string shown(const json& value) {
   return text;
 }
 
-std::string plain(double number) {
-  std::ostringstream text;
-  text << number;
-  return text.str();
-}
+std::string quoted(const std::string& name) { return name.empty() ? "it" : ascii(name); }
 
 }  // namespace
 
-JsonObject::JsonObject(const json& object, std::string code, std::string name)
-    : object_(object), code_(std::move(code)), name_(std::move(name)) {
-  if (!object_.is_object()) {
-    throw Error(code_, (name_.empty() ? "it" : "\"" + name_ + "\"") + " is " + shown(object_) +
-                           ": must be an object");
+JsonValue::JsonValue(const nlohmann::json& value, std::string name, std::string code)
+    : value_(value), name_(std::move(name)), code_(std::move(code)) {}
+
+double JsonValue::number() const {
+  if (!value_.is_number()) {
+    refuse("a number");
+  }
+  return value_.get<double>();
+}
+
+double JsonValue::number(double min, double max) const {
+  // Written so that NaN is refused.
+  if (!value_.is_number() || !(value_.get<double>() >= min && value_.get<double>() <= max)) {
+    refuse("a number from " + plain(min) + " to " + plain(max));
+  }
+  return value_.get<double>();
+}
+
+int JsonValue::whole_number(int min, int max) const {
+  if (!value_.is_number_integer() || value_.get<double>() < min || value_.get<double>() > max) {
+    refuse("a whole number from " + std::to_string(min) + " to " + std::to_string(max));
+  }
+  return value_.get<int>();
+}
+
+bool JsonValue::flag() const {
+  if (!value_.is_boolean()) {
+    refuse("true or false");
+  }
+  return value_.get<bool>();
+}
+
+std::string JsonValue::text() const {
+  if (!value_.is_string()) {
+    refuse("text");
+  }
+  return value_.get<std::string>();
+}
+
+std::vector<JsonValue> JsonValue::elements() const {
+  if (!value_.is_array()) {
+    refuse("an array");
+  }
+  std::vector<JsonValue> elements;
+  for (std::size_t i = 0; i < value_.size(); ++i) {
+    elements.emplace_back(value_[i], name_ + "[" + std::to_string(i) + "]", code_);
+  }
+  return elements;
+}
+
+std::vector<JsonValue> JsonValue::elements(std::size_t count) const {
+  if (!value_.is_array() || value_.size() != count) {
+    refuse("an array of " + std::to_string(count));
+  }
+  return elements();
+}
+
+void JsonValue::refuse(const std::string& must) const {
+  throw Error(code_, quoted(name_) + " is " + shown(value_) + ": must be " + must);
+}
+
+JsonObject::JsonObject(JsonValue object) : object_(std::move(object)) {
+  if (!object_.json().is_object()) {
+    object_.refuse("an object");
   }
 }
 
-const json* JsonObject::find(std::string_view key) {
-  read_.emplace(key);
-  const auto found = object_.find(key);
-  return found == object_.end() ? nullptr : &*found;
+JsonObject::JsonObject(const nlohmann::json& object, std::string code, std::string name)
+    : JsonObject(JsonValue(object, std::move(name), std::move(code))) {}
+
+JsonValue JsonObject::at(std::string_view key) {
+  std::optional<JsonValue> found = value(key);
+  if (!found) {
+    throw Error(object_.code(), quoted(name_of(key)) + " is missing");
+  }
+  return *std::move(found);
 }
 
-std::optional<double> JsonObject::number(std::string_view key, double least, double most) {
-  const json* value = find(key);
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  // Written so that a number that is none fails.
-  if (!value->is_number() || !(value->get<double>() >= least && value->get<double>() <= most)) {
-    refuse(key, *value, "a number from " + plain(least) + " to " + plain(most));
-  }
-  return value->get<double>();
+std::optional<JsonValue> JsonObject::value(std::string_view key) {
+  const nlohmann::json* found = find(key);
+  return found == nullptr ? std::nullopt
+                          : std::optional(JsonValue(*found, name_of(key), object_.code()));
 }
 
-std::optional<int> JsonObject::whole_number(std::string_view key, int least, int most) {
-  const json* value = find(key);
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  if (!value->is_number_integer() || value->get<double>() < least || value->get<double>() > most) {
-    refuse(key, *value,
-           "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-  }
-  return value->get<int>();
+std::optional<double> JsonObject::number(std::string_view key, double min, double max) {
+  const auto found = value(key);
+  return found ? std::optional(found->number(min, max)) : std::nullopt;
+}
+
+std::optional<int> JsonObject::whole_number(std::string_view key, int min, int max) {
+  const auto found = value(key);
+  return found ? std::optional(found->whole_number(min, max)) : std::nullopt;
 }
 
 std::optional<bool> JsonObject::flag(std::string_view key) {
-  const json* value = find(key);
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  if (!value->is_boolean()) {
-    refuse(key, *value, "true or false");
-  }
-  return value->get<bool>();
+  const auto found = value(key);
+  return found ? std::optional(found->flag()) : std::nullopt;
 }
 
 std::optional<std::string> JsonObject::text(std::string_view key) {
-  const json* value = find(key);
-  if (value == nullptr) {
-    return std::nullopt;
-  }
-  if (!value->is_string()) {
-    refuse(key, *value, "text");
-  }
-  return value->get<std::string>();
+  const auto found = value(key);
+  return found ? std::optional(found->text()) : std::nullopt;
+}
+
+const nlohmann::json* JsonObject::find(std::string_view key) {
+  read_.emplace(key);
+  const auto found = object_.json().find(key);
+  return found == object_.json().end() ? nullptr : &*found;
 }
 
 void JsonObject::refuse_unread() const {
-  for (const auto& [key, value] : object_.items()) {
+  for (const auto& [key, value] : object_.json().items()) {
     if (!read_.contains(key)) {
       std::string known;
       for (const std::string& name : read_) {
         known += (known.empty() ? "" : ", ") + name;
       }
-      throw Error(code_, quoted(key) + ": unknown key", "The keys are: " + known + ".");
+      throw Error(object_.code(), quoted(name_of(key)) + ": unknown key",
+                  "The keys are: " + known + ".");
     }
   }
 }
 
-void JsonObject::refuse(std::string_view key, const json& value, const std::string& must) const {
-  throw Error(code_, quoted(key) + " is " + shown(value) + ": must be " + must);
+void JsonObject::refuse(std::string_view key, const nlohmann::json& value,
+                        const std::string& must) const {
+  JsonValue(value, name_of(key), object_.code()).refuse(must);
 }
 
-std::string JsonObject::quoted(std::string_view key) const {
-  const std::string dotted = name_.empty() ? std::string(key) : name_ + "." + std::string(key);
-  return ascii(dotted);
+std::string JsonObject::name_of(std::string_view key) const {
+  return object_.name().empty() ? std::string(key) : object_.name() + "." + std::string(key);
 }
 
 json parse_json(std::string_view text, const std::string& code, const std::string& what) {

@@ -54,70 +54,52 @@ json json_of(const Model& model, const std::string& id) {
           {"seconds", rounded(model.build_time.count())}};
 }
 
-[[noreturn]] void missing(std::string_view key) {
-  throw Error("job-malformed", "\"" + std::string(key) + "\" is missing");
-}
-
-double number(JsonObject& keys, std::string_view key, double largest) {
-  const auto value = keys.number(key, 0, largest);
-  return value ? *value : (missing(key), 0);
-}
-
-std::uint64_t count(JsonObject& keys, std::string_view key) {
-  return static_cast<std::uint64_t>(number(keys, key, most_whole));
+std::uint64_t count(const JsonValue& value) {
+  return static_cast<std::uint64_t>(value.number(0, most_whole));
 }
 
 /// Of what not every method counts.
 double number_or_none(JsonObject& keys, std::string_view key, double largest) {
-  const json* value = keys.find(key);
-  return value == nullptr || value->is_null() ? 0 : number(keys, key, largest);
-}
-
-std::string text(JsonObject& keys, std::string_view key) {
-  auto value = keys.text(key);
-  return value ? *value : (missing(key), "");
+  const auto value = keys.value(key);
+  return !value || value->json().is_null() ? 0 : value->number(0, largest);
 }
 
 template <typename Value, std::size_t size>
-Value one_of(JsonObject& keys, std::string_view key, const std::array<Names<Value>, size>& names) {
-  const std::string name = text(keys, key);
-  const auto* found = std::ranges::find(names, name, &Names<Value>::second);
+Value one_of(const JsonValue& value, const std::array<Names<Value>, size>& names) {
+  const auto* found = std::ranges::find(names, value.text(), &Names<Value>::second);
   if (found == names.end()) {
-    keys.refuse(key, name, "a name that this version knows");
+    value.refuse("a name that this version knows");
   }
   return found->first;
 }
 
-std::optional<Failure> failure_from(const json* object) {
-  if (object == nullptr || object->is_null()) {
+std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
+  if (!object || object->json().is_null()) {
     return std::nullopt;
   }
-  JsonObject keys(*object, "job-malformed", "error");
-  return Failure{
-      .code = text(keys, "code"), .detail = text(keys, "detail"), .hint = text(keys, "hint")};
+  JsonObject keys(*object);
+  return Failure{.code = keys.at("code").text(),
+                 .detail = keys.at("detail").text(),
+                 .hint = keys.at("hint").text()};
 }
 
-std::optional<Model> model_from(const json* object) {
-  if (object == nullptr || object->is_null()) {
+std::optional<Model> model_from(const std::optional<JsonValue>& object) {
+  if (!object || object->json().is_null()) {
     return std::nullopt;
   }
-  JsonObject keys(*object, "job-malformed", "model");
+  JsonObject keys(*object);
   Model model{
-      .report = {.leaves = count(keys, "leaves"),
-                 .triangles = count(keys, "triangles"),
-                 .bytes = count(keys, "bytes"),
+      .report = {.leaves = count(keys.at("leaves")),
+                 .triangles = count(keys.at("triangles")),
+                 .bytes = count(keys.at("bytes")),
                  .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
                  .filled_share = number_or_none(keys, "filled_share", 1),
                  .watertight = keys.flag("watertight").value_or(false),
-                 .volume = m3_from_cm3(number(keys, "volume_cm3", most))},
-      .build_time = Seconds(number(keys, "seconds", most))};
-  const json* size = keys.find("size_mm");
-  if (size == nullptr || !size->is_array() || size->size() != 3 ||
-      !std::ranges::all_of(*size, [](const json& side) { return side.is_number(); })) {
-    throw Error("job-malformed", "\"model.size_mm\" is not three numbers");
-  }
+                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
+      .build_time = Seconds(keys.at("seconds").number(0, most))};
+  const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
   for (int axis = 0; axis < 3; ++axis) {
-    model.report.size[axis] = metres_from_mm((*size)[static_cast<std::size_t>(axis)].get<double>());
+    model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());
   }
   return model;
 }
@@ -192,23 +174,18 @@ json json_of(const Job& job) {
 
 Job job_from(const json& object) {
   JsonObject keys(object, "job-malformed", "");
-  const json* settings = keys.find("settings");
-  if (settings == nullptr) {
-    missing("settings");
-  }
-  return {.id = text(keys, "id"),
-          .name = text(keys, "name"),
-          .state = one_of(keys, "state", states),
-          .phase = one_of(keys, "phase", phases),
-          .created = text(keys, "created"),
-          .snapshots_done =
-              static_cast<int>(number(keys, "snapshots_done", std::numeric_limits<int>::max())),
-          .elapsed = Seconds(number(keys, "seconds_elapsed", most)),
-          .settings = settings_from(*settings, {}, "settings"),
-          .late_pulses = static_cast<int>(
-              number_or_none(keys, "late_pulses", std::numeric_limits<int>::max())),
-          .failure = failure_from(keys.find("error")),
-          .model = model_from(keys.find("model"))};
+  constexpr int most_int = std::numeric_limits<int>::max();
+  return {.id = keys.at("id").text(),
+          .name = keys.at("name").text(),
+          .state = one_of(keys.at("state"), states),
+          .phase = one_of(keys.at("phase"), phases),
+          .created = keys.at("created").text(),
+          .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
+          .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+          .settings = settings_from(keys.at("settings").json(), {}, "settings"),
+          .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
+          .failure = failure_from(keys.value("error")),
+          .model = model_from(keys.value("model"))};
 }
 
 }  // namespace octurn

@@ -44,38 +44,22 @@ std::string frame_file(std::size_t frame) {
               "Name a folder that does not exist yet, where this program may write.");
 }
 
-template <typename Value>
-Value required(std::optional<Value> value, std::string_view key) {
-  if (!value) {
-    throw Error(malformed, "\"" + std::string(key) + "\" is missing");
-  }
-  return *std::move(value);
-}
-
-const json& required(const json* value, std::string_view key) {
-  return *required(value == nullptr ? std::nullopt : std::optional(value), key);
-}
-
-double number(JsonObject& keys, std::string_view key, double least, double greatest) {
-  return required(keys.number(key, least, greatest), key);
-}
-
 Intrinsics intrinsics_from(JsonObject& sensor) {
   constexpr double smallest = 1e-9;
-  return {.width = required(sensor.whole_number("width", 1, largest_side), "width"),
-          .height = required(sensor.whole_number("height", 1, largest_side), "height"),
-          .fx = number(sensor, "fx", smallest, most),
-          .fy = number(sensor, "fy", smallest, most),
-          .cx = number(sensor, "cx", -most, most),
-          .cy = number(sensor, "cy", -most, most),
-          .depth_unit = number(sensor, "depth_unit_m", smallest, 1)};
+  return {.width = sensor.at("width").whole_number(1, largest_side),
+          .height = sensor.at("height").whole_number(1, largest_side),
+          .fx = sensor.at("fx").number(smallest, most),
+          .fy = sensor.at("fy").number(smallest, most),
+          .cx = sensor.at("cx").number(),
+          .cy = sensor.at("cy").number(),
+          .depth_unit = sensor.at("depth_unit_m").number(smallest, 1)};
 }
 
-RecordedFrame frame_from(const json& object) {
-  JsonObject keys(object, malformed, "frames");
+RecordedFrame frame_from(const JsonValue& object) {
+  JsonObject keys(object);
   RecordedFrame frame{
-      .time = std::chrono::duration<double>(number(keys, "time_s", 0, most)),
-      .angle = radians_from_degrees(number(keys, "angle_deg", -360, 360)),
+      .time = std::chrono::duration<double>(keys.at("time_s").number(0, most)),
+      .angle = radians_from_degrees(keys.at("angle_deg").number(-360, 360)),
   };
   const auto pitch = keys.number("pitch_deg", -180, 180);
   const auto roll = keys.number("roll_deg", -180, 180);
@@ -138,21 +122,21 @@ void sync_disk_of(const fs::path& folder) {
 Recording parse_recording(std::string_view text) {
   const json object = parse_json(text, malformed, "it");
   JsonObject keys(object, malformed, "");
-  if (required(keys.text("format"), "format") != format ||
-      required(keys.whole_number("version", 0, 1'000'000), "version") != version) {
+  if (keys.at("format").text() != format ||
+      keys.at("version").whole_number(0, 1'000'000) != version) {
     throw Error(malformed, "it is no recording of a version that this program knows");
   }
-  JsonObject sensor(required(keys.find("sensor"), "sensor"), malformed, "sensor");
-  Recording recording{.sensor_name = required(sensor.text("name"), "sensor.name"),
+  JsonObject sensor(keys.at("sensor"));
+  Recording recording{.sensor_name = sensor.at("name").text(),
                       .intrinsics = intrinsics_from(sensor)};
   sensor.refuse_unread();
-  const json& frames = required(keys.find("frames"), "frames");
+  const JsonValue frames = keys.at("frames");
   keys.refuse_unread();
-  if (!frames.is_array() || frames.empty()) {
-    keys.refuse("frames", frames, "an array with at least one frame");
-  }
-  for (const json& frame : frames) {
+  for (const JsonValue& frame : frames.elements()) {
     recording.frames.push_back(frame_from(frame));
+  }
+  if (recording.frames.empty()) {
+    frames.refuse("an array with at least one frame");
   }
   return recording;
 }

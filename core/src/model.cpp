@@ -33,7 +33,7 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
                    metres_from_mm(size_mm.z())}};
 }
 
-std::optional<ModelReport> write_model(Reconstruction& reconstruction,
+std::optional<ModelReport> write_model(Reconstructor& reconstruction,
                                        const SnapshotSource& snapshots,
                                        const std::filesystem::path& file,
                                        const std::stop_token& stop) try {

@@ -1,11 +1,11 @@
-#include "octurn/reconstruct_options.hpp"
-
 #include <cmath>
 #include <string>
 
+#include "checked_levels.hpp"
 #include "octurn/error.hpp"
-#include "octurn/octree.hpp"
+#include "octurn/reconstruct.hpp"
 #include "octurn/units.hpp"
+#include "voxel/octree.hpp"
 
 namespace octurn {
 namespace {

@@ -39,7 +39,8 @@ TEST(RunScan, StoresAScanThatGivesTheSameModelLater) {
   const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t shot) {
                                    return read_snapshot(folder.path(), scan, scan.shots[shot]);
                                  }};
-  Reconstruction again(reconstruct_options(few_snapshots(), {.threads = 1}));
+  const std::unique_ptr<Reconstructor> again =
+      make_reconstructor(reconstruct_options(few_snapshots(), {.threads = 1}));
   again.add(snapshots);
   write_model(again, snapshots, folder.path() / "again.stl", {});
   EXPECT_TRUE(content_of(folder.path() / "Scan.stl") == content_of(folder.path() / "again.stl"));

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "bench/ball_snapshots.hpp"
-#include "octurn/intersect.hpp"
+#include "bennett/triangulate.hpp"
+#include "bennett/voxelize_triangle.hpp"
 #include "octurn/model.hpp"
 #include "octurn/stl_file.hpp"
-#include "octurn/triangulate.hpp"
 #include "support/temporary_folder.hpp"
 
 // From points to a file, with eight snapshots of a ball at the size of a Kinect v1's image. The
@@ -34,15 +34,15 @@ ReconstructOptions options_for(const benchmark::State& state, int threads = 1) {
 }
 
 /// Everything up to the surface.
-Reconstruction reconstruction_for(const benchmark::State& state) {
-  Reconstruction reconstruction(options_for(state));
-  reconstruction.add(source());
+std::unique_ptr<Reconstructor> reconstruction_for(const benchmark::State& state) {
+  std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options_for(state));
+  reconstruction->add(source());
   return reconstruction;
 }
 
 std::vector<Facet> facets_for(const benchmark::State& state) {
   std::vector<Facet> facets;
-  reconstruction_for(state).surface(source(), [&](std::span<const Facet> some) {
+  reconstruction_for(state)->surface(source(), [&](std::span<const Facet> some) {
     facets.insert(facets.end(), some.begin(), some.end());
   });
   return facets;
@@ -62,18 +62,17 @@ void triangulate_a_snapshot(benchmark::State& state) {
 BENCHMARK(triangulate_a_snapshot)->Unit(benchmark::kMillisecond);
 
 void intersect_a_snapshot(benchmark::State& state) {
-  std::vector<std::array<LatticePoint, 3>> triangles;
-  const Lattice lattice(1.0);
-  triangulate(
-      clipped_points(snapshots().front()), threshold,
-      [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-        triangles.push_back({*lattice.nearest(a), *lattice.nearest(b), *lattice.nearest(c)});
-      });
+  std::vector<std::array<SnapPoint, 3>> triangles;
+  const SnapGrid lattice(1.0);
+  triangulate(clipped_points(snapshots().front()), threshold,
+              [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+                triangles.push_back({*lattice.snap(a), *lattice.snap(b), *lattice.snap(c)});
+              });
   const int levels = Octree::level_of(1.0, options_for(state).leaf_size);
   for (auto unused : state) {
     Octree octree(1.0, levels);
     for (const auto& [a, b, c] : triangles) {
-      intersect(octree, a, b, c);
+      voxelize_triangle(octree, a, b, c);
     }
     benchmark::DoNotOptimize(octree.bytes());
   }
@@ -82,20 +81,20 @@ void intersect_a_snapshot(benchmark::State& state) {
 BENCHMARK(intersect_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
 
 void count_the_surface(benchmark::State& state) {
-  Reconstruction reconstruction = reconstruction_for(state);
+  const std::unique_ptr<Reconstructor> reconstruction = reconstruction_for(state);
   std::uint64_t facets = 0;
   for (auto unused : state) {
-    facets += reconstruction.count(source()).facets;
+    facets += reconstruction->count(source()).facets;
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(facets));
 }
 BENCHMARK(count_the_surface)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
 
 void make_the_surface(benchmark::State& state) {
-  Reconstruction reconstruction = reconstruction_for(state);
+  const std::unique_ptr<Reconstructor> reconstruction = reconstruction_for(state);
   std::uint64_t facets = 0;
   for (auto unused : state) {
-    facets += reconstruction.surface(source(), [](std::span<const Facet>) {}).facets;
+    facets += reconstruction->surface(source(), [](std::span<const Facet>) {}).facets;
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(facets));
 }
@@ -128,9 +127,10 @@ BENCHMARK(write_the_file)->Arg(1000)->Unit(benchmark::kMillisecond);
 void reconstruct_the_whole(benchmark::State& state) {
   std::uint64_t facets = 0;
   for (auto unused : state) {
-    Reconstruction reconstruction(options_for(state, static_cast<int>(state.range(1))));
-    reconstruction.add(source());
-    facets += reconstruction.surface(source(), [](std::span<const Facet>) {}).facets;
+    const std::unique_ptr<Reconstructor> reconstruction =
+        make_reconstructor(options_for(state, static_cast<int>(state.range(1))));
+    reconstruction->add(source());
+    facets += reconstruction->surface(source(), [](std::span<const Facet>) {}).facets;
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(facets));
 }

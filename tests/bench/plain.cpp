@@ -7,11 +7,11 @@
 #include <unordered_set>
 #include <vector>
 
-#include "octurn/intersect.hpp"
-#include "octurn/point_grid.hpp"
+#include "bennett/triangulate.hpp"
+#include "bennett/voxelize_triangle.hpp"
+#include "depth/back_project.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl_file.hpp"
-#include "octurn/triangulate.hpp"
 #include "octurn/units.hpp"
 
 // The technique as its text tells it (Bennett 2014), for `compare`: nodes that point to their eight
@@ -93,7 +93,7 @@ class PlainOctree {
   int side() const { return 1 << levels_; }
 
   void add(const Triangle& triangle) {
-    if (triangle.meets({0, 0, 0}, std::int64_t{1} << Lattice::bits)) {
+    if (triangle.meets({0, 0, 0}, std::int64_t{1} << SnapGrid::bits)) {
       add(root_, triangle, {0, 0, 0}, 0);
     }
   }
@@ -118,7 +118,7 @@ class PlainOctree {
     if (level == levels_) {
       return;
     }
-    const std::int64_t half = std::int64_t{1} << (Lattice::bits - level - 1);
+    const std::int64_t half = std::int64_t{1} << (SnapGrid::bits - level - 1);
     for (int i = 0; i < 8; ++i) {
       const Vector below{corner[0] + (i & 1) * half, corner[1] + (i >> 1 & 1) * half,
                          corner[2] + (i >> 2) * half};
@@ -245,7 +245,7 @@ class PlainSurface {
 
 std::uint64_t run(const std::string& folder, const std::string& output, double leaf_size) {
   const Scan scan = read_scan(folder);
-  const Lattice lattice(1.0);
+  const SnapGrid lattice(1.0);
   PlainOctree octree(Octree::level_of(1.0, leaf_size));
   for (const Shot& shot : scan.shots) {
     PointGrid grid = world_points(read_snapshot(folder, scan, shot));
@@ -255,7 +255,7 @@ std::uint64_t run(const std::string& folder, const std::string& output, double l
                   std::array<Vector, 3> corners{};
                   std::size_t next = 0;
                   for (const Eigen::Vector3f& point : {a, b, c}) {
-                    const auto nearest = lattice.nearest(point);
+                    const auto nearest = lattice.snap(point);
                     corners[next++] = {(*nearest)[0], (*nearest)[1], (*nearest)[2]};
                   }
                   octree.add(Triangle(corners));

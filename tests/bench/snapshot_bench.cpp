@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "depth/back_project.hpp"
 #include "octurn/depth_filter.hpp"
 #include "octurn/depth_png.hpp"
-#include "octurn/point_grid.hpp"
 #include "octurn/snapshot.hpp"
 
 // What happens to each snapshot before its triangles are made, at the size of a Kinect v1's image.

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "bench/ball_snapshots.hpp"
-#include "octurn/fuse.hpp"
-#include "octurn/solid.hpp"
+#include "tsdf/integrate.hpp"
+#include "tsdf/solid_reconstructor.hpp"
 
 // The solid method, with eight snapshots of a ball at the size of a Kinect v1's image. The argument
 // is the leaf size in micrometres.
@@ -21,18 +21,18 @@ ReconstructOptions options_for(const benchmark::State& state) {
 
 void condition_a_snapshot(benchmark::State& state) {
   for (auto unused : state) {
-    const Sighting sighting(snapshots().front(), ball_clip);
+    const ConditionedDepth sighting(snapshots().front(), ball_clip);
     benchmark::DoNotOptimize(sighting.at(320, 240));
   }
 }
 BENCHMARK(condition_a_snapshot)->Unit(benchmark::kMillisecond);
 
 void fuse_a_snapshot(benchmark::State& state) {
-  const Sighting sighting(snapshots().front(), ball_clip);
+  const ConditionedDepth sighting(snapshots().front(), ball_clip);
   const double leaf_size = options_for(state).leaf_size;
   const int levels = Octree::level_of(1.0, leaf_size);
   // A field that has seen it already: no brick is new.
-  DistanceField field(FieldShape(1.0, levels, ball_clip, 0.0035));
+  TsdfVolume field(VoxelGrid(1.0, levels, ball_clip, 0.0035));
   fuse(field, sighting);
   for (auto unused : state) {
     fuse(field, sighting);
@@ -44,7 +44,7 @@ BENCHMARK(fuse_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMil
 void make_the_surface(benchmark::State& state, double max_error) {
   ReconstructOptions options = options_for(state);
   options.max_error = max_error;
-  Solid solid(options);
+  SolidReconstructor solid(options);
   solid.add(source());
   std::uint64_t facets = 0;
   for (auto unused : state) {
@@ -69,7 +69,7 @@ void make_the_whole_solid(benchmark::State& state) {
   for (auto unused : state) {
     ReconstructOptions options = options_for(state);
     options.threads = static_cast<int>(state.range(1));
-    Solid solid(options);
+    SolidReconstructor solid(options);
     solid.add(source());
     facets += solid.surface(source(), [](std::span<const Facet>) {}).facets;
   }

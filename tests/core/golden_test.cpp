@@ -50,14 +50,14 @@ TEST_P(GoldenScan, GivesTheSameFile) {
     ReconstructOptions options = golden.options;
     options.clip = scan.clip;
     options.threads = threads;
-    Reconstruction reconstruction(options);
-    reconstruction.add(snapshots);
-    const SurfaceCount count = reconstruction.count(snapshots);
+    const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+    reconstruction->add(snapshots);
+    const SurfaceCount count = reconstruction->count(snapshots);
     EXPECT_EQ(count.facets, golden.facets);
     Checksum stl;
     const auto header = stl_header(count.facets);
     stl.add(text_of(header));
-    reconstruction.surface(
+    reconstruction->surface(
         snapshots, [&](std::span<const Facet> facets) { stl.add(text_of(std::as_bytes(facets))); });
     EXPECT_EQ(stl.sum(), golden.checksum);
   }

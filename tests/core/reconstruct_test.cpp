@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/surface.hpp"
+#include "core/mesh/surface.hpp"
 #include "octurn/error.hpp"
 #include "octurn/mesh_check.hpp"
 #include "octurn/scan_folder.hpp"
@@ -31,10 +31,10 @@ ReconstructOptions ball_options(double leaf_size) {
 }
 
 std::vector<Facet> surface_of(const ReconstructOptions& options, const SnapshotSource& snapshots) {
-  Reconstruction reconstruction(options);
-  reconstruction.add(snapshots);
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  reconstruction->add(snapshots);
   std::vector<Facet> facets;
-  reconstruction.surface(snapshots, [&](std::span<const Facet> some) {
+  reconstruction->surface(snapshots, [&](std::span<const Facet> some) {
     facets.insert(facets.end(), some.begin(), some.end());
   });
   return facets;
@@ -97,11 +97,11 @@ TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
   ReconstructOptions options = ball_options(0.00025);
   options.memory_limit = std::size_t{17} << 20U;
   const SnapshotSource snapshots = ball_scan(2);
-  Reconstruction reconstruction(options);
-  reconstruction.add(snapshots);
-  const SurfaceCount expected = reconstruction.count(snapshots);
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  reconstruction->add(snapshots);
+  const SurfaceCount expected = reconstruction->count(snapshots);
   std::uint64_t facets = 0;
-  const SurfaceCount count = reconstruction.surface(
+  const SurfaceCount count = reconstruction->surface(
       snapshots, [&](std::span<const Facet> some) { facets += some.size(); });
   EXPECT_EQ(facets, expected.facets);
   EXPECT_EQ(count.facets, expected.facets);
@@ -109,18 +109,18 @@ TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
 }
 
 TEST(Reconstruction, ShowsACoarsePreviewOfWhatWasSeenSoFar) {
-  Reconstruction reconstruction(ball_options(0.001));
-  const auto preview = [&](std::uint64_t most_facets) {
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(ball_options(0.001));
+  const auto preview = [&](std::uint64_t max_facets) {
     MeshCheck check;
-    reconstruction.preview(0.008, most_facets,
-                           [&](std::span<const Facet> facets) { check.add(facets); });
+    reconstruction->preview(0.008, max_facets,
+                            [&](std::span<const Facet> facets) { check.add(facets); });
     return check;
   };
-  reconstruction.add(ball_snapshot(0));
+  reconstruction->add(ball_snapshot(0));
   const MeshCheck half = preview(1'000'000);
   EXPECT_TRUE(half.closed());
   EXPECT_LT(half.facets(), 3000U);
-  reconstruction.add(ball_snapshot(std::numbers::pi));
+  reconstruction->add(ball_snapshot(std::numbers::pi));
   const MeshCheck both = preview(1'000'000);
   EXPECT_GT(both.volume_mm3(), half.volume_mm3() * 1.3);
 
@@ -134,7 +134,7 @@ TEST(Reconstruction, SaysWhatIsWrongWithItsOptions) {
   const auto thrown_by = [](auto change) {
     ReconstructOptions options = ball_options(0.001);
     change(options);
-    return code_thrown_by([&] { const Reconstruction reconstruction(options); });
+    return code_thrown_by([&] { make_reconstructor(options); });
   };
   const double nan = std::nan("");
   EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 0; }), "bad-settings");
@@ -171,9 +171,9 @@ TEST(Reconstruction, GivesTheLeavesAndTrianglesOfAnotherImplementation) {
        {Expected{0.002, 27095, 248660}, {0.001, 130304, 1011032}, {0.0005, 664686, 4550412}}) {
     ReconstructOptions options = ball_options(leaf_size);
     options.clip = scan.clip;
-    Reconstruction reconstruction(options);
-    reconstruction.add(snapshots);
-    const SurfaceCount count = reconstruction.count(snapshots);
+    const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+    reconstruction->add(snapshots);
+    const SurfaceCount count = reconstruction->count(snapshots);
     EXPECT_NEAR(static_cast<double>(count.leaves), leaves, leaves * 0.001);
     EXPECT_NEAR(static_cast<double>(count.facets), facets, facets * 0.001);
   }

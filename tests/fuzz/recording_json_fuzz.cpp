@@ -19,9 +19,9 @@ void require(bool promise) {
 }
 
 void check(const octurn::Recording& recording) {
-  const octurn::Intrinsics& lens = recording.intrinsics;
-  require(lens.width > 0 && lens.height > 0);
-  require(lens.fx > 0 && lens.fy > 0 && lens.depth_unit > 0);
+  const octurn::Intrinsics& intrinsics = recording.intrinsics;
+  require(intrinsics.width > 0 && intrinsics.height > 0);
+  require(intrinsics.fx > 0 && intrinsics.fy > 0 && intrinsics.depth_unit > 0);
   require(!recording.frames.empty());
   for (const octurn::RecordedFrame& frame : recording.frames) {
     require(std::isfinite(frame.time.count()) && frame.time.count() >= 0);

@@ -20,9 +20,9 @@ void require(bool promise) {
 }
 
 void check(const octurn::Scan& scan) {
-  const octurn::Intrinsics& lens = scan.intrinsics;
-  require(lens.width > 0 && lens.height > 0);
-  require(lens.fx > 0 && lens.fy > 0 && lens.depth_unit > 0);
+  const octurn::Intrinsics& intrinsics = scan.intrinsics;
+  require(intrinsics.width > 0 && intrinsics.height > 0);
+  require(intrinsics.fx > 0 && intrinsics.fy > 0 && intrinsics.depth_unit > 0);
   const Eigen::Matrix3d rotation = scan.platform_from_sensor.linear();
   require(std::abs(rotation.determinant() - 1.0) < 1e-3);
   require((scan.clip.min.array() < scan.clip.max.array()).all());

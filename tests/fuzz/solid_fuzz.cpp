@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "core/surface.hpp"
+#include "core/mesh/surface.hpp"
 #include "octurn/platform_pose.hpp"
-#include "octurn/solid.hpp"
+#include "tsdf/solid_reconstructor.hpp"
 
 // Whatever the sensor says, the solid part has no open edge, no bad fan, and is one.
 
@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .leaf_size = 0.002,
       .clip = {.min = {-0.05, -0.05, 0.002}, .max = {0.05, 0.05, 0.1}}};
   options.max_error = (data[0] & 3) * 0.0005;
-  octurn::Solid solid(options);
+  octurn::SolidReconstructor solid(options);
   const std::size_t count = std::min<std::size_t>((size - 1) / samples, 6);
   for (std::size_t i = 0; i < count; ++i) {
     solid.add(snapshot_of(data + 1 + i * samples, static_cast<double>(i)));

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "core/comparison.hpp"
-#include "core/plain_octree.hpp"
-#include "core/surface.hpp"
+#include "core/bennett/comparison.hpp"
+#include "core/bennett/plain_octree.hpp"
+#include "core/mesh/surface.hpp"
 
 // Whatever the triangles, tiny or huge, without area, on the borders of leaves or outside the root:
 // the octree has the leaves of the plain one, at every level and by any slabs, its surface is the
@@ -57,14 +57,14 @@ class Bytes {
   std::span<const std::uint8_t> bytes_;
 };
 
-constexpr int root = 1 << Lattice::bits;
-using Corners = std::array<LatticePoint, 3>;
+constexpr int root = 1 << SnapGrid::bits;
+using Corners = std::array<SnapPoint, 3>;
 
 std::int32_t in_reach(int at) { return std::clamp(at, -root, 2 * root - 1) | 1; }
 
 /// Corners anywhere that the lattice reaches, or as offsets from the first, in units or in leaves.
 Corners lattice_triangle(Bytes& bytes, int levels, int kind) {
-  const int leaf = 1 << (Lattice::bits - levels);
+  const int leaf = 1 << (SnapGrid::bits - levels);
   Corners corners{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -83,13 +83,13 @@ Corners lattice_triangle(Bytes& bytes, int levels, int kind) {
 }
 
 /// Corners of any bits, as metres: huge, infinite and no numbers among them.
-std::optional<Corners> metre_triangle(Bytes& bytes, const Lattice& lattice) {
+std::optional<Corners> metre_triangle(Bytes& bytes, const SnapGrid& lattice) {
   Corners corners{};
-  for (LatticePoint& corner : corners) {
+  for (SnapPoint& corner : corners) {
     const auto metres = [&] { return std::bit_cast<float>(bytes.take(4)); };
     const float x = metres();
     const float y = metres();
-    const auto nearest = lattice.nearest({x, y, metres()});
+    const auto nearest = lattice.snap({x, y, metres()});
     if (!nearest) {
       return std::nullopt;
     }
@@ -100,7 +100,7 @@ std::optional<Corners> metre_triangle(Bytes& bytes, const Lattice& lattice) {
 
 std::vector<Corners> soup_from(Bytes& bytes, int levels) {
   std::vector<Corners> soup;
-  const Lattice lattice(1.0);
+  const SnapGrid lattice(1.0);
   for (int i = 0; i < most_triangles && !bytes.empty(); ++i) {
     const int kind = bytes.between(0, 3, 1);
     const std::optional<Corners> corners =
@@ -120,9 +120,10 @@ std::vector<Facet> surface_by_slabs(const std::vector<Corners>& soup, int levels
     const BrickLayers slab{.low = low, .end = std::min(top, low + height)};
     Octree octree(1.0, levels);
     for (const auto& [a, b, c] : soup) {
-      intersect(octree, a, b, c, {.low = low * Brick::side, .high = slab.end * Brick::side});
+      voxelize_triangle(octree, a, b, c,
+                        {.low = low * Brick::side, .high = slab.end * Brick::side});
     }
-    isosurface(octree, slab, 1, [&](std::span<const Facet> some) {
+    marching_tetrahedra(octree, slab, 1, [&](std::span<const Facet> some) {
       facets.insert(facets.end(), some.begin(), some.end());
     });
   }
@@ -140,7 +141,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Octree octree(1.0, levels);
   plain::Octree plain(levels);
   for (const Corners& corners : soup) {
-    intersect(octree, corners[0], corners[1], corners[2]);
+    voxelize_triangle(octree, corners[0], corners[1], corners[2]);
     plain.intersect(corners);
   }
   require(leaves_of(octree) == plain.leaves());
@@ -150,7 +151,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const std::vector<Facet> facets = surface_of(octree);
-  require(in_half_leaves(octree, facets) == plain::isosurface(plain.leaves()));
+  require(in_half_leaves(octree, facets) == plain::marching_tetrahedra(plain.leaves()));
   require(count_facets(octree, all_layers(octree)) == facets.size());
   const Topology topology = topology_of(facets);
   require(topology.closed && topology.manifold);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/surface.hpp"
+#include "core/mesh/surface.hpp"
 #include "octurn/mesh_check.hpp"
 #include "octurn/units.hpp"
 #include "solid/simulated_scan.hpp"

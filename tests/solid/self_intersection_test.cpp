@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "core/random_field.hpp"
-#include "core/surface.hpp"
-#include "octurn/marching_cubes.hpp"
+#include "core/mesh/surface.hpp"
+#include "core/tsdf/random_field.hpp"
+#include "mesh/stream_simplifier.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/simplify.hpp"
 #include "solid/simulated_scan.hpp"
 #include "support/shared_folder.hpp"
+#include "tsdf/marching_cubes.hpp"
 
 namespace octurn {
 namespace {
@@ -81,7 +81,7 @@ TEST(SelfIntersection, IsFoundWhereThereIsOne) {
                                            {.position = {x, 0, 4}}};
       for (const auto& [a, b, c] : std::array<std::array<std::size_t, 3>, 4>{
                {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}) {
-        facets.push_back(facet_of({tips[a], tips[b], tips[c]}));
+        facets.push_back(to_facet({tips[a], tips[b], tips[c]}));
       }
     }
     return facets;
@@ -129,15 +129,15 @@ class SelfIntersectionOfNoise : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(SelfIntersectionOfNoise, IsNone) {
   const std::uint32_t seed = GetParam();
-  const SeenField field = random_field(seed, 0.1 * (1 + seed % 9));
-  const FilledField filled(field, 3);
-  const LeafSet inside = filled.inside();
+  const CompactTsdf field = random_field(seed, 0.1 * (1 + seed % 9));
+  const HoleFilledSdf filled(field, 3);
+  const VoxelMask inside = filled.inside();
   const std::vector<Facet> all = surface_of(inside, filled);
   EXPECT_GT(all.size(), 3000U);
   EXPECT_EQ(self_intersections(all), 0U);
   for (const double max_error : {0.04, 0.1, 0.5}) {
     std::vector<Facet> facets;
-    Simplifier simplifier(max_error, 4, [&](std::span<const Facet> some) {
+    StreamSimplifier simplifier(max_error, 4, [&](std::span<const Facet> some) {
       facets.insert(facets.end(), some.begin(), some.end());
     });
     marching_cubes(inside, filled, [&](const MeshPiece& piece) { simplifier.add(piece); });

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/rendered.hpp"
+#include "core/tsdf/rendered.hpp"
 #include "octurn/depth_filter.hpp"
 #include "octurn/facet.hpp"
 #include "octurn/platform_pose.hpp"
-#include "octurn/solid.hpp"
 #include "sensor/nominal_pose.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
 #include "simulator/surface_net.hpp"
+#include "tsdf/solid_reconstructor.hpp"
 
 namespace octurn {
 
@@ -86,7 +86,7 @@ struct SolidModel {
 
 inline SolidModel solid_of(const ReconstructOptions& options,
                            const std::vector<Snapshot>& snapshots) {
-  Solid solid(options);
+  SolidReconstructor solid(options);
   const SnapshotSource source{.count = snapshots.size(),
                               .read = [&](std::size_t i) { return snapshots[i]; }};
   solid.add(source);

@@ -3,6 +3,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
+#include <span>
 
 namespace octurn {
 
@@ -23,5 +25,8 @@ static_assert(std::endian::native == std::endian::little,
 /// The attributes of a facet where nobody saw the surface, and it was filled in. Slicers pass over
 /// it.
 constexpr std::uint16_t filled_in = 1;
+
+/// Takes a surface piece by piece, in order. The span is valid during the call only.
+using FacetSink = std::function<void(std::span<const Facet>)>;
 
 }  // namespace octurn

@@ -33,7 +33,7 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check);
 ///
 /// @return nothing, and no file, if stopped before the end
 /// @throws Error "model-empty" if no triangle met the octree; if the disk does not take the file
-std::optional<ModelReport> write_model(Reconstruction& reconstruction,
+std::optional<ModelReport> write_model(Reconstructor& reconstruction,
                                        const SnapshotSource& snapshots,
                                        const std::filesystem::path& file,
                                        const std::stop_token& stop);

@@ -187,7 +187,7 @@ void reconstruct(const ReconstructArguments& arguments) {
   const std::stop_token stop = interruption.token();
   const Scan scan = read_scan(arguments.folder);
   const ReconstructOptions options = options_of(arguments, scan);
-  Reconstruction reconstruction(options);
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   MeshCheck check;
   SurfaceCount count;
   Times times;
@@ -195,11 +195,11 @@ void reconstruct(const ReconstructArguments& arguments) {
     ProgressBar bar;
     const SnapshotSource snapshots = snapshots_of(arguments.folder, scan, bar, stop);
     const Clock::time_point start = Clock::now();
-    reconstruction.add(snapshots);
+    reconstruction->add(snapshots);
     const Clock::time_point seen = Clock::now();
     bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
-    ModelOutput output(arguments.output, [&] { return reconstruction.count(snapshots).facets; });
-    count = reconstruction.surface(snapshots, [&](std::span<const Facet> facets) {
+    ModelOutput output(arguments.output, [&] { return reconstruction->count(snapshots).facets; });
+    count = reconstruction->surface(snapshots, [&](std::span<const Facet> facets) {
       if (stop.stop_requested()) {
         throw_stopped("no model was written");
       }

@@ -61,7 +61,7 @@ Response Api::made_model(const Request& request, const Job& job) {
   json numbers = numbers_from(request.query);
   std::optional<int> level;
   if (const auto given = numbers.find("level"); given != numbers.end()) {
-    level = JsonObject(numbers, "bad-settings", "").whole_number("level", 0, Octree::max_levels);
+    level = JsonObject(numbers, "bad-settings", "").whole_number("level", 0, max_levels);
     numbers.erase(given);
   }
   for (const auto& [name, value] : numbers.items()) {

@@ -24,10 +24,10 @@ ModelStream::ModelStream(const std::filesystem::path& folder, ReconstructOptions
       scan_(read_scan(folder)),
       snapshots_{.count = scan_.shots.size(),
                  .read = [this, folder](std::size_t shot) { return snapshot(folder, shot); }},
-      reconstruction_(clipped(std::move(options), scan_.clip)) {
+      reconstruction_(make_reconstructor(clipped(std::move(options), scan_.clip))) {
   try {
-    reconstruction_.add(snapshots_);
-    count_ = reconstruction_.count(snapshots_);
+    reconstruction_->add(snapshots_);
+    count_ = reconstruction_->count(snapshots_);
   } catch (const Ended&) {
     throw Error("busy", "a scan has started", "Wait for its end.");
   }
@@ -50,8 +50,8 @@ void ModelStream::send(const std::function<bool(std::span<const std::byte>)>& si
     }
   };
   hand_over(stl_header(count_.facets));
-  reconstruction_.surface(snapshots_,
-                          [&](std::span<const Facet> facets) { hand_over(std::as_bytes(facets)); });
+  reconstruction_->surface(
+      snapshots_, [&](std::span<const Facet> facets) { hand_over(std::as_bytes(facets)); });
 } catch (const Ended&) {
   return;
 }

@@ -38,7 +38,7 @@ class ModelStream {
   std::unique_ptr<Scanner::Leave> leave_;
   Scan scan_;
   SnapshotSource snapshots_;
-  Reconstruction reconstruction_;
+  std::unique_ptr<Reconstructor> reconstruction_;
   SurfaceCount count_ = {};
 };
 

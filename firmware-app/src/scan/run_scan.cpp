@@ -92,7 +92,7 @@ class Run {
         stop_(stop),
         observer_(observer),
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
-        reconstruction_(options_for(scan_, settings, limits)) {}
+        reconstruction_(make_reconstructor(options_for(scan_, settings, limits))) {}
 
   /// @return false if stopped first
   bool take_snapshots();
@@ -114,7 +114,7 @@ class Run {
   const ScanObserver& observer_;
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
-  Reconstruction reconstruction_;
+  std::unique_ptr<Reconstructor> reconstruction_;
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
 };
 
@@ -144,7 +144,7 @@ bool Run::take_snapshots() {
                           .intrinsics = scan_.intrinsics,
                           .object_from_sensor = object_from_sensor(scan_.platform_from_sensor,
                                                                    stored_angle(shot.angle))}](
-            Reconstruction& reconstruction) { reconstruction.add(added); });
+            Reconstructor& reconstruction) { reconstruction.add(added); });
   }
   return true;
 }
@@ -164,7 +164,7 @@ void Run::go_on() {
                 "Plug in the one that it was begun with.");
   }
   first_readings_ = readings_in(read_snapshot(folder_, scan_, scan_.shots.front()).frame);
-  add([stored = stored_snapshots(folder_, scan_, {}), this](Reconstruction& reconstruction) {
+  add([stored = stored_snapshots(folder_, scan_, {}), this](Reconstructor& reconstruction) {
     reconstruction.add(stored, stop_);
   });
 }
@@ -207,9 +207,9 @@ void Run::add(Add add_to) {
     adding_.get();
   }
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
-    add_to(reconstruction_);
+    add_to(*reconstruction_);
     if (done < settings_.snapshots && !stop_.stop_requested()) {  // else comes the model itself
-      observer_.on_added(reconstruction_, done);
+      observer_.on_added(*reconstruction_, done);
     }
   });
 }
@@ -223,7 +223,7 @@ std::optional<Model> Run::build() try {
   if (stop_.stop_requested()) {
     return std::nullopt;  // before all was added
   }
-  const auto report = write_model(reconstruction_, stored_snapshots(folder_, scan_, stop_),
+  const auto report = write_model(*reconstruction_, stored_snapshots(folder_, scan_, stop_),
                                   folder_ / "Scan.stl", stop_);
   return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
                 : std::nullopt;

@@ -18,8 +18,8 @@ struct ScanObserver {
   std::function<void(double angle_deg)> on_turn = [](double) {};
   std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
                                                                                 double) {};
-  std::function<void(const Reconstruction& seen, int snapshots)> on_added =
-      [](const Reconstruction&, int) {};
+  std::function<void(const Reconstructor& seen, int snapshots)> on_added = [](const Reconstructor&,
+                                                                              int) {};
 };
 
 /// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.

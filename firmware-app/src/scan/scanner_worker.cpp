@@ -164,7 +164,7 @@ void Scanner::attempt(Job& job, Rig& rig, const std::stop_token& stop) {
                         board_.set_view(frame, depth_unit);
                         board_.set_sensor_ready(rig.sensor().name());
                       },
-                  .on_added = [&](const Reconstruction& seen,
+                  .on_added = [&](const Reconstructor& seen,
                                   int snapshots) { board_.set_preview(job.id, seen, snapshots); }});
     job.state = job.model ? JobState::finished : JobState::cancelled;
     job.failure.reset();

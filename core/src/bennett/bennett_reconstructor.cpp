@@ -1,0 +1,217 @@
+#include "bennett/bennett_reconstructor.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bennett/marching_tetrahedra.hpp"
+#include "bennett/triangulate.hpp"
+#include "bennett/voxelize_triangle.hpp"
+#include "checked_levels.hpp"
+#include "depth/back_project.hpp"
+#include "memory_limit.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+// What a process takes beside its octrees, measured with a sensor's 640 x 480 samples: the program
+// and its libraries, and for each thread a snapshot, its points, and facets on their way out.
+constexpr std::size_t program_bytes = 10 * mebibyte;
+constexpr std::size_t thread_bytes = 6 * mebibyte;
+constexpr std::size_t least_octree_bytes = 1 * mebibyte;
+
+/// @returns the options, if each is in its range
+const ReconstructOptions& checked(const ReconstructOptions& options) {
+  const int levels = checked_levels(options);
+  const auto refuse = [](const std::string& what) { throw Error("bad-settings", what); };
+  if (!std::isfinite(options.threshold) || options.threshold <= 0) {
+    refuse("threshold: must be above 0");
+  }
+  if (options.level && (*options.level < 0 || *options.level > levels)) {
+    refuse("level: must be from 0, the root, to " + std::to_string(levels) + ", the leaves");
+  }
+  check_memory_limit(options.memory_limit, program_bytes + thread_bytes + least_octree_bytes);
+  return options;
+}
+
+/// As many threads as asked for, or as the memory limit leaves room for.
+int thread_count(const ReconstructOptions& options) {
+  if (options.memory_limit == 0) {
+    return options.threads;
+  }
+  const std::size_t room = options.memory_limit - program_bytes - least_octree_bytes;
+  return std::min(options.threads, static_cast<int>(room / thread_bytes));
+}
+
+/// The bytes that each octree may take: one is merged to, and each thread but one has its own. The
+/// list of the cells of a layer takes up to as much again.
+std::size_t octree_bytes(const ReconstructOptions& options) {
+  if (options.memory_limit == 0) {
+    return std::numeric_limits<std::size_t>::max();
+  }
+  const auto threads = static_cast<std::size_t>(thread_count(options));
+  return (options.memory_limit - program_bytes - threads * thread_bytes) / (threads + 1);
+}
+
+Octree octree_for(const ReconstructOptions& options) {
+  const int leaf_level = Octree::level_of(options.root_size, options.leaf_size);
+  return {options.root_size, options.level.value_or(leaf_level), octree_bytes(options)};
+}
+
+/// Leaves that a slab needs: its own, and the lowest of the layer after it.
+LeafLayers leaf_layers(const BrickLayers& slab) {
+  return {.low = slab.low * Brick::side, .high = slab.end * Brick::side};
+}
+
+}  // namespace
+
+// Nodes of a coarser level are found directly: the lattice makes that the same (see `intersect`).
+BennettReconstructor::BennettReconstructor(const ReconstructOptions& options)
+    : options_(checked(options)),
+      wanted_threads_(options.threads),
+      octree_(octree_for(options)),
+      slab_(all_layers(octree_)) {
+  options_.threads = thread_count(options);
+}
+
+void BennettReconstructor::add(const Snapshot& snapshot) { see(snapshot, octree_, slab_); }
+
+void BennettReconstructor::see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const {
+  const SnapGrid lattice(octree.side());
+  PointGrid grid = world_points(snapshot);
+  clip(grid, options_.clip);
+  triangulate(grid, static_cast<float>(options_.threshold),
+              [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+                const auto p = lattice.snap(a);
+                const auto q = lattice.snap(b);
+                const auto r = lattice.snap(c);
+                for (bool done = !(p && q && r); !done;) {
+                  try {
+                    voxelize_triangle(octree, *p, *q, *r, leaf_layers(slab));
+                    done = true;
+                  } catch (const OutOfBudget&) {
+                    keep_what_fits(octree, slab);
+                  }
+                }
+              });
+}
+
+/// Lowers the slab's end, so that its bricks take about half of what they took.
+void BennettReconstructor::keep_what_fits(Octree& octree, BrickLayers& slab) const {
+  std::vector<std::size_t> bricks;  // in the slab's layers
+  std::size_t all = 0;
+  for (int layer = slab.low; layer < slab.end; ++layer) {
+    bricks.push_back(octree.brick_count(layer));
+    all += bricks.back();
+  }
+  if (slab.end - slab.low <= 1) {
+    const Eigen::Vector3d sides = (options_.clip.max - options_.clip.min) / octree.leaf_side();
+    const double most = 2 * (sides.x() / Brick::side + 2) * (sides.y() / Brick::side + 2);
+    const auto layers = static_cast<std::size_t>(most * 2 * sizeof(Brick));  // and their nodes
+    const auto threads = static_cast<std::size_t>(wanted_threads_);
+    const std::size_t enough = program_bytes + threads * thread_bytes + (threads + 1) * layers;
+    throw Error("memory-limit", "memory limit: one layer of the octree does not fit",
+                "Allow " + mb_text(enough) + ", or choose a larger leaf size.");
+  }
+  std::size_t kept = bricks.front();
+  int end = slab.low + 1;
+  while (end < slab.end - 1 && kept + bricks[static_cast<std::size_t>(end - slab.low)] <= all / 2) {
+    kept += bricks[static_cast<std::size_t>(end - slab.low)];
+    ++end;
+  }
+  slab.end = end;
+  octree.remove_layers_from(end + 1);
+}
+
+void BennettReconstructor::add(const SnapshotSource& snapshots, const std::stop_token& stop) {
+  const int threads = std::min(options_.threads, static_cast<int>(snapshots.count));
+  std::vector<std::unique_ptr<Octree>> others(static_cast<std::size_t>(std::max(threads, 1)));
+  std::vector<BrickLayers> slabs(others.size(), slab_);
+  std::atomic<std::size_t> next = 0;
+  fork_join(static_cast<int>(others.size()), [&](int thread) {
+    const auto i = static_cast<std::size_t>(thread);
+    if (i > 0) {
+      others[i] = std::make_unique<Octree>(octree_for(options_));
+    }
+    Octree& octree = i > 0 ? *others[i] : octree_;
+    for (std::size_t shot = next++; shot < snapshots.count && !stop.stop_requested();
+         shot = next++) {
+      see(snapshots.read(shot), octree, slabs[i]);
+    }
+  });
+  slab_ = *std::ranges::min_element(slabs, {}, &BrickLayers::end);
+  octree_.remove_layers_from(slab_.end + 1);
+  for (std::size_t i = 1; i < others.size(); ++i) {
+    merge(*std::exchange(others[i], nullptr));
+  }
+}
+
+void BennettReconstructor::merge(Octree& other) {
+  for (bool done = false; !done;) {
+    other.remove_layers_from(slab_.end + 1);
+    try {
+      octree_.merge(other);
+      done = true;
+    } catch (const OutOfBudget&) {
+      keep_what_fits(octree_, slab_);
+    }
+  }
+}
+
+void BennettReconstructor::begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots) {
+  octree_.clear();
+  slab_ = slab;
+  add(snapshots);
+}
+
+template <typename Visit>
+void BennettReconstructor::for_each_slab(const SnapshotSource& snapshots, Visit visit) {
+  const int top = octree_.brick_layers();
+  if (slab_.low > 0) {
+    begin_slab(all_layers(octree_), snapshots);
+  }
+  visit(slab_);
+  while (slab_.end < top) {
+    // The next slab most likely takes about as many layers as this one.
+    const int height = 2 * (slab_.end - slab_.low);
+    begin_slab({.low = slab_.end, .end = std::min(top, slab_.end + height)}, snapshots);
+    visit(slab_);
+  }
+}
+
+SurfaceCount BennettReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink) {
+  SurfaceCount count;
+  for_each_slab(snapshots, [&](const BrickLayers& slab) {
+    count.leaves += octree_.leaf_count(slab.low, slab.end);
+    marching_tetrahedra(octree_, slab, options_.threads, [&](std::span<const Facet> facets) {
+      count.facets += facets.size();
+      sink(facets);
+    });
+  });
+  return count;
+}
+
+SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots) {
+  SurfaceCount count;
+  for_each_slab(snapshots, [&](const BrickLayers& slab) {
+    count.leaves += octree_.leaf_count(slab.low, slab.end);
+    count.facets += count_facets(octree_, slab);
+  });
+  return count;
+}
+
+void BennettReconstructor::preview(double leaf_size, std::uint64_t max_facets,
+                                   const FacetSink& sink) const {
+  const int level = std::min(Octree::level_of(octree_.side(), leaf_size), octree_.levels());
+  coarse_surface(octree_.at_level(level), max_facets, sink);
+}
+
+}  // namespace octurn

@@ -1,0 +1,283 @@
+#include "bennett/marching_tetrahedra.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "bennett/marching_tetrahedra_cases.hpp"
+#include "octurn/units.hpp"
+#include "parallel/fork_join.hpp"
+#include "parallel/ordered_pipeline.hpp"
+
+namespace octurn {
+namespace {
+
+/// The 8 x 8 x 8 pseudo-voxels whose lowest corners are the leaves of one brick position, and the
+/// up to eight bricks that hold their corners: bit 0 of the index is one brick on in x, bit 1 in y,
+/// bit 2 in z.
+struct CellBrick {
+  Index3 position = {};
+  std::array<const Brick*, 8> bricks = {};
+};
+
+constexpr Brick no_leaves{};
+
+/// The bricks of a layer, and of the one above it, that have leaves which are corners of the
+/// layer's pseudo-voxels: of those above only the lowest leaves are. The others may be missing,
+/// where the layer is the last of a slab, and must not matter.
+class CornerBricks {
+ public:
+  CornerBricks(const Octree& octree, int layer) : layer_(layer) {
+    for (int up = 0; up < 2; ++up) {
+      octree.for_each_brick(layer + up, [&](const Index3& cell, const Brick& brick) {
+        if (up == 0 || brick.layers[0] != 0) {
+          bricks_.push_back({cell, &brick});
+        }
+      });
+    }
+    by_row_ = bricks_;
+    std::ranges::sort(by_row_, {}, [](const Found& found) {
+      return std::tuple(found.cell.y, found.cell.z, found.cell.x);
+    });
+    rows_.resize(by_row_.empty() ? 0 : row_of(by_row_.back().cell) + 2);
+    for (const Found& found : by_row_) {
+      ++rows_[row_of(found.cell) + 1];
+    }
+    std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
+  }
+
+  /// Calls `visit(cell, up)` for all of them, those above last.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    for (const Found& found : bricks_) {
+      visit(found.cell, found.cell.z - layer_);
+    }
+  }
+
+  const Brick* find(const Index3& cell) const {
+    if (cell.y < 0 || row_of(cell) + 1 >= rows_.size()) {
+      return nullptr;
+    }
+    const auto row = std::span(by_row_).subspan(rows_[row_of(cell)],
+                                                rows_[row_of(cell) + 1] - rows_[row_of(cell)]);
+    const auto found =
+        std::ranges::lower_bound(row, cell.x, {}, [](const Found& one) { return one.cell.x; });
+    return found != row.end() && found->cell.x == cell.x ? found->brick : nullptr;
+  }
+
+ private:
+  struct Found {
+    Index3 cell;
+    const Brick* brick;
+  };
+
+  /// Rows along x, of the layer and of the one above in turn.
+  std::size_t row_of(const Index3& cell) const {
+    return 2 * static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cell.z - layer_);
+  }
+
+  int layer_;
+  std::vector<Found> bricks_ = {};
+  std::vector<Found> by_row_ = {};
+  std::vector<std::uint32_t> rows_ = {};  // where each begins in `by_row_`, and its end
+};
+
+/// The cell bricks of one layer that have any leaf in them.
+class LayerOfCells {
+ public:
+  LayerOfCells(const Octree& octree, int layer) {
+    const CornerBricks bricks(octree, layer);
+    bricks.for_each([&](const Index3& brick, int up) {
+      for (int corner = 0; corner < 4; ++corner) {
+        add(bricks, {brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
+      }
+    });
+  }
+
+  const std::vector<CellBrick>& cells() const { return cells_; }
+
+ private:
+  /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
+  void add(const CornerBricks& bricks, const Index3& position, int corner) {
+    CellBrick cell{.position = position, .bricks = {}};
+    for (int i = 0; i < 8; ++i) {
+      const Brick* brick =
+          bricks.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
+      if (brick != nullptr && i < corner) {
+        return;
+      }
+      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
+    }
+    cells_.push_back(cell);
+  }
+
+  std::vector<CellBrick> cells_ = {};
+};
+
+/// The corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1) of 8 x 8 pseudo-voxels on one layer of
+/// leaves.
+using CornerLayer = std::array<std::uint64_t, 4>;
+
+/// @param bricks  the four that meet along z
+CornerLayer corner_layer(const std::array<const Brick*, 4>& bricks, std::size_t z) {
+  constexpr std::uint64_t first_column = 0x0101010101010101;
+  const auto shifted_x = [](std::uint64_t row, std::uint64_t next) {
+    return (row >> 1 & ~(first_column << 7)) | (next & first_column) << 7;
+  };
+  const auto shifted_y = [](std::uint64_t layer, std::uint64_t next) {
+    return layer >> 8 | next << 56;
+  };
+  const std::uint64_t here = bricks[0]->layers[z];
+  const std::uint64_t right = bricks[1]->layers[z];
+  const std::uint64_t behind = bricks[2]->layers[z];
+  const std::uint64_t across = bricks[3]->layers[z];
+  const std::uint64_t x = shifted_x(here, right);
+  return {here, x, shifted_y(here, behind), shifted_y(x, shifted_x(behind, across))};
+}
+
+/// Calls `visit(x, y, z, pattern)` for the pseudo-voxels of a cell brick that the surface crosses.
+template <typename Visit>
+void for_each_mixed(const CellBrick& cell, Visit visit) {
+  const std::array<const Brick*, 4> lower{cell.bricks[0], cell.bricks[1], cell.bricks[2],
+                                          cell.bricks[3]};
+  const std::array<const Brick*, 4> upper{cell.bricks[4], cell.bricks[5], cell.bricks[6],
+                                          cell.bricks[7]};
+  CornerLayer above = corner_layer(lower, 0);
+  for (int z = 0; z < Brick::side; ++z) {
+    const CornerLayer below = above;
+    above = z + 1 < Brick::side ? corner_layer(lower, static_cast<std::size_t>(z + 1))
+                                : corner_layer(upper, 0);
+    const std::uint64_t any =
+        below[0] | below[1] | below[2] | below[3] | above[0] | above[1] | above[2] | above[3];
+    const std::uint64_t all =
+        below[0] & below[1] & below[2] & below[3] & above[0] & above[1] & above[2] & above[3];
+    for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
+      const int bit = std::countr_zero(mixed);
+      std::size_t pattern = 0;
+      for (std::size_t corner = 0; corner < 4; ++corner) {
+        pattern |= (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1)
+                                                              << (corner + 4);
+      }
+      visit(bit % Brick::side, bit / Brick::side, z, pattern);
+    }
+  }
+}
+
+/// Millimetres of the half-leaf positions of one cell brick, on each axis.
+struct HalfStepPositions {
+  static constexpr std::size_t count = 2 * Brick::side + 1;
+  std::array<std::array<float, count>, 3> mm = {};
+
+  HalfStepPositions(const Octree& octree, const Index3& cell) {
+    const std::array<int, 3> first{cell.x, cell.y, cell.z};
+    const double half_leaf = octree.leaf_side() / 2;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double corner = axis < 2 ? -octree.side() / 2 : 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double halves = 2.0 * Brick::side * first[axis] + 1 + static_cast<double>(i);
+        mm[axis][i] = static_cast<float>(mm_from_metres(corner + halves * half_leaf));
+      }
+    }
+  }
+};
+
+void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Facet>& facets) {
+  const HalfStepPositions positions(octree, cell.position);
+  for_each_mixed(cell, [&](int x, int y, int z, std::size_t pattern) {
+    const CellSurface& surface = marching_tetrahedra_cases[pattern];
+    const std::array<const float*, 3> mm{&positions.mm[0][static_cast<std::size_t>(2 * x)],
+                                         &positions.mm[1][static_cast<std::size_t>(2 * y)],
+                                         &positions.mm[2][static_cast<std::size_t>(2 * z)]};
+    for (std::size_t i = 0; i < surface.count; ++i) {
+      const CellFacet& from = surface.facets[i];
+      std::array<std::array<float, 3>, 3> corners;  // aligned, as those of a facet are not
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          corners[corner][axis] = mm[axis][from.corners[corner][axis]];
+        }
+      }
+      facets.push_back({.normal = from.normal, .corners = corners, .attributes = 0});
+    }
+  });
+}
+
+/// The first of the layers of pseudo-voxels that belong to layers of bricks: those of the root's
+/// bottom begin one leaf below it.
+int first_layer(const BrickLayers& layers) { return layers.low == 0 ? -1 : layers.low; }
+
+/// Some cell bricks of a layer, which lives as long as they are looked at.
+struct CellBricks {
+  std::shared_ptr<const LayerOfCells> layer;
+  std::span<const CellBrick> bricks;
+};
+
+/// Cuts the cell bricks of layer after layer in pieces that make some hundred kilobytes of facets.
+class CellSource {
+ public:
+  CellSource(const Octree& octree, const BrickLayers& layers)
+      : octree_(octree), next_(first_layer(layers)), end_(layers.end) {}
+
+  std::optional<CellBricks> operator()() {
+    constexpr std::size_t most = 8;
+    while (rest_.empty() && next_ < end_) {
+      layer_ = std::make_shared<const LayerOfCells>(octree_, next_++);
+      rest_ = layer_->cells();
+    }
+    if (rest_.empty()) {
+      return std::nullopt;
+    }
+    const auto bricks = rest_.first(std::min(most, rest_.size()));
+    rest_ = rest_.subspan(bricks.size());
+    return CellBricks{.layer = layer_, .bricks = bricks};
+  }
+
+ private:
+  const Octree& octree_;
+  int next_;
+  int end_;
+  std::shared_ptr<const LayerOfCells> layer_ = {};
+  std::span<const CellBrick> rest_ = {};  // of the layer
+};
+
+}  // namespace
+
+void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
+                         const FacetSink& sink) {
+  OrderedPipeline<CellSource, std::vector<Facet>> pieces(CellSource(octree, layers), 4 * threads);
+  fork_join(threads, [&](int) {
+    pieces.run(
+        [&](const CellBricks& cells, std::vector<Facet>& facets) {
+          facets.clear();
+          for (const CellBrick& cell : cells.bricks) {
+            append_facets(octree, cell, facets);
+          }
+        },
+        [&](const std::vector<Facet>& facets) { sink(facets); });
+  });
+}
+
+std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
+  std::uint64_t count = 0;
+  for (int layer = first_layer(layers); layer < layers.end; ++layer) {
+    const LayerOfCells cells(octree, layer);
+    for (const CellBrick& cell : cells.cells()) {
+      for_each_mixed(cell, [&](int, int, int, std::size_t pattern) {
+        count += marching_tetrahedra_cases[pattern].count;
+      });
+    }
+  }
+  return count;
+}
+
+void coarse_surface(Octree octree, std::uint64_t max_facets, const FacetSink& sink) {
+  while (octree.levels() > 0 && count_facets(octree, all_layers(octree)) > max_facets) {
+    octree = octree.at_level(octree.levels() - 1);
+  }
+  marching_tetrahedra(octree, all_layers(octree), 1, sink);
+}
+
+}  // namespace octurn

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "depth/back_project.hpp"
+
+namespace octurn {
+
+namespace detail {
+
+/// Whether a and b are at most sqrt(threshold) apart; never so if one of them is `no_point`.
+inline bool near(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float threshold) {
+  const float x = a.x() - b.x();
+  const float y = a.y() - b.y();
+  const float z = a.z() - b.z();
+  return x * x + y * y + z * z <= threshold;
+}
+
+}  // namespace detail
+
+/// Joins neighbouring samples to triangles: (i, i+1, i+w) and (i+1, i+w+1, i+w) for each sample i
+/// but those of the last row and column (Bennett 2014). There is no triangle with a corner that is
+/// no point, nor one with a side whose square exceeds `threshold` (square metres): such sides
+/// bridge surfaces that lie behind each other.
+///
+/// @param sink  called with the three corners of each triangle, row by row
+template <typename Sink>
+void triangulate(const PointGrid& grid, float threshold, Sink sink) {
+  const auto width = static_cast<std::size_t>(grid.width);
+  const auto height = static_cast<std::size_t>(grid.height);
+  for (std::size_t v = 0; v + 1 < height; ++v) {
+    const Eigen::Vector3f* upper = &grid.points[v * width];
+    const Eigen::Vector3f* lower = upper + width;
+    for (std::size_t u = 0; u + 1 < width; ++u) {
+      // The diagonal is a side of both triangles.
+      if (!detail::near(upper[u + 1], lower[u], threshold)) {
+        continue;
+      }
+      if (detail::near(upper[u], upper[u + 1], threshold) &&
+          detail::near(lower[u], upper[u], threshold)) {
+        sink(upper[u], upper[u + 1], lower[u]);
+      }
+      if (detail::near(upper[u + 1], lower[u + 1], threshold) &&
+          detail::near(lower[u + 1], lower[u], threshold)) {
+        sink(upper[u + 1], lower[u + 1], lower[u]);
+      }
+    }
+  }
+}
+
+}  // namespace octurn

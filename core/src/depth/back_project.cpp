@@ -1,0 +1,66 @@
+#include "depth/back_project.hpp"
+
+#include <array>
+#include <cstddef>
+
+#include "depth/depth_limits.hpp"
+
+namespace octurn {
+
+PointGrid world_points(const Snapshot& snapshot) {
+  const DepthFrame& frame = snapshot.frame;
+  const Intrinsics& intrinsics = snapshot.intrinsics;
+  check_size(frame, intrinsics, "world_points");
+
+  // point = depth * (column_ray[u] + row_ray) + centre: a sample's ray is linear in u and in v.
+  // Written out by component: a matrix library may fuse products on one processor and not on
+  // another.
+  const Eigen::Matrix3f rotation = snapshot.object_from_sensor.linear().cast<float>();
+  const Eigen::Vector3f centre = snapshot.object_from_sensor.translation().cast<float>();
+  const auto unit = static_cast<float>(intrinsics.depth_unit);
+  std::vector<Eigen::Vector3f> column_rays(static_cast<std::size_t>(intrinsics.width));
+  for (int u = 0; u < intrinsics.width; ++u) {
+    const auto x = static_cast<float>((u - intrinsics.cx) / intrinsics.fx);
+    for (int axis = 0; axis < 3; ++axis) {
+      column_rays[static_cast<std::size_t>(u)][axis] = unit * (rotation(axis, 0) * x);
+    }
+  }
+
+  PointGrid grid{.width = intrinsics.width, .height = intrinsics.height, .points = {}};
+  grid.points.resize(frame.depth.size());
+  auto point = grid.points.begin();
+  auto depth = frame.depth.begin();
+  for (int v = 0; v < intrinsics.height; ++v) {
+    const auto y = static_cast<float>((v - intrinsics.cy) / intrinsics.fy);
+    std::array<float, 3> row_ray{};
+    for (int axis = 0; axis < 3; ++axis) {
+      row_ray[static_cast<std::size_t>(axis)] = unit * (rotation(axis, 1) * y + rotation(axis, 2));
+    }
+    for (const Eigen::Vector3f& column_ray : column_rays) {
+      if (*depth == 0) {
+        *point = no_point;
+      } else {
+        const auto value = static_cast<float>(*depth);
+        *point = {value * (column_ray.x() + row_ray[0]) + centre.x(),
+                  value * (column_ray.y() + row_ray[1]) + centre.y(),
+                  value * (column_ray.z() + row_ray[2]) + centre.z()};
+      }
+      ++depth;
+      ++point;
+    }
+  }
+  return grid;
+}
+
+void clip(PointGrid& grid, const Box& box) {
+  const Eigen::Array3f min = box.min.cast<float>();
+  const Eigen::Array3f max = box.max.cast<float>();
+  for (Eigen::Vector3f& point : grid.points) {
+    // Written so that a point with one coordinate that is no number goes, too.
+    if (!((point.array() >= min).all() && (point.array() <= max).all())) {
+      point = no_point;
+    }
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace octurn {
+
+/// Items of one kind, in blocks that never move and are added one at a time, so that memory never
+/// doubles. Items are named by their index; index 0 is taken from the start and means "none".
+template <typename Item>
+class BlockPool {
+ public:
+  static constexpr std::uint32_t block_items = 512;
+  static constexpr std::size_t block_bytes = block_items * sizeof(Item);
+
+  BlockPool() { add(); }
+
+  /// The index of a new item, which is as `Item{}`.
+  std::uint32_t add() {
+    if (!free_.empty()) {
+      const std::uint32_t index = free_.back();
+      free_.pop_back();
+      (*this)[index] = Item{};
+      return index;
+    }
+    if (used_ == blocks_.size() * block_items) {
+      blocks_.push_back(std::make_unique<std::array<Item, block_items>>());
+    }
+    return used_++;
+  }
+
+  /// Gives an item back, for `add` to use again.
+  void remove(std::uint32_t index) { free_.push_back(index); }
+
+  /// Whether the next `add` takes a new block.
+  bool is_full() const { return free_.empty() && used_ == blocks_.size() * block_items; }
+
+  Item& operator[](std::uint32_t i) { return (*blocks_[i / block_items])[i % block_items]; }
+  const Item& operator[](std::uint32_t i) const {
+    return (*blocks_[i / block_items])[i % block_items];
+  }
+
+  /// Memory taken, given back or not.
+  std::size_t bytes() const {
+    return blocks_.size() * block_bytes + free_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  std::vector<std::unique_ptr<std::array<Item, block_items>>> blocks_ = {};
+  std::vector<std::uint32_t> free_ = {};
+  std::uint32_t used_ = 0;
+};
+
+}  // namespace octurn

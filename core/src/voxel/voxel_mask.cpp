@@ -1,0 +1,283 @@
+#include "voxel/voxel_mask.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <functional>
+
+namespace octurn {
+namespace {
+
+/// Leaves of one row that follow each other: from `first` up to but without `end`.
+struct Run {
+  int first = 0;
+  int end = 0;
+  std::uint32_t parent = 0;
+};
+
+/// The connected components of a set or of its complement, as runs joined by union and find.
+class Components {
+ public:
+  enum class Of { leaves, gaps };
+
+  Components(const VoxelMask& set, Of of) : set_(set), of_(of) {
+    const Index3& size = set.size();
+    first_.reserve(static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) + 1);
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) {
+        first_.push_back(static_cast<std::uint32_t>(runs_.size()));
+        add_row(y, z);
+        join_row(y, z);
+      }
+    }
+    first_.push_back(static_cast<std::uint32_t>(runs_.size()));
+  }
+
+  std::uint32_t root(std::uint32_t run) {
+    while (runs_[run].parent != run) {
+      runs_[run].parent = runs_[runs_[run].parent].parent;
+      run = runs_[run].parent;
+    }
+    return run;
+  }
+
+  std::size_t count() const { return runs_.size(); }
+
+  /// Calls `visit(y, z, index, run)` for all of them.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    const Index3& size = set_.size();
+    std::size_t row = 0;
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y, ++row) {
+        for (std::uint32_t i = first_[row]; i < first_[row + 1]; ++i) {
+          visit(y, z, i, runs_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  void add_row(int y, int z) {
+    const auto row = set_.row(y, z);
+    const std::uint64_t flip = of_ == Of::gaps ? ~std::uint64_t{0} : 0;
+    const auto next = [&](int from, std::uint64_t invert) {
+      std::size_t word = static_cast<std::size_t>(from) / 64;
+      if (from >= set_.size().x) {
+        return set_.size().x;
+      }
+      std::uint64_t bits = (row[word] ^ flip ^ invert) >> (from % 64) << (from % 64);
+      while (bits == 0) {
+        if (++word == row.size()) {
+          return set_.size().x;
+        }
+        bits = row[word] ^ flip ^ invert;
+      }
+      return std::min(static_cast<int>(word) * 64 + std::countr_zero(bits), set_.size().x);
+    };
+    for (int x = next(0, 0); x < set_.size().x;) {
+      const int end = next(x, ~std::uint64_t{0});
+      runs_.push_back({x, end, static_cast<std::uint32_t>(runs_.size())});
+      x = next(end, 0);
+    }
+  }
+
+  void join_row(int y, int z) {
+    // Gaps also meet across edges: those of one plane a leaf apart, those of two planes above
+    // another.
+    const int reach = of_ == Of::gaps ? 1 : 0;
+    if (y > 0) {
+      join(y - 1, z, reach);
+    }
+    if (z > 0) {
+      join(y, z - 1, reach);
+      if (of_ == Of::gaps && y > 0) {
+        join(y - 1, z - 1, 0);
+      }
+      if (of_ == Of::gaps && y + 1 < set_.size().y) {
+        join(y + 1, z - 1, 0);
+      }
+    }
+  }
+
+  /// Joins the runs of the last row with those of an earlier one that come within `reach`.
+  void join(int y, int z, int reach) {
+    const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(set_.size().y) +
+                     static_cast<std::size_t>(y);
+    std::uint32_t other = first_[row];
+    const std::uint32_t others = first_[row + 1];
+    for (std::uint32_t i = first_.back(); i < runs_.size(); ++i) {
+      while (other < others && runs_[other].end + reach <= runs_[i].first) {
+        ++other;
+      }
+      for (std::uint32_t j = other; j < others && runs_[j].first < runs_[i].end + reach; ++j) {
+        const std::uint32_t a = root(i);
+        const std::uint32_t b = root(j);
+        runs_[std::max(a, b)].parent = std::min(a, b);
+      }
+    }
+  }
+
+  const VoxelMask& set_;
+  Of of_;
+  std::vector<Run> runs_ = {};
+  std::vector<std::uint32_t> first_ = {};  // run of each row
+};
+
+/// Sets or clears the bits of a run.
+void assign(std::span<std::uint64_t> row, const Run& run, bool value) {
+  for (int x = run.first; x < run.end;) {
+    const int next = std::min((x / 64 + 1) * 64, run.end);
+    const std::uint64_t ones =
+        next - x == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (next - x)) - 1;
+    std::uint64_t& word = row[static_cast<std::size_t>(x) / 64];
+    word = value ? word | ones << (x % 64) : word & ~(ones << (x % 64));
+    x = next;
+  }
+}
+
+}  // namespace
+
+VoxelMask::VoxelMask(const Index3& low, const Index3& end)
+    : low_(low),
+      size_{end.x - low.x, end.y - low.y, end.z - low.z},
+      words_((static_cast<std::size_t>(size_.x) + 63) / 64),
+      bits_(words_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z)) {}
+
+std::uint64_t VoxelMask::count() const {
+  std::uint64_t count = 0;
+  for (const std::uint64_t word : bits_) {
+    count += static_cast<std::uint64_t>(std::popcount(word));
+  }
+  return count;
+}
+
+void VoxelMask::keep_main_component() {
+  Components parts(*this, Components::Of::leaves);
+  if (parts.count() == 0) {
+    return;
+  }
+  std::vector<std::uint64_t> volumes(parts.count());
+  std::vector<char> stands(parts.count());
+  parts.for_each([&](int, int z, std::uint32_t i, const Run& run) {
+    const std::uint32_t part = parts.root(i);
+    volumes[part] += static_cast<std::uint64_t>(run.end - run.first);
+    stands[part] = static_cast<char>(stands[part] | (z == 0 ? 1 : 0));
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < volumes.size(); ++i) {
+    if (std::pair(stands[i], volumes[i]) > std::pair(stands[kept], volumes[kept])) {
+      kept = i;
+    }
+  }
+  parts.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    if (parts.root(i) != kept) {
+      assign(row(y, z), run, false);
+    }
+  });
+}
+
+void VoxelMask::remove_spurs() {
+  for (bool removed = true; removed;) {
+    removed = false;
+    for (int z = 0; z < size_.z; ++z) {
+      for (int y = 0; y < size_.y; ++y) {
+        removed = remove_spurs_of(y, z) || removed;
+      }
+    }
+  }
+}
+
+/// Removes the leaves of a row that meet no more than one other. @return whether there were any
+bool VoxelMask::remove_spurs_of(int y, int z) {
+  const auto leaves = row(y, z);
+  const auto word = [&](int other_y, int other_z, std::size_t i) {
+    const bool is_there = other_y >= 0 && other_z >= 0 && other_y < size_.y && other_z < size_.z;
+    return is_there ? bits_[first_word(other_y, other_z) + i] : 0;
+  };
+  bool removed = false;
+  for (std::size_t i = 0; i < words_; ++i) {
+    if (leaves[i] == 0) {
+      continue;
+    }
+    std::uint64_t any = 0;
+    std::uint64_t two = 0;
+    for (const std::uint64_t neighbours :
+         {leaves[i] << 1 | (i > 0 ? leaves[i - 1] >> 63 : 0),
+          leaves[i] >> 1 | (i + 1 < words_ ? leaves[i + 1] << 63 : 0), word(y - 1, z, i),
+          word(y + 1, z, i), word(y, z - 1, i), word(y, z + 1, i)}) {
+      two |= any & neighbours;
+      any |= neighbours;
+    }
+    removed = removed || (leaves[i] & ~two) != 0;
+    leaves[i] &= two;
+  }
+  return removed;
+}
+
+VoxelMask VoxelMask::cropped() const {
+  std::vector<std::uint64_t> columns(words_);  // of all rows together
+  Index3 first{size_.x, size_.y, size_.z};
+  Index3 last{-1, -1, -1};
+  for (int z = 0; z < size_.z; ++z) {
+    for (int y = 0; y < size_.y; ++y) {
+      const auto leaves = row(y, z);
+      if (std::ranges::any_of(leaves, [](std::uint64_t word) { return word != 0; })) {
+        first = {first.x, std::min(first.y, y), std::min(first.z, z)};
+        last = {last.x, std::max(last.y, y), std::max(last.z, z)};
+        std::ranges::transform(columns, leaves, columns.begin(), std::bit_or());
+      }
+    }
+  }
+  if (last.y < 0) {
+    return {low_, low_};
+  }
+  for (std::size_t word = 0; word < words_; ++word) {
+    if (columns[word] != 0) {
+      const int at = static_cast<int>(word) * 64;
+      first.x = std::min(first.x, at + std::countr_zero(columns[word]));
+      last.x = at + 63 - std::countl_zero(columns[word]);
+    }
+  }
+  const int skipped = std::max(first.x - 1, 0) / 64;  // words
+  const int low_y = std::max(first.y - 1, 0);
+  VoxelMask set({low_.x + 64 * skipped, low_.y + low_y, low_.z + first.z},
+                {low_.x + std::min(last.x + 2, size_.x), low_.y + std::min(last.y + 2, size_.y),
+                 low_.z + last.z + 1});
+  for (int z = 0; z < set.size_.z; ++z) {
+    for (int y = 0; y < set.size_.y; ++y) {
+      std::ranges::copy(
+          row(low_y + y, first.z + z).subspan(static_cast<std::size_t>(skipped), set.words_),
+          set.row(y, z).begin());
+    }
+  }
+  return set;
+}
+
+std::uint64_t VoxelMask::component_count() const {
+  Components parts(*this, Components::Of::leaves);
+  std::uint64_t count = 0;
+  parts.for_each(
+      [&](int, int, std::uint32_t i, const Run&) { count += parts.root(i) == i ? 1 : 0; });
+  return count;
+}
+
+void VoxelMask::fill_cavities() {
+  Components gaps(*this, Components::Of::gaps);
+  std::vector<char> outside(gaps.count());
+  const auto at_border = [&](int y, int z, const Run& run) {
+    return run.first == 0 || run.end == size_.x || y == 0 || y == size_.y - 1 || z == 0 ||
+           z == size_.z - 1;
+  };
+  gaps.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    char& mark = outside[gaps.root(i)];
+    mark = static_cast<char>(mark | (at_border(y, z, run) ? 1 : 0));
+  });
+  gaps.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    if (outside[gaps.root(i)] == 0) {
+      assign(row(y, z), run, true);
+    }
+  });
+}
+
+}  // namespace octurn

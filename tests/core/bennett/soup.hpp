@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <random>
+
+#include "bennett/voxelize_triangle.hpp"
+
+namespace octurn {
+
+/// Triangles of all the kinds that an exact intersection must get right, at random: tiny and huge,
+/// without area, with corners beside the faces of leaves, partly and wholly outside the root.
+class Soup {
+ public:
+  Soup(std::uint32_t seed, int levels) : random_(seed), leaf_(1 << (SnapGrid::bits - levels)) {}
+
+  std::array<SnapPoint, 3> triangle() {
+    constexpr int root = 1 << SnapGrid::bits;
+    const std::array<int, 4> reaches{leaf_ / 4 + 2, 2 * leaf_, 8 * leaf_, root};
+    const int reach = reaches[static_cast<std::size_t>(between(0, 3))];
+    const bool may_leave = between(0, 3) == 0;
+    const int low = may_leave ? -root : 0;
+    const int high = may_leave ? 2 * root : root;
+    const SnapPoint middle{between(low, high - 1), between(low, high - 1), between(low, high - 1)};
+    std::array<SnapPoint, 3> corners{};
+    for (SnapPoint& corner : corners) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        int at = middle[axis] + between(-reach, reach);
+        if (between(0, 3) == 0) {
+          at = (at / leaf_) * leaf_ + (between(0, 1) == 0 ? 1 : -1);  // beside a face
+        }
+        if (between(0, 9) == 0) {
+          at = middle[axis];  // edges along the axes, or no edge at all
+        }
+        corner[axis] = std::clamp(at, low, high - 1) | 1;
+      }
+    }
+    if (between(0, 15) == 0) {
+      corners[2] = corners[1];
+    }
+    return corners;
+  }
+
+  int between(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
+
+ private:
+  std::mt19937 random_;
+  int leaf_;
+};
+
+}  // namespace octurn

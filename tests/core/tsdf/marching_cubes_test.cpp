@@ -1,0 +1,222 @@
+#include "tsdf/marching_cubes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "core/mesh/surface.hpp"
+#include "core/tsdf/random_field.hpp"
+#include "core/tsdf/rendered.hpp"
+#include "mesh/stream_simplifier.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+/// Looks along each row of leaves, a little beside their centres, and visits each leaf with how
+/// often the surface ahead is left more than it is entered: 1 inside a closed surface, 0 outside.
+template <typename Visit>
+void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& facets, Visit visit) {
+  struct Crossing {
+    double x = 0;
+    int turn = 0;
+  };
+  const double leaf_mm = mm_from_metres(filled.leaf_side());
+  const Index3 low = filled.low();
+  const Index3 end = filled.end();
+  const auto centre_mm = [&](int leaf, std::size_t axis) {
+    return mm_from_metres(filled.centre(leaf, axis));
+  };
+  // Corners lie 0.025 leaves and more from the centres: these rows pass on the same side of all.
+  const double beside_y = 0.00113 * leaf_mm;
+  const double beside_z = 0.00071 * leaf_mm;
+  std::map<std::pair<int, int>, std::vector<Crossing>> rows;
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    const Eigen::Vector3d a = Eigen::Vector3f(corners[0].data()).cast<double>();
+    const Eigen::Vector3d b = Eigen::Vector3f(corners[1].data()).cast<double>();
+    const Eigen::Vector3d c = Eigen::Vector3f(corners[2].data()).cast<double>();
+    const Eigen::Vector3d least = a.cwiseMin(b).cwiseMin(c);
+    const Eigen::Vector3d most = a.cwiseMax(b).cwiseMax(c);
+    for (int z = low.z - 1; z < end.z; ++z) {
+      const double at_z = centre_mm(z, 2) + beside_z;
+      if (at_z < least.z() || at_z > most.z()) {
+        continue;
+      }
+      for (int y = low.y; y < end.y; ++y) {
+        const double at_y = centre_mm(y, 1) + beside_y;
+        if (at_y < least.y() || at_y > most.y()) {
+          continue;
+        }
+        // Twice the areas, across the row, that the point cuts the facet into.
+        const auto area = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+          return (p.y() - at_y) * (q.z() - at_z) - (q.y() - at_y) * (p.z() - at_z);
+        };
+        const double ab = area(a, b);
+        const double bc = area(b, c);
+        const double ca = area(c, a);
+        if ((ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0)) {
+          rows[{y, z}].push_back({.x = (bc * a.x() + ca * b.x() + ab * c.x()) / (ab + bc + ca),
+                                  .turn = ab > 0 ? 1 : -1});
+        }
+      }
+    }
+  }
+  for (int z = low.z; z < end.z; ++z) {
+    for (int y = low.y; y < end.y; ++y) {
+      const std::vector<Crossing>& row = rows[{y, z}];
+      for (int x = low.x; x < end.x; ++x) {
+        int winding = 0;
+        for (const Crossing& crossing : row) {
+          winding += crossing.x > centre_mm(x, 0) ? crossing.turn : 0;
+        }
+        visit(Index3{x - low.x, y - low.y, z - low.z}, winding);
+      }
+    }
+  }
+}
+
+/// Parts that no facet joins, counted over the corners they share.
+int parts_of(const std::vector<Facet>& facets) {
+  std::map<std::array<float, 3>, std::size_t> names;
+  std::vector<std::size_t> parent;
+  const auto root = [&](const std::array<float, 3>& corner) {
+    const auto [found, is_new] = names.try_emplace(corner, parent.size());
+    if (is_new) {
+      parent.push_back(found->second);
+    }
+    std::size_t at = found->second;
+    while (parent[at] != at) {
+      parent[at] = parent[parent[at]];
+      at = parent[at];
+    }
+    return at;
+  };
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    parent[root(corners[1])] = root(corners[0]);
+    parent[root(corners[2])] = root(corners[0]);
+  }
+  int parts = 0;
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    parts += parent[i] == i ? 1 : 0;
+  }
+  return parts;
+}
+
+TEST(MarchingCubes, IsClosedAndManifoldWhateverTheSigns) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const CompactTsdf field = random_field(seed, 0.2 * seed);
+    const HoleFilledSdf filled(field, 3);
+    const std::vector<Facet> facets = surface_of(filled.inside(), filled);
+    ASSERT_GT(facets.size(), 1000U);
+    EXPECT_TRUE(topology_of(facets).manifold) << "seed " << seed;
+  }
+}
+
+TEST(MarchingCubes, OfAKeptPartIsOnePart) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const CompactTsdf field = random_field(seed, 0.2 * seed);
+    const HoleFilledSdf filled(field, 3);
+    VoxelMask part = filled.inside();
+    part.keep_main_component();
+    part.fill_cavities();
+    EXPECT_EQ(part.component_count(), 1U);
+    const std::vector<Facet> facets = surface_of(part, filled);
+    EXPECT_EQ(parts_of(facets), 1) << "seed " << seed;
+    EXPECT_TRUE(topology_of(facets).manifold) << "seed " << seed;
+  }
+}
+
+TEST(MarchingCubes, KeepsVerticesApart) {
+  const CompactTsdf field = random_field(7, 0.4);
+  const HoleFilledSdf filled(field, 3);
+  for (const Facet& facet : surface_of(filled.inside(), filled)) {
+    const auto corners = facet.corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3f a(corners[i].data());
+      const Eigen::Vector3f b(corners[(i + 1) % 3].data());
+      EXPECT_GT((a - b).norm(), 0.0355F);  // millimetres; 0.036, rounded
+    }
+  }
+}
+
+TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
+  const Shape shape = ball({0.0002, -0.0003, 0.0141}, 0.01);
+  TsdfVolume field(
+      VoxelGrid(1.0, 10, {.min = {-0.012, -0.012, 0.002}, .max = {0.012, 0.012, 0.026}}, 0.0035));
+  for (int z = 1; z + 1 < field.size().z; ++z) {
+    for (int y = 1; y + 1 < field.size().y; ++y) {
+      for (int x = 1; x + 1 < field.size().x; ++x) {
+        TsdfBrick& brick = *field.make({x, y, z});
+        for (int i = 0; i < static_cast<int>(TsdfBrick::samples); ++i) {
+          const auto centre = [&](int at, int low, int leaf, std::size_t axis) {
+            return field.centre((at + low) * Brick::side + leaf, axis);
+          };
+          const double distance =
+              shape({centre(x, field.low().x, i % 8, 0), centre(y, field.low().y, i / 8 % 8, 1),
+                     centre(z, field.low().z, i / 64, 2)});
+          const double part = std::clamp(distance / field.truncation(), -1.0, 1.0);
+          brick.distance[static_cast<std::size_t>(i)] =
+              static_cast<std::int16_t>(std::lround(part * TsdfVolume::ticks));
+          brick.weight[static_cast<std::size_t>(i)] = TsdfVolume::weight_ticks;
+        }
+      }
+    }
+  }
+  CompactTsdf seen(field);
+  seen.add(field);
+  const HoleFilledSdf filled(seen, 3);
+  const std::vector<Facet> facets = surface_of(filled.inside(), filled);
+  EXPECT_GT(facets.size(), 1000U);
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    for (const auto& corner : corners) {
+      const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
+      // Along an edge of h the distance bends by h^2 / 8 r; corners keep 0.025 mm from leaves.
+      EXPECT_NEAR(shape(point), 0, 0.000012 + 0.000026);
+    }
+  }
+}
+
+TEST(MarchingCubes, PartsEveryLeafInsideFromEveryLeafOutside) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const CompactTsdf field = random_field(seed, 0.2 * seed);
+    const HoleFilledSdf filled(field, 3);
+    const VoxelMask inside = filled.inside();
+    std::size_t leaves_inside = 0;
+    std::size_t wrong = 0;
+    for_each_winding(filled, surface_of(inside, filled), [&](const Index3& leaf, int winding) {
+      const bool is_inside = inside.contains(leaf.x, leaf.y, leaf.z);
+      leaves_inside += is_inside ? 1 : 0;
+      wrong += winding != (is_inside ? 1 : 0) ? 1 : 0;
+    });
+    EXPECT_EQ(wrong, 0U) << "seed " << seed;
+    EXPECT_EQ(leaves_inside, inside.count());
+    EXPECT_GT(leaves_inside, 500U);
+  }
+}
+
+TEST(Simplifier, KeepsNoiseManifold) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const CompactTsdf field = random_field(seed, 0.2 * seed);
+    const HoleFilledSdf filled(field, 3);
+    std::vector<Facet> facets;
+    StreamSimplifier simplifier(0.5, 4, [&](std::span<const Facet> some) {
+      facets.insert(facets.end(), some.begin(), some.end());
+    });
+    const VoxelMask inside = filled.inside();
+    marching_cubes(inside, filled, [&](const MeshPiece& piece) { simplifier.add(piece); });
+    simplifier.finish();
+    const std::vector<Facet> all = surface_of(inside, filled);
+    EXPECT_LT(facets.size(), all.size());
+    EXPECT_TRUE(topology_of(facets).manifold) << "seed " << seed;
+    EXPECT_EQ(topology_of(facets).euler, topology_of(all).euler) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,223 @@
+#include "tsdf/solid_reconstructor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/mesh/surface.hpp"
+#include "core/tsdf/rendered.hpp"
+#include "octurn/mesh_check.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+ReconstructOptions options(double leaf_size = 0.002) {
+  return {.method = Method::solid,
+          .leaf_size = leaf_size,
+          .clip = {.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}}};
+}
+
+std::vector<Facet> part_of(const ReconstructOptions& with, const SnapshotSource& snapshots) {
+  SolidReconstructor solid(with);
+  solid.add(snapshots);
+  std::vector<Facet> facets;
+  solid.surface(snapshots, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  return facets;
+}
+
+MeshCheck checked(const std::vector<Facet>& facets) {
+  MeshCheck check;
+  check.add(facets);
+  return check;
+}
+
+/// The greatest distance of a seen corner to the shape, but for those near the platform, metres.
+double worst_of(const std::vector<Facet>& facets, const Shape& shape) {
+  double worst = 0;
+  for (const Facet& facet : facets) {
+    const auto corners = facet.corners;
+    for (const auto& corner : corners) {
+      const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
+      if (facet.attributes != filled_in && point.z() > 0.006) {
+        worst = std::max(worst, std::abs(shape(point)));
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(Solid, IsOneClosedPartOnAFlatFoot) {
+  const std::vector<Facet> facets = part_of(options(), rendered(block({0.06, 0.04, 0.07}), 8));
+  const Topology topology = topology_of(facets);
+  EXPECT_TRUE(topology.manifold);
+  EXPECT_EQ(topology.euler, 2);  // one part without holes: two parts have 4
+  EXPECT_EQ(checked(facets).bounds_mm().min.z(), 0.0);
+}
+
+TEST(Solid, HasTheVolumeAndTheSurfaceOfABlock) {
+  const Shape shape = block({0.06, 0.04, 0.07});
+  const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
+  const MeshCheck check = checked(facets);
+  EXPECT_NEAR(check.volume_mm3(), 60 * 40 * 70, 60 * 40 * 70 * 0.02);
+  EXPECT_LT(worst_of(facets, shape), 0.002);  // a leaf, at its rounded edges
+  EXPECT_NEAR(check.bounds_mm().max.z(), 70, 0.3);
+}
+
+TEST(Solid, StaysOnABall) {
+  const Shape shape = ball({0.01, -0.005, 0.05}, 0.045);
+  const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
+  // Samples are 3 mm apart: planes fitted over five of them lie up to 6^2 / (2 * 45) = 0.4 mm
+  // inside, and where they graze the ball a slanted window reaches three times as far.
+  EXPECT_LT(worst_of(facets, shape), 0.0012);
+}
+
+TEST(Solid, KeepsWhatIsHollowHollow) {
+  const Shape shape = hollowed_block({0.12, 0.1, 0.05}, 0.03);
+  const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
+  const double volume = 120 * 100 * 50 - 2.0 / 3 * std::numbers::pi * 30 * 30 * 30;
+  EXPECT_NEAR(checked(facets).volume_mm3(), volume, volume * 0.02);
+  EXPECT_TRUE(topology_of(facets).manifold);
+}
+
+TEST(Solid, DoesNotThickenAThinPlate) {
+  const std::vector<Facet> facets =
+      part_of(options(0.001), rendered(block({0.07, 0.004, 0.06}), 8));
+  EXPECT_NEAR(checked(facets).volume_mm3(), 70 * 4 * 60, 70 * 4 * 60 * 0.1);
+}
+
+TEST(Solid, SaysWhatNobodySaw) {
+  const SnapshotSource once = rendered(ball({0, 0, 0.05}, 0.045), 1);
+  const SnapshotSource around = rendered(ball({0, 0, 0.05}, 0.045), 8);
+  const double half = checked(part_of(options(), once)).filled_share();
+  const double whole = checked(part_of(options(), around)).filled_share();
+  EXPECT_GT(half, 0.4);
+  EXPECT_LT(whole, 0.25);  // below it, where it nearly touches the platform
+  EXPECT_TRUE(topology_of(part_of(options(), once)).manifold);
+}
+
+TEST(Solid, DoesNotFollowAnErrantReading) {
+  const SnapshotSource good = rendered(block({0.06, 0.04, 0.07}), 8);
+  const SnapshotSource bad{.count = good.count, .read = [&](std::size_t i) {
+                             Snapshot snapshot = good.read(i);
+                             if (i == 3) {  // a patch of 4 x 4 samples, 4 cm before the block
+                               for (int v = 75; v < 79; ++v) {
+                                 for (int u = 118; u < 122; ++u) {
+                                   auto& depth =
+                                       snapshot.frame.depth[static_cast<std::size_t>(v * 240 + u)];
+                                   depth = static_cast<std::uint16_t>(depth - 400);
+                                 }
+                               }
+                             }
+                             return snapshot;
+                           }};
+  const MeshCheck without = checked(part_of(options(), good));
+  const MeshCheck with = checked(part_of(options(), bad));
+  EXPECT_NEAR((with.bounds_mm().max - without.bounds_mm().max).norm(), 0, 0.5);
+  EXPECT_NEAR((with.bounds_mm().min - without.bounds_mm().min).norm(), 0, 0.5);
+}
+
+TEST(Solid, TakesFewerTrianglesForASmallError) {
+  const Shape shape = ball({0, 0, 0.05}, 0.045);
+  ReconstructOptions all = options();
+  all.max_error = 0;
+  const std::vector<Facet> many = part_of(all, rendered(shape, 8));
+  const std::vector<Facet> few = part_of(options(), rendered(shape, 8));
+  EXPECT_LT(few.size() * 3, many.size() * 2);
+  EXPECT_LT(worst_of(few, shape), worst_of(many, shape) + 0.0001);
+  EXPECT_NEAR(checked(few).volume_mm3(), checked(many).volume_mm3(),
+              checked(many).volume_mm3() * 0.001);
+  EXPECT_TRUE(topology_of(few).manifold);
+  EXPECT_TRUE(topology_of(many).manifold);
+}
+
+TEST(Solid, GivesTheSameBytesForAnyThreadsAndMemory) {
+  const SnapshotSource snapshots = rendered(hollowed_block({0.08, 0.06, 0.04}, 0.025), 5);
+  const std::vector<Facet> alone = part_of(options(), snapshots);
+  for (const int threads : {2, 3}) {
+    ReconstructOptions with = options();
+    with.threads = threads;
+    EXPECT_TRUE(same_bytes(part_of(with, snapshots), alone)) << threads << " threads";
+    with.memory_limit = std::size_t{64} << 20U;
+    EXPECT_TRUE(same_bytes(part_of(with, snapshots), alone)) << threads << " threads, limited";
+  }
+}
+
+TEST(Solid, GivesTheSameBytesInSlabs) {
+  const SnapshotSource all = rendered(block({0.06, 0.05, 0.06}), 4);
+  const std::vector<Facet> whole = part_of(options(0.0005), all);
+  std::size_t reads = 0;
+  const SnapshotSource counted{.count = all.count, .read = [&](std::size_t i) {
+                                 ++reads;
+                                 return all.read(i);
+                               }};
+  ReconstructOptions tight = options(0.0005);
+  tight.memory_limit = std::size_t{44} << 20U;
+  EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
+  EXPECT_GT(reads, all.count);
+
+  SolidReconstructor solid(tight);
+  solid.add(counted);
+  const SurfaceCount first = solid.count(counted);
+  EXPECT_EQ(first.facets, whole.size());
+  EXPECT_EQ(solid.count(counted).facets, first.facets);
+}
+
+TEST(Solid, GivesTheSameBytesOneByOne) {
+  const SnapshotSource snapshots = rendered(hollowed_block({0.08, 0.06, 0.04}, 0.025), 3);
+  SolidReconstructor solid(options());
+  for (std::size_t i = 0; i < snapshots.count; ++i) {
+    solid.add(snapshots.read(i));
+  }
+  std::vector<Facet> facets;
+  const SurfaceCount count = solid.surface(snapshots, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  EXPECT_TRUE(same_bytes(facets, part_of(options(), snapshots)));
+  EXPECT_EQ(count.facets, facets.size());
+  EXPECT_EQ(count.parts, 1U);
+  EXPECT_EQ(solid.count(snapshots).facets, facets.size());
+}
+
+TEST(Solid, HasNoSurfaceOnAnEmptyPlatform) {
+  const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
+  EXPECT_TRUE(part_of(options(), rendered(nothing, 4)).empty());
+}
+
+TEST(Solid, ClosesWhatIsTallerThanTheClipBox) {
+  ReconstructOptions low = options();
+  low.clip.max.z() = 0.05;
+  const std::vector<Facet> facets = part_of(low, rendered(block({0.06, 0.04, 0.1}), 8));
+  EXPECT_TRUE(topology_of(facets).manifold);
+  EXPECT_NEAR(checked(facets).bounds_mm().max.z(), 50, 20);
+}
+
+TEST(Solid, SaysWhatIsWrongWithItsOptions) {
+  const auto thrown_by = [](auto change) {
+    ReconstructOptions with = options();
+    change(with);
+    return code_thrown_by([&] { const SolidReconstructor solid(with); });
+  };
+  EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 0; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.max_error = -1; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.max_error = std::nan(""); }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.level = 3; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.memory_limit = 1; }), "memory-limit");
+}
+
+TEST(Solid, SaysWhatMemoryItNeeds) {
+  ReconstructOptions with = options(0.0005);
+  with.memory_limit = std::size_t{34} << 20U;
+  EXPECT_EQ(code_thrown_by([&] {
+              part_of(with, rendered(block({0.1, 0.1, 0.1}), 4));
+            }),
+            "memory-limit");
+}
+
+}  // namespace
+}  // namespace octurn

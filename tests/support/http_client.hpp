@@ -32,18 +32,28 @@ struct Reply {
   }
 };
 
-inline FileDescriptor connected(int port) {
-  FileDescriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+inline sockaddr_in internet_address(std::uint32_t host, int port) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_addr.s_addr = htonl(host);
+  return address;
+}
+
+/// Connects as a client of another address: all of 127.0.0.0/8 are this machine's.
+inline FileDescriptor connected_from(std::uint32_t client, int port) {
+  FileDescriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in own = internet_address(client, 0);
+  EXPECT_EQ(::bind(socket.number(), reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
+  const sockaddr_in address = internet_address(INADDR_LOOPBACK, port);
   const timeval patience{.tv_sec = 20, .tv_usec = 0};
   ::setsockopt(socket.number(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   EXPECT_EQ(::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address),
             0);
   return socket;
 }
+
+inline FileDescriptor connected(int port) { return connected_from(INADDR_LOOPBACK, port); }
 
 inline void send_text(const FileDescriptor& socket, std::string_view text) {
   while (!text.empty()) {

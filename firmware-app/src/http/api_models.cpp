@@ -82,7 +82,7 @@ Response Api::made_model(const Request& request, const Job& job) {
   }
   auto model = std::make_unique<ModelStream>(store_.folder(job.id), options, std::move(leave));
   const std::uint64_t bytes = model->bytes();
-  ByteStream stream{.length = bytes};
+  ByteStream stream{.length = bytes, .stop = model->stop()};
   stream.make = std::packaged_task<void(const ByteSink&)>(
       [made = std::move(model), id = job.id](const ByteSink& sink) {
         try {

@@ -7,6 +7,7 @@
 #include <future>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -76,6 +77,7 @@ using ByteSink = std::function<bool(std::span<const std::byte>)>;
 /// A body that is made while it is sent.
 struct ByteStream {
   std::uint64_t length = 0;
+  std::stop_token stop = {};  ///< ends the answer at once, even if its reader is slow
   /// Hands over all of it, in order, unless told to end. Throws nothing. For one call; a
   /// packaged_task, since a std::function would have to be copyable.
   std::packaged_task<void(const ByteSink&)> make = {};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
@@ -28,6 +29,9 @@ class ModelStream {
   ModelStream& operator=(const ModelStream&) = delete;
 
   std::uint64_t bytes() const;
+
+  /// That a scan has started, which ends this one.
+  std::stop_token stop() const { return leave_->stop(); }
 
   /// Hands the STL over, once. Ends early if `sink` returns false or a scan starts.
   void send(const std::function<bool(std::span<const std::byte>)>& sink);

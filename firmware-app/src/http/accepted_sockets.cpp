@@ -1,0 +1,98 @@
+#include "http/accepted_sockets.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+
+#include "file_descriptor.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+struct Closer {
+  void operator()(DIR* folder) const { ::closedir(folder); }
+};
+
+/// The port of an IPv4 or IPv6 address; 0 for any other.
+int port_of(const sockaddr_storage& address) {
+  if (address.ss_family == AF_INET) {
+    return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
+  }
+  if (address.ss_family == AF_INET6) {
+    return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
+  }
+  return 0;
+}
+
+/// The number of a socket's inode, which no other open one has.
+std::optional<ino_t> socket_inode(int descriptor) {
+  struct ::stat info {};
+  if (::fstat(descriptor, &info) != 0 || !S_ISSOCK(info.st_mode)) {
+    return std::nullopt;
+  }
+  return info.st_ino;
+}
+
+std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
+  const auto inode = socket_inode(descriptor);
+  if (!inode) {
+    return std::nullopt;
+  }
+  sockaddr_storage local{};
+  socklen_t size = sizeof local;
+  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&local), &size) != 0 ||
+      port_of(local) != local_port) {
+    return std::nullopt;
+  }
+  sockaddr_storage peer{};
+  size = sizeof peer;
+  std::array<char, NI_MAXHOST> address{};
+  if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
+      ::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), size, address.data(), address.size(),
+                    nullptr, 0, NI_NUMERICHOST) != 0) {
+    return std::nullopt;  // it listens, or its peer has gone
+  }
+  return AcceptedSocket{
+      .descriptor = descriptor, .inode = *inode, .address = address.data(), .port = port_of(peer)};
+}
+
+}  // namespace
+
+std::vector<AcceptedSocket> accepted_sockets(int local_port) {
+  const std::unique_ptr<DIR, Closer> folder(::opendir("/proc/self/fd"));
+  if (!folder) {
+    throw Error("no-descriptors", "/proc/self/fd cannot be read", "Is /proc mounted?");
+  }
+  std::vector<AcceptedSocket> sockets;
+  while (const dirent* const entry = ::readdir(folder.get())) {
+    const int descriptor = std::atoi(entry->d_name);  // "." and "..": 0, which is no such socket
+    if (auto socket = accepted_socket(descriptor, local_port)) {
+      sockets.push_back(*std::move(socket));
+    }
+  }
+  return sockets;
+}
+
+void shut_down(const AcceptedSocket& socket, Cut cut) {
+  // The copy keeps what is looked at from becoming another file before it is shut.
+  const FileDescriptor copy(::fcntl(socket.descriptor, F_DUPFD_CLOEXEC, 0));
+  if (!copy.is_open() || socket_inode(copy.number()) != socket.inode) {
+    return;
+  }
+  if (cut == Cut::reset) {
+    const linger at_once{.l_onoff = 1, .l_linger = 0};
+    ::setsockopt(copy.number(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  }
+  ::shutdown(copy.number(), cut == Cut::reading ? SHUT_RD : SHUT_RDWR);
+}
+
+}  // namespace octurn

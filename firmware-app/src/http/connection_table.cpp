@@ -1,0 +1,172 @@
+#include "http/connection_table.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace octurn {
+namespace {
+
+// Who has kept the server waiting for longer than a lost packet takes to be sent again goes first.
+constexpr double noticeable_debt = 1;  // seconds
+
+/// What a slow reader has not taken would stay in the kernel's memory for minutes.
+Cut final_cut(Wait wait) { return wait == Wait::reader ? Cut::reset : Cut::finish; }
+
+}  // namespace
+
+void ConnectionTable::refresh(std::span<const AcceptedSocket> open, Time now) {
+  std::unordered_map<Key, Connection> still_open;
+  for (const AcceptedSocket& socket : open) {
+    const auto known = connections_.find(socket.inode);
+    if (known != connections_.end()) {
+      still_open.insert(connections_.extract(known));
+    } else {
+      still_open.emplace(socket.inode, Connection{.socket = socket, .since = now, .settled = now});
+    }
+  }
+  connections_ = std::move(still_open);
+}
+
+std::optional<ConnectionTable::Key> ConnectionTable::claim(std::string_view address, int port,
+                                                           Time now) {
+  const auto found = std::ranges::find_if(connections_, [&](const auto& entry) {
+    const AcceptedSocket& socket = entry.second.socket;
+    return socket.port == port && socket.address == address;
+  });
+  if (found == connections_.end()) {
+    return std::nullopt;
+  }
+  set_wait(found->first, Wait::server, now);
+  forgive(found->first, now);
+  return found->first;
+}
+
+/// Bytes a second; nothing where only the deadline counts.
+std::optional<double> ConnectionTable::min_rate(Wait wait) const {
+  switch (wait) {
+    case Wait::upload:
+      return limits_.min_upload_rate;
+    case Wait::reader:
+      return limits_.min_answer_rate;
+    default:
+      return std::nullopt;
+  }
+}
+
+void ConnectionTable::settle(Connection& connection, Time now, std::uint64_t bytes) const {
+  if (connection.wait != Wait::server) {
+    connection.debt += std::chrono::duration<double>(now - connection.settled).count();
+  }
+  if (const auto rate = min_rate(connection.wait)) {
+    connection.debt = std::max(0.0, connection.debt - static_cast<double>(bytes) / *rate);
+  }
+  connection.settled = now;
+}
+
+void ConnectionTable::set_wait(Key key, Wait wait, Time now) {
+  if (const auto found = connections_.find(key); found != connections_.end()) {
+    settle(found->second, now, 0);
+    found->second.wait = wait;
+  }
+}
+
+void ConnectionTable::forgive(Key key, Time now) {
+  if (const auto found = connections_.find(key); found != connections_.end()) {
+    found->second.debt = 0;
+    found->second.settled = now;
+  }
+}
+
+void ConnectionTable::add_bytes(Key key, std::uint64_t bytes, Time now) {
+  if (const auto found = connections_.find(key); found != connections_.end()) {
+    settle(found->second, now, bytes);
+  }
+}
+
+bool ConnectionTable::is_cut(Key key) const {
+  const auto found = connections_.find(key);
+  return found != connections_.end() && (found->second.deaf || found->second.ended);
+}
+
+std::optional<ConnectionTable::Ending> ConnectionTable::reset(Key key) {
+  const auto found = connections_.find(key);
+  if (found == connections_.end() || found->second.ended) {
+    return std::nullopt;
+  }
+  found->second.ended = true;
+  return Ending{.socket = found->second.socket, .cut = Cut::reset};
+}
+
+/// Cuts a connection that is over its limit. A client that sends a body can still be told so: it is
+/// only no longer listened to, and gets as much patience again to take the answer.
+std::optional<Cut> ConnectionTable::due(Connection& connection, Time now) const {
+  if (connection.ended) {
+    return std::nullopt;
+  }
+  settle(connection, now, 0);
+  const double patience = limits_.patience.count();
+  const bool sends_body = connection.wait == Wait::body || connection.wait == Wait::upload;
+  if (connection.debt > (sends_body ? 2 : 1) * patience) {
+    connection.ended = true;
+    return final_cut(connection.wait);
+  }
+  if (sends_body && !connection.deaf && connection.debt > patience) {
+    connection.deaf = true;
+    return Cut::reading;
+  }
+  return std::nullopt;
+}
+
+std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
+  std::vector<Ending> endings;
+  for (auto& [key, connection] : connections_) {
+    if (const auto cut = due(connection, now)) {
+      endings.push_back({.socket = connection.socket, .cut = *cut});
+    }
+  }
+  auto held = static_cast<std::size_t>(
+      std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.ended; }));
+  for (; held > limits_.max_connections; --held) {
+    Connection* const connection = worst();
+    if (connection == nullptr) {
+      break;  // all of them wait for the server
+    }
+    connection->ended = true;
+    endings.push_back({.socket = connection->socket, .cut = final_cut(connection->wait)});
+  }
+  return endings;
+}
+
+/// The connections that wait for their clients.
+std::vector<ConnectionTable::Connection*> ConnectionTable::candidates() {
+  std::vector<Connection*> waiting;
+  for (auto& [key, connection] : connections_) {
+    if (!connection.ended && connection.wait != Wait::server) {
+      waiting.push_back(&connection);
+    }
+  }
+  return waiting;
+}
+
+/// The connection with the most debt; where none has any to speak of, the oldest of the address
+/// that holds the most. Null if all wait for the server.
+ConnectionTable::Connection* ConnectionTable::worst() {
+  const std::vector<Connection*> waiting = candidates();
+  if (waiting.empty()) {
+    return nullptr;
+  }
+  Connection* const deepest = *std::ranges::max_element(waiting, {}, &Connection::debt);
+  if (deepest->debt > noticeable_debt) {
+    return deepest;
+  }
+  std::map<std::string_view, std::size_t> held;
+  for (const auto& [key, connection] : connections_) {
+    held[connection.socket.address] += connection.ended ? 0 : 1;
+  }
+  return *std::ranges::max_element(waiting, {}, [&](const Connection* connection) {
+    return std::pair(held[connection->socket.address], -connection->since.time_since_epoch());
+  });
+}
+
+}  // namespace octurn

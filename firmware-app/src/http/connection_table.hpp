@@ -1,0 +1,103 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "http/accepted_sockets.hpp"
+
+namespace octurn {
+
+/// What a connection is held open for.
+enum class Wait {
+  head,    ///< the client's request line and headers
+  server,  ///< an answer that this program is working at: not the client's fault
+  body,    ///< a small body
+  upload,  ///< a large body, at min_upload_rate
+  reader,  ///< a client that takes an answer, at min_answer_rate
+  close,   ///< bytes that nobody will read, and the client's end of the connection
+};
+
+/// What clients may take.
+struct ConnectionLimits {
+  std::size_t max_connections = 28;  ///< those that the server need not hold are cut
+  std::chrono::duration<double> patience = std::chrono::seconds(10);  ///< with each client
+  double min_upload_rate = 100e3;                                     ///< bytes a second
+  double min_answer_rate = 16e3;                                      ///< bytes a second
+};
+
+/// The connections of a server, and which of them are to end: those that keep the server waiting
+/// for too long, and, as long as there are too many, those that earn their place least.
+///
+/// Each connection has a debt, in seconds. It grows with the time that the server waits for the
+/// client, and every byte pays for 1 / rate of it, never below 0: so over any span of time a client
+/// keeps up with the rate, or falls behind by as much. Heads, small bodies and closing have no
+/// rate, but a deadline: bytes pay nothing. More debt than `patience` ends the connection.
+///
+/// Not thread-safe. Time is given, so that tests need none.
+class ConnectionTable {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  using Key = ino_t;  ///< a socket's inode
+
+  explicit ConnectionTable(const ConnectionLimits& limits) : limits_(limits) {}
+
+  bool is_empty() const { return connections_.empty(); }
+
+  /// Takes up the connections that are new, and forgets those that are closed.
+  void refresh(std::span<const AcceptedSocket> open, Time now);
+
+  /// The connection of this peer, whose head is read. From here on it waits for the server.
+  std::optional<Key> claim(std::string_view address, int port, Time now);
+
+  /// Changes what a connection waits for. Its debt stays.
+  void set_wait(Key key, Wait wait, Time now);
+
+  /// Forgives a connection its debt: another part of the exchange begins.
+  void forgive(Key key, Time now);
+
+  /// Bytes that went to or came from the client.
+  void add_bytes(Key key, std::uint64_t bytes, Time now);
+
+  /// Whether a connection no longer takes bytes from its client, which was too slow.
+  bool is_cut(Key key) const;
+
+  /// A connection that is to be shut down now.
+  struct Ending {
+    AcceptedSocket socket = {};
+    Cut cut = Cut::finish;
+  };
+
+  /// Cuts a connection whose answer is no longer to be sent. Nothing if it was cut before.
+  std::optional<Ending> reset(Key key);
+
+  /// Cuts the connections that are over their limits, and those that are too many.
+  std::vector<Ending> cut_all_due(Time now);
+
+ private:
+  struct Connection {
+    AcceptedSocket socket = {};
+    Time since = {};
+    Wait wait = Wait::head;
+    double debt = 0;  // seconds, at the time `settled`
+    Time settled = {};
+    bool deaf = false;   // shut for reading
+    bool ended = false;  // shut wholly
+  };
+
+  std::optional<double> min_rate(Wait wait) const;
+  void settle(Connection& connection, Time now, std::uint64_t bytes) const;
+  std::optional<Cut> due(Connection& connection, Time now) const;
+  std::vector<Connection*> candidates();
+  Connection* worst();
+
+  ConnectionLimits limits_;
+  std::unordered_map<Key, Connection> connections_ = {};
+};
+
+}  // namespace octurn

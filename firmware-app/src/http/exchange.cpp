@@ -1,0 +1,209 @@
+#include "http/exchange.hpp"
+
+#include <civetweb.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include "log.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+// A request is small: settings, a name. What is larger is not meant for us.
+constexpr std::size_t max_body = std::size_t{64} * 1024;    // bytes
+constexpr std::size_t file_part = std::size_t{64} * 1024;   // bytes read from a file at a time
+constexpr std::size_t write_part = std::size_t{16} * 1024;  // bytes: progress is seen between parts
+
+/// What every answer has. The page loads nothing from elsewhere, and no other page may show it,
+/// read it, or guess what its files are.
+const Headers common_headers{
+    {"Content-Security-Policy",
+     "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
+     "form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Connection", "close"},
+};
+
+std::uint64_t body_length(const Response& response) {
+  if (const auto* slice = std::get_if<FileSlice>(&response.body)) {
+    return slice->length;
+  }
+  if (const auto* stream = std::get_if<ByteStream>(&response.body)) {
+    return stream->length;
+  }
+  return std::get<std::string>(response.body).size();
+}
+
+std::string to_head(const Response& response) {
+  const char* const reason = mg_get_response_code_text(nullptr, response.status);
+  std::string head = "HTTP/1.1 " + std::to_string(response.status) + " " + reason + "\r\n";
+  const auto append = [&](const Headers& headers) {
+    for (const auto& [name, value] : headers) {
+      head.append(name).append(": ").append(value).append("\r\n");
+    }
+  };
+  append(response.headers);
+  append(common_headers);
+  if (response.status != 204 && response.status != 304) {
+    head += "Content-Length: " + std::to_string(body_length(response)) + "\r\n";
+  }
+  return head + "\r\n";
+}
+
+/// "scanner:8080" of "http://scanner:8080/path"; nothing of a target that is a path.
+std::optional<std::string_view> authority(std::string_view target) {
+  constexpr std::string_view separator = "://";
+  const std::size_t scheme = target.find(separator);
+  if (target.starts_with('/') || scheme == std::string_view::npos) {
+    return std::nullopt;
+  }
+  target.remove_prefix(scheme + separator.size());
+  return target.substr(0, target.find_first_of("/?#"));
+}
+
+}  // namespace
+
+Exchange::Exchange(mg_connection& connection, ConnectionGuard& guard)
+    : connection_(connection), guard_(guard) {
+  if (const mg_request_info* const info = mg_get_request_info(&connection)) {
+    key_ = guard.claim(info->remote_addr, info->remote_port);
+  }
+}
+
+Request Exchange::head() const {
+  const mg_request_info& info = *mg_get_request_info(&connection_);
+  Request request{.method = info.request_method,
+                  .path = info.local_uri != nullptr ? info.local_uri : "",
+                  .query = info.query_string != nullptr ? info.query_string : ""};
+  if (const auto host = authority(info.request_uri != nullptr ? info.request_uri : "")) {
+    request.headers.emplace_back("Host", *host);  // the first of a name counts
+  }
+  for (int i = 0; i < info.num_headers; ++i) {
+    const mg_header& header = info.http_headers[i];
+    request.headers.emplace_back(header.name, header.value);
+  }
+  return request;
+}
+
+/// @return bytes; 0 at the end; negative if what came is malformed
+int Exchange::read(std::span<char> buffer, Wait wait) {
+  ConnectionGuard::Waiting waiting(guard_, key_, wait);
+  const int got = mg_read(&connection_, buffer.data(), buffer.size());
+  waiting.add_bytes(static_cast<std::uint64_t>(std::max(got, 0)));
+  return got;
+}
+
+std::string Exchange::read_body() {
+  const long long announced = mg_get_request_info(&connection_)->content_length;
+  const auto expect_small = [](std::uint64_t bytes) {
+    if (bytes > max_body) {
+      throw Error("too-large", "a body is at most " + std::to_string(max_body) + " bytes",
+                  "Send the settings only.");
+    }
+  };
+  expect_small(static_cast<std::uint64_t>(std::max(announced, 0LL)));
+  std::string body;
+  std::array<char, 4096> part{};
+  int got = 1;
+  while (got > 0) {
+    got = read(part, Wait::body);
+    body.append(part.data(), static_cast<std::size_t>(std::max(got, 0)));
+    expect_small(body.size());
+  }
+  if (guard_.is_cut(key_)) {
+    throw Error("too-slow", std::to_string(body.size()) + " bytes of the body came in time",
+                "Send the request again.");
+  }
+  if (got < 0) {
+    throw Error("bad-request", "the body is cut off, or malformed", "Send the request again.");
+  }
+  if (announced >= 0 && body.size() != static_cast<std::size_t>(announced)) {
+    throw Error("cut-short",
+                std::to_string(body.size()) + " of " + std::to_string(announced) + " bytes came",
+                "Send the request again.");
+  }
+  return body;
+}
+
+ByteSource Exchange::upload() {
+  const long long announced = mg_get_request_info(&connection_)->content_length;
+  std::optional<std::uint64_t> length;
+  if (announced >= 0) {
+    length = static_cast<std::uint64_t>(announced);
+  }
+  return {
+      .length = length, .read = [this](std::span<std::byte> buffer) {
+        const int got = read({reinterpret_cast<char*>(buffer.data()), buffer.size()}, Wait::upload);
+        return static_cast<std::size_t>(std::max(got, 0));
+      }};
+}
+
+/// @return false if the connection has ended
+bool Exchange::write(std::string_view bytes) {
+  ConnectionGuard::Waiting waiting(guard_, key_, Wait::reader);
+  while (!bytes.empty()) {
+    const std::string_view part = bytes.substr(0, write_part);
+    if (mg_write(&connection_, part.data(), part.size()) != static_cast<int>(part.size())) {
+      return false;
+    }
+    waiting.add_bytes(part.size());
+    bytes.remove_prefix(part.size());
+  }
+  return true;
+}
+
+void Exchange::send_slice(const FileSlice& slice) {
+  std::vector<char> buffer(file_part);
+  std::uint64_t sent = 0;
+  while (sent < slice.length) {
+    const std::size_t wanted = std::min<std::uint64_t>(buffer.size(), slice.length - sent);
+    const ssize_t got = ::pread(slice.file.number(), buffer.data(), wanted,
+                                static_cast<off_t>(slice.offset + sent));
+    if (got <= 0) {
+      log::error("http", "a model could not be read to its end");
+      return;  // the connection closes short of Content-Length, which tells the client
+    }
+    if (!write({buffer.data(), static_cast<std::size_t>(got)})) {
+      return;
+    }
+    sent += static_cast<std::uint64_t>(got);
+  }
+}
+
+void Exchange::send_stream(ByteStream& stream) {
+  const std::stop_callback at_stop(stream.stop, [this] { guard_.reset(key_); });
+  stream.make([&](std::span<const std::byte> bytes) {
+    return write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  });
+}
+
+void Exchange::send(std::string_view method, Response response) {
+  guard_.restart(key_, Wait::server);
+  const std::string head = to_head(response);
+  const auto* text = std::get_if<std::string>(&response.body);
+  const auto* slice = std::get_if<FileSlice>(&response.body);
+  if (method == "HEAD") {
+    write(head);
+  } else if (text != nullptr) {
+    write(head + *text);
+  } else if (!write(head)) {
+    return;
+  } else if (slice != nullptr) {
+    send_slice(*slice);
+  } else {
+    send_stream(std::get<ByteStream>(response.body));
+  }
+  guard_.restart(key_, Wait::close);
+}
+
+}  // namespace octurn

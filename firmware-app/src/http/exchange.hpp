@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "http/connection_guard.hpp"
+#include "http/message.hpp"
+
+struct mg_connection;
+
+namespace octurn {
+
+/// One request and its answer over a connection of civetweb, within the limits of the guard.
+class Exchange {
+ public:
+  /// @param connection  whose head is read, or malformed: then there is only an answer to send
+  Exchange(mg_connection& connection, ConnectionGuard& guard);
+
+  /// The request without its body. The host of an absolute request target is in force over the
+  /// Host header (RFC 9112, section 3.2.2).
+  Request head() const;
+
+  /// The whole body.
+  /// @throws Error "too-large", "too-slow"; "cut-short", "bad-request" if it is not what was
+  /// announced
+  std::string read_body();
+
+  /// The body, to be read as it comes. What is not read of it is dropped.
+  ByteSource upload();
+
+  /// Sends an answer, or as much of it as the client takes.
+  /// @param method  of the request
+  void send(std::string_view method, Response response);
+
+ private:
+  int read(std::span<char> buffer, Wait wait);
+  bool write(std::string_view bytes);
+  void send_slice(const FileSlice& slice);
+  void send_stream(ByteStream& stream);
+
+  mg_connection& connection_;
+  ConnectionGuard& guard_;
+  ConnectionGuard::Key key_ = ConnectionGuard::unknown;
+};
+
+}  // namespace octurn

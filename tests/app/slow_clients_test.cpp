@@ -1,0 +1,200 @@
+// Clients that are slow, many, or gone before they have said what they wanted.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "http/http_server.hpp"
+#include "support/http_client.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t endless = std::size_t{1} << 40U;
+
+/// "/stream" is without end; an upload is read to its end; all else is answered at once.
+Response answer(const Request& request) {
+  if (request.path == "/stream") {
+    ByteStream stream{.length = endless};
+    stream.make = std::packaged_task<void(const ByteSink&)>([](const ByteSink& sink) {
+      const std::vector<std::byte> part(100'000);
+      while (sink(part)) {
+      }
+    });
+    return {.body = std::move(stream)};
+  }
+  if (request.path == "/upload") {
+    std::vector<std::byte> part(100);
+    std::size_t bytes = 0;
+    for (std::size_t got = 1; got > 0; bytes += got) {
+      got = request.upload.read(part);
+    }
+    return {.body = std::to_string(bytes)};
+  }
+  return {.body = "the page"};
+}
+
+HttpServer server_with(std::chrono::milliseconds patience) {
+  return {{.address = "127.0.0.1", .port = 0, .patience = patience}, answer};
+}
+
+std::string post(const std::string& path, const std::string& type, const std::string& length) {
+  return "POST " + path + " HTTP/1.1\r\nHost: localhost\r\nContent-Type: " + type +
+         "\r\nContent-Length: " + length + "\r\n\r\n";
+}
+
+struct SlowKind {
+  std::string name;
+  std::string says;
+};
+
+const std::vector<SlowKind> slow_kinds{
+    {"Silent", ""},
+    {"HalfAHead", "GET / HTTP/1.1\r\nHost: lo"},
+    {"NoBody", post("/", "application/json", "300")},
+    {"HugeBody", post("/", "application/octet-stream", "1000000000")},
+    {"Upload", post("/upload", "application/octet-stream", "1000000000")},
+    {"Reader", "GET /stream HTTP/1.1\r\nHost: localhost\r\n\r\n"}};
+
+class SlowClients : public ::testing::TestWithParam<SlowKind> {};
+
+/// The server would wait for an hour: whatever is answered, is answered beside them.
+TEST_P(SlowClients, LeaveThePageToOthers) {
+  for (const bool one_address : {true, false}) {
+    const HttpServer server = server_with(1h);
+    std::vector<FileDescriptor> slow;
+    for (int i = 0; i < 200; ++i) {
+      const std::uint32_t address = INADDR_LOOPBACK + (one_address ? 1 : 1 + i);
+      slow.push_back(connected_from(address, server.port()));
+      send_text(slow.back(), GetParam().says);
+    }
+    EXPECT_EQ(request(server.port(), "GET", "/").body, "the page");
+    EXPECT_EQ(request(server.port(), "POST", "/", "{}").body, "the page");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, SlowClients, ::testing::ValuesIn(slow_kinds),
+                         [](const auto& kind) { return kind.param.name; });
+
+/// Sends a byte each now and then until the connection ends.
+void drip(const FileDescriptor& socket) {
+  while (::send(socket.number(), "x", 1, MSG_NOSIGNAL) == 1) {
+    std::this_thread::sleep_for(20ms);
+  }
+}
+
+class Drips : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Drips, EndThoughEachByteComesSoon) {
+  const HttpServer server = server_with(300ms);
+  const FileDescriptor socket = connected(server.port());
+  send_text(socket, GetParam());
+  drip(socket);  // without end before, or for as long as the body is announced to be
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, Drips,
+    ::testing::Values("GET / HTTP/1.1\r\nX: ", post("/", "application/json", "60000"),
+                      post("/", "application/json", "99999999999"),
+                      post("/", "application/octet-stream", "99999999999"),
+                      post("/upload", "application/octet-stream", "99999999999")));
+
+TEST(SlowClient, IsToldThatItsBodyCameTooSlowly) {
+  const HttpServer server = server_with(300ms);
+  EXPECT_EQ(reply_to(server.port(), post("/", "application/json", "300") + "{").status, 408);
+}
+
+TEST(SlowReader, IsLeftThoughItTakesAByteNowAndThen) {
+  std::atomic<bool> ended = false;
+  const HttpServer server(
+      {.address = "127.0.0.1", .port = 0, .patience = 300ms}, [&](const Request& request) {
+        Response response = answer(request);
+        auto& stream = std::get<ByteStream>(response.body);
+        stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
+          const std::vector<std::byte> part(100'000);
+          while (sink(part)) {
+          }
+          ended = true;
+          ended.notify_all();
+        });
+        return response;
+      });
+  const FileDescriptor socket = connected(server.port());
+  send_text(socket, "GET /stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  char byte = 0;
+  while (!ended && ::recv(socket.number(), &byte, 1, 0) == 1) {
+    std::this_thread::sleep_for(20ms);
+  }
+  ended.wait(false);
+}
+
+TEST(SlowReader, IsLeftAtOnceWhenTheStreamIsStopped) {
+  std::stop_source scan_starts;
+  std::atomic<bool> streaming = false;
+  std::atomic<bool> ended = false;
+  const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {
+    ByteStream stream{.length = endless, .stop = scan_starts.get_token()};
+    stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
+      const std::vector<std::byte> part(32 << 20U);  // more than the kernel takes
+      streaming = true;
+      streaming.notify_all();
+      EXPECT_FALSE(sink(part));
+      ended = true;
+      ended.notify_all();
+    });
+    return Response{.body = std::move(stream)};
+  });
+  const FileDescriptor socket = connected(server.port());
+  send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  streaming.wait(false);
+  scan_starts.request_stop();
+  ended.wait(false);  // the reader has taken nothing
+}
+
+class CutOff : public ::testing::TestWithParam<std::string> {};
+
+/// A request that is not whole asks for nothing: it is refused, and nobody acts on it.
+TEST_P(CutOff, AsksForNothing) {
+  std::atomic<int> asked = 0;
+  const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {
+    ++asked;
+    return Response{};
+  });
+  const FileDescriptor socket = connected(server.port());
+  send_text(socket, GetParam());
+  ::shutdown(socket.number(), SHUT_WR);
+  EXPECT_EQ(reply_from(receive_all(socket)).status, 400);
+  EXPECT_EQ(asked, 0);
+}
+
+const std::string chunked =
+    "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+    "Transfer-Encoding: chunked\r\n\r\n";
+
+INSTANTIATE_TEST_SUITE_P(Each, CutOff,
+                         ::testing::Values(post("/", "application/json", "300"),
+                                           post("/", "application/json", "300") + "{}",
+                                           chunked + "zz\r\n{}\r\n0\r\n\r\n", chunked,
+                                           chunked + "2\r\n{}\r\n", chunked + "10\r\n{}",
+                                           chunked + "2\r\n{}xx0\r\n\r\n"));
+
+TEST(AbsoluteTarget, IsAnsweredForTheHostThatItNames) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, [](const Request& request) {
+    return Response{.body = request.path + " at " +
+                            std::string(request.header("Host").value_or("nowhere"))};
+  });
+  const std::string host = "scanner.local:" + std::to_string(server.port());
+  const Reply reply =
+      reply_to(server.port(), "GET http://" + host + "/a?b=1 HTTP/1.1\r\nHost: other\r\n\r\n");
+  EXPECT_EQ(reply.body, "/a at " + host);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -4,7 +4,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage} from './browser.js';
-import {measure} from './mesh_file.js';
+import {measure} from '../web/mesh_file.js';
 import {ask, lifelike, scanFolders, startScanner} from './scanner.js';
 
 test('a scan cancelled half way ends at once, and keeps its snapshots', async (t) => {

@@ -3,7 +3,7 @@ import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
-import {measure} from './mesh_file.js';
+import {measure} from '../web/mesh_file.js';
 import {lifelike, startScanner} from './scanner.js';
 
 /** How many different colours the depth picture has, and which share of it holds a reading. */

@@ -6,7 +6,7 @@ import {execFileSync} from 'node:child_process';
 import {open, readFile, writeFile} from 'node:fs/promises';
 import {before, beforeEach, test} from 'node:test';
 
-import {Guest, readCard} from '../../../image-build/guest.mjs';
+import {Guest, readCard} from '../../image/guest.mjs';
 
 const folder = process.env.OCTURN_CARD;
 const image = `${folder}/card.img`;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "emulation/kinect_on_desk.hpp"
+#include "kinect/kinect_on_desk.hpp"
 #include "octurn/depth_frame.hpp"
 #include "sensor/depth_sensor.hpp"
 

@@ -1,4 +1,4 @@
-#include "emulation/kinect/camera.hpp"
+#include "kinect/emulated/camera.hpp"
 
 #include <algorithm>
 #include <cstring>

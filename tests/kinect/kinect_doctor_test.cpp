@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "emulation/kinect_on_desk.hpp"
+#include "kinect/kinect_on_desk.hpp"
 #include "support/program.hpp"
 
 namespace octurn {

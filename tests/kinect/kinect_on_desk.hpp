@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "emulation/kinect/emulated_kinect.hpp"
-#include "emulation/kinect/mapped_file.hpp"
+#include "kinect/emulated/emulated_kinect.hpp"
+#include "kinect/emulated/mapped_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -3,7 +3,7 @@
 
 import {readFile} from 'node:fs/promises';
 
-import {measure} from '../tests/e2e/mesh_file.js';
+import {measure} from '../web/mesh_file.js';
 import {patience as patienceOfVirt, require, runTest, until} from './checks.mjs';
 import {Guest, readCard, secondsSince} from './guest.mjs';
 import {cutPower} from './power_cuts.mjs';

@@ -16,8 +16,8 @@
 #include <string_view>
 #include <thread>
 
-#include "emulation/kinect/camera.hpp"
-#include "emulation/kinect/mapped_file.hpp"
+#include "kinect/emulated/camera.hpp"
+#include "kinect/emulated/mapped_file.hpp"
 
 using octurn::Camera;
 using octurn::EmulatedKinect;

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <span>
 
-#include "emulation/kinect_on_desk.hpp"
+#include "kinect/kinect_on_desk.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/units.hpp"
 #include "sensor/depth_sensor.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "emulation/kinect_on_desk.hpp"
-#include "emulation/kinect_view.hpp"
+#include "kinect/kinect_on_desk.hpp"
+#include "kinect/kinect_view.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "sensor/recording.hpp"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "emulation/kinect_on_desk.hpp"
-#include "emulation/kinect_view.hpp"
+#include "kinect/kinect_on_desk.hpp"
+#include "kinect/kinect_view.hpp"
 #include "support/daemon.hpp"
 
 namespace octurn {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "emulation/kinect/emulated_kinect.hpp"
+#include "kinect/emulated/emulated_kinect.hpp"
 
 namespace octurn {
 

@@ -1,0 +1,22 @@
+# shellcheck shell=sh
+# Read by ./test: what a JUnit file of CTest says.
+
+# attribute NAME FILE: the value of an attribute of the first testsuite.
+attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
+
+# failures STAGE FILE: the name of each test that failed.
+failures() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"fail\".*/  $1: \1/p" "$2"; }
+
+# skips STAGE FILE: each skipped test with its reason, which is GoogleTest's, or the last line of output.
+skips() {
+  awk -v stage="$1" '
+    /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
+                   skipped = 0; stated = 0; reason = "" }
+    /<skipped/ { skipped = 1 }
+    { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&amp;/, "\\&", line) }
+    stated == 1 { reason = line; stated = 2 }
+    stated == 0 && line != "" { reason = line }
+    /: Skipped$/ { stated = 1 }
+    /<\/testcase>/ { if (skipped) print "  " stage ": " name ": " reason }
+  ' "$2"
+}

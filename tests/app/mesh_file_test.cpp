@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

@@ -9,8 +9,8 @@
 #include "bench/ball_snapshots.hpp"
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
-#include "octurn/model.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/mesh_report.hpp"
+#include "octurn/stl.hpp"
 #include "support/temporary_folder.hpp"
 
 // From points to a file, with eight snapshots of a ball at the size of a Kinect v1's image. The

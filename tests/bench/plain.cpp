@@ -11,7 +11,7 @@
 #include "bennett/voxelize_triangle.hpp"
 #include "depth/back_project.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 
 // The technique as its text tells it (Bennett 2014), for `compare`: nodes that point to their eight

@@ -10,7 +10,7 @@
 
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/stl.hpp"
 #include "support/checksum.hpp"
 
 // Small scans whose models are known to the last byte: on every processor, by every compiler and

@@ -11,7 +11,7 @@
 
 #include "core/mesh/surface.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_check.hpp"
+#include "octurn/mesh_report.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/ball_scan.hpp"
 #include "support/shared_folder.hpp"

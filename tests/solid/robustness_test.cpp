@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/mesh/surface.hpp"
-#include "octurn/mesh_check.hpp"
+#include "octurn/mesh_report.hpp"
 #include "octurn/units.hpp"
 #include "solid/simulated_scan.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "core/tsdf/rendered.hpp"
 #include "octurn/depth_filter.hpp"
-#include "octurn/facet.hpp"
 #include "octurn/platform_pose.hpp"
+#include "octurn/stl.hpp"
 #include "sensor/nominal_pose.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"

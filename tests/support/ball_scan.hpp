@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"

@@ -15,14 +15,16 @@ enum class DepthFilter {
   average_discard,  ///< the same, but a pixel without a reading in any frame has none
 };
 
-/// Its name in settings and files: "basic", "average", "average-discard".
+/// The filter's name in settings and files: "basic", "average", "average-discard".
 std::string_view name_of(DepthFilter filter);
 
 /// The filter of that name, if there is one.
 std::optional<DepthFilter> depth_filter_named(std::string_view name);
 
-/// Merges frames of one still scene. Means are rounded to the nearest unit, halves up.
+/// Merges frames of one still scene into one depth image. Means are rounded to the nearest depth
+/// unit, halves up.
 ///
+/// @param frames  at least one, all of one size
 /// @throws std::invalid_argument  if there is no frame, or the frames' sizes differ
 DepthFrame merge_frames(std::span<const DepthFrame> frames, DepthFilter filter);
 

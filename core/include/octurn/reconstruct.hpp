@@ -2,62 +2,83 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string_view>
 
 #include "octurn/box.hpp"
-#include "octurn/facet.hpp"
 #include "octurn/snapshot.hpp"
+#include "octurn/stl.hpp"
 
 namespace octurn {
 
 /// Largest number of times that the root cube is halved.
 inline constexpr int max_levels = 16;
 
-/// What becomes of snapshots.
+/// How snapshots become a mesh.
 enum class Method {
-  intersection,  ///< every leaf that something was seen in, hollow (Bennett 2014)
-  solid,         ///< one closed part, averaged and filled, on a flat foot
+  /// Voxel octree intersection (Bennett 2014): neighbouring samples make triangles, every octree
+  /// leaf that one meets is occupied, marching tetrahedra draw the surface of the leaves. The mesh
+  /// is closed and hollow, at least a leaf thick, outliers included.
+  intersection,
+  /// Truncated signed distances (Curless and Levoy 1996): conditioned depth is integrated into a
+  /// TSDF, holes are filled by Laplace's equation, one connected component is kept, marching cubes
+  /// and edge collapse (QEM) draw it. The mesh is one closed solid on a flat base.
+  solid,
 };
 
-/// Its name in settings and files: "intersection", "solid".
+/// The method's name in settings and files: "intersection", "solid".
 std::string_view name_of(Method method);
 
 /// The method of that name, if there is one.
 std::optional<Method> method_named(std::string_view name);
 
-/// How snapshots become a model.
+/// Options of both methods, but where one is named.
 struct ReconstructOptions {
   Method method = Method::intersection;
-  double leaf_size = 0.001;   ///< metres: leaves are the first level at or below it
-  double root_size = 1.0;     ///< metres, side of the root cube
-  double threshold = 0.0001;  ///< intersection: square metres: triangles with a longer side,
-                              ///< squared, are none
-  Box clip = {};              ///< metres, platform frame
-  std::optional<int> level =
-      {};                      ///< intersection: surface of this coarser level, the root's being 0
-  double max_error = 0.00004;  ///< solid: metres that fewer triangles may cost; 0 keeps them all
-  int threads = 1;             ///< the model's bytes do not depend on it
-  std::size_t memory_limit = 0;  ///< bytes that the whole process may take; 0 is no limit
-};
 
-/// Snapshots that can be read, and read again, by several threads at once.
-struct SnapshotSource {
-  std::size_t count = 0;
-  std::function<Snapshot(std::size_t)> read = {};
+  /// Metres. Leaves (voxels for `solid`) are the root cube halved until their side is at or below
+  /// it.
+  double leaf_size = 0.001;
+
+  /// Metres, side of the root cube, which stands on the platform: x, y from -side/2 to side/2, z
+  /// from 0 to side.
+  double root_size = 1.0;
+
+  /// `intersection` only: square metres. A triangle with a longer side, squared, is dropped, as it
+  /// bridges a gap between surfaces.
+  double threshold = 0.0001;
+
+  /// Metres, object's frame. Samples outside make no surface.
+  Box clip = {};
+
+  /// `intersection` only: the level whose nodes the surface is drawn of, 0 for the root. The level
+  /// of the leaves if absent.
+  std::optional<int> level = {};
+
+  /// `solid` only: metres. The error up to which edges are collapsed; 0 keeps all triangles.
+  double max_error = 0.00004;
+
+  /// At least 1. The model's bytes do not depend on it.
+  int threads = 1;
+
+  /// Bytes that the whole process may take; 0 is no limit. The model's bytes do not depend on it.
+  std::size_t memory_limit = 0;
 };
 
 /// The size of a surface.
 struct SurfaceCount {
-  std::uint64_t leaves = 0;
+  std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t facets = 0;
-  std::uint64_t parts = 0;  ///< 0: not counted
+  std::uint64_t parts = 0;  ///< connected components; 0: not counted
 };
 
-/// A reconstruction in progress: snapshots are added, then its surface is asked for.
+/// A reconstruction in progress: snapshots are added, then its surface is asked for. Not
+/// thread-safe; a call forks and joins the threads of the options inside itself.
+///
+/// Deterministic: the same snapshots in the same order give the same bytes on x86-64 and arm64, for
+/// any number of threads and any memory limit.
 class Reconstructor {
  public:
   Reconstructor() = default;
@@ -65,27 +86,34 @@ class Reconstructor {
   Reconstructor(const Reconstructor&) = delete;
   Reconstructor& operator=(const Reconstructor&) = delete;
 
-  /// @throws Error "memory-limit"  if not even a part of what was seen fits
+  /// Adds one snapshot.
+  /// @throws Error "memory-limit"   if not even one layer of what was observed fits
+  /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
   virtual void add(const Snapshot& snapshot) = 0;
 
-  /// The same for all of them, on as many threads as the options say. Ends early if stopped.
+  /// Adds all snapshots of a source, on as many threads as the options say. Ends early, with some
+  /// of them added, once `stop` is requested. @throws  as above, and what the source throws
   virtual void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;
 
-  /// The surface, streamed. What `sink` throws ends it.
-  /// @param snapshots  those that were added, to be read again if not all fitted in memory
-  /// @throws Error "memory-limit"  if it needs more
+  /// Streams the surface of all that was added.
+  ///
+  /// @param snapshots  those that were added; read again where the volume exceeds the memory limit
+  ///                   and is built slab by slab
+  /// @param sink       called by one thread at a time; what it throws ends the call
+  /// @throws Error "memory-limit"  if more memory is needed
   virtual SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) = 0;
 
-  /// What `surface` would give.
+  /// Counts what `surface` would give. @throws  as `surface`
   virtual SurfaceCount count(const SnapshotSource& snapshots) = 0;
 
-  /// The surface of what was seen so far, on the first level whose nodes are at or below
-  /// `leaf_size` (metres), or on the finest above it that has no more than `max_facets`. Of
-  /// several slabs it shows the one at hand.
+  /// Streams a coarse surface of what was added so far: of the first level whose nodes are at or
+  /// below `leaf_size` (metres), or of the finest above it that has no more than `max_facets`.
+  /// Where the volume is built in slabs, it shows the one in memory.
   virtual void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink) const = 0;
 };
 
 /// A reconstruction by the method that the options name.
+///
 /// @throws Error "bad-settings"  that says which option is out of its range
 /// @throws Error "memory-limit"  that says what limit would do
 std::unique_ptr<Reconstructor> make_reconstructor(const ReconstructOptions& options);

@@ -1,17 +1,28 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 
 namespace octurn {
 
-/// What one stop of the platform gave: the filtered, unclipped depth, and where it was seen from.
+/// One stop of the platform: a filtered, unclipped depth image and the pose it was taken from.
 struct Snapshot {
-  DepthFrame frame = {};
+  DepthFrame frame = {};  ///< of the intrinsics' size
   Intrinsics intrinsics = {};
+  /// Optical frame to the object's frame, metres (`object_from_sensor` in platform_pose.hpp).
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();
 };
+
+/// Snapshots that can be read, and read again, by several threads at once.
+struct SnapshotSource {
+  std::size_t count = 0;
+  std::function<Snapshot(std::size_t)> read = {};  ///< of an index below `count`
+};
+
+/// Thrown by a source or a sink whose work was asked to stop: leads out of a reconstruction.
+struct Stopped {};
 
 }  // namespace octurn

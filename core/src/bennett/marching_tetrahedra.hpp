@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 #include "voxel/octree.hpp"
 
 namespace octurn {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "octurn/box.hpp"
-#include "octurn/intrinsics.hpp"
+#include "octurn/depth_frame.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 
 namespace octurn {
 

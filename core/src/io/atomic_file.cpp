@@ -1,5 +1,3 @@
-#include "octurn/atomic_file.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -12,12 +10,13 @@
 #include <utility>
 
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {
 
 constexpr std::size_t block_bytes = std::size_t{1} << 20U;
-constexpr std::size_t page_bytes = 4096;  // past the page cache, disks read from whole pages
+constexpr std::size_t page_bytes = 4096;  // direct writes need memory aligned to pages
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int number) {
   const std::string reason = std::generic_category().message(number);
@@ -46,6 +45,13 @@ void sync_folder(const std::filesystem::path& folder) {
   }
 }
 
+std::filesystem::path temporary_name(const std::filesystem::path& target, int attempt) {
+  std::string name(1, '.');
+  name +=
+      target.filename().string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(attempt);
+  return folder_of(target) / name;
+}
+
 AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
     : target_(std::move(target)),
       block_(static_cast<std::byte*>(std::aligned_alloc(page_bytes, block_bytes)), &std::free) {
@@ -58,10 +64,8 @@ AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
     throw Error("write-failed", target_.string() + ": cannot write: not a regular file",
                 "Name a file that does not exist yet, or one that may be replaced.");
   }
-  std::string prefix(1, '.');
-  prefix += target_.filename().string() + '.' + std::to_string(::getpid());
   for (int attempt = 0; descriptor_ < 0; ++attempt) {
-    temporary_ = folder_of(target_) / (prefix + "-" + std::to_string(attempt));
+    temporary_ = temporary_name(target_, attempt);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
     if (descriptor_ < 0 && errno != EEXIST) {
       fail(target_, "write", errno);
@@ -84,7 +88,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
     bytes = bytes.subspan(part.size());
     if (filled_ == block_bytes) {
       if (written_ == 0) {
-        go_past_cache(true);
+        set_direct(true);
       }
       flush();
     }
@@ -92,7 +96,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 }
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-  go_past_cache(false);
+  set_direct(false);
   flush();
   put(offset, bytes);
 }
@@ -110,21 +114,22 @@ void AtomicFile::put(std::uint64_t offset, std::span<const std::byte> bytes) {
       offset += static_cast<std::size_t>(done);
       bytes = bytes.subspan(static_cast<std::size_t>(done));
     } else if (const int number = errno;
-               number != EINTR && !(number == EINVAL && go_past_cache(false))) {
+               number != EINTR && !(number == EINVAL && set_direct(false))) {
       fail(target_, "write", number);
     }
   }
 }
 
-/// Whether that is a change; file systems without a way past the cache make none.
-bool AtomicFile::go_past_cache(bool past) {
+/// Makes writes bypass the page cache, or not. @return whether that changed; a file system without
+/// direct writes refuses them
+bool AtomicFile::set_direct(bool direct) {
   const int flags = ::fcntl(descriptor_, F_GETFL);
-  const int wanted = past ? flags | O_DIRECT : flags & ~O_DIRECT;
+  const int wanted = direct ? flags | O_DIRECT : flags & ~O_DIRECT;
   return flags >= 0 && wanted != flags && ::fcntl(descriptor_, F_SETFL, wanted) == 0;
 }
 
 void AtomicFile::commit() {
-  go_past_cache(false);
+  set_direct(false);
   flush();
   if (::fsync(descriptor_) != 0) {
     fail(target_, "sync", errno);

@@ -8,8 +8,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {
@@ -124,6 +126,15 @@ DepthFrame decode_depth_png(std::string_view name, std::span<const std::byte> pn
     malformed(name, "not a whole PNG: bytes after its end");
   }
   return frame;
+}
+
+void write_depth_png(const std::filesystem::path& file, const DepthFrame& frame) {
+  const std::vector<std::byte> png = encode_depth_png(frame);
+  std::error_code ignored;  // if the folder cannot be made, opening the file says why
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  AtomicFile target(file);
+  target.write(png);
+  target.commit();
 }
 
 }  // namespace octurn

@@ -1,5 +1,3 @@
-#include "octurn/read_file.hpp"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +7,7 @@
 #include <system_error>
 
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {

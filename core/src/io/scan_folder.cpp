@@ -6,12 +6,11 @@
 #include <span>
 #include <system_error>
 
-#include "octurn/atomic_file.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/platform_pose.hpp"
-#include "octurn/read_file.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -152,6 +151,16 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
           .object_from_sensor = object_from_sensor(scan.platform_from_sensor, shot.angle)};
 }
 
+SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
+                                const std::stop_token& stop) {
+  return {.count = scan.shots.size(), .read = [=](std::size_t i) {
+            if (stop.stop_requested()) {
+              throw Stopped{};
+            }
+            return read_snapshot(folder, scan, scan.shots[i]);
+          }};
+}
+
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
   const Intrinsics& intrinsics = scan.intrinsics;
   const Eigen::Matrix4d& pose = scan.platform_from_sensor.matrix();
@@ -189,15 +198,6 @@ std::string shot_file(int index) {
   std::string number = std::to_string(index);
   number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
   return "snapshots/" + number + ".png";
-}
-
-void write_depth_png(const std::filesystem::path& file, const DepthFrame& frame) {
-  const std::vector<std::byte> png = encode_depth_png(frame);
-  std::error_code ignored;  // if the folder cannot be made, opening the file says why
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  AtomicFile target(file);
-  target.write(png);
-  target.commit();
 }
 
 }  // namespace octurn

@@ -1,5 +1,3 @@
-#include "octurn/stl_file.hpp"
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "octurn/error.hpp"
+#include "octurn/stl.hpp"
 
 namespace octurn {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 
 namespace octurn {
 

@@ -1,9 +1,9 @@
-#include "octurn/mesh_check.hpp"
-
 #include <Eigen/Geometry>
 #include <array>
 #include <bit>
 #include <limits>
+
+#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "octurn/intrinsics.hpp"
+#include "octurn/depth_frame.hpp"
 
 namespace octurn {
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "octurn/error.hpp"
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "octurn/intrinsics.hpp"
+#include "octurn/depth_frame.hpp"
 #include "simulator/mesh.hpp"
 #include "simulator/rasterise.hpp"
 

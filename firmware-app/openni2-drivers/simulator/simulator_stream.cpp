@@ -4,7 +4,7 @@
 #include <chrono>
 #include <span>
 
-#include "octurn/intrinsics.hpp"
+#include "octurn/depth_frame.hpp"
 
 namespace octurn {
 

@@ -14,7 +14,7 @@
 
 #include "appliance/wifi_networks.hpp"
 #include "appliance/wifi_request.hpp"
-#include "octurn/atomic_file.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 

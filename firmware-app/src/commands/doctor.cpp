@@ -10,8 +10,8 @@
 #include "commands/commands.hpp"
 #include "doctor/diagnostics.hpp"
 #include "interruption.hpp"
-#include "octurn/atomic_file.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "zip_archive.hpp"
 
 namespace octurn {

@@ -9,9 +9,9 @@
 #include "commands/commands.hpp"
 #include "interruption.hpp"
 #include "octurn/error.hpp"
-#include "octurn/model.hpp"
+#include "octurn/mesh_report.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
 #include "standard_output.hpp"
@@ -168,28 +168,27 @@ class ModelOutput {
   std::optional<StlFile> file_ = {};
 };
 
-/// The scan's snapshots; reading one shows how far it got, and ends where a stop is requested.
+/// The scan's snapshots; reading one shows how far it got. @throws Stopped  once `stop` is
+/// requested
 SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& scan, ProgressBar& bar,
                             const std::stop_token& stop) {
-  return {.count = scan.shots.size(), .read = [&, stop](std::size_t i) {
-            if (stop.stop_requested()) {
-              throw_stopped("no model was written");
-            }
-            bar.show(static_cast<int>(i), static_cast<int>(scan.shots.size()), "snapshots");
-            return read_snapshot(folder, scan, scan.shots[i]);
+  return {.count = scan.shots.size(),
+          .read = [&bar, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
+            bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
+            return stored.read(i);
           }};
 }
 
 }  // namespace
 
-void reconstruct(const ReconstructArguments& arguments) {
+void reconstruct(const ReconstructArguments& arguments) try {
   const Interruption interruption;
   const std::stop_token stop = interruption.token();
   const Scan scan = read_scan(arguments.folder);
   const ReconstructOptions options = options_of(arguments, scan);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   MeshCheck check;
-  SurfaceCount count;
+  std::optional<SurfaceCount> count;
   Times times;
   {
     ProgressBar bar;
@@ -199,24 +198,26 @@ void reconstruct(const ReconstructArguments& arguments) {
     const Clock::time_point seen = Clock::now();
     bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
     ModelOutput output(arguments.output, [&] { return reconstruction->count(snapshots).facets; });
-    count = reconstruction->surface(snapshots, [&](std::span<const Facet> facets) {
-      if (stop.stop_requested()) {
-        throw_stopped("no model was written");
-      }
+    const auto checked = [&](std::span<const Facet> facets) {
       if (arguments.json) {
         check.add(facets);
       }
       output.write(facets);
-    });
-    expect_facets(count);
+    };
+    count = write_model(*reconstruction, snapshots, checked, stop);
+    if (!count) {
+      throw Stopped{};
+    }
     output.commit();
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
   if (arguments.json) {
     // Where the model goes to standard output, a line of text does not belong into it.
     (arguments.output == "-" ? std::cerr : std::cout)
-        << json_of(report_of(count, check), options, times).dump() << std::endl;
+        << json_of(report_of(*count, check), options, times).dump() << std::endl;
   }
+} catch (const Stopped&) {
+  throw_stopped("no model was written");
 }
 
 }  // namespace octurn

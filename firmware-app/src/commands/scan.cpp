@@ -6,8 +6,8 @@
 
 #include "commands/commands.hpp"
 #include "interruption.hpp"
-#include "octurn/atomic_file.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "progress_bar.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 #include "scan/job.hpp"
 #include "scan/rig.hpp"
 #include "sensor/tilt.hpp"

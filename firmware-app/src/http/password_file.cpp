@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "octurn/atomic_file.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 

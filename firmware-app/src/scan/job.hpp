@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "octurn/error.hpp"
-#include "octurn/model.hpp"
+#include "octurn/mesh_report.hpp"
 #include "scan/scan_settings.hpp"
 
 namespace octurn {

@@ -37,8 +37,6 @@ class ModelStream {
   void send(const std::function<bool(std::span<const std::byte>)>& sink);
 
  private:
-  Snapshot snapshot(const std::filesystem::path& folder, std::size_t shot) const;
-
   std::unique_ptr<Scanner::Leave> leave_;
   Scan scan_;
   SnapshotSource snapshots_;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
@@ -53,20 +54,6 @@ void store(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
 /// The angle that a reader of scan.json gets, to the last bit: a model built from the folder later
 /// has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
-
-/// Leads out of a model that is no longer wanted.
-struct Stopped {};
-
-/// The snapshots in a scan's folder, which are read until `stop`.
-SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
-                                const std::stop_token& stop) {
-  return {.count = scan.shots.size(), .read = [=](std::size_t shot) {
-            if (stop.stop_requested()) {
-              throw Stopped{};
-            }
-            return read_snapshot(folder, scan, scan.shots[shot]);
-          }};
-}
 
 std::ptrdiff_t readings_in(const DepthFrame& frame) {
   return std::ranges::count_if(frame.depth, [](std::uint16_t depth) { return depth > 0; });

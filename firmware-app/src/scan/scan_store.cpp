@@ -16,9 +16,8 @@
 #include <utility>
 
 #include "log.hpp"
-#include "octurn/atomic_file.hpp"
+#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
-#include "octurn/read_file.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "utc.hpp"

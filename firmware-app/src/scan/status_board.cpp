@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "log.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/stl.hpp"
 
 namespace octurn {
 namespace {

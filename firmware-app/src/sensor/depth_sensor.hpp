@@ -7,7 +7,6 @@
 #include <string>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 #include "sensor/tilt.hpp"
 
 namespace octurn {

@@ -1,7 +1,6 @@
 #include "sensor/recording.hpp"
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -15,9 +14,9 @@
 #include <utility>
 
 #include "file_descriptor.hpp"
-#include "octurn/atomic_file.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 
@@ -170,9 +169,8 @@ RecordingWriter::RecordingWriter(fs::path folder, std::string sensor_name,
   if (folder_.has_parent_path()) {
     fs::create_directories(folder_.parent_path(), error);
   }
-  const std::string prefix = "." + folder_.filename().string() + "." + std::to_string(::getpid());
   for (int attempt = 0; temporary_.empty(); ++attempt) {
-    const fs::path wanted = folder_.parent_path() / (prefix + "-" + std::to_string(attempt));
+    const fs::path wanted = temporary_name(folder_, attempt);
     if (fs::create_directory(wanted, error)) {
       temporary_ = wanted;
     } else if (error) {

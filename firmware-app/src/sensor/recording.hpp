@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 #include "sensor/tilt.hpp"
 
 namespace octurn {

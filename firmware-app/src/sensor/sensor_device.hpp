@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string>
 
-#include "octurn/intrinsics.hpp"
+#include "octurn/depth_frame.hpp"
 #include "sensor/depth_sensor.hpp"
 
 namespace octurn {

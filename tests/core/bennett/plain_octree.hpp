@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bennett/voxelize_triangle.hpp"
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 
 namespace octurn::plain {
 

@@ -1,5 +1,3 @@
-#include "octurn/atomic_file.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -10,6 +8,7 @@
 #include <iterator>
 #include <string>
 
+#include "octurn/file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

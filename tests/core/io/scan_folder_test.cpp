@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
 #include "support/temporary_folder.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "octurn/facet.hpp"
+#include "octurn/stl.hpp"
 #include "tsdf/marching_cubes.hpp"
 
 namespace octurn {

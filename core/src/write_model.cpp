@@ -1,17 +1,11 @@
-#include "octurn/model.hpp"
-
 #include <span>
 
 #include "octurn/error.hpp"
-#include "octurn/stl_file.hpp"
+#include "octurn/mesh_report.hpp"
+#include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
-namespace {
-
-struct Stopped {};
-
-}  // namespace
 
 void expect_facets(const SurfaceCount& count) {
   if (count.facets == 0) {
@@ -33,24 +27,37 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
                    metres_from_mm(size_mm.z())}};
 }
 
-std::optional<ModelReport> write_model(Reconstructor& reconstruction,
-                                       const SnapshotSource& snapshots,
-                                       const std::filesystem::path& file,
-                                       const std::stop_token& stop) try {
-  StlFile stl(file);
-  MeshCheck check;
-  const SurfaceCount count = reconstruction.surface(snapshots, [&](std::span<const Facet> facets) {
+std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
+                                        const SnapshotSource& snapshots, const FacetSink& sink,
+                                        const std::stop_token& stop) try {
+  const SurfaceCount count = reconstructor.surface(snapshots, [&](std::span<const Facet> facets) {
     if (stop.stop_requested()) {
       throw Stopped{};
     }
-    check.add(facets);
-    stl.write(facets);
+    sink(facets);
   });
   expect_facets(count);
-  stl.commit();
-  return report_of(count, check);
+  return count;
 } catch (const Stopped&) {
   return std::nullopt;
+}
+
+std::optional<ModelReport> write_model(Reconstructor& reconstructor,
+                                       const SnapshotSource& snapshots,
+                                       const std::filesystem::path& file,
+                                       const std::stop_token& stop) {
+  StlFile stl(file);
+  MeshCheck check;
+  const auto checked = [&](std::span<const Facet> facets) {
+    check.add(facets);
+    stl.write(facets);
+  };
+  const auto count = write_model(reconstructor, snapshots, checked, stop);
+  if (!count) {
+    return std::nullopt;
+  }
+  stl.commit();
+  return report_of(*count, check);
 }
 
 }  // namespace octurn

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <stop_token>
+
+#include "octurn/box.hpp"
+#include "octurn/reconstruct.hpp"
+#include "octurn/stl.hpp"
+
+namespace octurn {
+
+/// Checks and measures a surface while it streams by, in constant memory.
+class MeshCheck {
+ public:
+  void add(std::span<const Facet> facets);
+
+  std::uint64_t facets() const { return facets_; }
+
+  /// Whether every directed edge is met by its opposite, corners compared bit by bit.
+  ///
+  /// Each directed edge (a, b) adds a 64-bit hash h(a, b) - h(b, a), so that a pair of opposites
+  /// cancels; an open surface leaves 0 with a chance of 2^-64.
+  bool closed() const { return facets_ > 0 && edges_ == 0; }
+
+  /// Cubic millimetres, by the divergence theorem; right only if the surface is closed.
+  double volume_mm3() const { return six_volumes_ / 6; }
+
+  /// The share of the surface's area in facets that are marked as filled in, 0 to 1.
+  double filled_share() const { return area_ > 0 ? filled_area_ / area_ : 0; }
+
+  /// The bounding box of all corners, millimetres.
+  const Box& bounds_mm() const { return bounds_mm_; }
+
+ private:
+  std::uint64_t facets_ = 0;
+  std::uint64_t edges_ = 0;
+  double six_volumes_ = 0;
+  double area_ = 0;  // both areas twice, mm2
+  double filled_area_ = 0;
+  Box bounds_mm_ = {};
+};
+
+/// The figures of a finished model.
+struct ModelReport {
+  std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
+  std::uint64_t triangles = 0;
+  std::uint64_t bytes = 0;                         ///< of the STL
+  std::uint64_t parts = 0;                         ///< connected components; 0: not counted
+  double filled_share = 0;                         ///< of the area, made by hole filling, 0 to 1
+  bool watertight = false;                         ///< as `MeshCheck::closed`
+  double volume = 0.0;                             ///< cubic metres
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
+};
+
+/// The figures of a surface that was counted and checked while it was made.
+ModelReport report_of(const SurfaceCount& count, const MeshCheck& check);
+
+/// @throws Error "model-empty"  if there is no facet
+void expect_facets(const SurfaceCount& count);
+
+/// Streams the surface to `sink`.
+///
+/// @param snapshots  those that were added
+/// @return nothing if stopped before the end, by `stop` or by a `Stopped` of the source or sink
+/// @throws Error "model-empty"  if there is no surface
+/// @throws  as `Reconstructor::surface`
+std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
+                                        const SnapshotSource& snapshots, const FacetSink& sink,
+                                        const std::stop_token& stop);
+
+/// Writes the surface as binary STL, which appears whole or not at all, and checks it on the way.
+///
+/// @return nothing, and no file, if stopped before the end
+/// @throws Error  as above; "disk-full", "write-failed" if the disk does not take the file
+std::optional<ModelReport> write_model(Reconstructor& reconstructor,
+                                       const SnapshotSource& snapshots,
+                                       const std::filesystem::path& file,
+                                       const std::stop_token& stop);
+
+}  // namespace octurn

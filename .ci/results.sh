@@ -13,9 +13,10 @@ skips() {
     /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
                    skipped = 0; stated = 0; reason = "" }
     /<skipped/ { skipped = 1 }
-    { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&amp;/, "\\&", line) }
+    { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&amp;/, "\\&", line)
+      sub(/^[[:space:]]+/, "", line) }
     stated == 1 { reason = line; stated = 2 }
-    stated == 0 && line != "" { reason = line }
+    stated == 0 && line ~ /[^[:space:]]/ { reason = line }
     /: Skipped$/ { stated = 1 }
     /<\/testcase>/ { if (skipped) print "  " stage ": " name ": " reason }
   ' "$2"

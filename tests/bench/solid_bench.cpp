@@ -41,9 +41,9 @@ void fuse_a_snapshot(benchmark::State& state) {
 }
 BENCHMARK(fuse_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
 
-void make_the_surface(benchmark::State& state, double max_error) {
+void make_the_surface(benchmark::State& state, double target_error) {
   ReconstructOptions options = options_for(state);
-  options.max_error = max_error;
+  options.target_error = target_error;
   SolidReconstructor solid(options);
   solid.add(source());
   std::uint64_t facets = 0;
@@ -54,7 +54,7 @@ void make_the_surface(benchmark::State& state, double max_error) {
 }
 void make_the_whole_surface(benchmark::State& state) { make_the_surface(state, 0); }
 void make_a_surface_of_fewer_triangles(benchmark::State& state) {
-  make_the_surface(state, ReconstructOptions().max_error);
+  make_the_surface(state, ReconstructOptions().target_error);
 }
 BENCHMARK(make_the_whole_surface)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
 BENCHMARK(make_a_surface_of_fewer_triangles)

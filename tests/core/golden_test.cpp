@@ -67,8 +67,9 @@ ReconstructOptions intersection(double leaf_size, std::optional<int> level = {})
   return {.leaf_size = leaf_size, .level = level};
 }
 
-ReconstructOptions solid(double leaf_size, double max_error = ReconstructOptions().max_error) {
-  return {.method = Method::solid, .leaf_size = leaf_size, .max_error = max_error};
+ReconstructOptions solid(double leaf_size,
+                         double target_error = ReconstructOptions().target_error) {
+  return {.method = Method::solid, .leaf_size = leaf_size, .target_error = target_error};
 }
 
 std::string name_of_golden(const testing::TestParamInfo<Golden>& named) {
@@ -78,7 +79,7 @@ std::string name_of_golden(const testing::TestParamInfo<Golden>& named) {
   if (options.level) {
     name += "_level_" + std::to_string(*options.level);
   }
-  return options.max_error == 0 ? name + "_whole" : name;
+  return options.target_error == 0 ? name + "_whole" : name;
 }
 
 INSTANTIATE_TEST_SUITE_P(

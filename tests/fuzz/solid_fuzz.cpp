@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .method = octurn::Method::solid,
       .leaf_size = 0.002,
       .clip = {.min = {-0.05, -0.05, 0.002}, .max = {0.05, 0.05, 0.1}}};
-  options.max_error = (data[0] & 3) * 0.0005;
+  options.target_error = (data[0] & 3) * 0.0005;
   octurn::SolidReconstructor solid(options);
   const std::size_t count = std::min<std::size_t>((size - 1) / samples, 6);
   for (std::size_t i = 0; i < count; ++i) {

@@ -59,13 +59,13 @@ std::size_t self_intersections(std::span<const Facet> facets) {
 
 void expect_no_cuts(const std::vector<Snapshot>& snapshots) {
   for (const double leaf_size : {0.002, 0.001}) {
-    for (const double max_error : {0.0, 0.00004, 0.0005}) {
+    for (const double target_error : {0.0, 0.00004, 0.0005}) {
       ReconstructOptions options = scan_options(leaf_size);
-      options.max_error = max_error;
+      options.target_error = target_error;
       const SolidModel model = solid_of(options, snapshots);
       EXPECT_GT(model.facets.size(), 100U);
       EXPECT_EQ(self_intersections(model.facets), 0U)
-          << "leaves of " << leaf_size << " m, max error " << max_error << " m";
+          << "leaves of " << leaf_size << " m, max error " << target_error << " m";
     }
   }
 }
@@ -135,15 +135,15 @@ TEST_P(SelfIntersectionOfNoise, IsNone) {
   const std::vector<Facet> all = surface_of(inside, filled);
   EXPECT_GT(all.size(), 3000U);
   EXPECT_EQ(self_intersections(all), 0U);
-  for (const double max_error : {0.04, 0.1, 0.5}) {
+  for (const double target_error : {0.04, 0.1, 0.5}) {
     std::vector<Facet> facets;
-    StreamSimplifier simplifier(max_error, 4, [&](std::span<const Facet> some) {
+    StreamSimplifier simplifier(target_error, 4, [&](std::span<const Facet> some) {
       facets.insert(facets.end(), some.begin(), some.end());
     });
     marching_cubes(inside, filled, [&](const MeshPiece& piece) { simplifier.add(piece); });
     simplifier.finish();
     EXPECT_LT(facets.size(), all.size());
-    EXPECT_EQ(self_intersections(facets), 0U) << max_error << " mm";
+    EXPECT_EQ(self_intersections(facets), 0U) << target_error << " mm";
   }
 }
 

@@ -57,8 +57,9 @@ struct ReconstructOptions {
   /// of the leaves if absent.
   std::optional<int> level = {};
 
-  /// `solid` only: metres. The error up to which edges are collapsed; 0 keeps all triangles.
-  double max_error = 0.00004;
+  /// `solid` only: metres, the root mean square distance that a vertex may have from the planes of
+  /// the triangles that it replaces; from a single one it may be farther. 0 keeps all triangles.
+  double target_error = 0.00004;
 
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;

@@ -35,8 +35,8 @@ bool is_degenerate(const MeshTriangle& triangle) {
 
 }  // namespace
 
-StreamSimplifier::StreamSimplifier(double max_error, double margin, FacetSink sink)
-    : max_error_(max_error), margin_(margin), sink_(std::move(sink)) {}
+StreamSimplifier::StreamSimplifier(double target_error, double margin, FacetSink sink)
+    : target_error_(target_error), margin_(margin), sink_(std::move(sink)) {}
 
 void StreamSimplifier::add(const MeshPiece& piece) {
   // Only the vertices of the last piece may be met again.
@@ -139,7 +139,7 @@ void StreamSimplifier::collapse_edges() {
   changed_.assign(vertices_.size(), 1);
   for (int pass = 0; pass < passes; ++pass) {
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
-    const double error = max_error_ * share;
+    const double error = target_error_ * share;
     corners_.assign(triangles_, vertices_.size());
     list_collapses(error * error, refused);
     refused = error * error;

@@ -19,9 +19,9 @@ namespace octurn {
 /// for what comes.
 class StreamSimplifier {
  public:
-  /// @param max_error  millimetres, above 0
+  /// @param target_error  millimetres, above 0
   /// @param margin     millimetres below the upper end of a window that wait for the next
-  StreamSimplifier(double max_error, double margin, FacetSink sink);
+  StreamSimplifier(double target_error, double margin, FacetSink sink);
 
   void add(const MeshPiece& piece);
 
@@ -70,7 +70,7 @@ class StreamSimplifier {
   void drop_collapsed();
   void flush_below(float end);
 
-  double max_error_;
+  double target_error_;
   double margin_;
   FacetSink sink_;
   std::vector<Vertex> vertices_ = {};

@@ -58,7 +58,7 @@ ReconstructOptions checked(ReconstructOptions options) {
   if (options.level) {
     throw Error("bad-settings", "level: the method solid has none");
   }
-  if (!std::isfinite(options.max_error) || options.max_error < 0) {
+  if (!std::isfinite(options.target_error) || options.target_error < 0) {
     throw Error("bad-settings", "max error: must be 0 or above");
   }
   const auto least = [&] { return beside_field(options) + least_field_bytes; };
@@ -218,8 +218,8 @@ SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const 
     count.facets += facets.size();
     sink(facets);
   };
-  if (options_.max_error > 0) {
-    StreamSimplifier simplifier(mm_from_metres(options_.max_error),
+  if (options_.target_error > 0) {
+    StreamSimplifier simplifier(mm_from_metres(options_.target_error),
                                 mm_from_metres(margin_leaves * field_.leaf_side()), counted);
     marching_cubes(part, filled, [&](const MeshPiece& piece) { simplifier.add(piece); });
     simplifier.finish();

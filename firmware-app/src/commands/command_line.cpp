@@ -72,7 +72,8 @@ void add_method_options(CLI::App& command, Arguments& arguments, const std::stri
       ->check(CLI::IsMember({"intersection", "solid"}));
   command
       .add_option("--max-error-mm", arguments.max_error_mm,
-                  "solid: what fewer triangles may cost (0.04); 0 keeps them all")
+                  "solid: root mean square distance that fewer triangles may cost (0.04); "
+                  "0 keeps them all")
       ->type_name("MM");
 }
 

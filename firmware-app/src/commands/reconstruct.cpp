@@ -69,7 +69,7 @@ ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan&
       .clip = scan.clip,
       .level = arguments.level};
   if (arguments.max_error_mm) {
-    options.max_error = metres_from_mm(*arguments.max_error_mm);
+    options.target_error = metres_from_mm(*arguments.max_error_mm);
   }
   if (arguments.leaf_size_mm) {
     options.leaf_size = metres_from_mm(*arguments.leaf_size_mm);
@@ -100,7 +100,7 @@ Json settings_of(const ReconstructOptions& options) {
                 {"leaf_size_mm", mm_from_metres(options.leaf_size)},
                 {"root_size_mm", mm_from_metres(options.root_size)}};
   if (solid) {
-    settings["max_error_mm"] = mm_from_metres(options.max_error);
+    settings["max_error_mm"] = mm_from_metres(options.target_error);
   } else {
     settings["threshold_m2"] = options.threshold;
   }

@@ -91,7 +91,7 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
           .root_size = settings.root_size,
           .threshold = settings.threshold,
           .clip = settings.clip,
-          .max_error = settings.max_error,
+          .target_error = settings.target_error,
           .threads = limits.threads,
           .memory_limit = limits.memory_bytes};
 }
@@ -113,7 +113,7 @@ json json_of(const ScanSettings& settings) {
           {"frames", settings.frames},
           {"method", name_of(settings.method)},
           {"leaf_size_mm", whole_mm(settings.leaf_size)},
-          {"max_error_mm", whole_mm(settings.max_error)},
+          {"max_error_mm", whole_mm(settings.target_error)},
           {"threshold_m2", settings.threshold},
           {"root_size_mm", whole_mm(settings.root_size)},
           {"clip_mm", clip},
@@ -145,7 +145,7 @@ ScanSettings settings_from(const json& object, const ScanSettings& defaults,
     settings.method = *named;
   }
   if (const auto mm = keys.number("max_error_mm", 0, most_error_mm)) {
-    settings.max_error = metres_from_mm(*mm);
+    settings.target_error = metres_from_mm(*mm);
   }
   if (const auto mm = keys.number("root_size_mm", 10, largest_root_mm)) {
     settings.root_size = metres_from_mm(*mm);

@@ -25,8 +25,8 @@ struct ScanSettings {
   Method method = Method::solid;
   double leaf_size = 0.001;   ///< metres
   double threshold = 0.0001;  ///< square metres, of a triangle's longest side; intersection
-  double max_error = ReconstructOptions{}.max_error;  ///< metres; solid
-  double root_size = 1.0;                             ///< metres
+  double target_error = ReconstructOptions{}.target_error;  ///< metres; solid
+  double root_size = 1.0;                                   ///< metres
   /// Metres, platform frame. Below 5 mm lies what a Kinect v1 sees of the platform, with its noise.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_sensor();

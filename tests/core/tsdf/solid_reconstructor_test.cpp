@@ -125,7 +125,7 @@ TEST(Solid, DoesNotFollowAnErrantReading) {
 TEST(Solid, TakesFewerTrianglesForASmallError) {
   const Shape shape = ball({0, 0, 0.05}, 0.045);
   ReconstructOptions all = options();
-  all.max_error = 0;
+  all.target_error = 0;
   const std::vector<Facet> many = part_of(all, rendered(shape, 8));
   const std::vector<Facet> few = part_of(options(), rendered(shape, 8));
   EXPECT_LT(few.size() * 3, many.size() * 2);
@@ -204,8 +204,8 @@ TEST(Solid, SaysWhatIsWrongWithItsOptions) {
     return code_thrown_by([&] { const SolidReconstructor solid(with); });
   };
   EXPECT_EQ(thrown_by([](auto& o) { o.leaf_size = 0; }), "bad-settings");
-  EXPECT_EQ(thrown_by([](auto& o) { o.max_error = -1; }), "bad-settings");
-  EXPECT_EQ(thrown_by([](auto& o) { o.max_error = std::nan(""); }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.target_error = -1; }), "bad-settings");
+  EXPECT_EQ(thrown_by([](auto& o) { o.target_error = std::nan(""); }), "bad-settings");
   EXPECT_EQ(thrown_by([](auto& o) { o.level = 3; }), "bad-settings");
   EXPECT_EQ(thrown_by([](auto& o) { o.memory_limit = 1; }), "memory-limit");
 }

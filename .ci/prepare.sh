@@ -56,14 +56,13 @@ install_packages() {
   }
 }
 
-# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it. With ccache, if it
-# is here: what was compiled in one clone is not compiled again in another.
+# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it; with ccache, if it
+# is here.
 build() {
   say "building build/$1"
   mkdir -p build
   if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER-ccache}"
-    export CCACHE_BASEDIR="${CCACHE_BASEDIR-$PWD}" CCACHE_NOHASHDIR=1
   fi
   if ! cmake --preset "$1" >"build/$1.log" 2>&1; then
     cat "build/$1.log" >&2

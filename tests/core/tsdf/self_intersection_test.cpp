@@ -16,9 +16,9 @@
 
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/random_field.hpp"
+#include "core/tsdf/simulated_scan.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/scan_folder.hpp"
-#include "solid/simulated_scan.hpp"
 #include "support/shared_folder.hpp"
 #include "tsdf/marching_cubes.hpp"
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/mesh/surface.hpp"
+#include "core/tsdf/simulated_scan.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/units.hpp"
-#include "solid/simulated_scan.hpp"
 
 namespace octurn {
 namespace {

@@ -30,12 +30,7 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
 std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
                                         const SnapshotSource& snapshots, const FacetSink& sink,
                                         const std::stop_token& stop) try {
-  const SurfaceCount count = reconstructor.surface(snapshots, [&](std::span<const Facet> facets) {
-    if (stop.stop_requested()) {
-      throw Stopped{};
-    }
-    sink(facets);
-  });
+  const SurfaceCount count = reconstructor.surface(snapshots, sink, stop);
   expect_facets(count);
   return count;
 } catch (const Stopped&) {

@@ -80,6 +80,10 @@ struct SurfaceCount {
 ///
 /// Deterministic: the same snapshots in the same order give the same bytes on x86-64 and arm64, for
 /// any number of threads and any memory limit.
+///
+/// Each call looks at its stop token in every phase, and throws `Stopped` within a fraction of a
+/// second's work after a stop was requested. The reconstruction is then incomplete: it can only be
+/// destroyed.
 class Reconstructor {
  public:
   Reconstructor() = default;
@@ -90,10 +94,10 @@ class Reconstructor {
   /// Adds one snapshot.
   /// @throws Error "memory-limit"   if not even one layer of what was observed fits
   /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
-  virtual void add(const Snapshot& snapshot) = 0;
+  virtual void add(const Snapshot& snapshot, const std::stop_token& stop = {}) = 0;
 
-  /// Adds all snapshots of a source, on as many threads as the options say. Ends early, with some
-  /// of them added, once `stop` is requested. @throws  as above, and what the source throws
+  /// Adds all snapshots of a source, on as many threads as the options say.
+  /// @throws  as above, and what the source throws
   virtual void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;
 
   /// Streams the surface of all that was added.
@@ -102,15 +106,17 @@ class Reconstructor {
   ///                   and is built slab by slab
   /// @param sink       called by one thread at a time; what it throws ends the call
   /// @throws Error "memory-limit"  if more memory is needed
-  virtual SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) = 0;
+  virtual SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                               const std::stop_token& stop = {}) = 0;
 
   /// Counts what `surface` would give. @throws  as `surface`
-  virtual SurfaceCount count(const SnapshotSource& snapshots) = 0;
+  virtual SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;
 
   /// Streams a coarse surface of what was added so far: of the first level whose nodes are at or
   /// below `leaf_size` (metres), or of the finest above it that has no more than `max_facets`.
   /// Where the volume is built in slabs, it shows the one in memory.
-  virtual void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink) const = 0;
+  virtual void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
+                       const std::stop_token& stop = {}) const = 0;
 };
 
 /// A reconstruction by the method that the options name.

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
+#include <stop_token>
 
 #include "octurn/depth_frame.hpp"
 
@@ -22,7 +23,15 @@ struct SnapshotSource {
   std::function<Snapshot(std::size_t)> read = {};  ///< of an index below `count`
 };
 
-/// Thrown by a source or a sink whose work was asked to stop: leads out of a reconstruction.
+/// Thrown by a call whose stop token was requested to stop before the call had its result; also by
+/// a source or a sink, to lead out of a reconstruction. It is no `Error`: nothing went wrong.
 struct Stopped {};
+
+/// @throws Stopped  if a stop was requested
+inline void throw_if_stopped(const std::stop_token& stop) {
+  if (stop.stop_requested()) {
+    throw Stopped{};
+  }
+}
 
 }  // namespace octurn

@@ -82,7 +82,10 @@ BennettReconstructor::BennettReconstructor(const ReconstructOptions& options)
   options_.threads = thread_count(options);
 }
 
-void BennettReconstructor::add(const Snapshot& snapshot) { see(snapshot, octree_, slab_); }
+void BennettReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) {
+  throw_if_stopped(stop);
+  see(snapshot, octree_, slab_);
+}
 
 void BennettReconstructor::see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const {
   const SnapGrid lattice(octree.side());
@@ -142,14 +145,15 @@ void BennettReconstructor::add(const SnapshotSource& snapshots, const std::stop_
       others[i] = std::make_unique<Octree>(octree_for(options_));
     }
     Octree& octree = i > 0 ? *others[i] : octree_;
-    for (std::size_t shot = next++; shot < snapshots.count && !stop.stop_requested();
-         shot = next++) {
+    for (std::size_t shot = next++; shot < snapshots.count; shot = next++) {
+      throw_if_stopped(stop);
       see(snapshots.read(shot), octree, slabs[i]);
     }
   });
   slab_ = *std::ranges::min_element(slabs, {}, &BrickLayers::end);
   octree_.remove_layers_from(slab_.end + 1);
   for (std::size_t i = 1; i < others.size(); ++i) {
+    throw_if_stopped(stop);
     merge(*std::exchange(others[i], nullptr));
   }
 }
@@ -166,32 +170,37 @@ void BennettReconstructor::merge(Octree& other) {
   }
 }
 
-void BennettReconstructor::begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots) {
+void BennettReconstructor::begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots,
+                                      const std::stop_token& stop) {
   octree_.clear();
   slab_ = slab;
-  add(snapshots);
+  add(snapshots, stop);
 }
 
 template <typename Visit>
-void BennettReconstructor::for_each_slab(const SnapshotSource& snapshots, Visit visit) {
+void BennettReconstructor::for_each_slab(const SnapshotSource& snapshots,
+                                         const std::stop_token& stop, Visit visit) {
   const int top = octree_.brick_layers();
   if (slab_.low > 0) {
-    begin_slab(all_layers(octree_), snapshots);
+    begin_slab(all_layers(octree_), snapshots, stop);
   }
   visit(slab_);
   while (slab_.end < top) {
     // The next slab most likely takes about as many layers as this one.
     const int height = 2 * (slab_.end - slab_.low);
-    begin_slab({.low = slab_.end, .end = std::min(top, slab_.end + height)}, snapshots);
+    begin_slab({.low = slab_.end, .end = std::min(top, slab_.end + height)}, snapshots, stop);
     visit(slab_);
   }
 }
 
-SurfaceCount BennettReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink) {
+SurfaceCount BennettReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                                           const std::stop_token& stop) {
   SurfaceCount count;
-  for_each_slab(snapshots, [&](const BrickLayers& slab) {
+  for_each_slab(snapshots, stop, [&](const BrickLayers& slab) {
+    throw_if_stopped(stop);
     count.leaves += octree_.leaf_count(slab.low, slab.end);
     marching_tetrahedra(octree_, slab, options_.threads, [&](std::span<const Facet> facets) {
+      throw_if_stopped(stop);
       count.facets += facets.size();
       sink(facets);
     });
@@ -199,9 +208,11 @@ SurfaceCount BennettReconstructor::surface(const SnapshotSource& snapshots, cons
   return count;
 }
 
-SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots) {
+SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots,
+                                         const std::stop_token& stop) {
   SurfaceCount count;
-  for_each_slab(snapshots, [&](const BrickLayers& slab) {
+  for_each_slab(snapshots, stop, [&](const BrickLayers& slab) {
+    throw_if_stopped(stop);
     count.leaves += octree_.leaf_count(slab.low, slab.end);
     count.facets += count_facets(octree_, slab);
   });
@@ -209,7 +220,8 @@ SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots) {
 }
 
 void BennettReconstructor::preview(double leaf_size, std::uint64_t max_facets,
-                                   const FacetSink& sink) const {
+                                   const FacetSink& sink, const std::stop_token& stop) const {
+  throw_if_stopped(stop);
   const int level = std::min(Octree::level_of(octree_.side(), leaf_size), octree_.levels());
   coarse_surface(octree_.at_level(level), max_facets, sink);
 }

@@ -19,19 +19,22 @@ namespace octurn {
 class BennettReconstructor final : public Reconstructor {
  public:
   explicit BennettReconstructor(const ReconstructOptions& options);
-  void add(const Snapshot& snapshot) override;
+  void add(const Snapshot& snapshot, const std::stop_token& stop = {}) override;
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
-  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) override;
-  SurfaceCount count(const SnapshotSource& snapshots) override;
-  void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink) const override;
+  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                       const std::stop_token& stop = {}) override;
+  SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
+  void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
+               const std::stop_token& stop = {}) const override;
 
  private:
   void see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
   void keep_what_fits(Octree& octree, BrickLayers& slab) const;
   void merge(Octree& other);
-  void begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots);
+  void begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots,
+                  const std::stop_token& stop);
   template <typename Visit>
-  void for_each_slab(const SnapshotSource& snapshots, Visit visit);
+  void for_each_slab(const SnapshotSource& snapshots, const std::stop_token& stop, Visit visit);
 
   ReconstructOptions options_;
   int wanted_threads_;  // of which the memory limit leaves as many as the options say

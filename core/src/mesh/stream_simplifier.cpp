@@ -10,6 +10,7 @@
 
 #include "mesh/self_intersections.hpp"
 #include "mesh/vector3.hpp"
+#include "octurn/snapshot.hpp"
 #include "parallel/radix_sort.hpp"
 
 namespace octurn {
@@ -35,8 +36,12 @@ bool is_degenerate(const MeshTriangle& triangle) {
 
 }  // namespace
 
-StreamSimplifier::StreamSimplifier(double target_error, double margin, FacetSink sink)
-    : target_error_(target_error), margin_(margin), sink_(std::move(sink)) {}
+StreamSimplifier::StreamSimplifier(double target_error, double margin, FacetSink sink,
+                                   std::stop_token stop)
+    : target_error_(target_error),
+      margin_(margin),
+      sink_(std::move(sink)),
+      stop_(std::move(stop)) {}
 
 void StreamSimplifier::add(const MeshPiece& piece) {
   // Only the vertices of the last piece may be met again.
@@ -138,6 +143,7 @@ void StreamSimplifier::collapse_edges() {
   double refused = 0;  // what costs no more was tried in the last pass; at first all has changed
   changed_.assign(vertices_.size(), 1);
   for (int pass = 0; pass < passes; ++pass) {
+    throw_if_stopped(stop_);
     const double share = std::min(1.0, (pass + 1) / (0.6 * passes));
     const double error = target_error_ * share;
     corners_.assign(triangles_, vertices_.size());

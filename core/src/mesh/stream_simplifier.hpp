@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <stop_token>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -21,7 +22,9 @@ class StreamSimplifier {
  public:
   /// @param target_error  millimetres, above 0
   /// @param margin     millimetres below the upper end of a window that wait for the next
-  StreamSimplifier(double target_error, double margin, FacetSink sink);
+  /// @param stop       looked at in each pass over a window: then `add` and `finish` throw
+  /// `Stopped`
+  StreamSimplifier(double target_error, double margin, FacetSink sink, std::stop_token stop = {});
 
   void add(const MeshPiece& piece);
 
@@ -73,6 +76,7 @@ class StreamSimplifier {
   double target_error_;
   double margin_;
   FacetSink sink_;
+  std::stop_token stop_;
   std::vector<Vertex> vertices_ = {};
   std::vector<Quadric> quadrics_ = {};  // of the vertices; apart, so that those stay in the cache
   std::vector<MeshTriangle> triangles_ = {};

@@ -1,5 +1,7 @@
 #include "tsdf/compact_tsdf.hpp"
 
+#include "octurn/snapshot.hpp"
+
 namespace octurn {
 namespace {
 
@@ -49,9 +51,10 @@ CompactBrick seen(const TsdfVolume& field, const TsdfBrick& from, const Index3& 
 CompactTsdf::CompactTsdf(const VoxelGrid& shape)
     : VoxelGrid(shape), bricks_(brick_count()), free_(cell_count()) {}
 
-void CompactTsdf::add(const TsdfVolume& field) {
+void CompactTsdf::add(const TsdfVolume& field, const std::stop_token& stop) {
   const auto& [low, end] = field.layers();
   for (int z = low; z < end; ++z) {
+    throw_if_stopped(stop);
     for (int y = 0; y < size().y; ++y) {
       for (int x = 0; x < size().x; ++x) {
         if (const TsdfBrick* brick = field.find({x, y, z})) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "tsdf/tsdf_volume.hpp"
@@ -39,8 +40,8 @@ class CompactTsdf : public VoxelGrid {
  public:
   explicit CompactTsdf(const VoxelGrid& shape);
 
-  /// Takes over the layers that `field` holds.
-  void add(const TsdfVolume& field);
+  /// Takes over the layers that `field` holds. @throws Stopped
+  void add(const TsdfVolume& field, const std::stop_token& stop = {});
 
   /// A brick, if it exists.
   const CompactBrick* find(const Index3& brick) const { return bricks_.find(brick_index(brick)); }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "octurn/snapshot.hpp"
+
 namespace octurn {
 namespace {
 
@@ -28,11 +30,11 @@ constexpr int sweeps = 10;  // over each grid of the harmonic fill, there and ba
 
 }  // namespace
 
-HoleFilledSdf::HoleFilledSdf(const CompactTsdf& field, int foot)
+HoleFilledSdf::HoleFilledSdf(const CompactTsdf& field, int foot, const std::stop_token& stop)
     : field_(field), base_layer_(foot) {
   find_box();
-  classify();
-  solve_laplace(grid_);
+  classify(stop);
+  solve_laplace(grid_, stop);
 }
 
 void HoleFilledSdf::find_box() {
@@ -69,12 +71,13 @@ void HoleFilledSdf::find_box() {
                    lerp_weights(std::max(end_.z, base_layer_ + 1) - low_.z, grid_.size.z)};
 }
 
-void HoleFilledSdf::classify() {
+void HoleFilledSdf::classify(const std::stop_token& stop) {
   const auto count = grid_.index(0, 0, grid_.size.z);
   grid_.values.resize(count);
   grid_.known.resize(count);
   std::size_t index = 0;
   for (int z = 0; z < grid_.size.z; ++z) {
+    throw_if_stopped(stop);
     for (int y = 0; y < grid_.size.y; ++y) {
       for (int x = 0; x < grid_.size.x; ++x, ++index) {
         classify({low_cell_.x + x, low_cell_.y + y, low_cell_.z + z}, index);
@@ -143,7 +146,7 @@ HoleFilledSdf::RunningMean HoleFilledSdf::mean_known_distance(const CompactBrick
 /// Solves Laplace's equation for the unknown, from coarse to fine: each grid gives the next finer
 /// one its first guess. A coarse cell is as the innermost of its cells, so that a thin shell stays
 /// closed.
-void HoleFilledSdf::solve_laplace(Grid& fine) {
+void HoleFilledSdf::solve_laplace(Grid& fine, const std::stop_token& stop) {
   if (fine.values.size() < 2 || std::ranges::all_of(fine.known, [](char k) { return k != 0; })) {
     return;
   }
@@ -156,6 +159,7 @@ void HoleFilledSdf::solve_laplace(Grid& fine) {
   const auto for_each = [&](auto visit) {
     std::size_t index = 0;
     for (int z = 0; z < fine.size.z; ++z) {
+      throw_if_stopped(stop);
       for (int y = 0; y < fine.size.y; ++y) {
         for (int x = 0; x < fine.size.x; ++x, ++index) {
           visit(index, coarse.index(x / 2, y / 2, z / 2));
@@ -170,13 +174,13 @@ void HoleFilledSdf::solve_laplace(Grid& fine) {
       coarse.known[to] = 1;
     }
   });
-  solve_laplace(coarse);
+  solve_laplace(coarse, stop);
   for_each([&](std::size_t to, std::size_t from) {
     if (fine.known[to] == 0) {
       fine.values[to] = coarse.values[from];
     }
   });
-  gauss_seidel_sweep(fine);
+  gauss_seidel_sweep(fine, stop);
 }
 
 /// Makes an unknown value the mean of those around it; at the box's sides the value beyond is that
@@ -197,10 +201,11 @@ void HoleFilledSdf::gauss_seidel_sweep(Grid& grid, int x, int y, int z) {
 }
 
 /// Gauss-Seidel sweeps of Laplace's equation, there and back.
-void HoleFilledSdf::gauss_seidel_sweep(Grid& grid) {
+void HoleFilledSdf::gauss_seidel_sweep(Grid& grid, const std::stop_token& stop) {
   const Index3& size = grid.size;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int z = 0; z < size.z; ++z) {
+      throw_if_stopped(stop);
       for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
           gauss_seidel_sweep(grid, x, y, z);
@@ -208,6 +213,7 @@ void HoleFilledSdf::gauss_seidel_sweep(Grid& grid) {
       }
     }
     for (int z = size.z - 1; z >= 0; --z) {
+      throw_if_stopped(stop);
       for (int y = size.y - 1; y >= 0; --y) {
         for (int x = size.x - 1; x >= 0; --x) {
           gauss_seidel_sweep(grid, x, y, z);
@@ -356,10 +362,11 @@ void HoleFilledSdf::add_inside(const Index3& brick, VoxelMask& set) const {
   }
 }
 
-VoxelMask HoleFilledSdf::inside() const {
+VoxelMask HoleFilledSdf::inside(const std::stop_token& stop) const {
   VoxelMask set(low_, end_);
   const Index3& size = set.size();
   for (int z = 0; z < size.z / Brick::side; ++z) {
+    throw_if_stopped(stop);
     for (int y = 0; y < size.y / Brick::side; ++y) {
       for (int x = 0; x < size.x / Brick::side; ++x) {
         add_inside({x, y, z}, set);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "tsdf/compact_tsdf.hpp"
@@ -18,7 +19,8 @@ class HoleFilledSdf {
  public:
   /// @param field  must outlive this
   /// @param foot   the lowest layer of leaves that counts; those below take its values
-  HoleFilledSdf(const CompactTsdf& field, int foot);
+  /// @throws Stopped
+  HoleFilledSdf(const CompactTsdf& field, int foot, const std::stop_token& stop = {});
 
   /// The box of leaves outside which there is nothing: from `low` up to but without `end`.
   const Index3& low() const { return low_; }
@@ -41,7 +43,8 @@ class HoleFilledSdf {
   Value at(const Index3& leaf) const;
 
   /// The leaves of that box at which the distance is negative, but for those on its sides and top.
-  VoxelMask inside() const;
+  /// @throws Stopped
+  VoxelMask inside(const std::stop_token& stop = {}) const;
 
  private:
   struct Grid {
@@ -57,7 +60,7 @@ class HoleFilledSdf {
   };
 
   void find_box();
-  void classify();
+  void classify(const std::stop_token& stop);
   void classify(const Index3& cell, std::size_t index);
 
   struct RunningMean {
@@ -70,8 +73,8 @@ class HoleFilledSdf {
   };
   RunningMean mean_known_distance(const CompactBrick& brick, const Index3& position,
                                   const Index3& cell) const;
-  static void solve_laplace(Grid& fine);
-  static void gauss_seidel_sweep(Grid& grid);
+  static void solve_laplace(Grid& fine, const std::stop_token& stop);
+  static void gauss_seidel_sweep(Grid& grid, const std::stop_token& stop);
   static void gauss_seidel_sweep(Grid& grid, int x, int y, int z);
   VoxelState sighted(const Index3& leaf, const CompactBrick* brick) const;
   const CompactBrick* brick_at(const Index3& leaf) const;

@@ -12,9 +12,10 @@ namespace {
 
 class Fusion {
  public:
-  Fusion(TsdfVolume& field, const ConditionedDepth& sighting)
+  Fusion(TsdfVolume& field, const ConditionedDepth& sighting, const std::stop_token& stop)
       : field_(field),
         sighting_(sighting),
+        stop_(stop),
         leaf_(static_cast<float>(field.leaf_side())),
         truncation_(static_cast<float>(field.truncation())),
         fx_(static_cast<float>(sighting.intrinsics().fx)),
@@ -139,6 +140,7 @@ class Fusion {
         break;
     }
     if (bricks == 1) {
+      throw_if_stopped(stop_);
       integrate_brick(brick);
       return;
     }
@@ -371,6 +373,7 @@ class Fusion {
 
   TsdfVolume& field_;
   const ConditionedDepth& sighting_;
+  const std::stop_token& stop_;
   float leaf_;
   float truncation_;
   float fx_;
@@ -394,6 +397,8 @@ class Fusion {
 
 }  // namespace
 
-void fuse(TsdfVolume& field, const ConditionedDepth& sighting) { Fusion(field, sighting).run(); }
+void fuse(TsdfVolume& field, const ConditionedDepth& sighting, const std::stop_token& stop) {
+  Fusion(field, sighting, stop).run();
+}
 
 }  // namespace octurn

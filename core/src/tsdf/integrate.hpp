@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stop_token>
+
 #include "depth/condition_depth.hpp"
 #include "tsdf/tsdf_volume.hpp"
 
@@ -13,6 +15,7 @@ namespace octurn {
 /// they cover, so that only those near the surface are looked into.
 ///
 /// @throws OutOfBudget  if not even one layer fits; some of the snapshot is then fused
-void fuse(TsdfVolume& field, const ConditionedDepth& sighting);
+/// @throws Stopped  between two bricks
+void fuse(TsdfVolume& field, const ConditionedDepth& sighting, const std::stop_token& stop = {});
 
 }  // namespace octurn

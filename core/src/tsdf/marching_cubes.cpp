@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "tsdf/marching_cubes_cases.hpp"
 
@@ -45,10 +46,11 @@ class MarchingCubes {
         std::min(least_gap_mm / (std::numbers::sqrt2 * mm_from_metres(field.leaf_side())), 0.3));
   }
 
-  void run() {
+  void run(const std::stop_token& stop) {
     CubeLayer below;
     CubeLayer here = cubes_at(-1);
     for (int z = -1; z < inside_.size().z; ++z) {
+      throw_if_stopped(stop);
       CubeLayer above = cubes_at(z + 1);
       vertices_.clear();
       triangles_.clear();
@@ -218,8 +220,9 @@ class MarchingCubes {
 
 }  // namespace
 
-void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink) {
-  MarchingCubes(inside, field, sink).run();
+void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink,
+                    const std::stop_token& stop) {
+  MarchingCubes(inside, field, sink).run(stop);
 }
 
 }  // namespace octurn

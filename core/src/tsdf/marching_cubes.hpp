@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stop_token>
+
 #include "mesh/mesh.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "voxel/voxel_mask.hpp"
@@ -12,6 +14,9 @@ namespace octurn {
 /// Closed and manifold whatever the signs are (see `marching_cubes_cases`), without cuts through
 /// itself, and with no two vertices closer than slicers meld. Leaves on the sides of the set's box
 /// must be empty, but for its lowest layer.
-void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink);
+///
+/// @throws Stopped  between two layers
+void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink,
+                    const std::stop_token& stop = {});
 
 }  // namespace octurn

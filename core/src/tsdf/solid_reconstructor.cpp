@@ -145,14 +145,15 @@ SolidReconstructor::SolidReconstructor(const ReconstructOptions& options)
   }
 }
 
-void SolidReconstructor::add(const Snapshot& snapshot) {
-  add({.count = 1, .read = [&](std::size_t) { return snapshot; }});
+void SolidReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) {
+  add({.count = 1, .read = [&](std::size_t) { return snapshot; }}, stop);
 }
 
 void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_token& stop) try {
   const int threads = std::clamp(static_cast<int>(snapshots.count), 1, options_.threads);
   auto next = [&, shot = std::size_t{0}]() mutable -> std::optional<std::size_t> {
-    return shot < snapshots.count && !stop.stop_requested() ? std::optional(shot++) : std::nullopt;
+    throw_if_stopped(stop);
+    return shot < snapshots.count ? std::optional(shot++) : std::nullopt;
   };
   OrderedPipeline<decltype(next), std::optional<ConditionedDepth>> shots(next, threads);
   fork_join(threads, [&](int) {
@@ -161,7 +162,7 @@ void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_to
           sighting.emplace(crop(snapshots.read(shot), field_.box()), options_.clip);
         },
         [&](std::optional<ConditionedDepth>& sighting) {
-          fuse(field_, *sighting);
+          fuse(field_, *sighting, stop);
           sighting.reset();
         });
   });
@@ -170,14 +171,14 @@ void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_to
 }
 
 /// What all snapshots say, slab by slab.
-CompactTsdf SolidReconstructor::seen(const SnapshotSource& snapshots) {
+CompactTsdf SolidReconstructor::seen(const SnapshotSource& snapshots, const std::stop_token& stop) {
   CompactTsdf seen(field_);
   const auto add_slab = [&](int low) {
     if (low != field_.layers().low) {
       field_.begin(low, slab_room(options_, seen));
-      add(snapshots);
+      add(snapshots, stop);
     }
-    seen.add(field_);
+    seen.add(field_, stop);
     if (seen.bytes() + field_.bytes() > room(options_)) {
       refuse_field(options_);
     }
@@ -201,48 +202,54 @@ int SolidReconstructor::foot() const {
   return static_cast<int>(std::ceil((bottom + base_margin) / field_.leaf_side() - 0.5));
 }
 
-SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink) {
-  const CompactTsdf seen = this->seen(snapshots);
-  const HoleFilledSdf filled(seen, foot());
+SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                                         const std::stop_token& stop) {
+  const CompactTsdf seen = this->seen(snapshots, stop);
+  const HoleFilledSdf filled(seen, foot(), stop);
   if (options_.memory_limit != 0 &&
       program_bytes + seen.bytes() + leaf_set_bytes(filled) > options_.memory_limit) {
     refuse_field(options_);
   }
-  VoxelMask part = filled.inside();
-  part.keep_main_component();
+  VoxelMask part = filled.inside(stop);
+  part.keep_main_component(stop);
   part = part.cropped();
-  part.remove_spurs();
-  part.fill_cavities();
-  SurfaceCount count{.leaves = part.count(), .facets = 0, .parts = part.component_count()};
+  part.remove_spurs(stop);
+  part.fill_cavities(stop);
+  SurfaceCount count{.leaves = part.count(), .facets = 0, .parts = part.component_count(stop)};
   const FacetSink counted = [&](std::span<const Facet> facets) {
+    throw_if_stopped(stop);
     count.facets += facets.size();
     sink(facets);
   };
   if (options_.target_error > 0) {
     StreamSimplifier simplifier(mm_from_metres(options_.target_error),
-                                mm_from_metres(margin_leaves * field_.leaf_side()), counted);
-    marching_cubes(part, filled, [&](const MeshPiece& piece) { simplifier.add(piece); });
+                                mm_from_metres(margin_leaves * field_.leaf_side()), counted, stop);
+    marching_cubes(
+        part, filled, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop);
     simplifier.finish();
   } else {
     Facets facets(counted);
-    marching_cubes(part, filled, [&](const MeshPiece& piece) { facets.add(piece); });
+    marching_cubes(
+        part, filled, [&](const MeshPiece& piece) { facets.add(piece); }, stop);
   }
   return count;
 }
 
-SurfaceCount SolidReconstructor::count(const SnapshotSource& snapshots) {
-  return surface(snapshots, [](std::span<const Facet>) {});
+SurfaceCount SolidReconstructor::count(const SnapshotSource& snapshots,
+                                       const std::stop_token& stop) {
+  return surface(
+      snapshots, [](std::span<const Facet>) {}, stop);
 }
 
-void SolidReconstructor::preview(double leaf_size, std::uint64_t max_facets,
-                                 const FacetSink& sink) const {
+void SolidReconstructor::preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
+                                 const std::stop_token& stop) const {
   const int level = std::min(Octree::level_of(field_.side(), leaf_size), field_.levels());
   const int finer = field_.levels() - level;
   CompactTsdf seen(field_);
-  seen.add(field_);
-  const HoleFilledSdf filled(seen, foot());
-  VoxelMask part = filled.inside();
-  part.keep_main_component();
+  seen.add(field_, stop);
+  const HoleFilledSdf filled(seen, foot(), stop);
+  VoxelMask part = filled.inside(stop);
+  part.keep_main_component(stop);
   Octree coarse(field_.side(), level);
   for (int z = 0; z < part.size().z; ++z) {
     for (int y = 0; y < part.size().y; ++y) {

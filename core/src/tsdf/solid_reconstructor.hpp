@@ -29,14 +29,16 @@ namespace octurn {
 class SolidReconstructor final : public Reconstructor {
  public:
   explicit SolidReconstructor(const ReconstructOptions& options);
-  void add(const Snapshot& snapshot) override;
+  void add(const Snapshot& snapshot, const std::stop_token& stop = {}) override;
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
-  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink) override;
-  SurfaceCount count(const SnapshotSource& snapshots) override;
-  void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink) const override;
+  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                       const std::stop_token& stop = {}) override;
+  SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
+  void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
+               const std::stop_token& stop = {}) const override;
 
  private:
-  CompactTsdf seen(const SnapshotSource& snapshots);
+  CompactTsdf seen(const SnapshotSource& snapshots, const std::stop_token& stop);
   int foot() const;
 
   ReconstructOptions options_;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <functional>
 
+#include "octurn/snapshot.hpp"
+
 namespace octurn {
 namespace {
 
@@ -20,10 +22,12 @@ class Components {
  public:
   enum class Of { leaves, gaps };
 
-  Components(const VoxelMask& set, Of of) : set_(set), of_(of) {
+  Components(const VoxelMask& set, Of of, const std::stop_token& stop)
+      : set_(set), of_(of), stop_(stop) {
     const Index3& size = set.size();
     first_.reserve(static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) + 1);
     for (int z = 0; z < size.z; ++z) {
+      throw_if_stopped(stop_);
       for (int y = 0; y < size.y; ++y) {
         first_.push_back(static_cast<std::uint32_t>(runs_.size()));
         add_row(y, z);
@@ -49,6 +53,7 @@ class Components {
     const Index3& size = set_.size();
     std::size_t row = 0;
     for (int z = 0; z < size.z; ++z) {
+      throw_if_stopped(stop_);
       for (int y = 0; y < size.y; ++y, ++row) {
         for (std::uint32_t i = first_[row]; i < first_[row + 1]; ++i) {
           visit(y, z, i, runs_[i]);
@@ -120,6 +125,7 @@ class Components {
 
   const VoxelMask& set_;
   Of of_;
+  const std::stop_token& stop_;
   std::vector<Run> runs_ = {};
   std::vector<std::uint32_t> first_ = {};  // run of each row
 };
@@ -152,8 +158,8 @@ std::uint64_t VoxelMask::count() const {
   return count;
 }
 
-void VoxelMask::keep_main_component() {
-  Components parts(*this, Components::Of::leaves);
+void VoxelMask::keep_main_component(const std::stop_token& stop) {
+  Components parts(*this, Components::Of::leaves, stop);
   if (parts.count() == 0) {
     return;
   }
@@ -177,10 +183,11 @@ void VoxelMask::keep_main_component() {
   });
 }
 
-void VoxelMask::remove_spurs() {
+void VoxelMask::remove_spurs(const std::stop_token& stop) {
   for (bool removed = true; removed;) {
     removed = false;
     for (int z = 0; z < size_.z; ++z) {
+      throw_if_stopped(stop);
       for (int y = 0; y < size_.y; ++y) {
         removed = remove_spurs_of(y, z) || removed;
       }
@@ -254,16 +261,16 @@ VoxelMask VoxelMask::cropped() const {
   return set;
 }
 
-std::uint64_t VoxelMask::component_count() const {
-  Components parts(*this, Components::Of::leaves);
+std::uint64_t VoxelMask::component_count(const std::stop_token& stop) const {
+  Components parts(*this, Components::Of::leaves, stop);
   std::uint64_t count = 0;
   parts.for_each(
       [&](int, int, std::uint32_t i, const Run&) { count += parts.root(i) == i ? 1 : 0; });
   return count;
 }
 
-void VoxelMask::fill_cavities() {
-  Components gaps(*this, Components::Of::gaps);
+void VoxelMask::fill_cavities(const std::stop_token& stop) {
+  Components gaps(*this, Components::Of::gaps, stop);
   std::vector<char> outside(gaps.count());
   const auto at_border = [&](int y, int z, const Run& run) {
     return run.first == 0 || run.end == size_.x || y == 0 || y == size_.y - 1 || z == 0 ||

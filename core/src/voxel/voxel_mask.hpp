@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "voxel/octree.hpp"
@@ -9,6 +10,8 @@
 namespace octurn {
 
 /// A set of leaves in a box of the lattice, a bit for each, in rows along x.
+///
+/// What takes a stop token throws `Stopped` between two layers, and is then left incomplete.
 class VoxelMask {
  public:
   /// From `low` up to but without `end`.
@@ -35,21 +38,21 @@ class VoxelMask {
 
   /// Keeps the one part that stands on the platform: of those in the lowest layer of the box the
   /// largest, or the largest of all if none is. Leaves of a part meet in faces.
-  void keep_main_component();
+  void keep_main_component(const std::stop_token& stop = {});
 
   /// Removes needles one leaf thick, from their ends: leaves that meet no more than one other,
   /// again and again. What is thin along one axis only, stays.
-  void remove_spurs();
+  void remove_spurs(const std::stop_token& stop = {});
 
   /// The same leaves in a smaller box, which leaves one leaf free, at least, around them in x and
   /// y.
   VoxelMask cropped() const;
 
   /// How many parts there are.
-  std::uint64_t component_count() const;
+  std::uint64_t component_count(const std::stop_token& stop = {}) const;
 
   /// Adds what no way leads to from outside the box, through faces and edges of leaves.
-  void fill_cavities();
+  void fill_cavities(const std::stop_token& stop = {});
 
  private:
   bool remove_spurs_of(int y, int z);

@@ -194,10 +194,11 @@ void reconstruct(const ReconstructArguments& arguments) try {
     ProgressBar bar;
     const SnapshotSource snapshots = snapshots_of(arguments.folder, scan, bar, stop);
     const Clock::time_point start = Clock::now();
-    reconstruction->add(snapshots);
+    reconstruction->add(snapshots, stop);
     const Clock::time_point seen = Clock::now();
     bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
-    ModelOutput output(arguments.output, [&] { return reconstruction->count(snapshots).facets; });
+    ModelOutput output(arguments.output,
+                       [&] { return reconstruction->count(snapshots, stop).facets; });
     const auto checked = [&](std::span<const Facet> facets) {
       if (arguments.json) {
         check.add(facets);

@@ -22,8 +22,8 @@ ModelStream::ModelStream(const std::filesystem::path& folder, ReconstructOptions
       snapshots_(stored_snapshots(folder, scan_, leave_->stop())),
       reconstruction_(make_reconstructor(clipped(std::move(options), scan_.clip))) {
   try {
-    reconstruction_->add(snapshots_);
-    count_ = reconstruction_->count(snapshots_);
+    reconstruction_->add(snapshots_, stop());
+    count_ = reconstruction_->count(snapshots_, stop());
   } catch (const Stopped&) {
     throw Error("busy", "a scan has started", "Wait for its end.");
   }

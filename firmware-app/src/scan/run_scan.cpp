@@ -130,8 +130,8 @@ bool Run::take_snapshots() {
     add([added = Snapshot{.frame = *std::move(frame),
                           .intrinsics = scan_.intrinsics,
                           .object_from_sensor = object_from_sensor(scan_.platform_from_sensor,
-                                                                   stored_angle(shot.angle))}](
-            Reconstructor& reconstruction) { reconstruction.add(added); });
+                                                                   stored_angle(shot.angle))},
+         this](Reconstructor& reconstruction) { reconstruction.add(added, stop_); });
   }
   return true;
 }
@@ -203,7 +203,7 @@ void Run::add(Add add_to) {
 
 /// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
 /// again for each part.
-std::optional<Model> Run::build() try {
+std::optional<Model> Run::build() {
   observer_.on_progress(Phase::building, done());
   const Clock::time_point captured = Clock::now();
   adding_.get();
@@ -214,17 +214,17 @@ std::optional<Model> Run::build() try {
                                   folder_ / "Scan.stl", stop_);
   return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
                 : std::nullopt;
-} catch (const Stopped&) {
-  return std::nullopt;
 }
 
 }  // namespace
 
 std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
                               const std::filesystem::path& folder, Rig& rig,
-                              const std::stop_token& stop, const ScanObserver& observer) {
+                              const std::stop_token& stop, const ScanObserver& observer) try {
   Run run(settings, limits, folder, rig, stop, observer);
   return run.take_snapshots() ? run.build() : std::nullopt;
+} catch (const Stopped&) {
+  return std::nullopt;  // while snapshots were added, or the model was made
 }
 
 }  // namespace octurn

@@ -149,23 +149,23 @@ void Scanner::run_until_it_ends(Job& job, Rig& rig, const std::stop_token& stop)
 /// closed, so that the next use opens it again.
 void Scanner::attempt(Job& job, Rig& rig, const std::stop_token& stop) {
   try {
-    job.model =
-        run_scan(job.settings, limits_, store_.folder(job.id), rig, stop,
-                 {.on_progress =
-                      [&](Phase phase, int done) {
-                        board_.set_progress(phase, done);
-                        if (phase == Phase::capturing) {
-                          board_.set_turntable_ready();  // it has turned
-                        }
-                      },
-                  .on_turn = [&](double angle_deg) { save_platform_angle(angle_deg); },
-                  .on_frame =
-                      [&](const DepthFrame& frame, double depth_unit) {
-                        board_.set_view(frame, depth_unit);
-                        board_.set_sensor_ready(rig.sensor().name());
-                      },
-                  .on_added = [&](const Reconstructor& seen,
-                                  int snapshots) { board_.set_preview(job.id, seen, snapshots); }});
+    job.model = run_scan(
+        job.settings, limits_, store_.folder(job.id), rig, stop,
+        {.on_progress =
+             [&](Phase phase, int done) {
+               board_.set_progress(phase, done);
+               if (phase == Phase::capturing) {
+                 board_.set_turntable_ready();  // it has turned
+               }
+             },
+         .on_turn = [&](double angle_deg) { save_platform_angle(angle_deg); },
+         .on_frame =
+             [&](const DepthFrame& frame, double depth_unit) {
+               board_.set_view(frame, depth_unit);
+               board_.set_sensor_ready(rig.sensor().name());
+             },
+         .on_added = [&](const Reconstructor& seen,
+                         int snapshots) { board_.set_preview(job.id, seen, snapshots, stop); }});
     job.state = job.model ? JobState::finished : JobState::cancelled;
     job.failure.reset();
   } catch (...) {

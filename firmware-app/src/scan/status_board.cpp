@@ -138,11 +138,13 @@ void StatusBoard::set_view(const DepthFrame& frame, double depth_unit) {
   view_.set({.time = Clock::now(), .frame = frame, .depth_unit = depth_unit});
 }
 
-void StatusBoard::set_preview(const std::string& id, const Reconstructor& seen, int snapshots) {
+void StatusBoard::set_preview(const std::string& id, const Reconstructor& seen, int snapshots,
+                              const std::stop_token& stop) {
   std::vector<Facet> facets;
-  seen.preview(preview_leaf_size, most_preview_facets, [&](std::span<const Facet> some) {
+  const auto append = [&](std::span<const Facet> some) {
     facets.insert(facets.end(), some.begin(), some.end());
-  });
+  };
+  seen.preview(preview_leaf_size, most_preview_facets, append, stop);
   if (!facets.empty()) {
     preview_.set({.id = id, .snapshots = snapshots, .stl = stl_text(facets)});
   }

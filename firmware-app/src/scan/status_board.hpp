@@ -82,7 +82,8 @@ class StatusBoard {
   void set_turntable_failed(const Failure& failure);
 
   void set_view(const DepthFrame& frame, double depth_unit);
-  void set_preview(const std::string& id, const Reconstructor& seen, int snapshots);
+  void set_preview(const std::string& id, const Reconstructor& seen, int snapshots,
+                   const std::stop_token& stop);
 
  private:
   Latest<Status> status_;

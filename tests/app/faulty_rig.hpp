@@ -15,7 +15,7 @@
 #include "scan/latest.hpp"
 #include "scan/plan.hpp"
 #include "scan/rig.hpp"
-#include "sensor/sensor_device.hpp"
+#include "sensor/depth_sensor.hpp"
 
 namespace octurn {
 
@@ -29,7 +29,7 @@ class FaultyRig {
  public:
   static constexpr int steps = 800;
 
-  FaultyRig(int stops, int position = 0) : stops_(stops), position_(position) {
+  FaultyRig(int stops, std::int64_t position = 0) : stops_(stops), position_(position) {
     static const std::vector<DepthFrame> four_sides = seen_at_stops(4);
     seen_ = stops == 4 ? four_sides : seen_at_stops(stops);
   }
@@ -45,7 +45,7 @@ class FaultyRig {
                   if (fails(Fault::unplugged)) {
                     throw Error("sensor-missing", "none is plugged in", "Plug it in.");
                   }
-                  return std::make_unique<DepthSensor>(std::make_unique<Sensor>(*this));
+                  return std::make_unique<Sensor>(*this);
                 },
             .open_lines = [this](const StepperSettings&) { return opened_lines(); }};
   }
@@ -61,7 +61,7 @@ class FaultyRig {
   void mend() { fault_ = Fault::none; }
 
   bool is_motor_on() const { return motor_on_; }
-  int position() const { return position_; }
+  std::int64_t position() const { return position_; }
   int moves_without_motor() const { return moves_without_motor_; }
 
   /// Of the sensor that is opened next.
@@ -74,7 +74,7 @@ class FaultyRig {
   std::function<void(int stop)> on_frame = [](int) {};
 
  private:
-  class Sensor final : public SensorDevice {
+  class Sensor final : public DepthSensor {
    public:
     explicit Sensor(FaultyRig& rig) : rig_(rig) {}
     const std::string& name() const override { return name_; }
@@ -96,10 +96,11 @@ class FaultyRig {
   };
 
   static std::vector<DepthFrame> seen_at_stops(int stops) {
-    DepthSensor sensor("octurn-simulator://?noise=0&speed=50");
+    const auto sensor = open_sensor("octurn-simulator://?noise=0&speed=50");
     std::vector<DepthFrame> seen;
-    for (const int position : stop_positions(0, steps, stops)) {
-      seen.push_back(frame_at(sensor, 2 * std::numbers::pi * position / steps).frame);
+    for (const std::int64_t position : stop_positions(0, steps, stops)) {
+      seen.push_back(
+          frame_at(*sensor, 2 * std::numbers::pi * static_cast<double>(position) / steps).frame);
     }
     return seen;
   }
@@ -110,8 +111,10 @@ class FaultyRig {
     if (fault_ != fault) {
       return false;
     }
-    const int stop = stop_positions(0, steps, stops_)[static_cast<std::size_t>(fault_stop_)];
-    const int begin = fault == Fault::line_refused ? std::max(stop - 3, 0) : stop;  // on the way
+    const std::int64_t stop =
+        stop_positions(0, steps, stops_)[static_cast<std::size_t>(fault_stop_)];
+    const std::int64_t begin =
+        fault == Fault::line_refused ? std::max<std::int64_t>(stop - 3, 0) : stop;  // on the way
     if (!begun_ && position_ >= begin) {
       begin_ = now;
       begun_ = true;
@@ -126,7 +129,7 @@ class FaultyRig {
     if (fails(Fault::unplugged)) {
       throw Error("sensor-lost", "it is gone", "Plug it in again.");
     }
-    const std::vector<int> at = stop_positions(0, steps, stops_);
+    const std::vector<std::int64_t> at = stop_positions(0, steps, stops_);
     const auto stop = std::ranges::find(at, position_ % steps) - at.begin();
     if (stop == stops_) {
       throw std::logic_error("a frame between two stops, at " + std::to_string(position_));
@@ -163,7 +166,7 @@ class FaultyRig {
 
   int stops_;
   std::vector<DepthFrame> seen_ = {};
-  std::atomic<int> position_;
+  std::atomic<std::int64_t> position_;
   std::atomic<bool> motor_on_ = false;
   std::atomic<int> moves_without_motor_ = 0;
   std::atomic<std::chrono::milliseconds> pulse_delay_ = {};

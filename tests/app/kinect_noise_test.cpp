@@ -250,7 +250,7 @@ double platform_error_mm(const std::vector<double>& depths) {
 
 TEST(KinectNoise, FallsToHalfWhenTenFramesAreAveragedAndNoFurther) {
   const BoxesOnPlatform speck({{Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(1, 1, 1)}});
-  DepthSensor sensor(speck.uri(1, 5));
+  const auto sensor = open_sensor(speck.uri(1, 5));
   std::vector<double> sum(std::size_t{width} * height, 0.0);
   std::vector<double> count(sum.size(), 0.0);
   const auto mean = [&] {
@@ -261,7 +261,7 @@ TEST(KinectNoise, FallsToHalfWhenTenFramesAreAveragedAndNoFurther) {
   };
   std::array<double, 3> errors = {};
   for (int frame = 1; frame <= 30; ++frame) {
-    const DepthFrame taken = sensor.read({})->frame;
+    const DepthFrame taken = sensor->read({})->frame;
     for (std::size_t i = 0; i < sum.size(); ++i) {
       sum[i] += taken.depth[i] * 0.0001;
       count[i] += taken.depth[i] == 0 ? 0 : 1;

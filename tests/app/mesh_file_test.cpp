@@ -46,21 +46,6 @@ constexpr const char* text_stl = R"(solid two plates
 endsolid two plates
 )";
 
-constexpr const char* obj = R"(# two plates
-mtllib plates.mtl
-o plates
-v 0 0 0
-v 100 0 0 1.0
-v 0 200 0
-vn 0 0 1
-f 1//1 2//1 3//1
-
-v 0 0 50
-v 100 0 50
-v 0 200 50
-f -3/1/1 -2 -1
-)";
-
 /// Corner `corner` of triangle `triangle`, millimetres.
 Eigen::Vector3f corner_mm(const Mesh& mesh, std::size_t triangle, std::size_t corner) {
   return 1000 * mesh.vertices[mesh.triangles[triangle][corner]];
@@ -79,15 +64,6 @@ TEST(MeshFile, ReadsBinaryStl) {
 }
 
 TEST(MeshFile, ReadsTextStl) { expect_two_plates(parse_mesh(text_stl, "a.stl")); }
-
-TEST(MeshFile, ReadsObj) { expect_two_plates(parse_mesh(obj, "a.obj")); }
-
-TEST(MeshFile, CutsFacesOfAnObjIntoTriangles) {
-  const Mesh mesh = parse_mesh("v 0 0 0\nv 9 0 0\nv 9 9 0\nv 0 9 0\nf 1 2 3 4", "square.obj");
-
-  ASSERT_EQ(mesh.triangles.size(), 2U);
-  EXPECT_TRUE(corner_mm(mesh, 1, 2).isApprox(Eigen::Vector3f(0, 9, 0)));
-}
 
 TEST(MeshFile, ReadsABinaryStlThatCallsItselfSolid) {
   std::string bytes = binary_stl({first, second});
@@ -119,21 +95,10 @@ TEST(MeshFile, RefusesATextStlCutShortAnywhere) {
   EXPECT_STREQ(error.what(), "a.stl: line 5: \"x\" is no number");
 }
 
-TEST(MeshFile, RefusesAnObjWithFacesThatDoNotExist) {
-  for (const char* face :
-       {"f 1 2 4", "f 0 1 2", "f -4 1 2", "f 1 2", "f a b c", "f 1x 2 3", "f 1 2 3e"}) {
-    EXPECT_EQ(code_thrown_by(
-                  [&] { parse_mesh(std::string("v 0 0 0\nv 9 0 0\nv 9 9 0\n") + face, "a.obj"); }),
-              "mesh-malformed")
-        << face;
-  }
-}
-
 TEST(MeshFile, RefusesWhatHasNoTriangle) {
   EXPECT_EQ(code_thrown_by([] { parse_mesh(binary_stl({}), "a.stl"); }), "mesh-malformed");
   EXPECT_EQ(code_thrown_by([] { parse_mesh("solid\nendsolid\n", "a.stl"); }), "mesh-malformed");
-  EXPECT_EQ(code_thrown_by([] { parse_mesh("v 0 0 0\n", "a.obj"); }), "mesh-malformed");
-  EXPECT_EQ(code_thrown_by([] { parse_mesh("", "a.obj"); }), "mesh-malformed");
+  EXPECT_EQ(code_thrown_by([] { parse_mesh("", "a.stl"); }), "mesh-malformed");
 }
 
 TEST(MeshFile, RefusesCornersThatAreNotFinite) {

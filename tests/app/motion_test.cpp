@@ -9,19 +9,19 @@ namespace {
 
 std::vector<double> step_times(const Motion& motion, int steps) {
   std::vector<double> times;
-  Course course(motion, steps);
-  while (course.steps_left() > 0) {
-    times.push_back(course.next_step());
+  SpeedProfile profile(motion, steps);
+  while (profile.steps_left() > 0) {
+    times.push_back(profile.next_step());
   }
   return times;
 }
 
-TEST(Course, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
+TEST(SpeedProfile, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
   // From 200 to 800 steps/s at 2000 steps/s^2: 150 steps in 0.3 s, twice; 500 steps at 800.
   EXPECT_NEAR(move_time({}, 800), 0.3 + 500.0 / 800 + 0.3, 1e-9);
 }
 
-TEST(Course, TurnsAShortMoveRoundInTheMiddle) {
+TEST(SpeedProfile, TurnsAShortMoveRoundInTheMiddle) {
   // 50 steps from rest at 400 steps/s^2 take 0.5 s, and so do the 50 that end at rest.
   const Motion motion = {.start_steps_per_second = 0, .ramp_steps_per_second2 = 400};
   EXPECT_NEAR(move_time(motion, 100), 1, 1e-9);
@@ -31,36 +31,36 @@ TEST(Course, TurnsAShortMoveRoundInTheMiddle) {
   }
 }
 
-TEST(Course, IsNeverFasterThanTheTopSpeed) {
+TEST(SpeedProfile, IsNeverFasterThanTheTopSpeed) {
   for (const double time : step_times({.start_steps_per_second = 900}, 800)) {
     EXPECT_GE(time, 1.0 / 800);
   }
 }
 
-TEST(Course, GainsAgainWhatItLost) {
-  Course course({}, 800);
+TEST(SpeedProfile, GainsAgainWhatItLost) {
+  SpeedProfile profile({}, 800);
   for (int i = 0; i < 300; ++i) {
-    course.next_step();
+    profile.next_step();
   }
-  course.slowed_to(1.0 / 600);  // steps a second
+  profile.slowed_to(1.0 / 600);  // steps a second
 
   // v^2 = 600^2 + 2 * 2000 s: back at 800 after 70 steps.
   double time = 0;
   for (int i = 0; i < 70; ++i) {
-    time += course.next_step();
+    time += profile.next_step();
   }
   EXPECT_NEAR(time, (800.0 - 600) / 2000, 1e-9);
-  EXPECT_NEAR(course.next_step(), 1.0 / 800, 1e-12);
+  EXPECT_NEAR(profile.next_step(), 1.0 / 800, 1e-12);
 }
 
-TEST(Course, StartsAgainAfterAStandstill) {
-  Course course({}, 800);
-  const double first = course.next_step();
+TEST(SpeedProfile, StartsAgainAfterAStandstill) {
+  SpeedProfile profile({}, 800);
+  const double first = profile.next_step();
   for (int i = 0; i < 300; ++i) {
-    course.next_step();
+    profile.next_step();
   }
-  course.slowed_to(3);
-  EXPECT_NEAR(course.next_step(), first, 1e-12);
+  profile.slowed_to(3);
+  EXPECT_NEAR(profile.next_step(), first, 1e-12);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "sensor/recording.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -120,45 +121,57 @@ std::uint16_t next_depth(DepthSensor& sensor) { return sensor.read({}).value().f
 
 TEST(RecordedSensor, GivesTheFramesOfTheAngleInTheirOrder) {
   const TemporaryFolder folder;
-  DepthSensor sensor(write_recording(folder.path() / "turn").string());
-  EXPECT_EQ(sensor.name(), "Kinect v1 (recorded)");
-  EXPECT_EQ(sensor.intrinsics().fx, 5.5);
+  const auto sensor = open_sensor(write_recording(folder.path() / "turn").string());
+  EXPECT_EQ(sensor->name(), "Kinect v1 (recorded)");
+  EXPECT_EQ(sensor->intrinsics().fx, 5.5);
 
-  sensor.show_angle(radians_from_degrees(180 - 360));  // the same as 180
-  EXPECT_EQ(next_depth(sensor), 2000);
-  EXPECT_EQ(next_depth(sensor), 2001);
-  EXPECT_EQ(next_depth(sensor), 2000);
-  EXPECT_FALSE(sensor.tilt().has_value());
-  sensor.show_angle(0);
-  EXPECT_EQ(next_depth(sensor), 1000);
-  sensor.show_angle(0);  // begins again
-  EXPECT_EQ(next_depth(sensor), 1000);
-  EXPECT_EQ(next_depth(sensor), 1001);
-  EXPECT_NEAR(sensor.tilt()->pitch, -0.4, 1e-15);
+  sensor->show_angle(radians_from_degrees(180 - 360));  // the same as 180
+  EXPECT_EQ(next_depth(*sensor), 2000);
+  EXPECT_EQ(next_depth(*sensor), 2001);
+  EXPECT_EQ(next_depth(*sensor), 2000);
+  EXPECT_FALSE(sensor->tilt().has_value());
+  sensor->show_angle(0);
+  EXPECT_EQ(next_depth(*sensor), 1000);
+  sensor->show_angle(0);  // begins again
+  EXPECT_EQ(next_depth(*sensor), 1000);
+  EXPECT_EQ(next_depth(*sensor), 1001);
+  EXPECT_NEAR(sensor->tilt()->pitch, -0.4, 1e-15);
 }
 
 TEST(RecordedSensor, SaysWhichAngleItHasNot) {
   const TemporaryFolder folder;
-  DepthSensor sensor(write_recording(folder.path() / "turn").string());
-  sensor.show_angle(radians_from_degrees(90));
-  const Error error = error_thrown_by([&] { sensor.read({}); });
+  const auto sensor = open_sensor(write_recording(folder.path() / "turn").string());
+  sensor->show_angle(radians_from_degrees(90));
+  const Error error = error_thrown_by([&] { sensor->read({}); });
   EXPECT_EQ(error.code(), "sensor-failed");
   EXPECT_NE(std::string(error.what()).find("90.0"), std::string::npos) << error.what();
 }
 
 TEST(RecordedSensor, RefusesAFolderThatIsNoRecording) {
   const TemporaryFolder folder;
-  const Error error = error_thrown_by([&] { DepthSensor(folder.path().string()); });
+  const Error error = error_thrown_by([&] { open_sensor(folder.path().string()); });
   EXPECT_EQ(error.code(), "recording-malformed");
   EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(RecordedSensor, RefusesARecordingThatCannotBeRead) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "folder" / "recording.json");
+  fs::create_directories(folder.path() / "fifo");
+  ASSERT_EQ(::mkfifo((folder.path() / "fifo" / "recording.json").c_str(), 0600), 0);
+  for (const char* recording : {"folder", "fifo"}) {
+    EXPECT_EQ(code_thrown_by([&] { open_sensor((folder.path() / recording).string()); }),
+              "recording-malformed")
+        << recording;
+  }
 }
 
 TEST(RecordedSensor, RefusesADamagedFrame) {
   const TemporaryFolder folder;
   const fs::path recording = write_recording(folder.path() / "turn");
   put(recording / "frames" / "000000.png", "no picture");
-  DepthSensor sensor(recording.string());
-  EXPECT_EQ(code_thrown_by([&] { sensor.read({}); }), "snapshot-malformed");
+  const auto sensor = open_sensor(recording.string());
+  EXPECT_EQ(code_thrown_by([&] { sensor->read({}); }), "snapshot-malformed");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(RunScan, TurnsOneWayAndSeesTheSameAgain) {
   const TemporaryFolder second;
   Rig rig(rig_of("octurn-simulator://?speed=20&noise=0"));
   ASSERT_TRUE(run_scan(few_snapshots(), {}, first.path(), rig, {}, {}));
-  const int position = rig.turntable().position();
+  const std::int64_t position = rig.turntable().position();
   ASSERT_TRUE(run_scan(few_snapshots(), {}, second.path(), rig, {}, {}));
   EXPECT_EQ(rig.turntable().position(), position + rig.turntable().steps_per_turn());
   EXPECT_TRUE(content_of(first.path() / "Scan.stl") == content_of(second.path() / "Scan.stl"));

@@ -258,7 +258,7 @@ class KilledScan : public ::testing::TestWithParam<Method> {};
 TEST_P(KilledScan, GoesOnFromAnyStop) {
   const std::string model = undisturbed_model(GetParam());
   std::array<TemporaryFolder, stops> left;
-  std::array<int, stops> left_at = {};
+  std::array<std::int64_t, stops> left_at = {};
   {
     const TemporaryFolder folder;
     const ScanStore store(folder.path());

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "octurn/units.hpp"
-#include "sensor/nominal_pose.hpp"
+#include "rig/nominal_pose.hpp"
 
 namespace octurn {
 namespace {

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
 #include "octurn/units.hpp"
+#include "rig/nominal_pose.hpp"
+#include "rig/simulation.hpp"
 #include "sensor/depth_sensor.hpp"
-#include "sensor/nominal_pose.hpp"
-#include "simulator/simulation.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {
@@ -54,35 +55,42 @@ inline KinectFrame frame_at(DepthSensor& sensor, double angle) {
 
 /// The same of a sensor opened for it.
 inline KinectFrame frame_of(const std::string& uri, double angle = 0) {
-  DepthSensor sensor(uri);
-  return frame_at(sensor, angle);
+  const auto sensor = open_sensor(uri);
+  return frame_at(*sensor, angle);
 }
 
 /// A sensor that sees boxes, given in millimetres.
 class BoxesOnPlatform {
  public:
   explicit BoxesOnPlatform(const std::vector<Eigen::AlignedBox3d>& boxes) {
-    std::string obj;
+    // Corners are numbered by the bits of x, y and z.
+    constexpr std::array<std::array<int, 4>, 6> sides = {
+        {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
+    std::string stl = "solid boxes\n";
     for (const Eigen::AlignedBox3d& box : boxes) {
-      for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-        obj += "v " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " " +
-               std::to_string(at.z()) + "\n";
+      for (const auto& [a, b, c, d] : sides) {
+        stl += facet(box, {a, b, c}) + facet(box, {a, c, d});
       }
-      // Corners are numbered by the bits of x, y and z.
-      obj +=
-          "f -8 -7 -5 -6\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -5 -1 -2\nf -8 -6 -2 -4\nf -7 -5 -1 "
-          "-3\n";
     }
-    put(folder_.path() / "boxes.obj", obj);
+    put(folder_.path() / "boxes.stl", stl + "endsolid\n");
   }
 
   std::string uri(double noise = 0, double speed = 1) const {
     return simulation_uri(
-        {.mesh_file = folder_.path() / "boxes.obj", .noise = noise, .speed = speed});
+        {.mesh_file = folder_.path() / "boxes.stl", .noise = noise, .speed = speed});
   }
 
  private:
+  static std::string facet(const Eigen::AlignedBox3d& box, const std::array<int, 3>& corners) {
+    std::string text = "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : corners) {
+      const Eigen::Vector3d at = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+      text += "vertex " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " " +
+              std::to_string(at.z()) + "\n";
+    }
+    return text + "endloop\nendfacet\n";
+  }
+
   TemporaryFolder folder_;
 };
 

@@ -1,4 +1,4 @@
-#include "simulator/simulation.hpp"
+#include "rig/simulation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,9 +32,9 @@ TEST(Simulation, NamesEachSettingInItsUri) {
 
 TEST(Simulation, ComesBackFromItsUri) {
   const Simulation parsed = parse_simulation(
-      "octurn-simulator://a%20cup%3f.obj?lost-after=3&silent-after=2&speed=0.5&noise=2&seed=9");
+      "octurn-simulator://a%20cup%3f.stl?lost-after=3&silent-after=2&speed=0.5&noise=2&seed=9");
 
-  EXPECT_EQ(parsed.mesh_file, "a cup?.obj");
+  EXPECT_EQ(parsed.mesh_file, "a cup?.stl");
   EXPECT_EQ(parsed.seed, 9U);
   EXPECT_EQ(parsed.noise, 2);
   EXPECT_EQ(parsed.speed, 0.5);
@@ -79,6 +79,13 @@ TEST(Simulation, RefusesAPathThatOpenNi2CannotTake) {
   const Error error = error_thrown_by([&] { simulation_uri(too_long); });
   EXPECT_EQ(error.code(), "bad-simulation");
   EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(Simulation, SendsThirtyFramesASecondTimesItsSpeed) {
+  using std::chrono::microseconds;
+  EXPECT_EQ(std::chrono::floor<microseconds>(frame_period({})), microseconds(33'333));
+  EXPECT_EQ(std::chrono::floor<microseconds>(frame_period({.speed = 0.25})), microseconds(133'333));
+  EXPECT_EQ(std::chrono::floor<microseconds>(frame_period({.speed = 100})), microseconds(333));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST(SimulatorObject, HasAHollowAThinFlagAndAnOverhang) {
 }
 
 TEST(SimulatorObject, IsMeshedOnItsSurfaceAndClosed) {
-  const Mesh mesh = surface_net(simulator_object_distance, simulator_object_bounds(), 0.00125);
+  const Mesh mesh = simulator_object();
 
   expect_closed(mesh);
   std::size_t off = 0;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "octurn/error.hpp"
@@ -36,10 +37,10 @@ class LineChanges {
     return static_cast<int>(std::ranges::count(all, 'S'));
   }
 
-  /// Waits for that end of them, 20 s at most. @return whether it came
-  bool wait_for_end(std::string_view end) const {
+  /// Waits until they end so.
+  void wait_for_end(std::string_view end) const {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, 20s, [&] { return changes_.ends_with(end); });
+    changed_.wait(lock, [&] { return changes_.ends_with(end); });
   }
 
  private:
@@ -84,7 +85,8 @@ TEST_F(StepperTest, TurnsTheOtherWayRoundIfItIsReversed) {
 TEST_F(StepperTest, MakesATurnOfExactly800Steps) {
   Stepper stepper(fast, recorder());
   for (const int stops : {7, 36}) {
-    for (const int position : stop_positions(stepper.position(), stepper.steps_per_turn(), stops)) {
+    for (const std::int64_t position :
+         stop_positions(stepper.position(), stepper.steps_per_turn(), stops)) {
       ASSERT_TRUE(stepper.move_to(position, {}));
     }
     ASSERT_TRUE(stepper.move_to(stop_positions(stepper.position(), 800, 1)[0], {}));
@@ -92,6 +94,14 @@ TEST_F(StepperTest, MakesATurnOfExactly800Steps) {
     EXPECT_EQ(recording_.pulses(), stepper.position());
   }
   EXPECT_EQ(stepper.position(), 1600);
+}
+
+TEST_F(StepperTest, CountsOnBeyond32Bits) {
+  constexpr std::int64_t begin = std::numeric_limits<std::int32_t>::max();
+  Stepper stepper(fast, recorder(), begin);
+  EXPECT_TRUE(stepper.move_to(begin + 3, {}));
+  EXPECT_EQ(stepper.position(), begin + 3);
+  EXPECT_EQ(recording_.changes(), "eDSsSsSs");
 }
 
 TEST_F(StepperTest, GoesOnFromWhereThePlatformStands) {
@@ -137,7 +147,7 @@ TEST_F(StepperTest, LetsGoAfterAWhile) {
   settings.idle_release = 1ms;
   Stepper stepper(settings, recorder());
   stepper.move_to(1, {});
-  EXPECT_TRUE(recording_.wait_for_end("E"));
+  recording_.wait_for_end("E");
   EXPECT_EQ(recording_.changes(), "eDSsE");
 }
 
@@ -182,7 +192,7 @@ TEST_F(StepperTest, ReturnsOnlyWhenItHasSettled) {
   EXPECT_GE(std::chrono::steady_clock::now() - begin, 150ms);
 }
 
-TEST_F(StepperTest, TakesUpThePlayOfItsGears) {
+TEST_F(StepperTest, TakesUpTheBacklashOfItsGears) {
   StepperSettings settings = fast;
   settings.take_up_steps = 2;
   Stepper stepper(settings, recorder());
@@ -195,15 +205,15 @@ TEST_F(StepperTest, TakesUpThePlayOfItsGears) {
   EXPECT_EQ(stepper.position(), 0);
 }
 
-TEST(WayTo, ReachesEveryTargetCounterClockwise) {
-  using Way = std::vector<int>;
-  const Standing taken_up = {.position = 100, .play_taken_up = true};
-  const Standing loose = {.position = 100, .play_taken_up = false};
-  EXPECT_EQ(way_to(120, taken_up, 8), Way{120});
-  EXPECT_EQ(way_to(100, taken_up, 8), Way{100});
-  EXPECT_EQ(way_to(80, taken_up, 8), (Way{72, 80}));
-  EXPECT_EQ(way_to(120, loose, 8), (Way{92, 120}));
-  EXPECT_EQ(way_to(80, loose, 0), Way{80});
+TEST(PlanMoves, ReachesEveryTargetCounterClockwise) {
+  using Moves = std::vector<std::int64_t>;
+  const BacklashState taken_up = {.position = 100, .backlash_taken_up = true};
+  const BacklashState loose = {.position = 100, .backlash_taken_up = false};
+  EXPECT_EQ(plan_moves(120, taken_up, 8), Moves{120});
+  EXPECT_EQ(plan_moves(100, taken_up, 8), Moves{100});
+  EXPECT_EQ(plan_moves(80, taken_up, 8), (Moves{72, 80}));
+  EXPECT_EQ(plan_moves(120, loose, 8), (Moves{92, 120}));
+  EXPECT_EQ(plan_moves(80, loose, 0), Moves{80});
 }
 
 TEST_F(StepperTest, TellsOfALineThatFailsAndGoesOnAfterwards) {

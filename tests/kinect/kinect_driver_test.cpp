@@ -46,18 +46,18 @@ DepthFrame next_frame(DepthSensor& sensor) { return sensor.read({}).value().fram
 
 TEST(KinectDriver, IsFoundAsAnySensor) {
   const KinectOnDesk desk({frame_of(700)});
-  DepthSensor sensor("");
-  EXPECT_EQ(sensor.name(), "Kinect v1");
-  EXPECT_EQ(next_frame(sensor).depth[0], std::lround(depth_of(700)));
+  const auto sensor = open_sensor("");
+  EXPECT_EQ(sensor->name(), "Kinect v1");
+  EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
 }
 
 // A busy machine holds frames up, but the emulated sensor sends all of them.
 TEST(KinectDriver, SendsThirtyFramesASecond) {
   KinectOnDesk desk(plain_frames(2));
   const auto begin = steady_clock::now();
-  DepthSensor sensor("kinect://");
+  const auto sensor = open_sensor("kinect://");
   while (desk->frames_sent < 30) {
-    next_frame(sensor);
+    next_frame(*sensor);
   }
   const int sent = desk->frames_sent;
   const std::chrono::duration<double> elapsed = steady_clock::now() - begin;
@@ -95,8 +95,8 @@ TEST(KinectDriver, ConvertsEveryReading) {
     all[i] = static_cast<std::uint16_t>(i % 2048);
   }
   const KinectOnDesk desk({all});
-  DepthSensor sensor("kinect://");
-  const DepthFrame frame = next_frame(sensor);
+  const auto sensor = open_sensor("kinect://");
+  const DepthFrame frame = next_frame(*sensor);
   for (std::size_t i = 0; i < pixels; ++i) {
     const auto reading = static_cast<int>(i % 2048);
     const double depth = depth_of(reading);
@@ -111,10 +111,10 @@ TEST(KinectDriver, ConvertsEveryReading) {
 
 TEST(KinectDriver, StampsFramesByTheSteadyClock) {
   const KinectOnDesk desk({frame_of(700)});
-  DepthSensor sensor("kinect://");
+  const auto sensor = open_sensor("kinect://");
   const auto before = steady_clock::now();
-  next_frame(sensor);  // it may have begun before
-  const auto first = sensor.read({})->time;
+  next_frame(*sensor);  // it may have begun before
+  const auto first = sensor->read({})->time;
   EXPECT_GT(first, before);
   EXPECT_LE(first, steady_clock::now());
 }
@@ -125,19 +125,19 @@ TEST(KinectDriver, UsesTheParametersOfTheUnit) {
   desk->reference_distance_cm = 121.5F;
   desk->reference_pixel_cm = 0.1047F;
   desk->shift = 190;
-  DepthSensor sensor("kinect://");
+  const auto sensor = open_sensor("kinect://");
 
   const double shift = ((500 - 4 * 190) / 4.0 - 0.375) * 0.1047;
   const double mm = 10 * (shift * 121.5 / (7.62 - shift) + 121.5);
-  EXPECT_NEAR(next_frame(sensor).depth[0], 10 * mm, 0.5 + 0.01);  // parameters are floats
-  EXPECT_NEAR(sensor.intrinsics().fx, 121.5 / (2 * 0.1047), 1e-2);
+  EXPECT_NEAR(next_frame(*sensor).depth[0], 10 * mm, 0.5 + 0.01);  // parameters are floats
+  EXPECT_NEAR(sensor->intrinsics().fx, 121.5 / (2 * 0.1047), 1e-2);
   EXPECT_GT(std::abs(10 * mm - depth_of(500)), 50);  // a typical unit's would not pass
 }
 
 TEST(KinectDriver, RefusesParametersThatMakeNoSense) {
   KinectOnDesk desk({frame_of(500)});
   desk->reference_pixel_cm = 0;
-  const Error error = error_thrown_by([] { DepthSensor("kinect://"); });
+  const Error error = error_thrown_by([] { open_sensor("kinect://"); });
   EXPECT_NE(std::string(error.what()).find("factory parameters"), std::string::npos)
       << error.what();
 }
@@ -152,9 +152,9 @@ TEST(KinectDriver, TellsItsTilt) {
   desk->acceleration[1] =
       static_cast<std::int16_t>(std::lround(g * std::cos(pitch) * std::cos(roll)));
   desk->acceleration[2] = static_cast<std::int16_t>(std::lround(g * std::sin(pitch)));
-  const DepthSensor sensor("kinect://");
+  const auto sensor = open_sensor("kinect://");
 
-  const std::optional<Tilt> tilt = sensor.tilt();
+  const std::optional<Tilt> tilt = sensor->tilt();
   ASSERT_TRUE(tilt.has_value());
   EXPECT_NEAR(tilt->pitch, pitch, 1 / g);  // a count
   EXPECT_NEAR(tilt->roll, roll, 1 / g);
@@ -162,22 +162,22 @@ TEST(KinectDriver, TellsItsTilt) {
 
 TEST(KinectDriver, FollowsItsTilt) {
   KinectOnDesk desk({frame_of(700)});
-  DepthSensor sensor("kinect://");
-  EXPECT_EQ(sensor.tilt()->pitch, 0);
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_EQ(sensor->tilt()->pitch, 0);
   desk->acceleration[2] = 819;
   const auto deadline = steady_clock::now() + std::chrono::seconds(20);
-  while (sensor.tilt()->pitch == 0 && steady_clock::now() < deadline) {
-    next_frame(sensor);
+  while (sensor->tilt()->pitch == 0 && steady_clock::now() < deadline) {
+    next_frame(*sensor);
   }
-  EXPECT_NEAR(sensor.tilt()->pitch, std::numbers::pi / 4, 1e-9);
+  EXPECT_NEAR(sensor->tilt()->pitch, std::numbers::pi / 4, 1e-9);
 }
 
 void expect_depth_without_firmware(KinectModel model) {
   KinectOnDesk desk({frame_of(700)});
   desk->model = model;
-  DepthSensor sensor("kinect://");
-  EXPECT_EQ(next_frame(sensor).depth[0], std::lround(depth_of(700)));
-  EXPECT_EQ(sensor.tilt().has_value(), model == KinectModel::k1414);
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
+  EXPECT_EQ(sensor->tilt().has_value(), model == KinectModel::k1414);
   EXPECT_EQ(desk->near_mode, model == KinectModel::for_windows);
 }
 
@@ -203,9 +203,9 @@ void expect_no_damaged_pixel(const Loss& loss) {
   desk->first_lost = loss.first;
   desk->lost_packets = loss.packets;
   desk->cut_packet = loss.cut;
-  DepthSensor sensor("kinect://");
+  const auto sensor = open_sensor("kinect://");
   for (int i = 0; i < 8; ++i) {
-    const DepthFrame frame = next_frame(sensor);
+    const DepthFrame frame = next_frame(*sensor);
     ASSERT_TRUE(std::ranges::all_of(frame.depth,
                                     [&](std::uint16_t depth) { return depth == frame.depth[0]; }))
         << "frame " << i;
@@ -253,44 +253,44 @@ TEST(KinectDriver, IsLostWhenUnpluggedAndFoundWhenPluggedInAgain) {
   KinectOnDesk desk(plain_frames(2));
   for (const char* uri : {"", "kinect://"}) {
     {
-      DepthSensor sensor(uri);
-      next_frame(sensor);
+      const auto sensor = open_sensor(uri);
+      next_frame(*sensor);
       desk.unplug();
       const Error error = error_thrown_by([&] {
         for (;;) {
-          next_frame(sensor);  // there may be one that came before
+          next_frame(*sensor);  // there may be one that came before
         }
       });
       EXPECT_EQ(error.code(), "sensor-lost");
     }
-    EXPECT_EQ(code_thrown_by([&] { DepthSensor sensor(uri); }), "sensor-missing");
+    EXPECT_EQ(code_thrown_by([&] { open_sensor(uri); }), "sensor-missing");
     desk.plug_in();
   }
-  DepthSensor again("kinect://0");
-  EXPECT_GT(next_frame(again).depth[0], 0);
+  const auto again = open_sensor("kinect://0");
+  EXPECT_GT(next_frame(*again).depth[0], 0);
 }
 
 TEST(KinectDriver, IsFoundThoughItWasPluggedInAfterTheProgramStarted) {
   KinectOnDesk desk({frame_of(700)});
   desk.unplug();
-  EXPECT_EQ(code_thrown_by([] { DepthSensor(""); }), "sensor-missing");
+  EXPECT_EQ(code_thrown_by([] { open_sensor(""); }), "sensor-missing");
   desk.plug_in();
-  DepthSensor sensor("");
-  EXPECT_GT(next_frame(sensor).depth[0], 0);
+  const auto sensor = open_sensor("");
+  EXPECT_GT(next_frame(*sensor).depth[0], 0);
 }
 
 TEST(KinectDriver, SaysThatItIsSilent) {
   KinectOnDesk desk({frame_of(700)});
   desk->silent = true;
-  DepthSensor sensor("kinect://");
-  EXPECT_EQ(code_thrown_by([&] { next_frame(sensor); }), "sensor-silent");
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_EQ(code_thrown_by([&] { next_frame(*sensor); }), "sensor-silent");
 }
 
 TEST(KinectDriver, EndsItsTrafficWhenItIsClosed) {
   KinectOnDesk desk({frame_of(700)});
   {
-    DepthSensor sensor("kinect://");
-    next_frame(sensor);
+    const auto sensor = open_sensor("kinect://");
+    next_frame(*sensor);
     EXPECT_TRUE(desk->depth_on);
   }
   EXPECT_FALSE(desk->depth_on);
@@ -323,8 +323,8 @@ TEST(KinectDriver, GivesRealFramesAsTheyAre) {
     const DepthFrame real =
         decode_depth_png(entry.path().string(), std::as_bytes(std::span(png)), 640, 480);
     const KinectOnDesk desk({readings_from_mm(real)});
-    DepthSensor sensor("kinect://");
-    const DepthFrame frame = next_frame(sensor);
+    const auto sensor = open_sensor("kinect://");
+    const DepthFrame frame = next_frame(*sensor);
     for (std::size_t i = 0; i < pixels; ++i) {
       // Tenths round up to the next millimetre where the depth is within half a tenth of it.
       ASSERT_GE(frame.depth[i], 10 * real.depth[i]) << entry.path() << " " << i;
@@ -338,9 +338,9 @@ TEST(KinectDriver, GivesRealFramesAsTheyAre) {
 
 TEST(KinectDriver, RefusesAUriThatIsNone) {
   const KinectOnDesk desk({frame_of(700)});
-  const Error error = error_thrown_by([] { DepthSensor("kinect://left"); });
+  const Error error = error_thrown_by([] { open_sensor("kinect://left"); });
   EXPECT_NE(std::string(error.what()).find("\"left\""), std::string::npos) << error.what();
-  EXPECT_EQ(code_thrown_by([] { DepthSensor("kinect://1"); }), "sensor-missing");
+  EXPECT_EQ(code_thrown_by([] { open_sensor("kinect://1"); }), "sensor-missing");
 }
 
 }  // namespace

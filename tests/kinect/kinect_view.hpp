@@ -11,8 +11,8 @@ namespace octurn {
 
 /// What a simulated Kinect sees.
 inline DepthFrame simulated_frame() {
-  DepthSensor sensor("octurn-simulator://?noise=0");
-  return sensor.read({}).value().frame;
+  const auto sensor = open_sensor("octurn-simulator://?noise=0");
+  return sensor->read({}).value().frame;
 }
 
 /// The readings that an emulated Kinect has to see for it.

@@ -6,10 +6,10 @@
 
 #include "depth_driver.hpp"
 #include "kinect/kinect.hpp"
-#include "kinect/kinect_device.hpp"
 #include "kinect/kinect_stream.hpp"
 #include "octurn/error.hpp"
 #include "property.hpp"
+#include "rig/kinect_device.hpp"
 
 namespace octurn {
 namespace {

@@ -14,7 +14,7 @@
 #include <stop_token>
 
 #include "kinect/depth_table.hpp"
-#include "sensor/tilt.hpp"
+#include "rig/tilt.hpp"
 
 namespace octurn {
 

@@ -1,29 +1,27 @@
-// Octurn's simulated Kinect as an OpenNI2 driver. Nothing is announced when OpenNI2 starts, so that
-// real sensors are found first; a simulated one is there when it is opened by its URI (see
+// Octurn's simulated Kinect as an OpenNI2 driver. It announces no device when OpenNI2 starts, so
+// that real sensors are found first: a simulated one exists once it is opened by its URI (see
 // simulation.hpp).
 
 #include <cmath>
 
 #include "depth_driver.hpp"
 #include "property.hpp"
+#include "rig/simulation.hpp"
 #include "simulator/mesh_file.hpp"
 #include "simulator/simulated_kinect.hpp"
-#include "simulator/simulation.hpp"
 #include "simulator/simulator_object.hpp"
 #include "simulator/simulator_stream.hpp"
-#include "simulator/surface_net.hpp"
 
 namespace octurn {
 namespace {
 
 Mesh object_of(const Simulation& simulation) {
-  if (!simulation.mesh_file.empty()) {
-    Mesh mesh = read_mesh(simulation.mesh_file);
-    stand_on_platform(mesh);
-    return mesh;
+  if (simulation.mesh_file.empty()) {
+    return simulator_object();
   }
-  constexpr double cell = 0.00125;  // metres, about a pixel
-  return surface_net(simulator_object_distance, simulator_object_bounds(), cell);
+  Mesh mesh = read_mesh(simulation.mesh_file);
+  stand_on_platform(mesh);
+  return mesh;
 }
 
 class Device final : public DepthDevice {
@@ -33,7 +31,8 @@ class Device final : public DepthDevice {
         kinect_(object_of(simulation), simulation.seed, simulation.noise) {}
 
   OniBool isPropertySupported(int property) override {
-    return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property
+    return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property ||
+                   property == sensor_time_property
                ? TRUE
                : FALSE;
   }
@@ -45,6 +44,10 @@ class Device final : public DepthDevice {
     }
     if (property == platform_angle_property) {
       return give_property(state_.angle.load(), data, size);
+    }
+    if (property == sensor_time_property) {
+      constexpr double frames_per_second = DepthStream::video_mode.fps;
+      return give_property(state_.periods / frames_per_second, data, size);
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }

@@ -18,14 +18,14 @@ namespace {
 constexpr std::size_t header_bytes = 80;  // of a binary STL, then the number of its facets
 constexpr std::size_t facets_at = header_bytes + sizeof(std::uint32_t);
 constexpr std::uintmax_t max_bytes = 512U << 20U;
-constexpr float max_coordinate = 10.0F;  // metres; what is larger is no object for a platform
+constexpr float max_coordinate = 10.0F;  // metres; a larger object stands on no platform
 
 [[noreturn]] void malformed(const std::string& name, const std::string& what) {
   throw Error("mesh-malformed", name + ": " + what,
-              "Give an STL file (binary or text) or a Wavefront OBJ file, in millimetres, Z up.");
+              "Give an STL file, binary or text, in millimetres, Z up.");
 }
 
-/// The words of a text, with the line that they stand on for messages.
+/// The words of a text, with their line numbers for messages.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -136,46 +136,6 @@ Mesh parse_text_stl(std::string_view text, const std::string& name) {
   }
 }
 
-/// One corner of an OBJ's face: `12`, `12/3`, `12//4` or, counted back from the last, `-1`.
-std::uint32_t parse_corner(std::string_view word, const Words& words, std::size_t vertices) {
-  std::int64_t index = 0;
-  const auto read = std::from_chars(word.begin(), word.end(), index);
-  const bool whole = read.ptr == word.end() || *read.ptr == '/';
-  if (read.ec != std::errc() || !whole) {
-    words.fail("\"" + std::string(word) + "\" is no corner of a face");
-  }
-  const auto count = static_cast<std::int64_t>(vertices);
-  const std::int64_t from_zero = index > 0 ? index - 1 : count + index;
-  if (index == 0 || from_zero < 0 || from_zero >= count) {
-    words.fail("vertex " + std::to_string(index) + " of " + std::to_string(count) +
-               " does not exist");
-  }
-  return static_cast<std::uint32_t>(from_zero);
-}
-
-Mesh parse_obj(std::string_view text, const std::string& name) {
-  Mesh mesh;
-  Words words(text, name);
-  do {
-    const std::string_view statement = words.next();
-    if (statement == "v") {
-      mesh.vertices.push_back(words.point());
-    } else if (statement == "f") {
-      std::vector<std::uint32_t> corners;
-      for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-        corners.push_back(parse_corner(word, words, mesh.vertices.size()));
-      }
-      if (corners.size() < 3) {
-        words.fail("a face with " + std::to_string(corners.size()) + " corners");
-      }
-      for (std::size_t i = 2; i < corners.size(); ++i) {
-        mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
-      }
-    }
-  } while (words.next_line());
-  return mesh;
-}
-
 void check(const Mesh& mesh, const std::string& name) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
@@ -202,9 +162,6 @@ std::optional<std::uint32_t> promised_facets(std::string_view bytes) {
 }
 
 Mesh parse(std::string_view bytes, const std::string& name) {
-  if (name.ends_with(".obj") || name.ends_with(".OBJ")) {
-    return parse_obj(bytes, name);
-  }
   const std::optional<std::uint32_t> facets = promised_facets(bytes);
   if (facets && bytes.size() == facets_at + std::size_t{*facets} * sizeof(Facet)) {
     return parse_binary_stl(bytes);

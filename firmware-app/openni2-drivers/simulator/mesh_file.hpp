@@ -7,15 +7,15 @@
 
 namespace octurn {
 
-/// Reads a mesh in millimetres with Z up from a file: binary STL, text STL or, if its name ends in
-/// `.obj`, Wavefront OBJ. @throws Error "mesh-malformed"
+/// Reads an STL file, binary or text, in millimetres with Z up.
+/// @throws Error "mesh-malformed"
 Mesh read_mesh(const std::string& file);
 
-/// The same from a file's bytes; `name` is what messages call it.
+/// The same from a file's bytes. @param name  of the file, for messages
 Mesh parse_mesh(std::string_view bytes, const std::string& name);
 
-/// Moves a mesh onto the platform: the middle of its bounding box on the axis, its lowest point on
-/// the surface. Its size stays, whether it fits or not.
+/// Moves a mesh onto the platform: its bounding box's middle on the axis, its lowest point on the
+/// surface. A mesh that is too large stays too large.
 void stand_on_platform(Mesh& mesh);
 
 }  // namespace octurn

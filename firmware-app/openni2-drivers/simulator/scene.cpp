@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "octurn/units.hpp"
-#include "sensor/nominal_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "simulator/camera.hpp"
 
 namespace octurn {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "octurn/units.hpp"
+#include "simulator/surface_net.hpp"
 
 namespace octurn {
 namespace {
@@ -96,6 +97,11 @@ double simulator_object_distance(const Eigen::Vector3d& point) {
   const double trunk_and_limbs =
       blend(blend(body(p), legs(p), 5), std::min(hanging_arm(p), waving_arm(p)), 4);
   return metres_from_mm(std::min(trunk_and_limbs, head(p)));
+}
+
+Mesh simulator_object() {
+  constexpr double cell = 0.00125;  // metres, about a pixel
+  return surface_net(simulator_object_distance, simulator_object_bounds(), cell);
 }
 
 Eigen::AlignedBox3d simulator_object_bounds() {

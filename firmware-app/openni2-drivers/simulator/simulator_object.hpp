@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "simulator/mesh.hpp"
+
 namespace octurn {
 
 /// The object that stands on the simulated platform if no mesh is given: a robot, 16 cm tall, that
@@ -16,5 +18,8 @@ double simulator_object_distance(const Eigen::Vector3d& point);
 
 /// A box that holds the whole object, metres.
 Eigen::AlignedBox3d simulator_object_bounds();
+
+/// The object as a closed mesh, of cells of 1.25 mm, about a pixel.
+Mesh simulator_object();
 
 }  // namespace octurn

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "octurn/depth_frame.hpp"
+#include "rig/interruptible_sleep.hpp"
 
 namespace octurn {
 
@@ -25,30 +26,32 @@ OniStatus SimulatorStream::start() {
 
 void SimulatorStream::stop() { thread_ = {}; }
 
+/// The sensor's clock advances after the frame: who sees its time has been sent every frame until
+/// then.
 void SimulatorStream::run(const std::stop_token& stop) {
-  const auto period = std::chrono::duration_cast<steady_clock::duration>(
-      std::chrono::duration<double>(1 / (video_mode.fps * simulation_.speed)));
+  const auto period = frame_period(simulation_);
   auto due = steady_clock::now() + period;
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    wake_.wait_until(lock, stop, due, [] { return false; });
-    if (stop.stop_requested() || is_out_of_order()) {
-      return;
+  while (sleep_until(stop, due) && !is_lost()) {
+    if (!is_silent()) {
+      deliver_frame();
     }
-    deliver_frame();
+    ++device_.periods;
     due = std::max(due + period, steady_clock::now());  // late frames are not made up for
   }
 }
 
-/// Whether one of the faults that the simulation asks for has come.
-bool SimulatorStream::is_out_of_order() {
+bool SimulatorStream::is_lost() {
   if (simulation_.lost_after && frames_ >= *simulation_.lost_after) {
     device_.is_lost = true;
   }
-  return device_.is_lost || (simulation_.silent_after && frames_ >= *simulation_.silent_after);
+  return device_.is_lost;
 }
 
-/// The time is read before the angle, so that a frame stamped after a move shows where it ended.
+bool SimulatorStream::is_silent() const {
+  return simulation_.silent_after && frames_ >= *simulation_.silent_after;
+}
+
+/// The time is read before the angle, so that a frame stamped after a move shows the end of it.
 void SimulatorStream::deliver_frame() {
   const auto time = steady_clock::now();
   const double angle = device_.angle;

@@ -14,7 +14,7 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
   CLI::Option* simulate =
       command
           .add_option("--simulate", rig.mesh_file,
-                      "scan with a simulated rig; MESH (STL or OBJ, millimetres) stands on it")
+                      "scan with a simulated rig; MESH (STL, millimetres) stands on it")
           ->type_name("[=MESH]")
           ->expected(0, 1);
   command

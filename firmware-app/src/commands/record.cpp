@@ -43,7 +43,8 @@ void record(const RecordArguments& arguments) {
   ProgressBar bar;
   std::optional<Clock::time_point> begin;
   int done = 0;
-  for (const int position : stop_positions(turntable.position(), steps, arguments.snapshots)) {
+  for (const std::int64_t position :
+       stop_positions(turntable.position(), steps, arguments.snapshots)) {
     bar.show(done++, arguments.snapshots, "recording");
     if (!turntable.move_to(position, stop)) {
       throw_stopped("no recording was written");

@@ -1,5 +1,5 @@
 #include "commands/commands.hpp"
-#include "simulator/simulation.hpp"
+#include "rig/simulation.hpp"
 
 namespace octurn {
 

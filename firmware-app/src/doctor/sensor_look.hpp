@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
+#include "rig/tilt.hpp"
 #include "scan/job.hpp"
 #include "scan/rig.hpp"
-#include "sensor/tilt.hpp"
 
 namespace octurn {
 

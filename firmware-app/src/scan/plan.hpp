@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace octurn {
@@ -9,12 +10,13 @@ namespace octurn {
 /// after `position`.
 ///
 /// @param first  the first stop that is still to be made
-std::vector<int> stop_positions(int position, int steps_per_turn, int stops, int first = 0);
+std::vector<std::int64_t> stop_positions(std::int64_t position, int steps_per_turn, int stops,
+                                         int first = 0);
 
 /// The angle of a position, degrees in [0, 360), counter-clockwise seen from above.
-double angle_deg_at(int position, int steps_per_turn);
+double angle_deg_at(std::int64_t position, int steps_per_turn);
 
 /// The position in the first turn that is nearest to an angle, degrees.
-int position_at(double angle_deg, int steps_per_turn);
+std::int64_t position_at(double angle_deg, int steps_per_turn);
 
 }  // namespace octurn

@@ -1,7 +1,9 @@
 #include "scan/rig.hpp"
 
+#include <system_error>
 #include <utility>
 
+#include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "scan/plan.hpp"
 #include "turntable/gpio_lines.hpp"
@@ -9,18 +11,21 @@
 
 namespace octurn {
 
-std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
-  return std::make_unique<DepthSensor>(uri);
-}
-
 Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
-  // Shared, as a std::function has to be able to be copied.
-  return [lines = std::make_shared<GpioLines>(lines_of(settings))](Stepper::Line line, bool high) {
-    lines->set(static_cast<std::size_t>(line), high);
+  const std::vector<NamedLine> lines = lines_of(settings);
+  // Shared, as a std::function has to be copyable.
+  return [lines, chip = std::make_shared<GpioChip>(drive_header(lines))](Stepper::Line line,
+                                                                         bool high) {
+    const auto index = static_cast<std::size_t>(line);
+    try {
+      chip->set(index, high);
+    } catch (const std::system_error& error) {
+      throw Error("turntable-failed",
+                  "line " + lines[index].name + " cannot be set: " + error.what(),
+                  "Start Octurn again.");
+    }
   };
 }
-
-bool is_simulated_sensor(const std::string& uri) { return uri.starts_with("octurn-simulator:"); }
 
 Rig::Rig(RigOptions options)
     : options_(std::move(options)), closed_angle_deg_(options_.platform_angle_deg) {}

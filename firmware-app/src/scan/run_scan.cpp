@@ -89,7 +89,7 @@ class Run {
   int done() const { return static_cast<int>(scan_.shots.size()); }
   void begin();
   void go_on();
-  std::optional<DepthFrame> look_at(int position);
+  std::optional<DepthFrame> look_at(std::int64_t position);
   void expect_sight(const DepthFrame& frame);
   template <typename Add>
   void add(Add add_to);
@@ -117,7 +117,7 @@ bool Run::take_snapshots() {
     go_on();
   }
   const int steps = turntable.steps_per_turn();
-  for (const int position :
+  for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
     std::optional<DepthFrame> frame = look_at(position);
     if (!frame) {
@@ -157,7 +157,7 @@ void Run::go_on() {
 }
 
 /// Turns to a stop, and takes its depth image; nothing if stopped first.
-std::optional<DepthFrame> Run::look_at(int position) {
+std::optional<DepthFrame> Run::look_at(std::int64_t position) {
   Turntable& turntable = rig_.turntable();
   DepthSensor& sensor = rig_.sensor();
   const double angle_deg = angle_deg_at(position, turntable.steps_per_turn());

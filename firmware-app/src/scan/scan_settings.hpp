@@ -7,7 +7,7 @@
 #include "octurn/box.hpp"
 #include "octurn/depth_filter.hpp"
 #include "octurn/reconstruct.hpp"
-#include "sensor/nominal_pose.hpp"
+#include "rig/nominal_pose.hpp"
 
 namespace octurn {
 

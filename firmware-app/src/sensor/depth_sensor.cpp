@@ -1,31 +1,18 @@
 #include "sensor/depth_sensor.hpp"
 
 #include <filesystem>
-#include <utility>
+#include <system_error>
 
-#include "sensor/sensor_device.hpp"
+#include "rig/simulation.hpp"
 
 namespace octurn {
 
-DepthSensor::DepthSensor(const std::string& uri)
-    : device_(std::filesystem::is_directory(uri) ? open_recording(uri) : open_openni_device(uri)) {}
-
-DepthSensor::DepthSensor(std::unique_ptr<SensorDevice> device) : device_(std::move(device)) {}
-
-DepthSensor::~DepthSensor() = default;
-
-const std::string& DepthSensor::name() const { return device_->name(); }
-
-const Intrinsics& DepthSensor::intrinsics() const { return device_->intrinsics(); }
-
-std::optional<TimedFrame> DepthSensor::read(const std::stop_token& stop) {
-  return device_->read(stop);
+std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
+  std::error_code unreadable;  // OpenNI2 then says that there is no such device
+  return std::filesystem::is_directory(uri, unreadable) ? open_recording(uri)
+                                                        : open_openni_sensor(uri);
 }
 
-std::optional<Tilt> DepthSensor::tilt() const { return device_->tilt(); }
-
-std::optional<int> DepthSensor::damaged_frames() const { return device_->damaged_frames(); }
-
-void DepthSensor::show_angle(double angle) { device_->show_angle(angle); }
+bool is_simulated_sensor(const std::string& uri) { return uri.starts_with(simulator_scheme); }
 
 }  // namespace octurn

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -30,7 +29,7 @@ constexpr const char* format = "octurn-recording";
 constexpr const char* malformed = "recording-malformed";
 constexpr int version = 1;
 constexpr int largest_side = 10000;  // pixels
-constexpr double most = std::numeric_limits<double>::max();
+constexpr double max_number = std::numeric_limits<double>::max();
 
 std::string frame_file(std::size_t frame) {
   std::array<char, 32> name{};
@@ -47,8 +46,8 @@ Intrinsics intrinsics_from(JsonObject& sensor) {
   constexpr double smallest = 1e-9;
   return {.width = sensor.at("width").whole_number(1, largest_side),
           .height = sensor.at("height").whole_number(1, largest_side),
-          .fx = sensor.at("fx").number(smallest, most),
-          .fy = sensor.at("fy").number(smallest, most),
+          .fx = sensor.at("fx").number(smallest, max_number),
+          .fy = sensor.at("fy").number(smallest, max_number),
           .cx = sensor.at("cx").number(),
           .cy = sensor.at("cy").number(),
           .depth_unit = sensor.at("depth_unit_m").number(smallest, 1)};
@@ -57,7 +56,7 @@ Intrinsics intrinsics_from(JsonObject& sensor) {
 RecordedFrame frame_from(const JsonValue& object) {
   JsonObject keys(object);
   RecordedFrame frame{
-      .time = std::chrono::duration<double>(keys.at("time_s").number(0, most)),
+      .time = std::chrono::duration<double>(keys.at("time_s").number(0, max_number)),
       .angle = radians_from_degrees(keys.at("angle_deg").number(-360, 360)),
   };
   const auto pitch = keys.number("pitch_deg", -180, 180);
@@ -98,17 +97,21 @@ json json_of(const Recording& recording) {
           {"frames", frames}};
 }
 
+/// @throws Error "recording-malformed"  if it is missing, no file, too large, or its disk fails
 std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) {
-    throw Error(malformed, file.string() + ": cannot be read",
-                "Give the folder that `octurn record` has made.");
+  constexpr std::size_t max_bytes = std::size_t{256} << 20U;
+  try {
+    if (std::optional<std::string> content = read_regular_file(file, max_bytes)) {
+      return *std::move(content);
+    }
+  } catch (const Error& error) {
+    throw Error(malformed, error.what(), error.hint());
   }
-  return content;
+  throw Error(malformed, file.string() + ": is missing",
+              "Give the folder that `octurn record` has made.");
 }
 
-/// Everything that was written to the disk that holds this folder.
+/// Has the disk of that folder write everything that it was given.
 void sync_disk_of(const fs::path& folder) {
   const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!opened.is_open() || ::syncfs(opened.number()) != 0) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
-#include "sensor/tilt.hpp"
+#include "rig/tilt.hpp"
 
 namespace octurn {
 

@@ -8,19 +8,20 @@
 
 namespace octurn {
 
-/// Of libgpiod.
+/// The version of libgpiod.
 std::string gpiod_version();
 
-/// A line that this program drives, and its level from the moment that it does.
+/// A line that this program drives, and its first level.
 struct OutputLine {
   unsigned offset = 0;  ///< on its chip
   bool high = false;
 };
 
-/// A GPIO chip of the kernel and the lines of it that this program drives: libgpiod 1 or 2, which
-/// have nothing in common, in gpio_chip_v1.cpp or gpio_chip_v2.cpp.
+/// A GPIO chip of the kernel and the lines of it that this program drives. libgpiod 1 and 2 share
+/// no function: gpio_chip_v1.cpp and gpio_chip_v2.cpp implement this class, one of which is
+/// compiled.
 ///
-/// Everything throws std::system_error with what the kernel says.
+/// Every function throws std::system_error with the kernel's errno.
 class GpioChip {
  public:
   explicit GpioChip(const std::filesystem::path& device);
@@ -32,16 +33,16 @@ class GpioChip {
 
   std::string label() const;
 
-  /// The line of that name, if the chip has it.
+  /// The offset of the line of that name; nothing if the chip has none.
   std::optional<unsigned> offset_of(const std::string& name) const;
 
-  /// Who uses a line, as the kernel knows it; nothing if it is free.
+  /// The consumer of a line by the kernel's account; nothing if the line is free.
   std::optional<std::string> user_of(unsigned offset) const;
 
-  /// Takes hold of lines, all at once, until the end of this object. To be called once.
+  /// Requests all lines at once as outputs, for the lifetime of this object. Called once.
   void drive(const std::vector<OutputLine>& lines, const std::string& user);
 
-  /// @param line  as counted in what `drive` was given
+  /// @param line  index into the lines that `drive` was given
   void set(std::size_t line, bool high);
 
  private:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <system_error>
-#include <utility>
 
 #include "octurn/error.hpp"
 
@@ -12,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the kernel calls the chip behind the header: of a Pi 3 and older, a Pi 4, and a Pi 5. The
-/// number of its device differs from kernel to kernel.
+/// The kernel's labels of the chip behind the header: Pi 3 and older, Pi 4, Pi 5. The number of its
+/// device differs from kernel to kernel.
 constexpr std::array<const char*, 3> header_labels = {"pinctrl-bcm2835", "pinctrl-bcm2711",
                                                       "pinctrl-rp1"};
 
@@ -82,27 +81,19 @@ HeaderUse look_at_header(const std::vector<NamedLine>& lines) {
   }
 }
 
-GpioLines::GpioLines(std::vector<NamedLine> lines)
-    : lines_(std::move(lines)), chip_(header_chip()) {
+GpioChip drive_header(const std::vector<NamedLine>& lines) {
+  GpioChip chip = header_chip();
   try {
     std::vector<OutputLine> outputs;
-    for (const NamedLine& line : lines_) {
-      outputs.push_back({.offset = free_line(chip_, line.name), .high = line.high});
+    for (const NamedLine& line : lines) {
+      outputs.push_back({.offset = free_line(chip, line.name), .high = line.high});
     }
-    chip_.drive(outputs, gpio_user);
+    chip.drive(outputs, gpio_user);
   } catch (const std::system_error& error) {
     throw Error("turntable-failed", std::string("the GPIO lines cannot be driven: ") + error.what(),
                 "End other programs that use GPIO, and retry.");
   }
-}
-
-void GpioLines::set(std::size_t line, bool high) {
-  try {
-    chip_.set(line, high);
-  } catch (const std::system_error& error) {
-    throw Error("turntable-failed", "line " + lines_[line].name + " cannot be set: " + error.what(),
-                "Start Octurn again.");
-  }
+  return chip;
 }
 
 }  // namespace octurn

@@ -8,49 +8,39 @@
 
 namespace octurn {
 
-/// A line of the GPIO header by the kernel's name for it, and its level until it is set.
+/// A line of the GPIO header by the kernel's name for it, and its first level.
 struct NamedLine {
-  std::string name = {};  ///< "GPIO17", as the pins are called in the Pi's own papers
+  std::string name = {};  ///< "GPIO17", the pins' names in the Pi's documentation
   bool high = false;
 };
 
-/// What the kernel knows of a line.
+/// The kernel's account of a line.
 struct LineUse {
   std::string name = {};
   bool exists = true;
-  std::optional<std::string> user = {};  ///< nothing: it is free
+  std::optional<std::string> user = {};  ///< nothing: the line is free
 };
 
-/// The chip behind a Raspberry Pi's GPIO header, and lines of it.
+/// The chip behind a Raspberry Pi's GPIO header, and some of its lines.
 struct HeaderUse {
   std::string label = {};
   std::vector<LineUse> lines = {};
 };
 
-/// Looks at lines of the header without taking hold of any.
+/// Reads the use of lines of the header without requesting any.
 /// @throws Error "turntable-missing"  if this machine has no such header
 /// @throws Error "turntable-failed"   if its chip may not be used
 HeaderUse look_at_header(const std::vector<NamedLine>& lines);
 
-/// What this program calls itself where the kernel keeps the user of a line.
+/// This program's name as the consumer of a line.
 inline constexpr const char* gpio_user = "octurn";
 
-/// Lines of a Raspberry Pi's GPIO header that this program drives as long as this lives: released
-/// lines become inputs again.
-class GpioLines {
- public:
-  /// @throws Error "turntable-missing"  if this machine has no such header
-  /// @throws Error "turntable-failed"   if a line is not there, or somebody else's, or may not be
-  ///                                    used: names line and user
-  explicit GpioLines(std::vector<NamedLine> lines);
-
-  /// @param line  as counted in what was given
-  /// @throws Error "turntable-failed"
-  void set(std::size_t line, bool high);
-
- private:
-  std::vector<NamedLine> lines_;
-  GpioChip chip_;
-};
+/// Drives lines of a Raspberry Pi's GPIO header as long as the returned chip lives. Released lines
+/// become inputs again.
+/// @throws Error "turntable-missing"  if this machine has no such header
+/// @throws Error "turntable-failed"   if a line does not exist, is in use, or may not be used;
+/// names
+///                                    the line and its user
+GpioChip drive_header(const std::vector<NamedLine>& lines);
 
 }  // namespace octurn

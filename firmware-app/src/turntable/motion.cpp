@@ -5,31 +5,34 @@
 
 namespace octurn {
 
-Course::Course(const Motion& motion, int steps)
+SpeedProfile::SpeedProfile(const Motion& motion, std::int64_t steps)
     : start_(std::min(motion.start_steps_per_second, motion.top_steps_per_second)),
       top_(motion.top_steps_per_second),
       ramp_(motion.ramp_steps_per_second2),
       speed_(start_),
       steps_left_(steps) {}
 
-double Course::next_step() {
+double SpeedProfile::next_step() {
   --steps_left_;
-  // v^2 = v0^2 + 2 a s, for one step from here and for what is left of the way to the end.
+  // v^2 = v0^2 + 2 a s: forwards over one step, and backwards from the end over the steps left.
   const double gained = std::sqrt(speed_ * speed_ + 2 * ramp_);
-  const double may_still_stop = std::sqrt(start_ * start_ + 2 * ramp_ * steps_left_);
-  const double next = std::min({gained, top_, may_still_stop});
+  const double stoppable =
+      std::sqrt(start_ * start_ + 2 * ramp_ * static_cast<double>(steps_left_));
+  const double next = std::min({gained, top_, stoppable});
   const double mean = (speed_ + next) / 2;
   speed_ = next;
   return 1 / mean;
 }
 
-void Course::slowed_to(double step_time) { speed_ = std::clamp(1 / step_time, start_, speed_); }
+void SpeedProfile::slowed_to(double step_time) {
+  speed_ = std::clamp(1 / step_time, start_, speed_);
+}
 
-double move_time(const Motion& motion, int steps) {
-  Course course(motion, steps);
+double move_time(const Motion& motion, std::int64_t steps) {
+  SpeedProfile profile(motion, steps);
   double time = 0;
-  while (course.steps_left() > 0) {
-    time += course.next_step();
+  while (profile.steps_left() > 0) {
+    time += profile.next_step();
   }
   return time;
 }

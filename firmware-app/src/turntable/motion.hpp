@@ -1,11 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace octurn {
 
-/// How a turntable moves: from rest it gains speed evenly, and loses it again before it stops.
-/// Steps are those of the driver: microsteps, unless it makes full ones.
+/// A turntable's motion: even acceleration from the start speed, and its mirror image before the
+/// end. A step is a microstep of the motor's driver.
 struct Motion {
   int steps_per_turn = 800;             // quarter steps of a 1.8 degree motor
   double start_steps_per_second = 200;  // a stepper can start at once at this speed
@@ -14,18 +15,19 @@ struct Motion {
   std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
 };
 
-/// The speed of one move, from step to step: even acceleration up to the top speed, or to the
-/// middle of a short move, and its mirror image down again.
-class Course {
+/// The trapezoidal speed profile of one move, step by step: even acceleration up to the top speed
+/// or to the middle of a short move, and its mirror image down again.
+class SpeedProfile {
  public:
-  Course(const Motion& motion, int steps);
+  SpeedProfile(const Motion& motion, std::int64_t steps);
 
-  int steps_left() const { return steps_left_; }
+  std::int64_t steps_left() const { return steps_left_; }
 
-  /// Goes one step on. @return how long that step takes, seconds
+  /// Advances by one step. @return the duration of that step, seconds
   double next_step();
 
-  /// The last step took longer than planned, seconds: what it lost of its speed is gained evenly.
+  /// Tells that the last step took longer than planned: the next ones accelerate again from there.
+  /// @param step_time  seconds
   void slowed_to(double step_time);
 
  private:
@@ -33,10 +35,10 @@ class Course {
   double top_;
   double ramp_;
   double speed_;
-  int steps_left_;
+  std::int64_t steps_left_;
 };
 
-/// How long a move takes, seconds, if no step is late.
-double move_time(const Motion& motion, int steps);
+/// The duration of a move without late steps, seconds.
+double move_time(const Motion& motion, std::int64_t steps);
 
 }  // namespace octurn

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 
 #include "turntable/motion.hpp"
 
 namespace octurn {
 
-/// Pulses that came late, which is when the system had no time for this program.
+/// Pulses that came late because the system had no time for this program.
 struct LatePulses {
   int count = 0;
   std::chrono::steady_clock::duration longest = {};
@@ -15,9 +16,9 @@ struct LatePulses {
 
 /// The pulses of one move on the STEP line of an A4988, which steps as the line rises.
 ///
-/// It plans each change of the line from the time at which the last one was done. So a pulse that
-/// comes late is never caught up: bunched pulses lose steps, late ones do no harm. What speed the
-/// motor has lost by then it gains again along the ramp.
+/// Each change of the line is planned from the time at which the last one was done, so a late pulse
+/// is never caught up: bunched pulses lose steps, late ones do not. The speed that the motor lost
+/// by then it gains again along the ramp.
 class PulseTrain {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -27,12 +28,12 @@ class PulseTrain {
     Time due = {};
   };
 
-  PulseTrain(const Motion& motion, int steps, Time start);
+  PulseTrain(const Motion& motion, std::int64_t steps, Time start);
 
-  /// What the line has to do next; nothing after the last pulse.
+  /// The next change of the line; nothing after the last pulse.
   const std::optional<Change>& next() const { return next_; }
 
-  /// That change is done, and was so at that time.
+  /// Tells that the next change was made, and when.
   void done(Time time);
 
   const LatePulses& late() const { return late_; }
@@ -40,7 +41,7 @@ class PulseTrain {
  private:
   void plan_rise(Time low_since);
 
-  Course course_;
+  SpeedProfile profile_;
   Time risen_ = {};         // the last pulse, or the beginning
   Time planned_rise_ = {};  // the next one, if nothing delays it
   std::optional<Change> next_ = {};

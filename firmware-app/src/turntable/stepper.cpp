@@ -10,6 +10,7 @@
 
 #include "log.hpp"
 #include "octurn/error.hpp"
+#include "rig/interruptible_sleep.hpp"
 #include "turntable/real_time.hpp"
 
 namespace octurn {
@@ -18,11 +19,11 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// When its current comes on, the rotor jumps by up to two full steps and swings.
+// The rotor jumps by up to two full steps and swings when its current comes on.
 constexpr auto grip_time = 100ms;
 
-/// Has this thread's pulses come in time, as far as the system allows it.
-void be_punctual() {
+/// Has this thread wake up in time, as far as the system allows it.
+void ask_for_punctual_wake_ups() {
   const int failure = ask_for_real_time_priority();
   if (failure == 0) {
     return;
@@ -35,41 +36,41 @@ void be_punctual() {
 
 }  // namespace
 
-std::vector<int> way_to(int target, const Standing& from, int take_up_steps) {
-  if (take_up_steps == 0 || (target >= from.position && from.play_taken_up)) {
+std::vector<std::int64_t> plan_moves(std::int64_t target, const BacklashState& from,
+                                     int take_up_steps) {
+  if (take_up_steps == 0 || (target >= from.position && from.backlash_taken_up)) {
     return {target};
   }
   return {std::min(target, from.position) - take_up_steps, target};
 }
 
-Stepper::Stepper(const StepperSettings& settings, SetLine set_line, int position)
+Stepper::Stepper(const StepperSettings& settings, SetLine set_line, std::int64_t position)
     : settings_(settings),
       motion_(motion_of(settings)),
       set_line_(std::move(set_line)),
       position_(position),
       worker_([this](const std::stop_token& end) { work(end); }) {}
 
-bool Stepper::move_to(int position, std::stop_token stop) {
+bool Stepper::move_to(std::int64_t position, std::stop_token stop) {
   if (stop.stop_requested()) {
     return false;
   }
   Order order{.target = position, .stop = std::move(stop)};
-  std::unique_lock lock(mutex_);
-  order_ = &order;
-  wake_.notify_all();
-  wake_.wait(lock, [&] { return order.done; });  // within a step of a stop request
+  {
+    std::unique_lock lock(mutex_);
+    order_ = &order;
+    wake_.notify_all();
+    wake_.wait(lock, [&] { return order.done; });  // within a step of a stop request
+  }
   if (order.failure) {
     std::rethrow_exception(order.failure);
   }
-  if (order.arrived) {
-    wake_.wait_for(lock, order.stop, motion_.settle_time, [] { return false; });
-  }
-  return order.arrived && !order.stop.stop_requested();
+  return order.arrived && sleep_for(order.stop, motion_.settle_time);
 }
 
 void Stepper::release() {
   const std::lock_guard lock(mutex_);
-  let_go();
+  switch_off();
 }
 
 LatePulses Stepper::late() const {
@@ -78,18 +79,18 @@ LatePulses Stepper::late() const {
 }
 
 void Stepper::work(const std::stop_token& end) {
-  be_punctual();
+  ask_for_punctual_wake_ups();
   std::unique_lock lock(mutex_);
   while (true) {
     const bool ordered =
         wake_.wait_for(lock, end, settings_.idle_release, [this] { return order_ != nullptr; });
     if (ordered) {
-      carry_out(*std::exchange(order_, nullptr), lock);
+      carry_out(*std::exchange(order_, nullptr));
       wake_.notify_all();
       continue;
     }
     try {
-      let_go();
+      switch_off();
     } catch (const Error& error) {
       log::error("turntable", error.what());
     }
@@ -99,12 +100,12 @@ void Stepper::work(const std::stop_token& end) {
   }
 }
 
-void Stepper::carry_out(Order& order, std::unique_lock<std::mutex>& lock) {
+void Stepper::carry_out(Order& order) {
   try {
-    hold(lock, order.stop);
+    switch_on(order.stop);
     order.arrived = true;
-    const Standing from{.position = position_, .play_taken_up = play_taken_up_};
-    for (const int position : way_to(order.target, from, settings_.take_up_steps)) {
+    const BacklashState from{.position = position_, .backlash_taken_up = backlash_taken_up_};
+    for (const std::int64_t position : plan_moves(order.target, from, settings_.take_up_steps)) {
       order.arrived = order.arrived && turn_to(position, order.stop);
     }
   } catch (...) {
@@ -113,17 +114,17 @@ void Stepper::carry_out(Order& order, std::unique_lock<std::mutex>& lock) {
   order.done = true;
 }
 
-/// @return false if stopped first
-bool Stepper::turn_to(int position, const std::stop_token& stop) {
-  const int steps = std::abs(position - position_);
+/// @return false if a stop was requested first
+bool Stepper::turn_to(std::int64_t position, const std::stop_token& stop) {
+  const std::int64_t steps = std::abs(position - position_);
   if (steps == 0) {
     return !stop.stop_requested();
   }
   const int direction = position < position_ ? -1 : 1;
-  play_taken_up_ = direction > 0;
+  backlash_taken_up_ = direction > 0;
   set_line_(Line::direction, (direction > 0) != settings_.reversed);
   PulseTrain train(motion_, steps, Clock::now());
-  int made = 0;
+  std::int64_t made = 0;
   while (const auto change = train.next()) {
     std::this_thread::sleep_until(change->due);
     if (change->high && stop.stop_requested()) {
@@ -140,24 +141,24 @@ bool Stepper::turn_to(int position, const std::stop_token& stop) {
   return position_ == position;
 }
 
-/// Switches the motor on; waits, unless stopped, until it has come to rest.
-void Stepper::hold(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
-  if (!held_) {
+/// Switches the motor on; waits, unless a stop is requested, until it has come to rest.
+void Stepper::switch_on(const std::stop_token& stop) {
+  if (!is_on_) {
     set_line_(Line::enable, false);
-    held_ = true;
-    wake_.wait_for(lock, stop, grip_time, [] { return false; });
+    is_on_ = true;
+    sleep_for(stop, grip_time);
   }
 }
 
-void Stepper::let_go() {
-  if (held_) {
+void Stepper::switch_off() {
+  if (is_on_) {
     set_line_(Line::enable, true);
-    held_ = false;
-    play_taken_up_ = false;
+    is_on_ = false;
+    backlash_taken_up_ = false;
   }
 }
 
-void Stepper::report(const LatePulses& late, int pulses) {
+void Stepper::report(const LatePulses& late, std::int64_t pulses) {
   if (late.count == 0) {
     return;
   }

@@ -24,16 +24,16 @@ constexpr std::array<Microstepping, 5> microsteppings = {{{1, {false, false, fal
                                                           {8, {true, true, false}},
                                                           {16, {true, true, true}}}};
 
-constexpr int most_full_steps = 1000;
-constexpr double greatest_ratio = 1000;
-// Below it a stop request would wait for more than a frame of the sensor, above it Linux is no
-// longer on time.
-constexpr double slowest = 40;
-constexpr double fastest = 5000;
-constexpr double steepest_ramp = 1e6;
-constexpr int least_idle_s = 10;  // a stop of a scan takes 3 s, with the most frames
+constexpr int max_full_steps = 1000;
+constexpr double max_ratio = 1000;
+// Steps a second. Slower, a stop request would wait for more than a frame of the sensor; faster,
+// Linux is no longer on time.
+constexpr double min_speed = 40;
+constexpr double max_speed = 5000;
+constexpr double max_ramp = 1e6;
+constexpr int min_idle_s = 10;  // a stop of a scan takes 3 s, with the most frames
 
-/// The keys of what `lines_of` gives, in its order.
+/// The keys of the lines of `lines_of`, in its order.
 constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_line",
                                                   "enable_line",     "microstep_lines",
                                                   "microstep_lines", "microstep_lines"};
@@ -71,13 +71,13 @@ void read_gear(JsonObject& keys, StepperSettings& settings) {
     settings.microsteps = *microsteps;
   }
   settings.full_steps =
-      keys.whole_number("full_steps", 4, most_full_steps).value_or(settings.full_steps);
+      keys.whole_number("full_steps", 4, max_full_steps).value_or(settings.full_steps);
   settings.gear_ratio =
-      keys.number("gear_ratio", 1 / greatest_ratio, greatest_ratio).value_or(settings.gear_ratio);
+      keys.number("gear_ratio", 1 / max_ratio, max_ratio).value_or(settings.gear_ratio);
   settings.reversed = keys.flag("reversed").value_or(settings.reversed);
-  const int least = 4;  // a quarter turn for each: fewer is no turntable
+  constexpr int min_steps = 4;  // a quarter turn each: fewer is no turntable
   const int steps = motion_of(settings).steps_per_turn;
-  if (steps < least) {
+  if (steps < min_steps) {
     keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
   }
   settings.take_up_steps =
@@ -85,19 +85,19 @@ void read_gear(JsonObject& keys, StepperSettings& settings) {
 }
 
 void read_motion(JsonObject& keys, StepperSettings& settings) {
-  settings.speed_steps_per_second =
-      keys.number("speed_steps_per_s", slowest, fastest).value_or(settings.speed_steps_per_second);
+  settings.speed_steps_per_second = keys.number("speed_steps_per_s", min_speed, max_speed)
+                                        .value_or(settings.speed_steps_per_second);
   settings.start_speed_steps_per_second =
       std::min(settings.start_speed_steps_per_second, settings.speed_steps_per_second);
   settings.start_speed_steps_per_second =
-      keys.number("start_speed_steps_per_s", slowest, settings.speed_steps_per_second)
+      keys.number("start_speed_steps_per_s", min_speed, settings.speed_steps_per_second)
           .value_or(settings.start_speed_steps_per_second);
   settings.ramp_steps_per_second2 =
-      keys.number("ramp_steps_per_s2", 1, steepest_ramp).value_or(settings.ramp_steps_per_second2);
+      keys.number("ramp_steps_per_s2", 1, max_ramp).value_or(settings.ramp_steps_per_second2);
   if (const auto ms = keys.whole_number("settle_ms", 0, 10'000)) {
     settings.settle_time = milliseconds(*ms);
   }
-  if (const auto seconds = keys.whole_number("idle_release_s", least_idle_s, 24 * 3600)) {
+  if (const auto seconds = keys.whole_number("idle_release_s", min_idle_s, 24 * 3600)) {
     settings.idle_release = std::chrono::seconds(*seconds);
   }
 }

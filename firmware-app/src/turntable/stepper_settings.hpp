@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// How the stepper is wired and what it turns. `docs/settings.md` explains each of them.
+/// The stepper's wiring, gear and motion. `docs/settings.md` explains each of them.
 struct StepperSettings {
   std::string step_line = "GPIO17";
   std::string direction_line = "GPIO27";
@@ -25,18 +25,18 @@ struct StepperSettings {
   double ramp_steps_per_second2 = 2000;
   std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
   std::chrono::milliseconds idle_release = std::chrono::seconds(60);
-  int take_up_steps = 0;  ///< against the play of gears
+  int take_up_steps = 0;  ///< against the gears' backlash
 };
 
 /// Settings from the object "turntable" of octurn.json, each key with its unit.
-/// @throws Error "bad-config"  that names the key, its value and what is allowed; also for a key
-///                             that is none
+/// @throws Error "bad-config"  with the key, its value and the allowed ones; also for an unknown
+/// key
 StepperSettings stepper_settings_from(const nlohmann::json& object);
 
-/// What `stepper_settings_from` reads, every key.
+/// The inverse of `stepper_settings_from`, with every key.
 nlohmann::json json_of(const StepperSettings& settings);
 
-/// With steps of the platform's turn: the whole number that is nearest.
+/// The motion in microsteps; those of a turn of the platform are rounded to a whole number.
 Motion motion_of(const StepperSettings& settings);
 
 /// The lines in the order of `Stepper::Line`, then MS1 to MS3; the motor is off.

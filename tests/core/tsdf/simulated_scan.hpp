@@ -11,7 +11,7 @@
 #include "octurn/depth_filter.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/stl.hpp"
-#include "sensor/nominal_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
 #include "simulator/surface_net.hpp"

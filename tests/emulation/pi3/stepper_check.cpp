@@ -11,7 +11,7 @@
 
 #include "interruption.hpp"
 #include "octurn/error.hpp"
-#include "turntable/stepper.hpp"
+#include "scan/rig.hpp"
 
 namespace octurn {
 namespace {
@@ -21,10 +21,7 @@ void turn(const std::vector<int>& positions) {
   const std::stop_callback tell(
       interruption.token(), [] { std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n"; });
   const StepperSettings settings = {.microstep_lines = {"GPIO22", "GPIO23", "GPIO24"}};
-  GpioLines lines(lines_of(settings));
-  Stepper stepper(settings, [&](Stepper::Line line, bool high) {
-    lines.set(static_cast<std::size_t>(line), high);
-  });
+  Stepper stepper(settings, open_gpio_lines(settings));
   bool arrived = true;
   for (const int position : positions) {
     arrived = arrived && stepper.move_to(position, interruption.token());

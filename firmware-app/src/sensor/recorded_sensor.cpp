@@ -4,24 +4,23 @@
 
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
-#include "sensor/pace.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "sensor/frame_limiter.hpp"
 #include "sensor/recording.hpp"
-#include "sensor/sensor_device.hpp"
 
 namespace octurn {
 namespace {
 
-/// Whether two angles of the platform are the same, but for the last digits of a file.
+/// Whether two angles of the platform are equal up to rounding in a file.
 bool is_same_angle(double one, double other) {
-  constexpr double close = 1e-6;  // radians; the finest step of a turntable is a thousand times it
+  constexpr double close = 1e-7;  // radians; the finest step of a turntable is 4e-7
   return std::abs(std::remainder(one - other, 2 * std::numbers::pi)) < close;
 }
 
-/// Gives the frames that were recorded at the angle of the platform, in their order, and those
-/// again after the last.
-class RecordedDevice final : public SensorDevice {
+/// Plays the frames that were recorded at the platform's angle, in order and in a loop.
+class RecordedSensor final : public DepthSensor {
  public:
-  explicit RecordedDevice(std::filesystem::path folder)
+  explicit RecordedSensor(std::filesystem::path folder)
       : folder_(std::move(folder)),
         recording_(read_recording(folder_)),
         name_(recording_.sensor_name + " (recorded)"),
@@ -32,7 +31,7 @@ class RecordedDevice final : public SensorDevice {
 
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     const std::size_t frame = next_frame();
-    if (!pace_.wait(stop)) {
+    if (!limiter_.wait(stop)) {
       return std::nullopt;
     }
     tilt_ = recording_.frames[frame].tilt;
@@ -51,7 +50,7 @@ class RecordedDevice final : public SensorDevice {
   }
 
  private:
-  /// The next one that was taken at the platform's angle.
+  /// Index of the next frame that was taken at the platform's angle.
   std::size_t next_frame() const {
     const std::size_t count = recording_.frames.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -72,13 +71,13 @@ class RecordedDevice final : public SensorDevice {
   double angle_;
   std::size_t next_ = 0;
   std::optional<Tilt> tilt_ = recording_.frames.front().tilt;
-  Pace pace_ = {};
+  FrameLimiter limiter_ = {};
 };
 
 }  // namespace
 
-std::unique_ptr<SensorDevice> open_recording(const std::string& folder) {
-  return std::make_unique<RecordedDevice>(folder);
+std::unique_ptr<DepthSensor> open_recording(const std::string& folder) {
+  return std::make_unique<RecordedSensor>(folder);
 }
 
 }  // namespace octurn

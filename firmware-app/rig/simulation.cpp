@@ -1,4 +1,4 @@
-#include "simulator/simulation.hpp"
+#include "rig/simulation.hpp"
 
 #include <array>
 #include <charconv>
@@ -83,6 +83,12 @@ void set(Simulation& simulation, std::string_view key, std::string_view value) {
 }
 
 }  // namespace
+
+std::chrono::steady_clock::duration frame_period(const Simulation& simulation) {
+  constexpr double frames_per_second = 30;
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(1 / (frames_per_second * simulation.speed)));
+}
 
 std::string simulation_uri(const Simulation& simulation) {
   const Simulation usual;

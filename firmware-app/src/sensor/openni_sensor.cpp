@@ -7,31 +7,27 @@
 #include <string_view>
 #include <utility>
 
-#include "kinect/kinect_device.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
-#include "sensor/pace.hpp"
-#include "sensor/sensor_device.hpp"
-#include "simulator/simulation.hpp"
+#include "rig/kinect_device.hpp"
+#include "rig/simulation.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "sensor/frame_limiter.hpp"
+#include "sensor/openni_library.hpp"
 
 namespace octurn {
 namespace {
 
 using std::chrono::steady_clock;
 
-/// A stop request is answered after this long at most, which is a frame.
-constexpr std::chrono::milliseconds patience = std::chrono::milliseconds(33);
+/// The longest time that a stop request waits for: a frame.
+constexpr std::chrono::milliseconds poll_interval = std::chrono::milliseconds(33);
+/// By the sensor's clock. A file has no clock: what takes longer than that is a player that hangs.
 constexpr std::chrono::milliseconds longest_silence = std::chrono::milliseconds(2000);
+constexpr std::chrono::milliseconds longest_file_read = std::chrono::seconds(30);
 
-constexpr const char* missing_hint =
-    "Check that the sensor has its own power supply, that its USB plug sits firmly, and that its "
-    "light is on.";
-
-constexpr const char* simulation_hint =
-    "Check the simulator's settings, and that its mesh is an STL or OBJ file in millimetres.";
-
-/// Depth formats that Octurn reads, the finer first, with their units in metres.
+/// Depth formats that Octurn reads, the finest first, with their units in metres.
 struct DepthFormat {
   openni::PixelFormat format;
   double unit;
@@ -40,65 +36,13 @@ constexpr std::array<DepthFormat, 2> depth_formats = {
     DepthFormat{openni::PIXEL_FORMAT_DEPTH_100_UM, metres_from_mm(0.1)},
     DepthFormat{openni::PIXEL_FORMAT_DEPTH_1_MM, metres_from_mm(1)}};
 
-/// What OpenNI2 and its drivers say about the last failure, on one line.
-std::string last_words() {
-  std::string words = openni::OpenNI::getExtendedError();
-  for (char& letter : words) {
-    letter = letter == '\n' || letter == '\t' ? ' ' : letter;
-  }
-  const std::size_t first = words.find_first_not_of(' ');
-  return first == words.npos ? "" : words.substr(first, words.find_last_not_of(' ') + 1 - first);
-}
-
-void expect_ok(openni::Status status, const char* doing) {
-  if (status != openni::STATUS_OK) {
-    throw Error("sensor-failed", std::string("sensor: cannot ") + doing + ": " + last_words(),
-                "Unplug the sensor, plug it in again, and retry.");
-  }
-}
-
-/// OpenNI2's drivers, loaded once and for the whole run: loading them changes the working directory
-/// of the process for a moment.
-struct OpenNi {
-  OpenNi() { expect_ok(openni::OpenNI::initialize(), "load OpenNI2's drivers"); }
-  ~OpenNi() { openni::OpenNI::shutdown(); }
-  OpenNi(const OpenNi&) = delete;
-  OpenNi& operator=(const OpenNi&) = delete;
-};
-
-/// The first sensor that was there when OpenNI2 started, or else any Kinect, which may have been
-/// plugged in since. A simulated sensor that was opened before is on OpenNI2's list too, but is
-/// never meant.
-std::string any_sensor() {
-  openni::Array<openni::DeviceInfo> devices;
-  openni::OpenNI::enumerateDevices(&devices);
-  for (int i = 0; i < devices.getSize(); ++i) {
-    std::string uri = devices[i].getUri();
-    if (!uri.starts_with(simulator_scheme)) {
-      return uri;
-    }
-  }
-  return std::string(kinect_scheme);
-}
-
-void open(openni::Device& device, const std::string& uri) {
-  if (device.open((uri.empty() ? any_sensor() : uri).c_str()) == openni::STATUS_OK) {
-    return;
-  }
-  if (uri.starts_with(simulator_scheme)) {
-    throw Error("sensor-failed", "sensor: " + last_words(), simulation_hint);
-  }
-  throw Error("sensor-missing", (uri.empty() ? "sensor: none found: " : "sensor: ") + last_words(),
-              missing_hint);
-}
-
-/// Whether the device of that URI belongs to one of Octurn's own drivers.
-bool is_octurns(std::string_view uri) {
+/// Whether a device's driver is one of Octurn's: these stamp frames by the steady clock.
+bool has_octurns_driver(std::string_view uri) {
   return uri.starts_with(simulator_scheme) || uri.starts_with(kinect_scheme);
 }
 
-/// The sensor's mode that suits a scan best: the finest unit, then the largest picture, then the
-/// highest rate.
+/// The sensor's best mode for a scan: the finest unit, then the largest picture, then the highest
+/// rate.
 openni::VideoMode best_mode(const openni::VideoStream& stream) {
   const auto rank = [](const openni::VideoMode& mode) {
     const auto* format =
@@ -117,7 +61,7 @@ openni::VideoMode best_mode(const openni::VideoStream& stream) {
   return best;
 }
 
-Intrinsics intrinsics_of(const openni::VideoStream& stream) {
+Intrinsics to_intrinsics(const openni::VideoStream& stream) {
   const openni::VideoMode mode = stream.getVideoMode();
   const auto* format =
       std::ranges::find(depth_formats, mode.getPixelFormat(), &DepthFormat::format);
@@ -159,7 +103,7 @@ std::optional<Value> property_of(const openni::Device& device, int property) {
                                                                           : std::nullopt;
 }
 
-DepthFrame copy_of(const openni::VideoFrameRef& frame) {
+DepthFrame to_depth_frame(const openni::VideoFrameRef& frame) {
   DepthFrame copy = {.width = frame.getWidth(), .height = frame.getHeight()};
   const auto row = static_cast<std::size_t>(copy.width);
   copy.depth.resize(row * static_cast<std::size_t>(copy.height));
@@ -171,19 +115,19 @@ DepthFrame copy_of(const openni::VideoFrameRef& frame) {
   return copy;
 }
 
-class OpenNiDevice final : public SensorDevice {
+class OpenNiSensor final : public DepthSensor {
  public:
-  explicit OpenNiDevice(std::string uri) : uri_(std::move(uri)) {
+  explicit OpenNiSensor(std::string uri) : uri_(std::move(uri)) {
     load_sensor_drivers();
     open_stream();
-    intrinsics_ = intrinsics_of(stream_);
+    intrinsics_ = to_intrinsics(stream_);
     name_ = device_.getDeviceInfo().getName();
-    keeps_steady_time_ = is_octurns(device_.getDeviceInfo().getUri());
+    has_steady_stamps_ = has_octurns_driver(device_.getDeviceInfo().getUri());
     is_simulated_ = device_.isPropertySupported(platform_angle_property);
   }
-  ~OpenNiDevice() override { close(); }
-  OpenNiDevice(const OpenNiDevice&) = delete;
-  OpenNiDevice& operator=(const OpenNiDevice&) = delete;
+  ~OpenNiSensor() override { close(); }
+  OpenNiSensor(const OpenNiSensor&) = delete;
+  OpenNiSensor& operator=(const OpenNiSensor&) = delete;
 
   const std::string& name() const override { return name_; }
   const Intrinsics& intrinsics() const override { return intrinsics_; }
@@ -198,20 +142,21 @@ class OpenNiDevice final : public SensorDevice {
   void close();
   bool is_lost() const;
   TimedFrame take_frame();
+  std::chrono::duration<double> sensor_time() const;
 
   std::string uri_;
   openni::Device device_ = {};
   openni::VideoStream stream_ = {};
   std::string name_ = {};
   Intrinsics intrinsics_ = {};
-  bool keeps_steady_time_ = false;  // as drivers of Octurn do; others stamp by clocks of their own
+  bool has_steady_stamps_ = false;  // other drivers stamp frames by clocks of their own
   bool is_simulated_ = false;
-  int frames_left_ = 0;  // of a file
-  Pace pace_ = {};       // of a file
+  int frames_left_ = 0;        // of a file
+  FrameLimiter limiter_ = {};  // of a file
 };
 
-void OpenNiDevice::open_stream() {
-  open(device_, uri_);
+void OpenNiSensor::open_stream() {
+  open_device(device_, uri_);
   expect_ok(stream_.create(device_, openni::SENSOR_DEPTH), "find its depth stream");
   if (device_.isFile()) {
     prepare_file();
@@ -223,8 +168,8 @@ void OpenNiDevice::open_stream() {
   expect_ok(stream_.start(), "start its depth stream");
 }
 
-/// Each frame of a file is read when it is asked for, and none is passed over.
-void OpenNiDevice::prepare_file() {
+/// Has each frame of a file read on demand, and none skipped.
+void OpenNiSensor::prepare_file() {
   openni::PlaybackControl* playback = device_.getPlaybackControl();
   expect_ok(playback->setSpeed(-1), "read it frame by frame");
   expect_ok(playback->setRepeatEnabled(false), "read it once");
@@ -238,67 +183,78 @@ void OpenNiDevice::prepare_file() {
   }
 }
 
-void OpenNiDevice::close() {
+void OpenNiSensor::close() {
   stream_.destroy();
   device_.close();
 }
 
-bool OpenNiDevice::is_lost() const {
+bool OpenNiSensor::is_lost() const {
   int state = openni::DEVICE_STATE_OK;
   int size = sizeof state;
   return device_.getProperty(ONI_DEVICE_PROPERTY_ERROR_STATE, &state, &size) == openni::STATUS_OK &&
          state != openni::DEVICE_STATE_OK;
 }
 
-TimedFrame OpenNiDevice::take_frame() {
+TimedFrame OpenNiSensor::take_frame() {
   openni::VideoFrameRef frame;
   expect_ok(stream_.readFrame(&frame), "read a frame");
   --frames_left_;
-  return {.frame = copy_of(frame),
-          .time = keeps_steady_time_
+  return {.frame = to_depth_frame(frame),
+          .time = has_steady_stamps_
                       ? steady_clock::time_point(std::chrono::microseconds(frame.getTimestamp()))
                       : steady_clock::now()};
 }
 
-/// A file begins again after its last frame. It is opened anew for that: to seek in one crashes
+/// A simulated sensor's own clock; for others, the steady clock.
+std::chrono::duration<double> OpenNiSensor::sensor_time() const {
+  const auto simulated = property_of<double>(device_, sensor_time_property);
+  return simulated ? std::chrono::duration<double>(*simulated)
+                   : steady_clock::now().time_since_epoch();
+}
+
+/// A file begins again after its last frame. It is opened again for that: seeking in a file crashes
 /// OpenNI2 2.2.0.33.
-std::optional<TimedFrame> OpenNiDevice::read(const std::stop_token& stop) {
+std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
   if (device_.isFile()) {
     if (frames_left_ == 0) {
       close();
       open_stream();
     }
-    if (!pace_.wait(stop)) {
+    if (!limiter_.wait(stop)) {
       return std::nullopt;
     }
   }
-  const auto deadline = steady_clock::now() + longest_silence;
+  const auto longest = device_.isFile() ? longest_file_read : longest_silence;
+  const auto begin = sensor_time();
   openni::VideoStream* stream = &stream_;
   while (!stop.stop_requested()) {
+    // Taken before the wait: a frame that has come by now ends the wait, however late this thread
+    // runs.
+    const auto silence = sensor_time() - begin;
     int ready = 0;
-    if (openni::OpenNI::waitForAnyStream(&stream, 1, &ready, static_cast<int>(patience.count())) ==
-        openni::STATUS_OK) {
+    if (openni::OpenNI::waitForAnyStream(
+            &stream, 1, &ready, static_cast<int>(poll_interval.count())) == openni::STATUS_OK) {
       return take_frame();
     }
     if (is_lost()) {
-      throw Error("sensor-lost", "sensor: " + name() + " is gone", missing_hint);
+      throw Error("sensor-lost", "sensor: " + name() + " is gone", missing_sensor_hint);
     }
-    if (steady_clock::now() > deadline) {
+    if (silence > longest) {
       throw Error("sensor-silent",
-                  "sensor: no frame for " + std::to_string(longest_silence.count()) + " ms",
+                  "sensor: no frame for " + std::to_string(longest.count()) + " ms",
                   "Unplug the sensor, plug it in again, and retry.");
     }
   }
   return std::nullopt;
 }
 
-std::optional<Tilt> OpenNiDevice::tilt() const { return property_of<Tilt>(device_, tilt_property); }
+std::optional<Tilt> OpenNiSensor::tilt() const { return property_of<Tilt>(device_, tilt_property); }
 
-std::optional<int> OpenNiDevice::damaged_frames() const {
+std::optional<int> OpenNiSensor::damaged_frames() const {
   return property_of<int>(device_, damaged_frames_property);
 }
 
-void OpenNiDevice::show_angle(double angle) {
+void OpenNiSensor::show_angle(double angle) {
   if (is_simulated_) {
     expect_ok(device_.setProperty(platform_angle_property, angle), "turn what it simulates");
   }
@@ -306,16 +262,8 @@ void OpenNiDevice::show_angle(double angle) {
 
 }  // namespace
 
-void load_sensor_drivers() { static const OpenNi loaded; }
-
-std::string openni_version() {
-  const openni::Version version = openni::OpenNI::getVersion();
-  return std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
-         std::to_string(version.maintenance) + "." + std::to_string(version.build);
-}
-
-std::unique_ptr<SensorDevice> open_openni_device(const std::string& uri) {
-  return std::make_unique<OpenNiDevice>(uri);
+std::unique_ptr<DepthSensor> open_openni_sensor(const std::string& uri) {
+  return std::make_unique<OpenNiSensor>(uri);
 }
 
 }  // namespace octurn

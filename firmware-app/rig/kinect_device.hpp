@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string_view>
+
+// The interface between the program and Octurn's Kinect driver: its URIs and its OpenNI2
+// properties.
+
+namespace octurn {
+
+/// The beginning of every Kinect's URI. Alone it names the first Kinect found; followed by a number
+/// (`kinect://1`), the Kinect of that index, counted from 0.
+inline constexpr std::string_view kinect_scheme = "kinect://";
+
+/// Property of type Tilt, from the Kinect's accelerometer; supported only where it can be read.
+/// Models 1473 and for Windows would need firmware that Octurn may not ship.
+inline constexpr int tilt_property = 0x4F430011;
+
+/// Property of type OniBool: depth begins at 0.4 m instead of 0.8 m. Only a Kinect for Windows has
+/// it, and it is set before the stream starts.
+inline constexpr int near_mode_property = 0x4F430012;
+
+/// Property of type int: the number of damaged frames that were dropped since the device was
+/// opened.
+inline constexpr int damaged_frames_property = 0x4F430013;
+
+}  // namespace octurn

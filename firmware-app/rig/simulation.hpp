@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+// The interface between the program and Octurn's simulated Kinect: its URIs and its OpenNI2
+// properties.
+
+namespace octurn {
+
+/// Settings of a simulated Kinect. They travel as the URI by which OpenNI2 opens it:
+/// `octurn-simulator://[MESH][?key=value&...]`, with the keys `seed`, `noise`, `speed`,
+/// `silent-after` and `lost-after`. In MESH, `%` and `?` are written `%25` and `%3F`.
+struct Simulation {
+  std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
+  std::uint32_t seed = 1;      ///< of the noise: same seed, same frames
+  double noise = 1.0;          ///< times a real Kinect's; 0 leaves quantisation and shadow
+  double speed = 1.0;          ///< times 30 frames a second, as far as the processor keeps up
+  std::optional<int> silent_after = {};  ///< frames, then none, as if the sensor had hung
+  std::optional<int> lost_after = {};    ///< frames, then the device is gone, as if unplugged
+};
+
+/// The beginning of every simulated sensor's URI.
+inline constexpr std::string_view simulator_scheme = "octurn-simulator://";
+
+/// Property of type double, written by the program: the platform's angle, radians,
+/// counter-clockwise seen from above. No other device of OpenNI2 has a property of this number.
+inline constexpr int platform_angle_property = 0x4F430001;
+
+/// Property of type double: the time by the simulated sensor's own clock, seconds. It advances by
+/// 1/30 s with each frame that was sent or, from `silent_after` on, left out. So a machine that is
+/// too busy to render in time slows this clock down, and only a simulated fault is a silence.
+inline constexpr int sensor_time_property = 0x4F430002;
+
+/// The real time between two frames, on a machine that keeps up.
+std::chrono::steady_clock::duration frame_period(const Simulation& simulation);
+
+/// @throws Error "bad-simulation" if it is longer than the 255 characters that OpenNI2 takes
+std::string simulation_uri(const Simulation& simulation);
+
+/// @throws Error "bad-simulation" if a key is unknown or its value out of range
+Simulation parse_simulation(std::string_view uri);
+
+}  // namespace octurn

@@ -1,0 +1,77 @@
+#include "sensor/openni_library.hpp"
+
+#include "octurn/error.hpp"
+#include "rig/kinect_device.hpp"
+#include "rig/simulation.hpp"
+#include "sensor/depth_sensor.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr const char* simulation_hint =
+    "Check the simulator's settings, and that its mesh is an STL file in millimetres.";
+
+/// OpenNI2's drivers, loaded once and for the whole run: loading them changes the working directory
+/// of the process for a moment.
+struct OpenNi {
+  OpenNi() { expect_ok(openni::OpenNI::initialize(), "load OpenNI2's drivers"); }
+  ~OpenNi() { openni::OpenNI::shutdown(); }
+  OpenNi(const OpenNi&) = delete;
+  OpenNi& operator=(const OpenNi&) = delete;
+};
+
+/// The first sensor that was there when OpenNI2 started, or else any Kinect: it may have been
+/// plugged in since. Simulated sensors that were opened before stay on OpenNI2's list and are
+/// skipped.
+std::string any_sensor() {
+  openni::Array<openni::DeviceInfo> devices;
+  openni::OpenNI::enumerateDevices(&devices);
+  for (int i = 0; i < devices.getSize(); ++i) {
+    std::string uri = devices[i].getUri();
+    if (!is_simulated_sensor(uri)) {
+      return uri;
+    }
+  }
+  return std::string(kinect_scheme);
+}
+
+}  // namespace
+
+std::string openni_error_text() {
+  std::string text = openni::OpenNI::getExtendedError();
+  for (char& letter : text) {
+    letter = letter == '\n' || letter == '\t' ? ' ' : letter;
+  }
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+void expect_ok(openni::Status status, const char* doing) {
+  if (status != openni::STATUS_OK) {
+    throw Error("sensor-failed",
+                std::string("sensor: cannot ") + doing + ": " + openni_error_text(),
+                "Unplug the sensor, plug it in again, and retry.");
+  }
+}
+
+void open_device(openni::Device& device, const std::string& uri) {
+  if (device.open((uri.empty() ? any_sensor() : uri).c_str()) == openni::STATUS_OK) {
+    return;
+  }
+  if (is_simulated_sensor(uri)) {
+    throw Error("sensor-failed", "sensor: " + openni_error_text(), simulation_hint);
+  }
+  throw Error("sensor-missing",
+              (uri.empty() ? "sensor: none found: " : "sensor: ") + openni_error_text(),
+              missing_sensor_hint);
+}
+
+void load_sensor_drivers() { static const OpenNi loaded; }
+
+std::string openni_version() {
+  const openni::Version version = openni::OpenNI::getVersion();
+  return std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+         std::to_string(version.maintenance) + "." + std::to_string(version.build);
+}
+
+}  // namespace octurn

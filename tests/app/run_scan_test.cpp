@@ -41,8 +41,8 @@ TEST(RunScan, StoresAScanThatGivesTheSameModelLater) {
                                  }};
   const std::unique_ptr<Reconstructor> again =
       make_reconstructor(reconstruct_options(few_snapshots(), {.threads = 1}));
-  again.add(snapshots);
-  write_model(again, snapshots, folder.path() / "again.stl", {});
+  again->add(snapshots);
+  write_model(*again, snapshots, folder.path() / "again.stl", {});
   EXPECT_TRUE(content_of(folder.path() / "Scan.stl") == content_of(folder.path() / "again.stl"));
 }
 

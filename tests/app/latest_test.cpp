@@ -41,9 +41,7 @@ TEST(Latest, StopsWaitingInTimeOrWhenAsked) {
   EXPECT_EQ(*latest.wait({}, 1ms, never), 0);
   std::stop_source stop;
   const std::jthread other([&] { stop.request_stop(); });
-  const auto started = std::chrono::steady_clock::now();
-  latest.wait(stop.get_token(), 20s, never);
-  EXPECT_LT(std::chrono::steady_clock::now() - started, 10s);
+  latest.wait(stop.get_token(), 24h, never);  // returns when asked, or CTest ends the test
 }
 
 TEST(Latest, LosesNoUpdateOfSeveralWriters) {

@@ -8,12 +8,11 @@
 
 #include "app/few_snapshots.hpp"
 #include "doctor/doctor.hpp"
+#include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {
 namespace {
-
-using namespace std::chrono_literals;
 
 constexpr const char* fast_sensor = "octurn-simulator://?speed=20";
 
@@ -57,7 +56,7 @@ TEST_F(LendRig, GivesTheRigBackToAScanThatStarts) {
   std::thread borrower = this->borrower();
   EXPECT_TRUE(scanner_.start(few_snapshots()));
   borrower.join();
-  EXPECT_EQ(scanner_.wait_until_done(20s).job->state, JobState::finished);
+  EXPECT_EQ(scanner_.wait_until_done(patience).job->state, JobState::finished);
 }
 
 TEST_F(LendRig, LendsToOneAfterTheOther) {

@@ -8,6 +8,7 @@
 #include "app/faulty_rig.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/scanner.hpp"
+#include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -26,7 +27,7 @@ ScanSettings settings(Method method = Method::solid) {
 }
 
 Job ended(const Scanner& scanner) {
-  const Status status = scanner.wait_until_done(20s);
+  const Status status = scanner.wait_until_done(patience);
   EXPECT_FALSE(status.busy());
   return *status.job;
 }

@@ -24,7 +24,7 @@ TEST(Preview, ShowsWhatAScanHasSeenSoFar) {
   daemon.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 1; });
   const auto preview_with = [&](std::int64_t more_than) {
     Reply reply;
-    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     do {
       reply = daemon.get(scan + "/preview.stl");
     } while ((reply.status != 200 || triangles_of_whole_stl(reply.body) <= more_than) &&
@@ -127,7 +127,7 @@ TEST(ModelStream, IsOneAtATimeAndNoneDuringAScan) {
     EXPECT_EQ(parsed(refused)["code"], "busy");
   }
   // Its client is gone: so is the work, and there is room for another.
-  const auto deadline = std::chrono::steady_clock::now() + 20s;
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   Reply again = wanted();
   while (again.status == 409 && std::chrono::steady_clock::now() < deadline) {
     again = wanted();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/http_client.hpp"
+#include "support/patience.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -71,10 +72,10 @@ class Daemon {
     return reply.header("Location");
   }
 
-  /// Waits until a scan is as wanted; what it is then, wanted or not after 20 s.
+  /// Waits until a scan is as wanted; what it is then, wanted or not after `patience`.
   nlohmann::json wait_until(const std::string& scan,
                             const std::function<bool(const nlohmann::json&)>& wanted) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     nlohmann::json now = parsed(get(scan));
     while (!wanted(now) && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::yield();

@@ -1,14 +1,12 @@
 #include "config.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "octurn/error.hpp"
-#include "octurn/json_object.hpp"
-#include "octurn/units.hpp"
+#include "settings/field.hpp"
 
 namespace octurn {
 namespace {
@@ -24,39 +22,69 @@ Config defaults() {
   return config;
 }
 
-std::vector<std::string> names_from(const JsonObject& keys, const json& names) {
-  const auto is_text = [](const json& name) { return name.is_string(); };
-  if (!names.is_array() || !std::ranges::all_of(names, is_text)) {
-    keys.refuse("host_names", names, "an array of texts");
-  }
-  return names.get<std::vector<std::string>>();
-}
-
 Config config_from(const json& object) {
   JsonObject keys(object, "bad-config", "");
   Config config = defaults();
-  config.http.address = keys.text("listen").value_or(config.http.address);
-  config.http.port = keys.whole_number("port", 0, 65535).value_or(config.http.port);
-  config.http.password_file = keys.text("password_file").value_or("");
-  config.data = keys.text("data").value_or(config.data.string());
-  config.limits.threads = keys.whole_number("threads", 1, 256).value_or(config.limits.threads);
-  if (const auto mb = keys.number("memory_limit_mb", 32, 1e6)) {
-    config.limits.memory_bytes = static_cast<std::size_t>(bytes_from_mb(*mb));
-  }
-  if (const json* names = keys.find("host_names")) {
-    config.host_names = names_from(keys, *names);
-  }
-  if (const json* scan = keys.find("scan")) {
-    config.scan = settings_from(*scan, config.scan, "scan");
-  }
-  if (const json* turntable = keys.find("turntable")) {
-    config.turntable = stepper_settings_from(*turntable);
-  }
+  read_fields(keys, fields(config));
   keys.refuse_unread();
   return config;
 }
 
+std::vector<Field> access_fields(Config& config) {
+  return {
+      {.key = "host_names",
+       .help = "names that the page may be opened by, besides the local ones",
+       .access = texts(config.host_names)},
+      {.key = "password_file",
+       .unit = "file",
+       .help = "who may open the page, below; empty: everybody",
+       .access = path(config.http.password_file, 0)},
+  };
+}
+
+std::vector<Field> nested_fields(Config& config) {
+  return {
+      {.key = "scan",
+       .help = "a scan's settings that its start does not give, below",
+       .access =
+           object(fields(config.scan), [&](JsonObject& keys) { check_leaf(keys, config.scan); })},
+      {.key = "turntable",
+       .help = "the stepper, below",
+       .access = object(fields(config.turntable),
+                        [&](JsonObject& keys) { check_stepper_settings(keys, config.turntable); })},
+  };
+}
+
 }  // namespace
+
+std::vector<Field> network_fields(Config& config) {
+  return {
+      {.key = "listen",
+       .unit = "address",
+       .help = "where the page is served; 0.0.0.0 is every network",
+       .access = text(config.http.address)},
+      {.key = "port",
+       .help = "of the page; 0 is any free one",
+       .access = whole(config.http.port, 0, 65535)},
+  };
+}
+
+std::vector<Field> data_fields(Config& config) {
+  return {{.key = "data",
+           .unit = "folder",
+           .help = "where scans are kept",
+           .access = path(config.data, 1),
+           .default_text = "`\"/var/lib/octurn\"`"}};
+}
+
+std::vector<Field> fields(Config& config) {
+  std::vector<Field> all = network_fields(config);
+  for (const std::vector<Field>& more :
+       {access_fields(config), data_fields(config), fields(config.limits), nested_fields(config)}) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
 
 Config read_config(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -73,15 +101,8 @@ Config read_config(const std::filesystem::path& file) {
 }
 
 json json_of(const Config& config) {
-  return {{"listen", config.http.address},
-          {"port", config.http.port},
-          {"host_names", config.host_names},
-          {"password_file", config.http.password_file.string()},
-          {"data", config.data.string()},
-          {"threads", config.limits.threads},
-          {"memory_limit_mb", mb_from_bytes(static_cast<double>(config.limits.memory_bytes))},
-          {"scan", json_of(config.scan)},
-          {"turntable", json_of(config.turntable)}};
+  Config copy = config;
+  return to_json(fields(copy));
 }
 
 Config chosen_config(const std::optional<std::filesystem::path>& file) {

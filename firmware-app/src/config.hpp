@@ -34,6 +34,15 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 ///                            that is none
 Config read_config(const std::filesystem::path& file);
 
+struct Field;
+
+/// Every setting of the file.
+std::vector<Field> fields(Config& config);
+/// Where the page is served.
+std::vector<Field> network_fields(Config& config);
+/// Where scans are kept.
+std::vector<Field> data_fields(Config& config);
+
 /// The configuration as `read_config` reads it, every key. No secret is one of them.
 nlohmann::json json_of(const Config& config);
 

@@ -20,4 +20,8 @@ void write_standard_output(std::span<const std::byte> bytes) {
   }
 }
 
+void write_standard_output(std::string_view text) {
+  write_standard_output(std::as_bytes(std::span(text)));
+}
+
 }  // namespace octurn

@@ -52,6 +52,12 @@ TEST(Config, IsWrittenAsItIsRead) {
   EXPECT_EQ(written, every);
 }
 
+TEST(Config, ReadsAFileOfVersion01AsThatDid) {
+  const std::filesystem::path golden = std::filesystem::path(OCTURN_GOLDEN) / "version-0.1";
+  EXPECT_EQ(json_of(read_config(golden / "octurn.json")),
+            json::parse(content_of(golden / "settings.json")));
+}
+
 TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {
   const Config config = config_of("{}");
   EXPECT_EQ(config.http.port, 8080);
@@ -61,7 +67,7 @@ TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {
 TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {
   for (const char* const text :
        {R"({"port": 65536})", R"({"port": "80"})", R"({"listen": 1})", R"({"host_names": "a"})",
-        R"({"host_names": [1]})", R"({"data": false})", R"({"threads": 0})",
+        R"({"host_names": [1]})", R"({"data": false})", R"({"data": ""})", R"({"threads": 0})",
         R"({"memory_limit_mb": 0})", R"({"ports": 80})"}) {
     const Error error = error_thrown_by([&] { config_of(text); });
     EXPECT_EQ(error.code(), "bad-config") << text;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -81,6 +82,30 @@ TEST(ScanSettings, RefuseWhatIsOutOfRangeAndNameIt) {
 TEST(ScanSettings, RefuseALeafLargerThanTheRoot) {
   EXPECT_EQ(code_thrown_by([] { parsed(R"({"root_size_mm": 100, "leaf_size_mm": 101})"); }),
             "bad-settings");
+}
+
+TEST(ScanSettings, RefuseAClipBoxThinnerThanALeaf) {
+  for (const char* const text :
+       {R"({"clip_mm": [0, 0, 0, 1e-7, 1e-7, 1e-7]})", R"({"clip_mm": [0, 0, 0, 100, 0.999, 100]})",
+        R"({"leaf_size_mm": 300})"}) {
+    const Error error = error_thrown_by([&] { parsed(text); });
+    EXPECT_EQ(error.code(), "bad-settings");
+    EXPECT_NE(std::string(error.what()).find("\"clip_mm\""), std::string::npos) << error.what();
+  }
+  // As thick as a leaf, however it is rounded.
+  EXPECT_NO_THROW(parsed(R"({"clip_mm": [-140, -140, 5, -139, -139, 6]})"));
+}
+
+ScanSettings stored(const json& settings) {
+  return stored_settings_from(JsonValue(settings, "settings", "job-malformed"));
+}
+
+TEST(ScanSettings, AreReadFromAJobOfVersion01AsThatWroteThem) {
+  json settings = json::parse(
+      content_of(std::filesystem::path(OCTURN_GOLDEN) / "version-0.1" / "job.json"))["settings"];
+  EXPECT_EQ(json_of(stored(settings)), settings);
+  settings["clip_mm"] = {0.0, 0.0, 0.0, 0.5, 0.5, 0.5};  // thinner than its leaves of 4 mm
+  EXPECT_EQ(json_of(stored(settings)), settings);
 }
 
 TEST(ScanSettings, RefuseAKeyThatIsNone) {

@@ -120,15 +120,26 @@ TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
   expect_failure({OCTURN_PROGRAM, "reconstruct", scan_.string()}, 2, "--output");
   expect_failure(command({"--leaf-size"}), 2, "--leaf-size");
   expect_failure(command({"--leaf-size-mm", "one"}), 2, "--leaf-size-mm");
-  expect_failure(command({"--leaf-size-mm", "0"}), 2, "leaf size");
-  expect_failure(command({"--leaf-size-mm", "-1"}), 2, "leaf size");
-  expect_failure(command({"--leaf-size-mm", "nan"}), 2, "leaf size");
-  expect_failure(command({"--leaf-size-mm", "1001"}), 2, "leaf size");
-  expect_failure(command({"--root-size-mm", "0"}), 2, "root size");
-  expect_failure(command({"--threshold-m2", "0"}), 2, "threshold");
+  for (const char* const size : {"0", "-1", "nan", "1001", "1e300"}) {
+    expect_failure(command({"--leaf-size-mm", size}), 2, "leaf_size_mm");
+  }
+  expect_failure(command({"--root-size-mm", "0"}), 2, "root_size_mm");
+  expect_failure(command({"--root-size-mm", "1e308"}), 2, "\"root_size_mm\" is 1e+308");
+  expect_failure(command({"--threshold-m2", "0"}), 2, "threshold_m2");
   expect_failure(command({"--clip-mm", "1", "2", "3"}), 2, "--clip-mm");
-  expect_failure(command({"--clip-mm", "0", "0", "0", "0", "1", "1"}), 2, "clip box");
+  expect_failure(command({"--clip-mm", "0", "0", "0", "0", "1", "1"}), 2, "clip_mm");
+  expect_failure(command({"--clip-mm", "0", "0", "0", "1e-7", "1", "1"}), 2, "clip_mm");
+  for (const char* const method : {"solid", "intersection"}) {
+    expect_failure(command({"--method", method, "--clip-mm", "-1e300", "-1e300", "-1e300", "1e300",
+                            "1e300", "1e300"}),
+                   2, "clip_mm");
+  }
+  for (const char* const mb : {"0", "1e-9", "16", "nan", "inf", "1e300"}) {
+    expect_failure(command({"--memory-limit-mb", mb}), 2, "memory_limit_mb");
+  }
   expect_failure(command({"--level", "99"}), 2, "level");
+  expect_failure(command({"--method", "solid", "--level", "3"}), 2, "--level");
+  expect_failure(command({"--max-error-mm", "1"}), 2, "--max-error-mm");
   expect_failure(command({"--threads", "0"}), 2, "threads");
 }
 
@@ -153,6 +164,30 @@ TEST_F(ReconstructCommand, EndsWith1WhereItCannotWrite) {
   expect_failure(words, 1, "missing");
   words[4] = (folder_.path() / "out").string();
   expect_failure(words, 1, "out");
+}
+
+TEST_F(ReconstructCommand, RefusesAnOutputThatCannotBeBeforeItReadsTheScan) {
+  const auto with_output = [](const std::string& output) {
+    return std::vector<std::string>{OCTURN_PROGRAM, "reconstruct", "/nowhere", "-o", output};
+  };
+  expect_failure(with_output(""), 2, "--output");
+  expect_failure(with_output("/dev/full"), 1, "/dev/full");
+  expect_failure(with_output((folder_.path() / "out").string()), 1, "out");
+}
+
+TEST_F(ReconstructCommand, EndsWith1WhereItsReportCannotBeWritten) {
+  const std::string line = std::string(OCTURN_PROGRAM) + " reconstruct " + scan_.string() + " -o " +
+                           output_.string() + " --json > /dev/full";
+  Program program({"/bin/sh", "-c", line});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(program.errors().find("standard output"), std::string::npos) << program.errors();
+}
+
+TEST_F(ReconstructCommand, TellsItsOwnMemoryAndNotThatOfItsParent) {
+  std::vector<char> large(std::size_t{512} << 20U, 'x');  // of this process, which starts it
+  Program program(command({"--json"}));
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_LT(nlohmann::json::parse(program.output())["peak_memory_bytes"], large.size());
 }
 
 TEST_F(ReconstructCommand, EndsWith1WhenTheDiskIsFull) {

@@ -123,11 +123,11 @@ TEST_F(SolidCommand, TakesFewerTrianglesForALargerError) {
 TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
   write_ball_scan(scan_, 1);
   for (const char* const wrong : {"-1", "nan", "inf"}) {
-    expect_failure({"--max-error-mm", wrong}, 2, "max error");
+    expect_failure({"--max-error-mm", wrong}, 2, "max_error_mm");
   }
   expect_failure({"--level", "8"}, 2, "--level");
   expect_failure({"--threshold-m2", "0.0001"}, 2, "--threshold-m2");
-  expect_failure({"--leaf-size-mm", "0"}, 2, "leaf size");
+  expect_failure({"--leaf-size-mm", "0"}, 2, "leaf_size_mm");
   Program no_number(command({"--max-error-mm", "small"}));
   EXPECT_EQ(no_number.wait(), 2);
   EXPECT_NE(no_number.errors().find("--max-error-mm"), std::string::npos);
@@ -139,7 +139,7 @@ TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
 
 TEST_F(SolidCommand, EndsWith1WhereMemoryIsTooLittle) {
   write_ball_scan(scan_, 1);
-  expect_failure({"--memory-limit-mb", "8"}, 1, "memory limit");
+  expect_failure({"--memory-limit-mb", "20"}, 1, "memory limit");
 }
 
 TEST_F(SolidCommand, SaysThatAnEmptyPlatformHasNoSurface) {

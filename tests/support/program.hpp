@@ -46,7 +46,6 @@ class Program {
     if (process_ == 0) {
       ::dup2(out[1].number(), STDOUT_FILENO);
       ::dup2(error[1].number(), STDERR_FILENO);
-      ::signal(SIGXFSZ, SIG_IGN);
       set_limit(RLIMIT_FSIZE, limits.file_bytes);
       set_limit(RLIMIT_DATA, limits.data_bytes);
       ::execv(arguments[0], arguments.data());

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstddef>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
@@ -60,35 +61,14 @@ std::optional<std::string> unescaped(std::string_view text) {
   return bytes;
 }
 
-/// How many bytes a character has that begins like this; 0 if none does (RFC 3629, section 4).
-std::size_t size_of_character(unsigned char lead) {
-  return lead < 0x80U                    ? 1
-         : lead >= 0xc2U && lead < 0xe0U ? 2
-         : (lead & 0xf0U) == 0xe0U       ? 3
-         : lead >= 0xf0U && lead < 0xf5U ? 4
-                                         : 0;
-}
-
-/// Whether two bytes begin a character longer than need be, half of a pair, or beyond what there
-/// is.
-bool begins_badly(unsigned char lead, unsigned char second) {
-  return (lead == 0xe0U && second < 0xa0U) || (lead == 0xedU && second >= 0xa0U) ||
-         (lead == 0xf0U && second < 0x90U) || (lead == 0xf4U && second >= 0x90U);
-}
-
-bool is_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
-  while (!text.empty()) {
-    const std::size_t size = size_of_character(byte(0));
-    if (size == 0 || text.size() < size ||
-        !std::ranges::all_of(text.substr(1, size - 1), continues) ||
-        (size > 1 && begins_badly(byte(0), byte(1)))) {
-      return false;
-    }
-    text.remove_prefix(size);
+/// Whether the library of the page's JSON would take it.
+bool is_utf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
   }
-  return true;
 }
 
 /// A line: bssid, frequency, signal, flags, name, with tabs between.

@@ -2,8 +2,9 @@
 #include <iostream>
 
 #include "commands/commands.hpp"
-#include "interruption.hpp"
+#include "commands/options.hpp"
 #include "octurn/error.hpp"
+#include "signal_stop.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -30,62 +31,25 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
   return simulate;
 }
 
-void add_config_option(CLI::App& command, std::optional<std::filesystem::path>& config_file) {
+void add_config_option(CLI::App& command, ConfigArguments& config) {
   command
-      .add_option("--config", config_file,
+      .add_option("--config", config.file,
                   std::string("settings (") + default_config_file + ", if it is there)")
       ->type_name("FILE");
 }
 
-void add_config_options(CLI::App& command, std::optional<std::filesystem::path>& config_file,
-                        std::optional<std::filesystem::path>& data) {
-  add_config_option(command, config_file);
-  command.add_option("--data", data, "folder of the scans (/var/lib/octurn)")->type_name("DIR");
-}
-
-/// Options that `scan` and `reconstruct` share; both have members of these names.
-template <typename Arguments>
-void add_model_options(CLI::App& command, Arguments& arguments, const char* clip_default) {
-  command.add_option("--leaf-size-mm", arguments.leaf_size_mm, "largest side of a leaf (1)")
-      ->type_name("MM");
-  command.add_option("--root-size-mm", arguments.root_size_mm, "side of the root cube (1000)")
-      ->type_name("MM");
-  command
-      .add_option("--threshold-m2", arguments.threshold_m2,
-                  "square of a triangle's longest side (0.0001)")
-      ->type_name("M2");
-  command
-      .add_option("--clip-mm", arguments.clip_mm,
-                  std::string("box around the object, platform frame (") + clip_default + ")")
-      ->type_name("X0 Y0 Z0 X1 Y1 Z1");
-}
-
-/// The same for what chooses the method.
-template <typename Arguments>
-void add_method_options(CLI::App& command, Arguments& arguments, const std::string& usual) {
-  command
-      .add_option(
-          "--method", arguments.method,
-          "solid: one closed, filled, smooth part; intersection: a shell of what was seen (" +
-              usual + ")")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"intersection", "solid"}));
-  command
-      .add_option("--max-error-mm", arguments.max_error_mm,
-                  "solid: root mean square distance that fewer triangles may cost (0.04); "
-                  "0 keeps them all")
-      ->type_name("MM");
+void add_config_options(CLI::App& command, ConfigArguments& config) {
+  add_config_option(command, config);
+  Config defaults;
+  add_options(command, data_fields(defaults), config.given);
 }
 
 void add_serve(CLI::App& program, ServeArguments& arguments) {
   CLI::App& command = *program.add_subcommand("serve", "the daemon: page, API, scans");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
-  add_config_options(command, arguments.config_file, arguments.data);
-  command.add_option("--listen", arguments.address, "address to listen on (0.0.0.0, which is all)")
-      ->type_name("ADDRESS");
-  command.add_option("--port", arguments.port, "port of the page (8080); 0 is any free one")
-      ->type_name("N")
-      ->check(CLI::Range(0, 65535));
+  add_config_options(command, arguments.config);
+  Config defaults;
+  add_options(command, network_fields(defaults), arguments.config.given);
   command.add_option("--web", arguments.web, "folder of the page (the one built or installed)")
       ->type_name("DIR");
   command
@@ -101,18 +65,12 @@ void add_serve(CLI::App& program, ServeArguments& arguments) {
 
 void add_scan(CLI::App& program, ScanArguments& arguments) {
   CLI::App& command = *program.add_subcommand("scan", "one scan from the shell");
-  SettingsArguments& settings = arguments.settings;
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
-  add_config_options(command, arguments.config_file, arguments.data);
-  command.add_option("-o,--output", arguments.output, "the model (Scan.stl)")->type_name("FILE");
-  command.add_option("--snapshots", settings.snapshots, "stops in a turn (36)")->type_name("N");
-  command
-      .add_option("--filter", settings.filter,
-                  "how frames become one: basic, average or average-discard (average)")
-      ->type_name("NAME");
-  command.add_option("--frames", settings.frames, "frames at each stop (10)")->type_name("N");
-  add_method_options(command, settings, "solid");
-  add_model_options(command, settings, "-140 -140 5 140 140 400");
+  add_config_options(command, arguments.config);
+  command.add_option("-o,--output", arguments.output, "the model (Scan.stl); - is standard output")
+      ->type_name("FILE");
+  ScanSettings defaults;
+  add_options(command, scan_fields(defaults), arguments.settings);
   command
       .add_option("--resume", arguments.resume,
                   "go on with this scan in the folder of scans, which was paused or interrupted; "
@@ -128,7 +86,7 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
   CLI::App& command = *program.add_subcommand(
       "record", "what the sensor sees in a turn, to be replayed by --sensor");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
-  add_config_option(command, arguments.config_file);
+  add_config_option(command, arguments.config);
   command
       .add_option("-o,--output", arguments.output,
                   "folder for the recording, which must not exist yet")
@@ -150,7 +108,7 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   CLI::App& command =
       *program.add_subcommand("doctor", "checks the scanner, and says what to do about each fault");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
-  add_config_options(command, arguments.config_file, arguments.data);
+  add_config_options(command, arguments.config);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of the table");
   command
       .add_option("--zip", arguments.zip,
@@ -173,18 +131,8 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
                   "the model, binary STL in millimetres; - is standard output")
       ->type_name("FILE")
       ->required();
-  add_method_options(command, arguments, "intersection");
-  add_model_options(command, arguments, "the scan's");
-  command.add_option("--level", arguments.level, "surface of a coarser level; 0 is the root")
-      ->type_name("N");
-  command.add_option("--threads", arguments.threads, "threads to work on (all cores)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 256));
-  command
-      .add_option("--memory-limit-mb", arguments.memory_limit_mb,
-                  "memory that the program may take (no limit); less of it takes longer")
-      ->type_name("MB")
-      ->check(CLI::PositiveNumber);
+  ModelSettings defaults;
+  add_options(command, fields(defaults), arguments.settings);
   command.add_flag("--json", arguments.json,
                    "print one line of JSON on standard output, or on standard error with -o -");
   command.callback([&] { reconstruct(arguments); });

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -21,12 +21,23 @@ struct RigArguments {
 /// @param stepper  of the real turntable, which is used without --simulate
 RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
 
+/// What a command line says about the configuration.
+struct ConfigArguments {
+  std::optional<std::filesystem::path> file = {};
+  nlohmann::json given = nlohmann::json::object();  ///< by their keys in octurn.json
+};
+
+/// The file's configuration, over it what the command line says.
+/// @throws Error  that names the key which is wrong
+Config make_config(const ConfigArguments& arguments);
+
+/// Finds out before the work whether a model can be written. @param output  "-" is standard output
+/// @throws Error  that says why not
+void expect_writable(const std::filesystem::path& output);
+
 struct ServeArguments {
   RigArguments rig = {};
-  std::optional<std::filesystem::path> config_file = {};
-  std::optional<std::string> address = {};
-  std::optional<int> port = {};
-  std::optional<std::filesystem::path> data = {};
+  ConfigArguments config = {};
   std::optional<std::filesystem::path> web = {};
   std::optional<std::filesystem::path> appliance = {};  ///< folder of an Appliance
 };
@@ -34,26 +45,12 @@ struct ServeArguments {
 /// `octurn serve`: the daemon. Returns after SIGTERM or SIGINT.
 void serve(const ServeArguments& arguments);
 
-/// What a command line says about a scan, in the units of its options.
-struct SettingsArguments {
-  std::optional<std::string> method = {};
-  std::optional<double> max_error_mm = {};
-  std::optional<int> snapshots = {};
-  std::optional<std::string> filter = {};
-  std::optional<int> frames = {};
-  std::optional<double> leaf_size_mm = {};
-  std::optional<double> threshold_m2 = {};
-  std::optional<double> root_size_mm = {};
-  std::optional<std::array<double, 6>> clip_mm = {};
-};
-
 struct ScanArguments {
   RigArguments rig = {};
-  SettingsArguments settings = {};
-  std::optional<std::string> resume = {};  ///< the scan to go on with, by its own settings
-  std::optional<std::filesystem::path> config_file = {};
-  std::optional<std::filesystem::path> data = {};
-  std::filesystem::path output = "Scan.stl";
+  ConfigArguments config = {};
+  nlohmann::json settings = nlohmann::json::object();  ///< as the body of a start has them
+  std::optional<std::string> resume = {};     ///< the scan to go on with, by its own settings
+  std::filesystem::path output = "Scan.stl";  ///< "-" is standard output
 };
 
 /// `octurn scan`: one scan from the shell. The model goes to `output`, the scan stays in `data`.
@@ -61,7 +58,7 @@ void scan(const ScanArguments& arguments);
 
 struct RecordArguments {
   RigArguments rig = {};
-  std::optional<std::filesystem::path> config_file = {};
+  ConfigArguments config = {};
   std::filesystem::path output = {};
   int snapshots = 36;  ///< stops in a turn
   int frames = 10;     ///< at each stop
@@ -72,8 +69,7 @@ void record(const RecordArguments& arguments);
 
 struct DoctorArguments {
   RigArguments rig = {};
-  std::optional<std::filesystem::path> config_file = {};
-  std::optional<std::filesystem::path> data = {};
+  ConfigArguments config = {};
   bool json = false;                              ///< one line of JSON in place of the table
   std::optional<std::filesystem::path> zip = {};  ///< also an archive for who helps from afar
 };
@@ -84,17 +80,9 @@ bool doctor(const DoctorArguments& arguments);
 
 struct ReconstructArguments {
   std::filesystem::path folder = {};
-  std::filesystem::path output = {};  ///< "-" is standard output
-  std::string method = "intersection";
-  std::optional<double> max_error_mm = {};
-  std::optional<double> leaf_size_mm = {};
-  std::optional<double> root_size_mm = {};
-  std::optional<double> threshold_m2 = {};
-  std::optional<std::array<double, 6>> clip_mm = {};  ///< default: the scan's
-  std::optional<int> level = {};
-  std::optional<int> threads = {};             ///< default: all cores
-  std::optional<double> memory_limit_mb = {};  ///< of the whole process; default: none
-  bool json = false;                           ///< one line of JSON on standard output
+  std::filesystem::path output = {};                   ///< "-" is standard output
+  nlohmann::json settings = nlohmann::json::object();  ///< of ModelSettings, by their keys
+  bool json = false;                                   ///< one line of JSON on standard output
 };
 
 /// `octurn reconstruct`: a model from a scan folder.

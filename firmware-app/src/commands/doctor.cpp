@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "commands/commands.hpp"
 #include "doctor/diagnostics.hpp"
-#include "interruption.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "signal_stop.hpp"
+#include "standard_output.hpp"
 #include "zip_archive.hpp"
 
 namespace octurn {
@@ -45,20 +46,22 @@ std::string summary(const std::vector<Finding>& findings) {
          (warnings == 0 ? "" : ", " + counted(warnings, "warning")) + ".";
 }
 
-void print_table(const std::vector<Finding>& findings) {
+std::string table_text(const std::vector<Finding>& findings) {
+  std::ostringstream text;
   const bool in_colour = ::isatty(STDOUT_FILENO) == 1;
   std::size_t width = 0;
   for (const Finding& finding : findings) {
     width = std::max(width, finding.name.size());
   }
   for (const Finding& finding : findings) {
-    std::cout << state_text(finding.state, in_colour) << "  " << padded(finding.name, width) << "  "
-              << finding.measured << '\n';
+    text << state_text(finding.state, in_colour) << "  " << padded(finding.name, width) << "  "
+         << finding.measured << '\n';
     if (!finding.advice.empty()) {
-      std::cout << std::string(state_width + width + 4, ' ') << finding.advice << '\n';
+      text << std::string(state_width + width + 4, ' ') << finding.advice << '\n';
     }
   }
-  std::cout << '\n' << summary(findings) << '\n';
+  text << '\n' << summary(findings) << '\n';
+  return text.str();
 }
 
 /// The sensor's own look, unless a daemon that works here has the sensor.
@@ -75,16 +78,15 @@ SensorLook look_from_shell(const Patient& patient, const std::stop_token& stop) 
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
-  Config config = chosen_config(arguments.config_file);
-  config.data = arguments.data.value_or(config.data);
+  const Config config = make_config(arguments.config);
   const Patient patient{
       .rig = rig_options(arguments.rig, config.turntable),
       .config = config,
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // before the first thread, as it asks
-  const Interruption interruption;
-  const SensorLook look = look_from_shell(patient, interruption.token());
-  if (interruption.token().stop_requested()) {
+  const SignalStop signal;
+  const SensorLook look = look_from_shell(patient, signal.token());
+  if (signal.token().stop_requested()) {
     throw_stopped();
   }
   const std::vector<Finding> findings = examine(patient, look);
@@ -92,11 +94,7 @@ bool doctor(const DoctorArguments& arguments) {
     write_file(*arguments.zip,
                zip_of(diagnostics_of_machine(config, findings), std::chrono::system_clock::now()));
   }
-  if (arguments.json) {
-    std::cout << json_of(findings) << '\n';
-  } else {
-    print_table(findings);
-  }
+  write_standard_output(arguments.json ? json_of(findings).dump() + "\n" : table_text(findings));
   return worst(findings) != Finding::State::fault;
 }
 

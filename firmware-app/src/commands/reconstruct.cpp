@@ -1,19 +1,20 @@
-#include <sys/resource.h>
-
 #include <chrono>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 
 #include "commands/commands.hpp"
-#include "interruption.hpp"
+#include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
+#include "settings/field.hpp"
+#include "signal_stop.hpp"
 #include "standard_output.hpp"
 
 namespace octurn {
@@ -30,90 +31,50 @@ struct Times {
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
+/// The most memory that this program has had resident, bytes. (ru_maxrss would count what its
+/// parent had before exec.)
 std::uint64_t peak_memory_bytes() {
-  struct ::rusage usage {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
-}
-
-Box box_of(const std::array<double, 6>& mm) {
-  const auto point = [&](std::size_t i) {
-    return Eigen::Vector3d(metres_from_mm(mm[i]), metres_from_mm(mm[i + 1]),
-                           metres_from_mm(mm[i + 2]));
-  };
-  return {.min = point(0), .max = point(3)};
-}
-
-/// @throws Error "bad-settings"  that names an option which the method does not have
-void expect_options_of_method(const ReconstructArguments& arguments) {
-  const auto refuse = [&](const char* option) {
-    throw Error("bad-settings",
-                std::string(option) + ": the method " + arguments.method + " has none");
-  };
-  if (arguments.method == "solid") {
-    if (arguments.level) {
-      refuse("--level");
-    }
-    if (arguments.threshold_m2) {
-      refuse("--threshold-m2");
-    }
-  } else if (arguments.max_error_mm) {
-    refuse("--max-error-mm");
-  }
-}
-
-ReconstructOptions options_of(const ReconstructArguments& arguments, const Scan& scan) {
-  expect_options_of_method(arguments);
-  ReconstructOptions options{
-      .method = method_named(arguments.method).value_or(Method::intersection),
-      .clip = scan.clip,
-      .level = arguments.level};
-  if (arguments.max_error_mm) {
-    options.target_error = metres_from_mm(*arguments.max_error_mm);
-  }
-  if (arguments.leaf_size_mm) {
-    options.leaf_size = metres_from_mm(*arguments.leaf_size_mm);
-  }
-  if (arguments.root_size_mm) {
-    options.root_size = metres_from_mm(*arguments.root_size_mm);
-  }
-  if (arguments.clip_mm) {
-    options.clip = box_of(*arguments.clip_mm);
-  }
-  options.threshold = arguments.threshold_m2.value_or(options.threshold);
-  options.threads = arguments.threads.value_or(available_threads());
-  if (arguments.memory_limit_mb) {
-    options.memory_limit = static_cast<std::size_t>(bytes_from_mb(*arguments.memory_limit_mb));
-  }
-  return options;
-}
-
-Json settings_of(const ReconstructOptions& options) {
-  Json clip = Json::array();
-  for (const Eigen::Vector3d& corner : {options.clip.min, options.clip.max}) {
-    for (const double metres : corner) {
-      clip.push_back(mm_from_metres(metres));
+  std::ifstream status("/proc/self/status");
+  for (std::string key; status >> key;) {
+    if (key == "VmHWM:") {
+      double kb = 0;
+      status >> kb;
+      return static_cast<std::uint64_t>(bytes_from_kb(kb));
     }
   }
-  const bool solid = options.method == Method::solid;
-  Json settings{{"method", name_of(options.method)},
-                {"leaf_size_mm", mm_from_metres(options.leaf_size)},
-                {"root_size_mm", mm_from_metres(options.root_size)}};
-  if (solid) {
-    settings["max_error_mm"] = mm_from_metres(options.target_error);
-  } else {
-    settings["threshold_m2"] = options.threshold;
+  return 0;
+}
+
+ModelSettings settings_from(const nlohmann::json& given) {
+  JsonObject keys(given, "bad-settings", "");
+  ModelSettings settings;
+  read_fields(keys, fields(settings));
+  expect_options_of_method(given, fields(settings), name_of(settings.scan.method));
+  check_leaf(keys, settings.scan);
+  if (keys.value("clip_mm")) {
+    check_clip(keys, settings.scan);
   }
-  settings["clip_mm"] = clip;
-  if (!solid) {
-    settings["level"] = options.level ? Json(*options.level) : Json(nullptr);
-  }
-  settings["threads"] = options.threads;
-  settings["memory_limit_mb"] = mb_from_bytes(static_cast<double>(options.memory_limit));
   return settings;
 }
 
-Json json_of(const ModelReport& report, const ReconstructOptions& options, const Times& times) {
+ReconstructOptions options_from(const ModelSettings& settings) {
+  ReconstructOptions options = reconstruct_options(settings.scan, settings.limits);
+  options.level = settings.level;
+  return options;
+}
+
+/// The settings that the method has.
+Json json_of(ModelSettings settings) {
+  Json json;
+  for (const Field& field : fields(settings)) {
+    if (field.method.empty() || field.method == name_of(settings.scan.method)) {
+      json[std::string(field.key)] = field.access.write();
+    }
+  }
+  return json;
+}
+
+Json json_of(const ModelReport& report, const ModelSettings& settings, const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
@@ -124,7 +85,7 @@ Json json_of(const ModelReport& report, const ReconstructOptions& options, const
             {"watertight", report.watertight},
             {"volume_cm3", cm3_from_m3(report.volume)},
             {"size_mm", mm(report.size)}};
-  if (options.method == Method::solid) {
+  if (settings.scan.method == Method::solid) {
     json["parts"] = report.parts;
     json["seen_share"] = 1 - report.filled_share;
     json["filled_share"] = report.filled_share;
@@ -133,7 +94,7 @@ Json json_of(const ModelReport& report, const ReconstructOptions& options, const
   json["seconds"] = {{"snapshots", seconds(times.snapshots)},
                      {"surface", seconds(times.surface)},
                      {"total", seconds(times.snapshots + times.surface)}};
-  json["settings"] = settings_of(options);
+  json["settings"] = json_of(settings);
   return json;
 }
 
@@ -182,11 +143,15 @@ SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& sca
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
-  const Interruption interruption;
-  const std::stop_token stop = interruption.token();
+  const SignalStop signal;
+  const std::stop_token stop = signal.token();
+  ModelSettings settings = settings_from(arguments.settings);
+  expect_writable(arguments.output);
   const Scan scan = read_scan(arguments.folder);
-  const ReconstructOptions options = options_of(arguments, scan);
-  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  if (!arguments.settings.contains("clip_mm")) {
+    settings.scan.clip = scan.clip;
+  }
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options_from(settings));
   MeshCheck check;
   std::optional<SurfaceCount> count;
   Times times;
@@ -213,9 +178,12 @@ void reconstruct(const ReconstructArguments& arguments) try {
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
   if (arguments.json) {
-    // Where the model goes to standard output, a line of text does not belong into it.
-    (arguments.output == "-" ? std::cerr : std::cout)
-        << json_of(report_of(*count, check), options, times).dump() << std::endl;
+    const std::string line = json_of(report_of(*count, check), settings, times).dump() + "\n";
+    if (arguments.output == "-") {
+      std::cerr << line;  // a line of text does not belong into the model
+    } else {
+      write_standard_output(line);
+    }
   }
 } catch (const Stopped&) {
   throw_stopped("no model was written");

@@ -1,12 +1,12 @@
 #include <chrono>
 
 #include "commands/commands.hpp"
-#include "interruption.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
 #include "scan/plan.hpp"
 #include "sensor/recording.hpp"
+#include "signal_stop.hpp"
 
 namespace octurn {
 namespace {
@@ -30,11 +30,11 @@ TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
 }  // namespace
 
 void record(const RecordArguments& arguments) {
-  const Config config = chosen_config(arguments.config_file);
+  const Config config = make_config(arguments.config);
   const RigOptions options = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
-  const Interruption interruption;
-  const std::stop_token stop = interruption.token();
+  const SignalStop signal;
+  const std::stop_token stop = signal.token();
   Rig rig(options);
   DepthSensor& sensor = rig.sensor();
   Turntable& turntable = rig.turntable();

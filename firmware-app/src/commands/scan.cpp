@@ -1,41 +1,21 @@
 #include <chrono>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "interruption.hpp"
+#include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "progress_bar.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
+#include "settings/field.hpp"
+#include "signal_stop.hpp"
+#include "standard_output.hpp"
 
 namespace octurn {
 namespace {
-
-using nlohmann::json;
-
-/// The settings given, as the body of a start would have them: one place checks both.
-json json_of(const SettingsArguments& given) {
-  json body = json::object();
-  const auto add = [&](const char* key, const auto& value) {
-    if (value) {
-      body[key] = *value;
-    }
-  };
-  add("method", given.method);
-  add("max_error_mm", given.max_error_mm);
-  add("snapshots", given.snapshots);
-  add("filter", given.filter);
-  add("frames", given.frames);
-  add("leaf_size_mm", given.leaf_size_mm);
-  add("threshold_m2", given.threshold_m2);
-  add("root_size_mm", given.root_size_mm);
-  add("clip_mm", given.clip_mm);
-  return body;
-}
 
 /// Shows progress until the scan has ended; a signal cancels it.
 Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
@@ -66,41 +46,62 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
   throw Error(job.failure->code, job.failure->detail + ": " + kept, job.failure->hint + resume);
 }
 
-void copy_model(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::ifstream source(from, std::ios::binary);
-  AtomicFile target(to);
+/// Hands over the bytes of a file in parts.
+template <typename Sink>
+void read_parts(const std::filesystem::path& file, const Sink& sink) {
+  std::ifstream source(file, std::ios::binary);
   std::vector<char> buffer(std::size_t{1} << 20U);
   while (source.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) ||
          source.gcount() > 0) {
-    target.write(
-        std::as_bytes(std::span(buffer.data(), static_cast<std::size_t>(source.gcount()))));
+    sink(std::as_bytes(std::span(buffer.data(), static_cast<std::size_t>(source.gcount()))));
   }
   if (source.bad()) {
-    throw Error("read-failed", from.string() + ": cannot be read");
+    throw Error("read-failed", file.string() + ": cannot be read");
   }
+}
+
+void copy_model(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (to == "-") {
+    read_parts(from, [](std::span<const std::byte> bytes) { write_standard_output(bytes); });
+    return;
+  }
+  AtomicFile target(to);
+  read_parts(from, [&](std::span<const std::byte> bytes) { target.write(bytes); });
   target.commit();
+}
+
+/// The same; a failure tells where the model is all the same.
+void hand_over_model(const std::filesystem::path& from, const std::filesystem::path& to) {
+  try {
+    copy_model(from, to);
+  } catch (const Error& error) {
+    throw Error(error.code(), std::string(error.what()) + ": the model is " + from.string(),
+                error.hint());
+  }
 }
 
 }  // namespace
 
 void scan(const ScanArguments& arguments) {
-  const Config config = chosen_config(arguments.config_file);
-  const ScanSettings settings = settings_from(json_of(arguments.settings), config.scan);
+  const Config config = make_config(arguments.config);
+  ScanSettings settings = settings_from(arguments.settings, config.scan);
+  expect_options_of_method(arguments.settings, fields(settings), name_of(settings.method));
+  expect_writable(arguments.output);  // before minutes of scanning
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
 
-  const Interruption interruption;
-  const ScanStore store(arguments.data.value_or(config.data));
+  const SignalStop signal;
+  const ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
 
   scanner.expect_ready();             // or there would be no more than an empty folder
   const std::optional<Job> started =  // nothing else starts scans here
       arguments.resume ? scanner.resume(*arguments.resume) : scanner.start(settings);
-  const Job job = follow(scanner, *started, interruption.token());
+  const Job job = follow(scanner, *started, signal.token());
   if (!job.model) {
     explain(job, store.folder(job.id));
   }
-  copy_model(store.model_file(job.id), arguments.output);
+  hand_over_model(store.model_file(job.id), arguments.output);
 }
 
 }  // namespace octurn

@@ -4,11 +4,11 @@
 #include "commands/commands.hpp"
 #include "http/api.hpp"
 #include "http/http_server.hpp"
-#include "interruption.hpp"
 #include "log.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "service_manager.hpp"
+#include "signal_stop.hpp"
 #include "version.hpp"
 
 namespace octurn {
@@ -44,14 +44,11 @@ void wait(Api& api) {
 }  // namespace
 
 void serve(const ServeArguments& arguments) {
-  Config config = chosen_config(arguments.config_file);
-  config.http.address = arguments.address.value_or(config.http.address);
-  config.http.port = arguments.port.value_or(config.http.port);
+  const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
 
   const Page page(arguments.web ? *arguments.web : page_folder());
-  config.data = arguments.data.value_or(config.data);
   const ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   std::optional<Appliance> appliance;

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "commands/commands.hpp"
-#include "interruption.hpp"
 #include "octurn/error.hpp"
+#include "signal_stop.hpp"
 
 namespace octurn {
 

@@ -182,7 +182,7 @@ Job job_from(const json& object) {
           .created = keys.at("created").text(),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
           .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
-          .settings = settings_from(keys.at("settings").json(), {}, "settings"),
+          .settings = stored_settings_from(keys.at("settings")),
           .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
           .failure = failure_from(keys.value("error")),
           .model = model_from(keys.value("model"))};

@@ -7,74 +7,206 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
-#include "octurn/json_object.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
+#include "settings/field.hpp"
 
 namespace octurn {
 namespace {
 
 using nlohmann::json;
 
-constexpr int most_snapshots = 200;    // the full steps of a turn of the coarsest stepper
-constexpr int most_frames = 100;       // 3 s at 30 frames a second: more does not lower the noise
-constexpr double farthest_mm = 10000;  // no depth sensor of this kind sees farther
-constexpr double largest_root_mm = 5000;
-constexpr double most_error_mm = 10;
-constexpr double finest_leaf_mm =
-    0.1;  // the octree has 16 levels, which at the largest root is 0.08
+constexpr int max_snapshots = 200;  // the full steps of a turn of the coarsest stepper
+constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not lower the noise
+constexpr int max_threads = 256;
+constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther
+constexpr double max_root_mm = 5000;
+constexpr double min_leaf_mm = 0.1;   // 16 levels of the largest root are 0.08
+constexpr double min_memory_mb = 17;  // of the intersection of one thread
 
-/// Millimetres to the nanometre, so that 0.14 m is 140 and not 140.00000000000003.
-double whole_mm(double metres) { return std::round(mm_from_metres(metres) * 1e6) / 1e6; }
-
-Eigen::Vector3d metres(const json& mm, std::size_t first) {
-  return {metres_from_mm(mm[first].get<double>()), metres_from_mm(mm[first + 1].get<double>()),
-          metres_from_mm(mm[first + 2].get<double>())};
-}
-
-bool all_numbers(const json& array, std::size_t size, double most) {
-  return array.is_array() && array.size() == size &&
-         std::ranges::all_of(array, [&](const json& value) {
-           return value.is_number() && std::abs(value.get<double>()) <= most;
-         });
-}
-
-Box clip_from(const JsonObject& settings, const json& mm) {
-  const std::string must =
-      "six numbers, x0 y0 z0 x1 y1 z1, from -10000 to 10000, each of the first three below its "
-      "partner";
-  if (!all_numbers(mm, 6, farthest_mm)) {
-    settings.refuse("clip_mm", mm, must);
+/// @return nothing if they are no rows of numbers in their range
+std::optional<Eigen::Matrix4d> matrix_from(const json& rows) {
+  const auto in_range = [](const json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= metres_from_mm(max_coordinate_mm);
+  };
+  if (!rows.is_array() || rows.size() != 4) {
+    return std::nullopt;
   }
-  Box clip{.min = metres(mm, 0), .max = metres(mm, 3)};
-  if ((clip.min.array() >= clip.max.array()).any()) {
-    settings.refuse("clip_mm", mm, must);
+  Eigen::Matrix4d matrix;
+  for (std::size_t row = 0; row < 4; ++row) {
+    if (!rows[row].is_array() || rows[row].size() != 4 ||
+        !std::ranges::all_of(rows[row], in_range)) {
+      return std::nullopt;
+    }
+    for (std::size_t column = 0; column < 4; ++column) {
+      matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          rows[row][column].get<double>();
+    }
   }
-  return clip;
+  return matrix;
 }
 
-Eigen::Isometry3d pose_from(const JsonObject& settings, const json& rows) {
-  const std::string must =
-      "four rows of four numbers, a rotation and a translation in metres, the last row 0 0 0 1";
-  Eigen::Matrix4d pose = Eigen::Matrix4d::Zero();
+json rows_of(const Eigen::Matrix4d& matrix) {
+  json rows = json::array();
   for (int row = 0; row < 4; ++row) {
-    if (!rows.is_array() || rows.size() != 4 ||
-        !all_numbers(rows[static_cast<std::size_t>(row)], 4, metres_from_mm(farthest_mm))) {
-      settings.refuse("platform_from_sensor", rows, must);
-    }
-    for (int column = 0; column < 4; ++column) {
-      pose(row, column) =
-          rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)].get<double>();
+    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
+  }
+  return rows;
+}
+
+Access pose(Eigen::Isometry3d& value) {
+  const json row{{"type", "array"}, {"items", {{"type", "number"}}}};
+  return {.read =
+              [&value](const JsonValue& given) {
+                const auto matrix = matrix_from(given.json());
+                if (!matrix || !is_rigid(*matrix)) {
+                  given.refuse(
+                      "four rows of four numbers, a rotation and a translation in metres, the last "
+                      "row 0 0 0 1");
+                }
+                value = Eigen::Isometry3d(*matrix);
+              },
+          .write = [&value] { return rows_of(value.matrix()); },
+          .schema = {{"type", "array"}, {"items", row}}};
+}
+
+/// @return nothing if they are no six numbers in their range, or hold nothing
+std::optional<Box> box_from(const json& mm) {
+  const auto in_range = [](const json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= max_coordinate_mm;
+  };
+  if (!mm.is_array() || mm.size() != 6 || !std::ranges::all_of(mm, in_range)) {
+    return std::nullopt;
+  }
+  const auto corner = [&](std::size_t first) {
+    const auto metres = [&](std::size_t i) { return metres_from_mm(mm[i].get<double>()); };
+    return Eigen::Vector3d(metres(first), metres(first + 1), metres(first + 2));
+  };
+  const Box box{.min = corner(0), .max = corner(3)};
+  return (box.min.array() < box.max.array()).all() ? std::optional(box) : std::nullopt;
+}
+
+json mm_of(const Box& box) {
+  json mm = json::array();
+  for (const Eigen::Vector3d& corner : {box.min, box.max}) {
+    for (const double metres : corner) {
+      mm.push_back(rounded_mm(metres));
     }
   }
-  if (!is_rigid(pose)) {
-    settings.refuse("platform_from_sensor", rows, must);
-  }
-  return Eigen::Isometry3d(pose);
+  return mm;
+}
+
+Access box(Box& value) {
+  const json side{
+      {"type", "number"}, {"minimum", -max_coordinate_mm}, {"maximum", max_coordinate_mm}};
+  return {.read =
+              [&value](const JsonValue& given) {
+                const auto box = box_from(given.json());
+                if (!box) {
+                  given.refuse(
+                      "six numbers, x0 y0 z0 x1 y1 z1, from -10000 to 10000, each of the first "
+                      "three below its partner");
+                }
+                value = *box;
+              },
+          .write = [&value] { return mm_of(value); },
+          .schema = {{"type", "array"}, {"items", side}, {"minItems", 6}, {"maxItems", 6}}};
+}
+
+std::vector<Field> capture_fields(ScanSettings& s) {
+  return {
+      {.key = "snapshots",
+       .help = "stops in a turn",
+       .access = whole(s.snapshots, 1, max_snapshots)},
+      {.key = "filter",
+       .help = "how the frames of a stop become one: basic takes the first, average the mean at "
+               "each pixel, average-discard only where every frame has a reading",
+       .access = choice(s.filter,
+                        {DepthFilter::basic, DepthFilter::average, DepthFilter::average_discard})},
+      {.key = "frames",
+       .help = "frames at each stop, for the filters that merge",
+       .access = whole(s.frames, 1, max_frames)},
+  };
+}
+
+std::vector<Field> model_fields(ScanSettings& s) {
+  return {
+      {.key = "method",
+       .help = "solid: one closed, filled, smooth part; intersection: a shell of what was seen",
+       .access = choice(s.method, {Method::solid, Method::intersection})},
+      {.key = "leaf_size_mm",
+       .unit = "mm",
+       .help = "largest side of a leaf; the root is halved until it fits",
+       .access = number(s.leaf_size, min_leaf_mm, max_root_mm, millimetres)},
+      {.key = "max_error_mm",
+       .unit = "mm",
+       .help = "root mean square distance that fewer triangles may cost, a target and no bound; 0 "
+               "keeps "
+               "them all",
+       .access = number(s.target_error, 0, 1000, millimetres),
+       .method = "solid"},
+      {.key = "threshold_m2",
+       .unit = "m2",
+       .help = "square of the longest side that a triangle may have",
+       .access = number(s.threshold, 1e-8, 1),
+       .method = "intersection"},
+      {.key = "root_size_mm",
+       .unit = "mm",
+       .help = "side of the root cube",
+       .access = number(s.root_size, 10, max_root_mm, millimetres)},
+      {.key = "clip_mm",
+       .unit = "mm",
+       .help = "box around the object in the platform frame: its smallest x, y, z and its largest",
+       .access = box(s.clip)},
+  };
+}
+
+std::vector<Field> joined(std::vector<Field> fields, const std::vector<Field>& more) {
+  fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
 }
 
 }  // namespace
+
+std::vector<Field> fields(ScanSettings& s) {
+  return joined(scan_fields(s),
+                {{.key = "platform_from_sensor",
+                  .unit = "m",
+                  .help = "pose of the sensor: four rows of four numbers",
+                  .access = pose(s.platform_from_sensor),
+                  .default_text = "0.62 m before the axis, 0.36 m up, 25 degrees down"}});
+}
+
+std::vector<Field> scan_fields(ScanSettings& s) {
+  return joined(capture_fields(s), model_fields(s));
+}
+
+std::vector<Field> fields(Limits& limits) {
+  return {
+      {.key = "threads",
+       .help = "threads of a reconstruction",
+       .access = whole(limits.threads, 1, max_threads),
+       .default_text = "all cores"},
+      {.key = "memory_limit_mb",
+       .unit = "MB",
+       .help = "memory that the program may take; less of it takes longer",
+       .access = megabytes(limits.memory_bytes, min_memory_mb, 1e6),
+       .default_text = limits.memory_bytes == 0 ? "no limit" : "half of the machine's memory"},
+  };
+}
+
+std::vector<Field> fields(ModelSettings& settings) {
+  std::vector<Field> model = model_fields(settings.scan);
+  model.back().default_text = "the scan's";
+  model.push_back({.key = "level",
+                   .help = "surface of a coarser level; 0 is the root",
+                   .access = whole(settings.level, 0, max_levels),
+                   .method = "intersection",
+                   .default_text = "the leaves'"});
+  return joined(std::move(model), fields(settings.limits));
+}
 
 int available_threads() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -97,73 +229,41 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
 }
 
 json json_of(const ScanSettings& settings) {
-  json rows = json::array();
-  for (int row = 0; row < 4; ++row) {
-    const Eigen::Matrix4d& pose = settings.platform_from_sensor.matrix();
-    rows.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
-  }
-  json clip = json::array();
-  for (const Eigen::Vector3d& corner : {settings.clip.min, settings.clip.max}) {
-    for (const double metres : corner) {
-      clip.push_back(whole_mm(metres));
-    }
-  }
-  return {{"snapshots", settings.snapshots},
-          {"filter", name_of(settings.filter)},
-          {"frames", settings.frames},
-          {"method", name_of(settings.method)},
-          {"leaf_size_mm", whole_mm(settings.leaf_size)},
-          {"max_error_mm", whole_mm(settings.target_error)},
-          {"threshold_m2", settings.threshold},
-          {"root_size_mm", whole_mm(settings.root_size)},
-          {"clip_mm", clip},
-          {"platform_from_sensor", rows}};
+  ScanSettings copy = settings;
+  return to_json(fields(copy));
 }
 
 ScanSettings settings_from(const json& object, const ScanSettings& defaults,
                            const std::string& name) {
   JsonObject keys(object, "bad-settings", name);
   ScanSettings settings = defaults;
-  settings.snapshots =
-      keys.whole_number("snapshots", 1, most_snapshots).value_or(defaults.snapshots);
-  settings.frames = keys.whole_number("frames", 1, most_frames).value_or(defaults.frames);
-  settings.threshold = keys.number("threshold_m2", 1e-8, 1).value_or(defaults.threshold);
-  if (const json* filter = keys.find("filter")) {
-    const auto named =
-        filter->is_string() ? depth_filter_named(filter->get<std::string>()) : std::nullopt;
-    if (!named) {
-      keys.refuse("filter", *filter, "\"basic\", \"average\" or \"average-discard\"");
-    }
-    settings.filter = *named;
-  }
-  if (const json* method = keys.find("method")) {
-    const auto named =
-        method->is_string() ? method_named(method->get<std::string>()) : std::nullopt;
-    if (!named) {
-      keys.refuse("method", *method, "\"solid\" or \"intersection\"");
-    }
-    settings.method = *named;
-  }
-  if (const auto mm = keys.number("max_error_mm", 0, most_error_mm)) {
-    settings.target_error = metres_from_mm(*mm);
-  }
-  if (const auto mm = keys.number("root_size_mm", 10, largest_root_mm)) {
-    settings.root_size = metres_from_mm(*mm);
-  }
-  if (const auto mm = keys.number("leaf_size_mm", finest_leaf_mm, largest_root_mm)) {
-    settings.leaf_size = metres_from_mm(*mm);
-  }
-  if (settings.leaf_size > settings.root_size) {
-    keys.refuse("leaf_size_mm", whole_mm(settings.leaf_size), "at most root_size_mm");
-  }
-  if (const json* mm = keys.find("clip_mm")) {
-    settings.clip = clip_from(keys, *mm);
-  }
-  if (const json* rows = keys.find("platform_from_sensor")) {
-    settings.platform_from_sensor = pose_from(keys, *rows);
-  }
+  read_fields(keys, fields(settings));
+  check_leaf(keys, settings);
+  check_clip(keys, settings);
   keys.refuse_unread();
   return settings;
+}
+
+ScanSettings stored_settings_from(const JsonValue& object) {
+  JsonObject keys(object);
+  ScanSettings settings;
+  read_fields(keys, fields(settings));
+  keys.refuse_unread();
+  return settings;
+}
+
+void check_leaf(const JsonObject& keys, const ScanSettings& settings) {
+  if (settings.leaf_size > settings.root_size) {
+    keys.refuse("leaf_size_mm", rounded_mm(settings.leaf_size), "at most root_size_mm");
+  }
+}
+
+void check_clip(const JsonObject& keys, const ScanSettings& settings) {
+  // 1 mm is 1 mm, however it is rounded in metres.
+  const double thinnest = settings.leaf_size * (1 - 1e-9);
+  if (((settings.clip.max - settings.clip.min).array() < thinnest).any()) {
+    keys.refuse("clip_mm", mm_of(settings.clip), "as thick as leaf_size_mm or thicker");
+  }
 }
 
 }  // namespace octurn

@@ -2,10 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "octurn/box.hpp"
 #include "octurn/depth_filter.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/reconstruct.hpp"
 #include "rig/nominal_pose.hpp"
 
@@ -38,18 +41,45 @@ struct Limits {
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
+/// What `octurn reconstruct` makes a model with.
+struct ModelSettings {
+  ScanSettings scan = {.method = Method::intersection};
+  std::optional<int> level = {};  ///< surface of this coarser level; intersection
+  Limits limits = {.memory_bytes = 0};
+};
+
+struct Field;
+
+/// Every setting of a scan, with its key, unit and range.
+std::vector<Field> fields(ScanSettings& settings);
+/// Those of `octurn scan`: all but the calibration.
+std::vector<Field> scan_fields(ScanSettings& settings);
+std::vector<Field> fields(Limits& limits);
+std::vector<Field> fields(ModelSettings& settings);
+
 /// The settings of the reconstruction among them.
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
 
 /// As the API and the files have them: lengths in millimetres, each key with its unit.
 nlohmann::json json_of(const ScanSettings& settings);
 
-/// Reads settings; a key that is not given is as in `defaults`.
+/// Reads the settings of a scan to come; a key that is not given is as in `defaults`.
 ///
 /// @param name  of the object in messages; empty for the outermost
 /// @throws Error "bad-settings"  that names the key, its value and what is allowed; also for a key
 ///                               that is none
 ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& defaults,
                            const std::string& name = "");
+
+/// Reads the settings of a scan that was made. It may have a clip box thinner than a leaf, which
+/// version 0.1 took.
+/// @throws Error  as above, of the value's code
+ScanSettings stored_settings_from(const JsonValue& object);
+
+/// Refuses a leaf larger than the root. @param keys  in which the settings were given
+void check_leaf(const JsonObject& keys, const ScanSettings& settings);
+
+/// Refuses a clip box thinner than a leaf. @param keys  as above
+void check_clip(const JsonObject& keys, const ScanSettings& settings);
 
 }  // namespace octurn

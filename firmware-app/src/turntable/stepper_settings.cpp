@@ -5,13 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "octurn/json_object.hpp"
+#include "settings/field.hpp"
 
 namespace octurn {
 namespace {
 
 using nlohmann::json;
-using std::chrono::milliseconds;
 
 /// Levels of MS1, MS2 and MS3 (A4988 datasheet, table 1).
 struct Microstepping {
@@ -31,27 +30,21 @@ constexpr double max_ratio = 1000;
 constexpr double min_speed = 40;
 constexpr double max_speed = 5000;
 constexpr double max_ramp = 1e6;
+constexpr int min_steps = 4;  // a quarter turn for each: fewer is no turntable
+constexpr int max_steps = 16'000'000;
+constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a stop of a scan takes 3 s, with the most frames
+constexpr int max_idle_s = 24 * 3600;
 
 /// The keys of the lines of `lines_of`, in its order.
 constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_line",
                                                   "enable_line",     "microstep_lines",
                                                   "microstep_lines", "microstep_lines"};
 
-std::vector<std::string> microstep_lines_from(const JsonObject& keys, const json& names) {
-  if (!names.is_array() || (!names.empty() && names.size() != 3) ||
-      !std::ranges::all_of(names, [](const json& name) { return name.is_string(); })) {
-    keys.refuse("microstep_lines", names, "the names of three lines, or of none");
-  }
-  return names.get<std::vector<std::string>>();
-}
-
-void read_lines(JsonObject& keys, StepperSettings& settings) {
-  settings.step_line = keys.text("step_line").value_or(settings.step_line);
-  settings.direction_line = keys.text("direction_line").value_or(settings.direction_line);
-  settings.enable_line = keys.text("enable_line").value_or(settings.enable_line);
-  if (const json* names = keys.find("microstep_lines")) {
-    settings.microstep_lines = microstep_lines_from(keys, *names);
+void check_lines(const JsonObject& keys, const StepperSettings& settings) {
+  if (!settings.microstep_lines.empty() && settings.microstep_lines.size() != 3) {
+    keys.refuse("microstep_lines", settings.microstep_lines,
+                "the names of three lines, or of none");
   }
   const std::vector<NamedLine> lines = lines_of(settings);
   for (std::size_t line = 1; line < lines.size(); ++line) {
@@ -62,74 +55,117 @@ void read_lines(JsonObject& keys, StepperSettings& settings) {
   }
 }
 
-void read_gear(JsonObject& keys, StepperSettings& settings) {
-  if (const auto microsteps = keys.whole_number("microsteps", 1, 16)) {
-    if (std::ranges::find(microsteppings, *microsteps, &Microstepping::microsteps) ==
-        microsteppings.end()) {
-      keys.refuse("microsteps", *microsteps, "1, 2, 4, 8 or 16");
-    }
-    settings.microsteps = *microsteps;
-  }
-  settings.full_steps =
-      keys.whole_number("full_steps", 4, max_full_steps).value_or(settings.full_steps);
-  settings.gear_ratio =
-      keys.number("gear_ratio", 1 / max_ratio, max_ratio).value_or(settings.gear_ratio);
-  settings.reversed = keys.flag("reversed").value_or(settings.reversed);
-  constexpr int min_steps = 4;  // a quarter turn each: fewer is no turntable
-  const int steps = motion_of(settings).steps_per_turn;
-  if (steps < min_steps) {
-    keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
-  }
-  settings.take_up_steps =
-      keys.whole_number("take_up_steps", 0, steps).value_or(settings.take_up_steps);
+std::vector<Field> line_fields(StepperSettings& s) {
+  return {
+      {.key = "step_line",
+       .unit = "line",
+       .help = "to STEP of the A4988. Lines have the kernel's names, which are the Pi's own: "
+               "`GPIO2` to `GPIO27`",
+       .access = text(s.step_line)},
+      {.key = "direction_line", .unit = "line", .help = "to DIR", .access = text(s.direction_line)},
+      {.key = "enable_line",
+       .unit = "line",
+       .help = "to ENABLE. Of `GPIO4` to `GPIO8`, which are pulled up while the Pi boots, so that "
+               "the motor is off",
+       .access = text(s.enable_line)},
+      {.key = "microstep_lines",
+       .unit = "lines",
+       .help = "to MS1, MS2 and MS3; empty if these are wired to fixed levels",
+       .access = texts(s.microstep_lines)},
+  };
 }
 
-void read_motion(JsonObject& keys, StepperSettings& settings) {
-  settings.speed_steps_per_second = keys.number("speed_steps_per_s", min_speed, max_speed)
-                                        .value_or(settings.speed_steps_per_second);
-  settings.start_speed_steps_per_second =
-      std::min(settings.start_speed_steps_per_second, settings.speed_steps_per_second);
-  settings.start_speed_steps_per_second =
-      keys.number("start_speed_steps_per_s", min_speed, settings.speed_steps_per_second)
-          .value_or(settings.start_speed_steps_per_second);
-  settings.ramp_steps_per_second2 =
-      keys.number("ramp_steps_per_s2", 1, max_ramp).value_or(settings.ramp_steps_per_second2);
-  if (const auto ms = keys.whole_number("settle_ms", 0, 10'000)) {
-    settings.settle_time = milliseconds(*ms);
-  }
-  if (const auto seconds = keys.whole_number("idle_release_s", min_idle_s, 24 * 3600)) {
-    settings.idle_release = std::chrono::seconds(*seconds);
-  }
+std::vector<Field> gear_fields(StepperSettings& s) {
+  return {
+      {.key = "microsteps",
+       .unit = "in a full step",
+       .help = "has to be what MS1 to MS3 say",
+       .access = one_of(s.microsteps, {1, 2, 4, 8, 16})},
+      {.key = "full_steps",
+       .unit = "in a turn of the motor",
+       .help = "a motor of 1.8 degrees has 200, one of 0.9 degrees 400",
+       .access = whole(s.full_steps, 4, max_full_steps)},
+      {.key = "gear_ratio",
+       .unit = "motor turns in a platform turn",
+       .help = "teeth of the platform's wheel by teeth of the motor's",
+       .access = number(s.gear_ratio, 1 / max_ratio, max_ratio)},
+      {.key = "reversed",
+       .help = "`true` if the platform turns clockwise, seen from above, where it should turn the "
+               "other way",
+       .access = flag(s.reversed)},
+  };
+}
+
+std::vector<Field> motion_fields(StepperSettings& s) {
+  return {
+      {.key = "speed_steps_per_s",
+       .unit = "steps a second",
+       .help = "on a Pi pulses come on time up to about 1000",
+       .access = number(s.speed_steps_per_second, min_speed, max_speed)},
+      {.key = "start_speed_steps_per_s",
+       .unit = "steps a second",
+       .help = "at which a move begins and ends; at most the speed",
+       .access = number(s.start_speed_steps_per_second, min_speed, max_speed)},
+      {.key = "ramp_steps_per_s2",
+       .unit = "steps a second, each second",
+       .help = "how quickly speed is gained, and lost again",
+       .access = number(s.ramp_steps_per_second2, 1, max_ramp)},
+      {.key = "settle_ms",
+       .unit = "ms",
+       .help = "how long the platform swings after a move; frames are taken after it",
+       .access = milliseconds(s.settle_time, 0, max_settle_ms)},
+      {.key = "idle_release_s",
+       .unit = "s",
+       .help = "without a move, after which the motor is switched off. It always is after a scan",
+       .access = seconds(s.idle_release, min_idle_s, max_idle_s)},
+      {.key = "take_up_steps",
+       .unit = "steps",
+       .help = "against the play of gears: before a scan and after a move backwards, the platform "
+               "goes this far too far back and comes forward again. More than the play, at most a "
+               "turn; 0 for a platform on the motor's shaft",
+       .access = whole(s.take_up_steps, 0, max_steps)},
+  };
 }
 
 }  // namespace
 
+std::vector<Field> fields(StepperSettings& settings) {
+  std::vector<Field> all = line_fields(settings);
+  for (const std::vector<Field>& more : {gear_fields(settings), motion_fields(settings)}) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
+  check_lines(keys, settings);
+  const int steps = motion_of(settings).steps_per_turn;
+  if (steps < min_steps) {
+    keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
+  }
+  if (settings.take_up_steps > steps) {
+    keys.refuse("take_up_steps", settings.take_up_steps,
+                "a whole number from 0 to " + std::to_string(steps) + ", a turn");
+  }
+  double& start = settings.start_speed_steps_per_second;
+  if (start > settings.speed_steps_per_second && keys.value("start_speed_steps_per_s")) {
+    keys.refuse("start_speed_steps_per_s", start, "at most speed_steps_per_s");
+  }
+  start = std::min(start, settings.speed_steps_per_second);
+}
+
 StepperSettings stepper_settings_from(const json& object) {
   JsonObject keys(object, "bad-config", "turntable");
   StepperSettings settings;
-  read_lines(keys, settings);
-  read_gear(keys, settings);
-  read_motion(keys, settings);
+  read_fields(keys, fields(settings));
+  check_stepper_settings(keys, settings);
   keys.refuse_unread();
   return settings;
 }
 
 json json_of(const StepperSettings& settings) {
-  using std::chrono::duration_cast;
-  return {{"step_line", settings.step_line},
-          {"direction_line", settings.direction_line},
-          {"enable_line", settings.enable_line},
-          {"microstep_lines", settings.microstep_lines},
-          {"microsteps", settings.microsteps},
-          {"full_steps", settings.full_steps},
-          {"gear_ratio", settings.gear_ratio},
-          {"reversed", settings.reversed},
-          {"speed_steps_per_s", settings.speed_steps_per_second},
-          {"start_speed_steps_per_s", settings.start_speed_steps_per_second},
-          {"ramp_steps_per_s2", settings.ramp_steps_per_second2},
-          {"settle_ms", settings.settle_time.count()},
-          {"idle_release_s", duration_cast<std::chrono::seconds>(settings.idle_release).count()},
-          {"take_up_steps", settings.take_up_steps}};
+  StepperSettings copy = settings;
+  return to_json(fields(copy));
 }
 
 Motion motion_of(const StepperSettings& settings) {

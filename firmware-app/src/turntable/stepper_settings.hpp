@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "octurn/json_object.hpp"
 #include "turntable/gpio_lines.hpp"
 #include "turntable/motion.hpp"
 
 namespace octurn {
 
-/// The stepper's wiring, gear and motion. `docs/settings.md` explains each of them.
+/// The stepper's wiring, gear and motion; `fields` explains each of them.
 struct StepperSettings {
   std::string step_line = "GPIO17";
   std::string direction_line = "GPIO27";
@@ -35,6 +36,13 @@ StepperSettings stepper_settings_from(const nlohmann::json& object);
 
 /// The inverse of `stepper_settings_from`, with every key.
 nlohmann::json json_of(const StepperSettings& settings);
+
+struct Field;
+std::vector<Field> fields(StepperSettings& settings);
+
+/// Refuses settings that do not go together, and lowers a start speed that was not given to the
+/// speed. @param keys  in which they were given
+void check_stepper_settings(JsonObject& keys, StepperSettings& settings);
 
 /// The motion in microsteps; those of a turn of the platform are rounded to a whole number.
 Motion motion_of(const StepperSettings& settings);

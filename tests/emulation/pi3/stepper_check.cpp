@@ -9,22 +9,22 @@
 #include <string_view>
 #include <vector>
 
-#include "interruption.hpp"
 #include "octurn/error.hpp"
 #include "scan/rig.hpp"
+#include "signal_stop.hpp"
 
 namespace octurn {
 namespace {
 
 void turn(const std::vector<int>& positions) {
-  const Interruption interruption;
+  const SignalStop signal;
   const std::stop_callback tell(
-      interruption.token(), [] { std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n"; });
+      signal.token(), [] { std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n"; });
   const StepperSettings settings = {.microstep_lines = {"GPIO22", "GPIO23", "GPIO24"}};
   Stepper stepper(settings, open_gpio_lines(settings));
   bool arrived = true;
   for (const int position : positions) {
-    arrived = arrived && stepper.move_to(position, interruption.token());
+    arrived = arrived && stepper.move_to(position, signal.token());
   }
   const LatePulses late = stepper.late();
   std::cout << (arrived ? "arrived" : "stopped") << " at " << stepper.position()

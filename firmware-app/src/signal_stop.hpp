@@ -7,8 +7,9 @@
 
 namespace octurn {
 
-/// Blocks SIGINT and SIGTERM in this thread and those that it starts, and ignores SIGPIPE: to be
-/// called before the first thread.
+/// Blocks SIGINT and SIGTERM in this thread and those that it starts, and ignores SIGPIPE and
+/// SIGXFSZ, so that a reader that has gone and a file that may not grow are errors of `write`. To
+/// be called before the first thread.
 void block_signals();
 
 /// Undoes that, for a program that this process becomes.
@@ -17,20 +18,20 @@ void unblock_signals();
 /// Waits for SIGINT or SIGTERM, which are blocked.
 void wait_for_signal();
 
-/// The same, but no longer than `most`. @return whether one came
-bool wait_for_signal(std::chrono::microseconds most);
+/// The same, but no longer than `limit`. @return whether one came
+bool wait_for_signal(std::chrono::microseconds limit);
 
 /// @throws Error "stopped", always: a signal ended the command, which leaves behind what `outcome`
 /// says
 [[noreturn]] void throw_stopped(const std::string& outcome = {});
 
 /// Turns SIGINT and SIGTERM, which are blocked, into a stop request as long as it lives.
-class Interruption {
+class SignalStop {
  public:
-  Interruption();
-  ~Interruption();
-  Interruption(const Interruption&) = delete;
-  Interruption& operator=(const Interruption&) = delete;
+  SignalStop();
+  ~SignalStop();
+  SignalStop(const SignalStop&) = delete;
+  SignalStop& operator=(const SignalStop&) = delete;
 
   std::stop_token token() const { return source_.get_token(); }
 

@@ -1,4 +1,4 @@
-#include "interruption.hpp"
+#include "signal_stop.hpp"
 
 #include <pthread.h>
 #include <signal.h>
@@ -25,13 +25,15 @@ void throw_stopped(const std::string& outcome) {
 void block_signals() {
   const sigset_t signals = ending_signals();
   ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  ::signal(SIGPIPE, SIG_IGN);  // a reader that has gone shows in what write returns
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
 }
 
 void unblock_signals() {
   const sigset_t signals = ending_signals();
   ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   ::signal(SIGPIPE, SIG_DFL);
+  ::signal(SIGXFSZ, SIG_DFL);
 }
 
 void wait_for_signal() {
@@ -40,21 +42,21 @@ void wait_for_signal() {
   ::sigwait(&signals, &signal);
 }
 
-bool wait_for_signal(std::chrono::microseconds most) {
+bool wait_for_signal(std::chrono::microseconds limit) {
   const sigset_t signals = ending_signals();
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(most);
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(limit);
   const timespec wait{.tv_sec = seconds.count(),
-                      .tv_nsec = std::chrono::nanoseconds(most - seconds).count()};
+                      .tv_nsec = std::chrono::nanoseconds(limit - seconds).count()};
   return ::sigtimedwait(&signals, nullptr, &wait) > 0;
 }
 
-Interruption::Interruption()
+SignalStop::SignalStop()
     : waiter_([this] {
         wait_for_signal();
         source_.request_stop();
       }) {}
 
-Interruption::~Interruption() {
+SignalStop::~SignalStop() {
   // Wakes the waiter, and nobody else, with one of the signals that it waits for.
   ::pthread_kill(waiter_.native_handle(), SIGTERM);
 }

@@ -1,0 +1,104 @@
+#include "commands/options.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "commands/commands.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// What stands for the value in the help.
+std::string placeholder(const Field& field) {
+  const json& schema = field.access.schema;
+  if (schema["type"] == "array") {
+    return "X0 Y0 Z0 X1 Y1 Z1";
+  }
+  if (!field.unit.empty()) {
+    std::string unit(field.unit);
+    std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return std::toupper(c); });
+    return unit;
+  }
+  return schema["type"] == "string" ? "NAME" : "N";
+}
+
+/// "solid: what it is (its default)".
+std::string help_text(const Field& field) {
+  const json value = field.access.write();
+  std::string usual = !field.default_text.empty() ? std::string(field.default_text)
+                      : value.is_string()         ? value.get<std::string>()
+                                                  : plain_text(value);
+  std::erase_if(usual, [](char c) { return c == '`' || c == '"' || c == '[' || c == ']'; });
+  return (field.method.empty() ? "" : std::string(field.method) + ": ") + std::string(field.help) +
+         " (" + usual + ")";
+}
+
+template <typename Value>
+CLI::Option* add_option(CLI::App& command, const Field& field, json& given) {
+  return command.add_option_function<Value>(
+      option_name(field.key),
+      [&given, key = std::string(field.key)](const Value& value) { given[key] = value; },
+      help_text(field));
+}
+
+CLI::Option* add_option_of_type(CLI::App& command, const Field& field, json& given) {
+  const json& schema = field.access.schema;
+  if (schema["type"] == "integer") {
+    return add_option<int>(command, field, given);
+  }
+  if (schema["type"] == "number") {
+    return add_option<double>(command, field, given);
+  }
+  if (schema["type"] == "array") {
+    return add_option<std::vector<double>>(command, field, given)
+        ->expected(schema["minItems"].get<int>());
+  }
+  return add_option<std::string>(command, field, given);
+}
+
+}  // namespace
+
+std::string option_name(std::string_view key) {
+  std::string name = "--" + std::string(key);
+  std::ranges::replace(name, '_', '-');
+  return name;
+}
+
+void add_options(CLI::App& command, const std::vector<Field>& fields, json& given) {
+  for (const Field& field : fields) {
+    add_option_of_type(command, field, given)->type_name(placeholder(field));
+  }
+}
+
+Config make_config(const ConfigArguments& arguments) {
+  Config config = chosen_config(arguments.file);
+  JsonObject keys(arguments.given, "bad-settings", "");
+  read_fields(keys, network_fields(config));
+  read_fields(keys, data_fields(config));
+  return config;
+}
+
+void expect_writable(const std::filesystem::path& output) {
+  if (output.empty()) {
+    throw Error("bad-settings", "--output is empty: must be a file, or - for standard output");
+  }
+  if (output != "-") {
+    const AtomicFile probe(output);  // which its end removes
+  }
+}
+
+void expect_options_of_method(const json& given, const std::vector<Field>& fields,
+                              std::string_view method) {
+  for (const Field& field : fields) {
+    if (!field.method.empty() && field.method != method && given.contains(field.key)) {
+      throw Error("bad-settings",
+                  option_name(field.key) + ": the method " + std::string(method) + " has none");
+    }
+  }
+}
+
+}  // namespace octurn

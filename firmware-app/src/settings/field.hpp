@@ -1,0 +1,108 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octurn/json_object.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+
+/// How a value is read from JSON and written to it, and what it may be.
+struct Access {
+  /// @throws Error  that names the value's place, if it is not as `schema` says
+  std::function<void(const JsonValue&)> read = {};
+  std::function<nlohmann::json()> write = {};
+  nlohmann::json schema = {};  ///< JSON Schema: "type", "minimum", "maximum", "enum" and the like
+};
+
+/// One setting. A list of them describes a struct, and is all that the command line, JSON files,
+/// the HTTP interface and the documents know of it: a new setting is a new line of such a list.
+struct Field {
+  /// In JSON, "leaf_size_mm"; with dashes the option of the command line.
+  std::string_view key = {};
+  std::string_view unit = {};  ///< for documents and help; empty: a count or a name
+  std::string_view help = {};
+  Access access = {};
+  std::string_view method = {};  ///< the name of the only method that has it; empty: both
+  /// What documents tell as the default, where it depends on the machine or on the scan.
+  std::string_view default_text = {};
+};
+
+/// Linear conversion between a setting's unit and SI.
+struct Unit {
+  double (*to_si)(double) = [](double value) { return value; };
+  double (*from_si)(double) = [](double value) { return value; };
+};
+
+/// To the nanometre, so that 0.14 m is 140 mm and not 140.00000000000003.
+double rounded_mm(double metres);
+inline constexpr Unit millimetres{.to_si = metres_from_mm, .from_si = rounded_mm};
+
+// Access to a member, which must outlive it. Ranges are in the unit of the setting.
+
+Access number(double& value, double min, double max, const Unit& unit = {});
+Access whole(int& value, int min, int max);
+/// JSON null is no value.
+Access whole(std::optional<int>& value, int min, int max);
+Access one_of(int& value, const std::vector<int>& allowed);
+Access flag(bool& value);
+Access text(std::string& value);
+Access texts(std::vector<std::string>& value);
+/// @param min_length  1 refuses the empty path
+Access path(std::filesystem::path& value, std::size_t min_length);
+Access milliseconds(std::chrono::milliseconds& value, int min, int max);
+Access seconds(std::chrono::milliseconds& value, int min, int max);
+Access megabytes(std::size_t& bytes, double min, double max);
+/// An object of settings. Its keys that are none are refused.
+/// @param check  compares settings with one another, once all are read
+Access object(std::vector<Field> fields, std::function<void(JsonObject&)> check);
+/// A name out of these.
+Access name(const std::vector<std::string_view>& names, std::function<void(std::string)> read,
+            std::function<std::string_view()> write);
+
+/// An enumerator by its name, which `name_of` tells.
+template <typename Enum>
+Access choice(Enum& value, std::initializer_list<Enum> all) {
+  std::vector<std::string_view> names;
+  for (const Enum one : all) {
+    names.push_back(name_of(one));
+  }
+  const auto read = [&value, values = std::vector(all)](const std::string& chosen) {
+    for (const Enum one : values) {
+      if (name_of(one) == chosen) {
+        value = one;
+      }
+    }
+  };
+  return name(names, read, [&value] { return name_of(value); });
+}
+
+/// Reads the settings that an object has; the others keep their values.
+/// @throws Error  that names the key, its value and what is allowed
+void read_fields(JsonObject& object, const std::vector<Field>& fields);
+
+/// Every setting by its key.
+nlohmann::json to_json(const std::vector<Field>& fields);
+
+/// A JSON Schema of the object that holds these settings.
+nlohmann::json to_schema(const std::vector<Field>& fields);
+
+/// What a schema allows, in words: "0.1 to 5000", "\"solid\" or \"intersection\"".
+std::string allowed_text(const nlohmann::json& schema);
+
+/// A value as people read it: 1 and not 1.0.
+std::string plain_text(const nlohmann::json& value);
+
+/// A table for the documents, in Markdown, a line for each setting.
+std::string to_markdown(const std::vector<Field>& fields);
+
+}  // namespace octurn

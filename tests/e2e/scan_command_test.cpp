@@ -1,0 +1,109 @@
+// `octurn scan`, and what all commands do with where they write.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A quick scan of the simulated rig.
+std::vector<std::string> scan_to(const fs::path& data, const std::string& output) {
+  return {OCTURN_PROGRAM,
+          "scan",
+          "--simulate",
+          "--simulate-speed",
+          "50",
+          "--data",
+          data,
+          "--snapshots",
+          "2",
+          "--frames",
+          "2",
+          "--leaf-size-mm",
+          "4",
+          "-o",
+          output};
+}
+
+/// The same as a line of a shell, with what follows.
+std::string shell_line(const std::vector<std::string>& words, const std::string& more) {
+  std::string line;
+  for (const std::string& word : words) {
+    line += "'" + word + "' ";
+  }
+  return line + more;
+}
+
+TEST(ScanCommand, RefusesAnOutputThatCannotBeBeforeItScans) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.path() / "data";
+  for (const std::string& output :
+       {std::string("/nonexistent/Scan.stl"), std::string("/dev/full"), folder.path().string()}) {
+    Program program(scan_to(data, output));
+    EXPECT_EQ(program.wait(), 1) << output;
+    EXPECT_NE(program.errors().find(output), std::string::npos) << program.errors();
+  }
+  Program program(scan_to(data, ""));
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_NE(program.errors().find("--output"), std::string::npos) << program.errors();
+  EXPECT_FALSE(fs::exists(data / "scans"));
+}
+
+TEST(ScanCommand, GivesTheModelToStandardOutput) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.path() / "data";
+  Program program(scan_to(data, "-"));
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_FALSE(fs::exists("-"));
+  const fs::path stored = fs::directory_iterator(data / "scans")->path();
+  EXPECT_TRUE(program.output() == content_of(stored / "Scan.stl"));
+}
+
+TEST(ScanCommand, TellsWhereTheModelIsThatItCouldNotHandOver) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.path() / "data";
+  Program program({"/bin/sh", "-c", shell_line(scan_to(data, "-"), ">/dev/full")});
+  EXPECT_EQ(program.wait(), 1);
+  const fs::path stored = fs::directory_iterator(data / "scans")->path();
+  EXPECT_NE(program.errors().find((stored / "Scan.stl").string()), std::string::npos)
+      << program.errors();
+}
+
+TEST(ScanCommand, RefusesOptionsOfTheOtherMethod) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = scan_to(folder.path() / "data", folder.path() / "Scan.stl");
+  words.insert(words.end(), {"--threshold-m2", "0.001"});
+  Program program(words);
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_NE(program.errors().find("--threshold-m2"), std::string::npos) << program.errors();
+}
+
+TEST(Commands, RefuseAnEmptyDataFolder) {
+  for (const char* const command : {"serve", "scan", "doctor"}) {
+    Program program({OCTURN_PROGRAM, command, "--simulate", "--data", ""});
+    EXPECT_EQ(program.wait(), 2) << command;
+    EXPECT_NE(program.errors().find("\"data\""), std::string::npos) << program.errors();
+  }
+}
+
+TEST(DoctorCommand, EndsWith1WhereItsFindingsCannotBeWritten) {
+  const TemporaryFolder folder;
+  for (const char* const more : {">/dev/full", "--json >/dev/full"}) {
+    Program program(
+        {"/bin/sh", "-c",
+         shell_line({OCTURN_PROGRAM, "doctor", "--simulate", "--data", folder.path()}, more)});
+    EXPECT_EQ(program.wait(), 1);
+    EXPECT_NE(program.errors().find("standard output"), std::string::npos) << program.errors();
+  }
+}
+
+}  // namespace
+}  // namespace octurn

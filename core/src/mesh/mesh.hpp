@@ -10,25 +10,25 @@
 namespace octurn {
 
 struct MeshVertex {
-  std::array<float, 3> position = {};  // millimetres
-  bool seen = false;                   // or filled in
+  std::array<float, 3> position = {};  ///< millimetres
+  bool observed = false;               ///< measured; otherwise filled in
 };
 
-/// A triangle as a facet: `filled_in` where most of its corners were not seen.
+/// The facet of a triangle with its unit normal, which is 0 if the triangle has no area.
+/// `filled_in` if at most one corner was observed.
 Facet to_facet(const std::array<MeshVertex, 3>& corners);
 
-/// Corners of a triangle, counter-clockwise seen from outside, as numbers of vertices.
+/// Indices of a triangle's vertices, counter-clockwise seen from outside.
 using MeshTriangle = std::array<std::uint32_t, 3>;
 
-/// Some of a mesh: the vertices that come next, numbered on through the whole mesh, and triangles
-/// of these and the ones before.
+/// Consecutive part of a streamed mesh. Vertices are numbered on through the whole mesh; triangles
+/// refer to vertices of this piece and of the one before.
 struct MeshPiece {
   std::span<const MeshVertex> vertices = {};
   std::span<const MeshTriangle> triangles = {};
 };
 
-/// Takes a mesh piece by piece, in order. A piece's triangles have no vertices but its own and
-/// those of the piece before it.
+/// Takes a mesh piece by piece, in order. The spans are valid during the call only.
 using MeshSink = std::function<void(const MeshPiece&)>;
 
 }  // namespace octurn

@@ -1,39 +1,27 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "mesh/aabb.hpp"
 #include "mesh/mesh.hpp"
 
 namespace octurn {
 
-/// A box along the axes, millimetres.
-struct Aabb {
-  std::array<float, 3> low = {};
-  std::array<float, 3> high = {};
-
-  void extend(const Aabb& other) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], other.low[i]);
-      high[i] = std::max(high[i], other.high[i]);
-    }
-  }
-  bool meets(const Aabb& other) const {
-    return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
-           other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
-  }
-};
-
-/// Where a manifold mesh cuts or touches itself: a box for each triangle that meets another other
-/// than in the corners they share. What is closer than rounding could hide counts too.
+/// Finds the self-intersections of a mesh: the box of each triangle that meets another elsewhere
+/// than in the vertices that they share.
 ///
-/// @param vertices  positions, millimetres
-/// @param known     so many of the first triangles are not looked at among themselves
+/// Conservative: gaps that rounding could hide count as contact (see `are_disjoint`). Candidate
+/// pairs come from a bounding volume hierarchy; pairs in a star-shaped fan are skipped. O(n log n)
+/// for a surface whose triangles are of similar size. Deterministic.
+///
+/// @param vertices         positions, millimetres
+/// @param already_checked  pairs among so many leading triangles are not tested
+/// @returns two boxes for each pair, in no particular order; a box may come more than once
 std::vector<Aabb> self_intersections(std::span<const std::array<float, 3>> vertices,
-                                     std::span<const MeshTriangle> triangles, std::size_t known);
+                                     std::span<const MeshTriangle> triangles,
+                                     std::size_t already_checked);
 
 }  // namespace octurn

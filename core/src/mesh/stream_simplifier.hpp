@@ -1,97 +1,62 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <limits>
 #include <stop_token>
 #include <vector>
 
+#include "mesh/aabb.hpp"
+#include "mesh/indexed_mesh.hpp"
 #include "mesh/mesh.hpp"
-#include "mesh/triangle_adjacency.hpp"
+#include "mesh/qem_simplify.hpp"
 
 namespace octurn {
 
-/// Makes a mesh of fewer triangles while it streams by from below, in bounded memory.
+/// Simplifies a closed manifold mesh while it streams by from below, in bounded memory.
 ///
-/// Edges are collapsed where the surface stays within an error of the planes that it came from
-/// (Garland and Heckbert 1997), the cheapest first, if the mesh stays manifold (the link condition,
-/// Dey et al. 1999), no triangle turns over, and the surface does not come to cut itself. That is
-/// done in a window that moves up: what lies well below its upper end is handed on, the rest waits
-/// for what comes.
+/// A window moves up through the mesh. In each window edges are collapsed (`qem_simplify`), and
+/// what lies well below its upper end is emitted; the rest waits for the next window. Where a
+/// collapse makes the surface intersect itself, the window is simplified again with the vertices
+/// around there locked. So the result is closed, manifold and of the same genus as what was added;
+/// and if that has no self-intersection, neither has the result.
+///
+/// Deterministic. The result depends on the order of the pieces, and on their sizes only through
+/// where windows end: not at all for a mesh of one window. Not thread-safe.
 class StreamSimplifier {
  public:
-  /// @param target_error  millimetres, above 0
-  /// @param margin     millimetres below the upper end of a window that wait for the next
-  /// @param stop       looked at in each pass over a window: then `add` and `finish` throw
-  /// `Stopped`
+  /// @param target_error  millimetres, above 0: RMS distance of each vertex to the planes of the
+  ///                      triangles that it stands for, weighted by area; no bound of the largest
+  ///                      distance (see `qem_simplify`)
+  /// @param margin        millimetres below the upper end of a window that wait for the next
+  /// @param sink          takes the facets, from below, in spans that are valid during the call
+  /// @param stop          looked at in each pass over a window: then `add` and `finish` throw
+  ///                      `Stopped`
   StreamSimplifier(double target_error, double margin, FacetSink sink, std::stop_token stop = {});
 
+  /// Adds the next piece; z rises from piece to piece. Simplifies and emits when a window is full.
   void add(const MeshPiece& piece);
 
-  /// Hands on the rest.
+  /// Simplifies and emits the rest. Nothing may be added after.
   void finish();
 
  private:
-  /// The sum of squared distances to planes, weighted by area, as a symmetric matrix.
-  struct Quadric {
-    std::array<double, 10> terms = {};
-    double area = 0;
-
-    void operator+=(const Quadric& other) {
-      for (std::size_t i = 0; i < terms.size(); ++i) {
-        terms[i] += other.terms[i];
-      }
-      area += other.area;
-    }
-  };
-
-  struct Vertex {
-    std::array<float, 3> position = {};
-    bool seen = false;
-    bool fixed = false;  // the surface around it is not all here
-  };
-
-  struct Collapse {
-    double cost = 0;
-    std::uint32_t kept = 0;
-    std::uint32_t gone = 0;
-    std::array<float, 3> position = {};
-  };
-
-  void add_quadrics(std::size_t first_triangle);
   void simplify();
-  void collapse_edges();
-  void list_collapses(double limit, double refused);
-  void sort_collapses();
-  Collapse collapse_of(std::uint32_t a, std::uint32_t b) const;
-  void prefetch(const Collapse& collapse) const;
-  bool may_collapse(const Collapse& collapse) const;
-  bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
-  bool flips_or_degenerates(const Collapse& collapse, std::uint32_t around,
-                            std::uint32_t other) const;
-  void apply(const Collapse& collapse);
-  void drop_collapsed();
+  bool lock_near(const std::vector<Aabb>& boxes, float reach);
   void flush_below(float end);
+  void emit(std::span<const MeshTriangle> triangles);
+  void compact_window();
 
-  double target_error_;
+  CollapseLimits limits_;
   double margin_;
   FacetSink sink_;
   std::stop_token stop_;
-  std::vector<Vertex> vertices_ = {};
-  std::vector<Quadric> quadrics_ = {};  // of the vertices; apart, so that those stay in the cache
-  std::vector<MeshTriangle> triangles_ = {};
-  std::size_t flushed_ = 0;                              // of them; they are only in the way
-  float bottom_ = std::numeric_limits<float>::lowest();  // of what the others may become
-  float top_ = std::numeric_limits<float>::max();
-  std::size_t fresh_ = 0;                  // triangles since the last pass
-  std::uint32_t first_name_ = 0;           // of the vertices of the last two pieces
-  std::vector<std::uint32_t> names_ = {};  // where those are in the window
-  std::uint32_t last_piece_ = 0;           // name of its first vertex
-  TriangleAdjacency corners_ = {};
-  std::vector<Collapse> collapses_ = {};
-  std::vector<char> touched_ = {};  // vertices, in this pass
-  std::vector<char> changed_ = {};  // vertices, or triangles at them, in this pass
-  std::vector<Facet> facets_ = {};
+  IndexedMesh mesh_ = {};
+  std::vector<char> locked_ = {};  // vertices: emitted, on the open border, or near an intersection
+  std::size_t flushed_ = 0;  // leading triangles already emitted; kept only as obstacles for the
+                             // self-intersection test
+  std::size_t added_ = 0;    // triangles since the last window
+  std::uint32_t first_piece_ = 0;           // number of the first vertex of the last but one piece
+  std::uint32_t last_piece_ = 0;            // and of the last
+  std::vector<std::uint32_t> window_ = {};  // where the vertices of both are in the mesh
 };
 
 }  // namespace octurn

@@ -4,11 +4,14 @@
 
 namespace octurn {
 
-/// What meshes need of vectors, of numbers or of several at once, always in the same order of
-/// operations.
+/// Vectors whose operations round in one fixed order, so that models are bit-equal on every
+/// processor.
+///
+/// Not Eigen's: its sums associate by the length and by what the processor vectorises. `Number` may
+/// be an Eigen array, which evaluates several vectors at once.
 using Vector3 = std::array<double, 3>;
 
-inline Vector3 vector_of(const std::array<float, 3>& position) {
+inline Vector3 to_vector3(const std::array<float, 3>& position) {
   return {static_cast<double>(position[0]), static_cast<double>(position[1]),
           static_cast<double>(position[2])};
 }
@@ -28,7 +31,8 @@ Number dot(const std::array<Number, 3>& a, const std::array<Number, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-inline Vector3 normal_of(const Vector3& a, const Vector3& b, const Vector3& c) {
+/// Normal of a triangle with counter-clockwise corners; its length is twice the area.
+inline Vector3 area_normal(const Vector3& a, const Vector3& b, const Vector3& c) {
   return cross(b - a, c - a);
 }
 

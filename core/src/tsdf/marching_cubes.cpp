@@ -175,7 +175,7 @@ class MarchingCubes {
     } else if (touches_ambiguous_case(leaf, axis, below, above)) {
       part = std::clamp(part, least_part_of_cutting, 1 - least_part_of_cutting);
     }
-    MeshVertex vertex{.position = {}, .seen = a.seen && b.seen};
+    MeshVertex vertex{.position = {}, .observed = a.seen && b.seen};
     const std::array<int, 3> cell{first.x, first.y, first.z};
     for (std::size_t i = 0; i < 3; ++i) {
       const double step = i == axis ? static_cast<double>(part) : 0.0;

@@ -16,23 +16,23 @@ struct Mesh {
   std::vector<MeshTriangle> triangles = {};
 };
 
-using Bvh4Node = std::set<std::pair<std::array<float, 3>, std::array<float, 3>>>;
+using Boxes = std::set<std::pair<std::array<float, 3>, std::array<float, 3>>>;
 
-void add(const std::vector<Aabb>& cuts, Bvh4Node& boxes) {
+void add(const std::vector<Aabb>& cuts, Boxes& boxes) {
   for (const Aabb& cut : cuts) {
-    boxes.emplace(cut.low, cut.high);
+    boxes.emplace(cut.min, cut.max);
   }
 }
 
-Bvh4Node boxes_of(const Mesh& mesh, std::size_t known = 0) {
-  Bvh4Node boxes;
+Boxes boxes_of(const Mesh& mesh, std::size_t known = 0) {
+  Boxes boxes;
   add(self_intersections(mesh.vertices, mesh.triangles, known), boxes);
   return boxes;
 }
 
 /// The same by each pair of triangles on its own, which makes no closed fan.
-Bvh4Node boxes_of_pairs(const Mesh& mesh, std::size_t known = 0) {
-  Bvh4Node boxes;
+Boxes boxes_of_pairs(const Mesh& mesh, std::size_t known = 0) {
+  Boxes boxes;
   for (std::size_t i = known; i < mesh.triangles.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       add(self_intersections(mesh.vertices, std::array{mesh.triangles[j], mesh.triangles[i]}, 0),
@@ -114,7 +114,7 @@ TEST(MeshCuts, AreThoseOfAllPairs) {
   std::set<bool> found;
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     const Mesh mesh = ring(seed, 0.8F * static_cast<float>(seed - 1));
-    const Bvh4Node boxes = boxes_of(mesh);
+    const Boxes boxes = boxes_of(mesh);
     EXPECT_EQ(boxes, boxes_of_pairs(mesh)) << "seed " << seed;
     EXPECT_EQ(boxes_of(mesh, 70), boxes_of_pairs(mesh, 70)) << "seed " << seed;
     found.insert(boxes.empty());

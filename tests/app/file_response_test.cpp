@@ -126,6 +126,8 @@ TEST_F(FileResponse, ContinuesOnlyTheSameFile) {
   EXPECT_EQ(get(other).status, 200);
   EXPECT_EQ(get({{"If-Match", tag()}}).status, 200);
   EXPECT_EQ(code_thrown_by([&] { get({{"If-Match", "\"other\""}}); }), "changed");
+  EXPECT_EQ(code_thrown_by([&] { get({{"If-Match", "W/" + tag()}}); }), "changed");
+  EXPECT_EQ(get({{"Range", "bytes=5-"}, {"If-Range", "W/" + tag()}}).status, 200);
 }
 
 TEST_F(FileResponse, HasAnotherTagOnceTheFileIsReplaced) {

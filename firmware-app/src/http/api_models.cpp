@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "http/api.hpp"
+#include "http/entity_tags.hpp"
 #include "http/file_response.hpp"
 #include "log.hpp"
 #include "octurn/json_object.hpp"
@@ -107,7 +108,7 @@ Response Api::surface_so_far(const Request& request, std::string_view id) {
   }
   const std::string tag = '"' + preview->id + '-' + std::to_string(preview->snapshots) + '"';
   Headers headers{{"ETag", tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, tag)) {
+  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", "model/stl");

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "http/entity_tags.hpp"
 #include "http/problem.hpp"
 
 namespace octurn {
@@ -18,13 +19,13 @@ struct ByteRange {
 
 /// What a Range header asks for of a file of `size` bytes.
 struct RangeRequest {
-  enum class Kind { whole, part, outside };
-  Kind kind = Kind::whole;
+  enum class Extent { whole, part, outside };
+  Extent extent = Extent::whole;
   ByteRange range = {};
 };
 
 /// Digits only, all of them; nothing if there are none, or too many for a size.
-std::optional<std::uint64_t> number(std::string_view text) {
+std::optional<std::uint64_t> parse_number(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
@@ -32,7 +33,7 @@ std::optional<std::uint64_t> number(std::string_view text) {
 }
 
 /// A header that is malformed, or asks for several ranges, is answered by the whole file.
-RangeRequest range_of(std::string_view header, std::uint64_t size) {
+RangeRequest parse_range(std::string_view header, std::uint64_t size) {
   constexpr std::string_view unit = "bytes=";
   const std::size_t dash = header.find('-');
   if (!header.starts_with(unit) || dash == std::string_view::npos) {
@@ -40,25 +41,25 @@ RangeRequest range_of(std::string_view header, std::uint64_t size) {
   }
   const std::string_view before = header.substr(unit.size(), dash - unit.size());
   const std::string_view after = header.substr(dash + 1);
-  const auto first = number(before);
-  const auto last = number(after);
+  const auto first = parse_number(before);
+  const auto last = parse_number(after);
   if ((!first && !before.empty()) || (!last && !after.empty()) || (!first && !last) ||
       (first && last && *last < *first)) {
     return {};
   }
   if (first ? *first >= size : *last == 0 || size == 0) {
-    return {.kind = RangeRequest::Kind::outside};
+    return {.extent = RangeRequest::Extent::outside};
   }
   if (!first) {  // the last so many
-    return {.kind = RangeRequest::Kind::part,
+    return {.extent = RangeRequest::Extent::part,
             .range = {.first = size - std::min(*last, size), .last = size - 1}};
   }
-  return {.kind = RangeRequest::Kind::part,
+  return {.extent = RangeRequest::Extent::part,
           .range = {.first = *first, .last = last ? std::min(*last, size - 1) : size - 1}};
 }
 
 /// Changes whenever the file does: each version is a new file, put in place of the old one.
-std::string tag_of(const struct ::stat& info) {
+std::string to_entity_tag(const struct ::stat& info) {
   std::array<char, 80> text{};
   const int length = std::snprintf(
       text.data(), text.size(), "\"%jx-%jx-%jx.%lx\"", static_cast<std::uintmax_t>(info.st_ino),
@@ -92,14 +93,6 @@ std::string attachment(std::string_view name) {
   return "attachment; filename=\"" + plain + "\"; filename*=UTF-8''" + encoded;
 }
 
-bool has_tag(std::string_view list, std::string_view tag) {
-  if (list == "*") {
-    return true;
-  }
-  const std::size_t found = list.find(tag);  // tags are quoted, so none is a part of another
-  return found != std::string_view::npos && !tag.empty();
-}
-
 Response file_response(const Request& request, const std::filesystem::path& file,
                        const std::string& content_type, const std::string& name) {
   FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
@@ -109,21 +102,21 @@ Response file_response(const Request& request, const std::filesystem::path& file
                 "Start a new scan, or rebuild it with octurn reconstruct.");
   }
   const auto size = static_cast<std::uint64_t>(info.st_size);
-  const std::string tag = tag_of(info);
+  const std::string tag = to_entity_tag(info);
   Headers headers{{"ETag", tag}, {"Accept-Ranges", "bytes"}, {"Cache-Control", "no-cache"}};
-  if (const auto wanted = request.header("If-Match"); wanted && !has_tag(*wanted, tag)) {
+  if (const auto wanted = request.header("If-Match"); wanted && !matches_strongly(*wanted, tag)) {
     throw Error("changed", "the model is not the one that was asked for", "Download it again.");
   }
-  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, tag)) {
+  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
 
   RangeRequest wanted;
   const bool same = request.header("If-Range").value_or(tag) == tag;
   if (const auto range = request.header("Range"); range && request.method == "GET" && same) {
-    wanted = range_of(*range, size);
+    wanted = parse_range(*range, size);
   }
-  if (wanted.kind == RangeRequest::Kind::outside) {
+  if (wanted.extent == RangeRequest::Extent::outside) {
     Response response = problem({.code = "bad-range",
                                  .detail = "the model has " + std::to_string(size) + " bytes",
                                  .hint = "Ask for a part within them."});
@@ -132,7 +125,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
   }
   headers.emplace_back("Content-Type", content_type);
   headers.emplace_back("Content-Disposition", attachment(name));
-  if (wanted.kind == RangeRequest::Kind::whole) {
+  if (wanted.extent == RangeRequest::Extent::whole) {
     return {.headers = std::move(headers), .body = FileSlice{std::move(descriptor), 0, size}};
   }
   const auto [first, last] = wanted.range;

@@ -19,7 +19,4 @@ Response file_response(const Request& request, const std::filesystem::path& file
 /// The value of a Content-Disposition that has a browser save a file under that name (RFC 6266).
 std::string attachment(std::string_view name);
 
-/// Whether a list of entity tags, as in If-None-Match, contains `tag` or is "*".
-bool has_tag(std::string_view list, std::string_view tag);
-
 }  // namespace octurn

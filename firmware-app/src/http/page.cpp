@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "http/file_response.hpp"
+#include "http/entity_tags.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -93,7 +93,7 @@ Response Page::file(const Request& request) const {
   }
   const File& file = found->second;
   Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match"); known && has_tag(*known, file.tag)) {
+  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, file.tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", file.content_type);

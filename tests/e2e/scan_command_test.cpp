@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "support/program.hpp"
+#include "support/stl.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {
@@ -103,6 +106,52 @@ TEST(DoctorCommand, EndsWith1WhereItsFindingsCannotBeWritten) {
     EXPECT_EQ(program.wait(), 1);
     EXPECT_NE(program.errors().find("standard output"), std::string::npos) << program.errors();
   }
+}
+
+TEST(ScanCommand, ScansAndWritesTheModel) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> command{OCTURN_PROGRAM,
+                                         "scan",
+                                         "--simulate",
+                                         "--simulate-speed",
+                                         "20",
+                                         "--data",
+                                         folder.path() / "data",
+                                         "-o",
+                                         folder.path() / "Scan.stl",
+                                         "--snapshots",
+                                         "3",
+                                         "--frames",
+                                         "2",
+                                         "--leaf-size-mm",
+                                         "4"};
+  Program program(command);
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  const std::string stl = content_of(folder.path() / "Scan.stl");
+  EXPECT_GT(triangles_of_whole_stl(stl), 1000);
+  EXPECT_EQ(open_edges(stl), 0);
+}
+
+TEST(ScanCommand, StopsWhenItIsInterrupted) {
+  const TemporaryFolder folder;
+  Program program({OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "-o",
+                   folder.path() / "Scan.stl"});
+  while (!fs::exists(folder.path() / "data" / "scans")) {
+    std::this_thread::yield();
+  }
+  program.send_signal(SIGINT);
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(program.errors().find("stopped"), std::string::npos) << program.errors();
+  EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
+}
+
+TEST(ScanCommand, RefusesSettingsThatAreWrong) {
+  const TemporaryFolder folder;
+  Program program(
+      {OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "--snapshots", "0"});
+  EXPECT_EQ(program.wait(), 2);
+  EXPECT_NE(program.errors().find("snapshots"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder.path() / "data"));
 }
 
 }  // namespace

@@ -150,72 +150,6 @@ TEST(Serve, NamesAndDeletesAScan) {
   EXPECT_TRUE(fs::is_empty(folder.path() / "data" / "scans"));
 }
 
-TEST(Serve, ChangesNothingForASettingThatIsWrong) {
-  const TemporaryFolder folder;
-  const Daemon daemon(folder.path());
-  for (const char* const body :
-       {R"({"snapshots": 0})", R"({"leaf_size_mm": "fine"})", R"({"speed": 1})", "[]", "nonsense",
-        R"({"snapshots": 1e999})", "\xff\xfe"}) {
-    const Reply reply = daemon.post("/api/v1/scans", body);
-    EXPECT_EQ(reply.status, 400) << body;
-    EXPECT_EQ(reply.header("Content-Type"), "application/problem+json");
-  }
-  const std::string deep(60'000, '[');
-  EXPECT_EQ(daemon.post("/api/v1/scans", deep).status, 400);
-  EXPECT_EQ(daemon.status()["scan"], nullptr);
-  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
-}
-
-TEST(Serve, ServesThePageAndNothingBesideIt) {
-  const TemporaryFolder folder;
-  put(folder.path() / "secret.txt", "treasure");
-  const Daemon daemon(folder.path());
-  const Reply page = daemon.get("/");
-  EXPECT_EQ(page.status, 200);
-  EXPECT_EQ(page.header("Content-Type"), "text/html; charset=utf-8");
-  EXPECT_EQ(daemon.get("/", {{"If-None-Match", page.header("ETag")}}).status, 304);
-  for (const char* const path :
-       {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/%2e%2e%2fsecret.txt",
-        "//secret.txt", "/web/../../secret.txt", "/..\\secret.txt", "/api/v1/scans/..%2f..%2fweb",
-        "/api/v1/scans/%2e%2e", "/api/v1/scans/../../web",
-        "/api/v1/scans/20261121-081500-3f2a/../../../web/index.html",
-        "/api/v1/scans/..%2f..%2f/Scan.stl", "/api/v1/scans//Scan.stl", "/api/v1/", "/api"}) {
-    const Reply reply = daemon.get(path);
-    EXPECT_TRUE(reply.status == 404 || reply.status == 400) << path << " " << reply.status;
-    EXPECT_EQ(reply.body.find("treasure"), std::string::npos);
-  }
-}
-
-TEST(Serve, RefusesOtherSites) {
-  const TemporaryFolder folder;
-  const Daemon daemon(folder.path());
-  const auto post = [&](const Headers& headers) {
-    return request(daemon.port(), "POST", "/api/v1/scans", quick, headers).status;
-  };
-  EXPECT_EQ(post({{"Origin", "http://evil.example"}}), 403);
-  EXPECT_EQ(post({{"Origin", "null"}}), 403);
-  const std::string form =
-      "POST /api/v1/scans HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/plain\r\n"
-      "Content-Length: 2\r\n\r\n{}";
-  EXPECT_EQ(reply_to(daemon.port(), form).status, 415);
-  const std::string rebound = "GET /api/v1/status HTTP/1.1\r\nHost: evil.example\r\n\r\n";
-  EXPECT_EQ(reply_to(daemon.port(), rebound).status, 421);
-  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
-  EXPECT_EQ(post({{"Origin", "http://localhost:" + std::to_string(daemon.port())}}), 202);
-}
-
-TEST(Serve, SaysWhatAPathTakes) {
-  const TemporaryFolder folder;
-  const Daemon daemon(folder.path());
-  const Reply wrong = request(daemon.port(), "PUT", "/api/v1/scans");
-  EXPECT_EQ(wrong.status, 405);
-  EXPECT_EQ(wrong.header("Allow"), "GET, HEAD, POST");
-  EXPECT_EQ(request(daemon.port(), "DELETE", "/api/v1/status").status, 405);
-  EXPECT_EQ(request(daemon.port(), "POST", "/").status, 404);
-  EXPECT_EQ(parsed(daemon.get("/api/v1/scans/20261121-081500-3f2a"))["code"], "no-such-scan");
-  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 36);
-}
-
 TEST(Serve, ShowsWhatTheSensorSees) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
@@ -325,62 +259,6 @@ TEST(Serve, SaysWhatIsWrongBeforeItStarts) {
 
   Program bad_port(Daemon::command(folder.path(), {}, 70000));
   EXPECT_EQ(bad_port.wait(), 2);
-}
-
-TEST(Serve, UsesItsConfiguration) {
-  const TemporaryFolder folder;
-  put(folder.path() / "octurn.json",
-      R"({"scan": {"snapshots": 5}, "host_names": ["scan.example"]})");
-  const Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
-  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 5);
-  const std::string named = "GET /api/v1/status HTTP/1.1\r\nHost: scan.example\r\n\r\n";
-  EXPECT_EQ(reply_to(daemon.port(), named).status, 200);
-}
-
-TEST(ScanCommand, ScansAndWritesTheModel) {
-  const TemporaryFolder folder;
-  const std::vector<std::string> command{OCTURN_PROGRAM,
-                                         "scan",
-                                         "--simulate",
-                                         "--simulate-speed",
-                                         "20",
-                                         "--data",
-                                         folder.path() / "data",
-                                         "-o",
-                                         folder.path() / "Scan.stl",
-                                         "--snapshots",
-                                         "3",
-                                         "--frames",
-                                         "2",
-                                         "--leaf-size-mm",
-                                         "4"};
-  Program program(command);
-  EXPECT_EQ(program.wait(), 0) << program.errors();
-  const std::string stl = content_of(folder.path() / "Scan.stl");
-  EXPECT_GT(triangles_of_whole_stl(stl), 1000);
-  EXPECT_EQ(open_edges(stl), 0);
-}
-
-TEST(ScanCommand, StopsWhenItIsInterrupted) {
-  const TemporaryFolder folder;
-  Program program({OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "-o",
-                   folder.path() / "Scan.stl"});
-  while (!fs::exists(folder.path() / "data" / "scans")) {
-    std::this_thread::yield();
-  }
-  program.send_signal(SIGINT);
-  EXPECT_EQ(program.wait(), 1);
-  EXPECT_NE(program.errors().find("stopped"), std::string::npos) << program.errors();
-  EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
-}
-
-TEST(ScanCommand, RefusesSettingsThatAreWrong) {
-  const TemporaryFolder folder;
-  Program program(
-      {OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "--snapshots", "0"});
-  EXPECT_EQ(program.wait(), 2);
-  EXPECT_NE(program.errors().find("snapshots"), std::string::npos);
-  EXPECT_FALSE(fs::exists(folder.path() / "data"));
 }
 
 }  // namespace

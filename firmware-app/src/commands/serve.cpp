@@ -55,7 +55,11 @@ void serve(const ServeArguments& arguments) {
   if (arguments.appliance) {
     appliance.emplace(*arguments.appliance);
   }
-  Api api(scanner, store, page, {.rig = rig, .config = config}, appliance ? &*appliance : nullptr);
+  Api api({.scanner = scanner,
+           .store = store,
+           .page = page,
+           .patient = {.rig = rig, .config = config},
+           .appliance = appliance ? &*appliance : nullptr});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;

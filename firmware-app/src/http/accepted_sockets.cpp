@@ -23,7 +23,7 @@ struct Closer {
 };
 
 /// The port of an IPv4 or IPv6 address; 0 for any other.
-int port_of(const sockaddr_storage& address) {
+int to_port(const sockaddr_storage& address) {
   if (address.ss_family == AF_INET) {
     return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
   }
@@ -50,7 +50,7 @@ std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
   sockaddr_storage local{};
   socklen_t size = sizeof local;
   if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&local), &size) != 0 ||
-      port_of(local) != local_port) {
+      to_port(local) != local_port) {
     return std::nullopt;
   }
   sockaddr_storage peer{};
@@ -62,7 +62,7 @@ std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
     return std::nullopt;  // it listens, or its peer has gone
   }
   return AcceptedSocket{
-      .descriptor = descriptor, .inode = *inode, .address = address.data(), .port = port_of(peer)};
+      .descriptor = descriptor, .inode = *inode, .address = address.data(), .port = to_port(peer)};
 }
 
 }  // namespace

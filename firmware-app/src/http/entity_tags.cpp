@@ -49,7 +49,8 @@ bool matches(std::string_view field, Compare is_same) {
 }  // namespace
 
 bool matches_strongly(std::string_view field, std::string_view tag) {
-  return matches(field, [&](const EntityTag& other) { return !other.is_weak && other.text == tag; });
+  return matches(field,
+                 [&](const EntityTag& other) { return !other.is_weak && other.text == tag; });
 }
 
 bool matches_weakly(std::string_view field, std::string_view tag) {

@@ -71,6 +71,18 @@ std::optional<std::string_view> authority(std::string_view target) {
   return target.substr(0, target.find_first_of("/?#"));
 }
 
+/// The names and values of a query, decoded.
+Headers to_parameters(const char* query) {
+  std::string text(query != nullptr ? query : "");
+  std::array<mg_header, 16> fields{};  // more than any request takes
+  const int count = mg_split_form_urlencoded(text.data(), fields.data(), fields.size());
+  Headers parameters;
+  for (const mg_header& field : std::span(fields).first(static_cast<std::size_t>(count))) {
+    parameters.emplace_back(field.name, field.value != nullptr ? field.value : "");
+  }
+  return parameters;
+}
+
 }  // namespace
 
 Exchange::Exchange(mg_connection& connection, ConnectionGuard& guard)
@@ -84,7 +96,7 @@ Request Exchange::head() const {
   const mg_request_info& info = *mg_get_request_info(&connection_);
   Request request{.method = info.request_method,
                   .path = info.local_uri != nullptr ? info.local_uri : "",
-                  .query = info.query_string != nullptr ? info.query_string : ""};
+                  .parameters = to_parameters(info.query_string)};
   if (const auto host = authority(info.request_uri != nullptr ? info.request_uri : "")) {
     request.headers.emplace_back("Host", *host);  // the first of a name counts
   }

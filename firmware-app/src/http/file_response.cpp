@@ -24,7 +24,7 @@ struct RangeRequest {
   ByteRange range = {};
 };
 
-/// Digits only, all of them; nothing if there are none, or too many for a size.
+/// A decimal number without sign; nothing if the text is anything else, or too large.
 std::optional<std::uint64_t> parse_number(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -58,7 +58,7 @@ RangeRequest parse_range(std::string_view header, std::uint64_t size) {
           .range = {.first = *first, .last = last ? std::min(*last, size - 1) : size - 1}};
 }
 
-/// Changes whenever the file does: each version is a new file, put in place of the old one.
+/// Differs between versions of a file: each is a new file, renamed over the old one.
 std::string to_entity_tag(const struct ::stat& info) {
   std::array<char, 80> text{};
   const int length = std::snprintf(
@@ -68,7 +68,8 @@ std::string to_entity_tag(const struct ::stat& info) {
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
-/// RFC 8187: any name, as percent-encoded UTF-8.
+/// A name as percent-encoded UTF-8 (RFC 8187, section 3.2). mg_url_encode leaves ';' and ',' as
+/// they are, which end a parameter.
 std::string percent_encoded(std::string_view text) {
   constexpr std::string_view plain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._";
@@ -89,7 +90,7 @@ std::string percent_encoded(std::string_view text) {
 
 std::string attachment(std::string_view name) {
   const std::string encoded = percent_encoded(name);
-  const std::string plain = encoded == name ? encoded : "Scan.stl";  // for programs of old
+  const std::string plain = encoded == name ? encoded : "Scan.stl";  // for clients without RFC 8187
   return "attachment; filename=\"" + plain + "\"; filename*=UTF-8''" + encoded;
 }
 

@@ -50,7 +50,7 @@ struct Service {
   }
 };
 
-Service& service_of(const mg_connection* connection) {
+Service& to_service(const mg_connection* connection) {
   return *static_cast<Service*>(mg_get_user_data(mg_get_context(connection)));
 }
 
@@ -78,12 +78,12 @@ Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answe
 // civetweb's callbacks are C, and nothing may be thrown through them.
 
 int take_up(const mg_connection* connection, void** /*data*/) noexcept {
-  service_of(connection).wait_for_guard().take_up();
+  to_service(connection).wait_for_guard().take_up();
   return 0;
 }
 
 int answer_request(mg_connection* connection) noexcept try {
-  Service& service = service_of(connection);
+  Service& service = to_service(connection);
   Exchange exchange(*connection, service.wait_for_guard());
   if (!is_let_in(connection, service.password_file)) {
     mg_send_digest_access_authentication_request(connection, page_realm);
@@ -101,7 +101,7 @@ int answer_request(mg_connection* connection) noexcept try {
 
 /// Errors that civetweb finds itself: heads that are malformed, too large or too slow.
 int answer_error(mg_connection* connection, int /*status*/, const char* message) noexcept try {
-  Exchange exchange(*connection, service_of(connection).wait_for_guard());
+  Exchange exchange(*connection, to_service(connection).wait_for_guard());
   exchange.send("GET", problem({.code = "bad-request", .detail = message, .hint = ""}));
   return 0;
 } catch (const std::exception& error) {

@@ -14,7 +14,7 @@ Response json_response(const json& body, int status) {
           .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
 }
 
-json body_of(const Request& request) {
+json parse_body(const Request& request) {
   return request.body.empty() ? json::object() : parse_json(request.body, "bad-json", "the body");
 }
 

@@ -8,7 +8,7 @@ namespace octurn {
 
 Response json_response(const nlohmann::json& body, int status = 200);
 
-/// What a request says; no body is an empty object. @throws Error "bad-json"
-nlohmann::json body_of(const Request& request);
+/// The body of a request, parsed; no body is an empty object. @throws Error "bad-json"
+nlohmann::json parse_body(const Request& request);
 
 }  // namespace octurn

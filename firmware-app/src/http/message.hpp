@@ -48,8 +48,8 @@ struct ByteSource {
 /// A request. Its body is whole, or, if it is of upload_type, yet to be read.
 struct Request {
   std::string method = "GET";
-  std::string path = "/";  ///< decoded, without the query
-  std::string query = {};  ///< what follows the "?", as it came
+  std::string path = "/";   ///< decoded, without the query
+  Headers parameters = {};  ///< of the query, decoded, in order
   Headers headers = {};
   std::string body = {};
   ByteSource upload = {};

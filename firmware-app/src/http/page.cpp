@@ -20,6 +20,7 @@ struct ContentType {
   std::string_view name;
 };
 
+// What the page may consist of. civetweb's table has neither webmanifest nor character sets.
 constexpr std::array content_types{
     ContentType{".html", "text/html; charset=utf-8"},
     ContentType{".css", "text/css; charset=utf-8"},
@@ -33,8 +34,9 @@ constexpr std::array content_types{
     ContentType{".txt", "text/plain; charset=utf-8"},
 };
 
-/// A tag made of the content, since files of an image all have the same date (64-bit FNV-1a).
-std::string tag_of(std::string_view content) {
+/// An entity tag from the content (64-bit FNV-1a): all files of an image have the same date, so
+/// that a tag from date and size, as civetweb makes it, could outlive an update.
+std::string to_entity_tag(std::string_view content) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const char c : content) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
@@ -81,7 +83,7 @@ Page::Page(const fs::path& folder) {
       continue;
     }
     File file{.content_type = std::string(type->name), .content = read(entry.path())};
-    file.tag = tag_of(file.content);
+    file.tag = to_entity_tag(file.content);
     files_.emplace("/" + fs::relative(entry.path(), folder).generic_string(), std::move(file));
   }
 }
@@ -93,7 +95,8 @@ Response Page::file(const Request& request) const {
   }
   const File& file = found->second;
   Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, file.tag)) {
+  if (const auto known = request.header("If-None-Match");
+      known && matches_weakly(*known, file.tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", file.content_type);

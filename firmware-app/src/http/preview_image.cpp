@@ -13,19 +13,19 @@ namespace {
 constexpr int width = 320;
 constexpr int height = 240;
 
-// Brightness goes with 1 / distance, as the sensor's own resolution does. A Kinect v1 sees nothing
-// nearer than 0.45 m, and what stands behind a platform is rarely farther than 2 m.
-constexpr double nearest = 0.45;  // metres
-constexpr double farthest = 2.0;
-constexpr double darkest = 24;  // so that far is told from no reading
+// Brightness is linear in inverse depth, as the sensor's resolution is. A Kinect v1 measures from
+// 0.45 m; 2 m is behind any platform.
+constexpr double min_depth = 0.45;  // metres
+constexpr double max_depth = 2.0;
+constexpr double min_brightness = 24;  // tells far from no reading
 
-std::uint8_t brightness(double distance) {
-  if (distance <= 0) {
+std::uint8_t to_brightness(double depth) {
+  if (depth <= 0) {
     return 0;
   }
-  const double share = (1 / distance - 1 / farthest) / (1 / nearest - 1 / farthest);
+  const double share = (1 / depth - 1 / max_depth) / (1 / min_depth - 1 / max_depth);
   return static_cast<std::uint8_t>(
-      std::lround(darkest + (255 - darkest) * std::clamp(share, 0.0, 1.0)));
+      std::lround(min_brightness + (255 - min_brightness) * std::clamp(share, 0.0, 1.0)));
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ std::string preview_png(const DepthFrame& frame, double depth_unit) {
     const int row = y * frame.height / height * frame.width;
     for (int x = 0; x < width; ++x) {
       const auto sample = static_cast<std::size_t>(row + x * frame.width / width);
-      picture.push_back(brightness(frame.depth[sample] * depth_unit));
+      picture.push_back(to_brightness(frame.depth[sample] * depth_unit));
     }
   }
   const std::vector<std::byte> png = encode_grey_png(width, height, picture);

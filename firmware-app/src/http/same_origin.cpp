@@ -8,13 +8,13 @@
 namespace octurn {
 namespace {
 
-// Names that the public DNS does not give away: RFC 6762 (.local), RFC 8375 (home.arpa), ICANN 2024
-// (.internal), and what home routers call their network.
+// Top-level names that nobody can register in the public DNS: RFC 6762 (.local), RFC 8375
+// (home.arpa), ICANN 2024 (.internal), and those that home routers use.
 constexpr std::array<std::string_view, 6> local_domains{".local",    ".localhost",   ".home.arpa",
                                                         ".internal", ".localdomain", ".lan"};
 
 /// "scanner.local" of "scanner.local:8080", "::1" of "[::1]:8080".
-std::string host_name(std::string_view host) {
+std::string to_host_name(std::string_view host) {
   if (host.starts_with('[')) {
     return std::string(host.substr(1, host.find(']') - 1));
   }
@@ -50,7 +50,7 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type) {
   const std::string_view host = request.header("Host").value_or("");
-  if (!is_ours(host_name(host), host_names)) {
+  if (!is_ours(to_host_name(host), host_names)) {
     return Failure{.code = "wrong-host",
                    .detail = "\"" + std::string(host) + "\" is not a name of this scanner",
                    .hint =

@@ -1,4 +1,4 @@
-// What the API answers on the appliance: updates and WiFi.
+#include "http/handlers/appliance.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "http/api.hpp"
 #include "http/json_body.hpp"
 #include "log.hpp"
 #include "version.hpp"
@@ -63,34 +62,35 @@ void copy(const ByteSource& source, Appliance::Upload& upload) {
   }
 }
 
-}  // namespace
-
-Appliance& Api::appliance() const {
-  if (appliance_ == nullptr) {
+/// @throws Error "not-an-appliance"
+Appliance& expect_appliance(const App& app) {
+  if (app.appliance == nullptr) {
     throw Error(
         "not-an-appliance", "updates and WiFi are not Octurn's business on this machine",
         "It has them on a Raspberry Pi with the image of image-build; here the system does.");
   }
-  return *appliance_;
+  return *app.appliance;
 }
 
-void Api::expect_no_update() const {
-  if (appliance_ != nullptr && appliance_->is_updating()) {
+}  // namespace
+
+void expect_no_update(const App& app) {
+  if (app.appliance != nullptr && app.appliance->is_updating()) {
     throw Error("busy", "an update is being installed", "Wait for its end.");
   }
 }
 
-Response Api::update(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response(json_of(appliance().update()));
+Response send_update_state(App& app) {
+  return json_response(json_of(expect_appliance(app).update()));
 }
 
-Response Api::take_update(const Request& request, std::string_view /*id*/) {
-  const auto expect_no_scan = [this] {
-    if (scanner_.status().busy()) {
+Response take_update(App& app, const Request& request) {
+  const auto expect_no_scan = [&app] {
+    if (app.scanner.status().busy()) {
       throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
     }
   };
-  Appliance& machine = appliance();
+  Appliance& machine = expect_appliance(app);
   if (!request.upload.length) {
     throw Error("length-required", "the update comes without its length",
                 "Send it with Content-Length, not in chunks.");
@@ -107,13 +107,11 @@ Response Api::take_update(const Request& request, std::string_view /*id*/) {
   return json_response(json_of(machine.update()), 202);
 }
 
-Response Api::wifi(const Request& /*request*/, std::string_view /*id*/) {
-  return json_response(json_of(appliance().wifi()));
-}
+Response send_wifi_state(App& app) { return json_response(json_of(expect_appliance(app).wifi())); }
 
-Response Api::join_wifi(const Request& request, std::string_view /*id*/) {
-  Appliance& machine = appliance();
-  const WifiRequest wanted = wifi_request_from(body_of(request));
+Response join_wifi(App& app, const Request& request) {
+  Appliance& machine = expect_appliance(app);
+  const WifiRequest wanted = wifi_request_from(parse_body(request));
   machine.ask_for_wifi(wanted);
   log::info("appliance", "a WiFi is to be joined");
   return json_response(json_of(machine.wifi()), 202);

@@ -1,0 +1,93 @@
+#include "http/handlers/scans.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "http/handlers/appliance.hpp"
+#include "http/json_body.hpp"
+#include "http/scan_view.hpp"
+#include "octurn/json_object.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_name = 100;  // of a scan, bytes
+
+[[noreturn]] void throw_busy() {
+  throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
+}
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
+
+}  // namespace
+
+Response list_scans(App& app) {
+  json scans = json::array();
+  for (const Job& job : all_scans(app)) {
+    scans.push_back(to_json(app, job));
+  }
+  return json_response({{"scans", scans}});
+}
+
+Response start_scan(App& app, const Request& request) {
+  const ScanSettings settings = settings_from(parse_body(request), app.patient.config.scan);
+  expect_no_update(app);
+  app.scanner.expect_ready();
+  const std::optional<Job> job = app.scanner.start(settings);
+  if (!job) {
+    throw_busy();
+  }
+  Response response = json_response(to_json(app, *job), 202);
+  response.headers.emplace_back("Location", "/api/v1/scans/" + job->id);
+  return response;
+}
+
+Response send_scan(App& app, std::string_view id) {
+  return json_response(to_json(app, find_scan(app, id)));
+}
+
+Response rename_scan(App& app, const Request& request, std::string_view id) {
+  const json body = parse_body(request);
+  JsonObject keys(body, "bad-name", "");
+  const auto name = keys.text("name");
+  keys.refuse_unread();
+  if (!name || name->size() > max_name || std::ranges::any_of(*name, is_control)) {
+    throw Error("bad-name", "\"name\" must be text of at most 100 bytes on one line");
+  }
+  app.store.rename(id, *name);
+  return send_scan(app, id);
+}
+
+Response remove_scan(App& app, std::string_view id) {
+  if (find_scan(app, id).state == JobState::running) {
+    throw Error("busy", "this scan is running", "Cancel it first.");
+  }
+  app.store.remove(id);
+  return {.status = 204};
+}
+
+Response cancel_scan(App& app, std::string_view id) {
+  const Job job = find_scan(app, id);
+  if (!app.scanner.cancel(id)) {
+    throw Error("not-running", "this scan is " + std::string(name_of(job.state)),
+                "Only a scan that runs, or could be resumed, can be cancelled.");
+  }
+  return json_response(to_json(app, find_scan(app, id)), 202);
+}
+
+Response resume_scan(App& app, std::string_view id) {
+  const Job job = find_scan(app, id);
+  expect_no_update(app);
+  if (is_resumable(job.state) && job.snapshots_done < job.settings.snapshots) {
+    app.scanner.expect_ready();
+  }
+  if (job.state == JobState::running || !app.scanner.resume(id)) {
+    throw_busy();
+  }
+  return json_response(to_json(app, find_scan(app, id)), 202);
+}
+
+}  // namespace octurn

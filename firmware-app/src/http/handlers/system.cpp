@@ -1,0 +1,74 @@
+#include "http/handlers/system.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "doctor/diagnostics.hpp"
+#include "http/file_response.hpp"
+#include "http/json_body.hpp"
+#include "http/preview_image.hpp"
+#include "http/scan_view.hpp"
+#include "log.hpp"
+#include "utc.hpp"
+#include "version.hpp"
+#include "zip_archive.hpp"
+
+namespace octurn {
+
+using nlohmann::json;
+
+Response send_status(App& app) {
+  const std::optional<Job> newest = app.store.newest_finished();
+  const std::optional<Job> running = running_scan(app);
+  const Status now = app.scanner.status();
+  json body{{"version", version()},
+            {"sensor", json_of(now.sensor)},
+            {"turntable", json_of(now.turntable)},
+            {"disk_free_bytes", app.store.free_bytes()},
+            {"appliance", app.appliance != nullptr},
+            {"scan", nullptr},
+            {"newest", nullptr}};
+  if (running) {
+    body["scan"] = to_json(app, *running);
+  }
+  if (newest) {
+    body["newest"] = newest->id;
+  }
+  return json_response(body);
+}
+
+Response send_settings(App& app) {
+  return json_response({{"defaults", json_of(app.patient.config.scan)}});
+}
+
+Response send_findings(App& app) {
+  return json_response(json_of(examine(app.patient, app.scanner)));
+}
+
+Response send_diagnostics(App& app) {
+  const std::vector<Finding> findings = examine(app.patient, app.scanner);
+  const std::vector<Job> scans = all_scans(app);
+  std::vector<ArchivedFile> files = diagnostics_of_machine(app.patient.config, findings);
+  std::ranges::move(diagnostics_of_daemon(app.scanner.status(), scans, log::recent()),
+                    std::back_inserter(files));
+  if (app.appliance != nullptr) {
+    std::ranges::move(diagnostics_of_appliance(*app.appliance), std::back_inserter(files));
+  }
+
+  const auto time = std::chrono::system_clock::now();
+  const std::string name = "octurn-diagnostics-" + utc_text(time, "%Y%m%d-%H%M%S") + ".zip";
+  return {.headers = {{"Content-Type", "application/zip"},
+                      {"Content-Disposition", attachment(name)},
+                      {"Cache-Control", "no-store"}},
+          .body = zip_of(files, time)};
+}
+
+Response send_depth_picture(App& app) {
+  const auto view = app.scanner.view();
+  return {.headers = {{"Content-Type", "image/png"}, {"Cache-Control", "no-store"}},
+          .body = preview_png(view->frame, view->depth_unit)};
+}
+
+}  // namespace octurn

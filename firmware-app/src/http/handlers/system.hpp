@@ -1,0 +1,25 @@
+#pragma once
+
+#include "http/app.hpp"
+#include "http/message.hpp"
+
+namespace octurn {
+
+// What the scanner as a whole answers.
+
+/// The devices, the disk, the scan that runs and the newest that is finished.
+Response send_status(App& app);
+
+/// What a scan has where a request does not say otherwise.
+Response send_settings(App& app);
+
+/// What `octurn doctor` finds.
+Response send_findings(App& app);
+
+/// A zip of what a person who helps would want to see.
+Response send_diagnostics(App& app);
+
+/// What the sensor sees, as a picture for people. @throws Error "sensor-..."
+Response send_depth_picture(App& app);
+
+}  // namespace octurn

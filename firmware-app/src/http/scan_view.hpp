@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+#include <vector>
+
+#include "http/app.hpp"
+
+namespace octurn {
+
+// Scans as they are now: the one that runs as the scanner has it, the others as they are stored.
+
+/// @throws Error "no-such-scan"
+Job find_scan(const App& app, std::string_view id);
+
+/// The newest first.
+std::vector<Job> all_scans(const App& app);
+
+/// The scan that runs; nothing if none does.
+std::optional<Job> running_scan(const App& app);
+
+/// A scan as web/API.md has it.
+nlohmann::json to_json(const App& app, const Job& job);
+
+}  // namespace octurn

@@ -1,0 +1,181 @@
+// What the daemon answers to requests that are strange, and where they come from.
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "support/daemon.hpp"
+#include "support/http_client.hpp"
+#include "support/stl.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t server_stack = std::size_t{100} * 1024;  // bytes, of a thread
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t max_touched = server_stack;  // sanitizers make frames larger
+#else
+constexpr std::size_t max_touched = server_stack * 3 / 4;
+#endif
+
+TEST(ServeRequests, ChangesNothingForASettingThatIsWrong) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  for (const char* const body :
+       {R"({"snapshots": 0})", R"({"leaf_size_mm": "fine"})", R"({"speed": 1})", "[]", "nonsense",
+        R"({"snapshots": 1e999})", "\xff\xfe"}) {
+    const Reply reply = daemon.post("/api/v1/scans", body);
+    EXPECT_EQ(reply.status, 400) << body;
+    EXPECT_EQ(reply.header("Content-Type"), "application/problem+json");
+  }
+  const std::string deep(60'000, '[');
+  EXPECT_EQ(daemon.post("/api/v1/scans", deep).status, 400);
+  EXPECT_EQ(daemon.status()["scan"], nullptr);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+}
+
+TEST(ServeRequests, ServesThePageAndNothingBesideIt) {
+  const TemporaryFolder folder;
+  put(folder.path() / "secret.txt", "treasure");
+  const Daemon daemon(folder.path());
+  const Reply page = daemon.get("/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.header("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(daemon.get("/", {{"If-None-Match", page.header("ETag")}}).status, 304);
+  for (const char* const path :
+       {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/%2e%2e%2fsecret.txt",
+        "//secret.txt", "/web/../../secret.txt", "/..\\secret.txt", "/api/v1/scans/..%2f..%2fweb",
+        "/api/v1/scans/%2e%2e", "/api/v1/scans/../../web",
+        "/api/v1/scans/20261121-081500-3f2a/../../../web/index.html",
+        "/api/v1/scans/..%2f..%2f/Scan.stl", "/api/v1/scans//Scan.stl", "/api/v1/", "/api"}) {
+    const Reply reply = daemon.get(path);
+    EXPECT_TRUE(reply.status == 404 || reply.status == 400) << path << " " << reply.status;
+    EXPECT_EQ(reply.body.find("treasure"), std::string::npos);
+  }
+}
+
+TEST(ServeRequests, RefusesOtherSites) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const auto post = [&](const Headers& headers) {
+    return request(daemon.port(), "POST", "/api/v1/scans", quick, headers).status;
+  };
+  EXPECT_EQ(post({{"Origin", "http://evil.example"}}), 403);
+  EXPECT_EQ(post({{"Origin", "null"}}), 403);
+  const std::string form =
+      "POST /api/v1/scans HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/plain\r\n"
+      "Content-Length: 2\r\n\r\n{}";
+  EXPECT_EQ(reply_to(daemon.port(), form).status, 415);
+  const std::string rebound = "GET /api/v1/status HTTP/1.1\r\nHost: evil.example\r\n\r\n";
+  EXPECT_EQ(reply_to(daemon.port(), rebound).status, 421);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+  EXPECT_EQ(post({{"Origin", "http://localhost:" + std::to_string(daemon.port())}}), 202);
+}
+
+TEST(ServeRequests, SaysWhatAPathTakes) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const Reply wrong = request(daemon.port(), "PUT", "/api/v1/scans");
+  EXPECT_EQ(wrong.status, 405);
+  EXPECT_EQ(wrong.header("Allow"), "GET, HEAD, POST");
+  EXPECT_EQ(request(daemon.port(), "DELETE", "/api/v1/status").status, 405);
+  EXPECT_EQ(request(daemon.port(), "POST", "/").status, 404);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans/20261121-081500-3f2a"))["code"], "no-such-scan");
+  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 36);
+}
+
+TEST(ServeRequests, UsesItsConfiguration) {
+  const TemporaryFolder folder;
+  put(folder.path() / "octurn.json",
+      R"({"scan": {"snapshots": 5}, "host_names": ["scan.example"]})");
+  const Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json"});
+  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 5);
+  const std::string named = "GET /api/v1/status HTTP/1.1\r\nHost: scan.example\r\n\r\n";
+  EXPECT_EQ(reply_to(daemon.port(), named).status, 200);
+}
+
+/// The stacks of the server's threads: bytes that were ever touched of the one that was used most.
+/// They are the mappings of the size that civetweb gives its threads, 100 KiB in Debian's build.
+std::size_t max_touched_stack(int process) {
+  std::istringstream maps(content_of("/proc/" + std::to_string(process) + "/smaps"));
+  std::size_t mapped = 0;
+  std::size_t touched = 0;
+  for (std::string line; std::getline(maps, line);) {
+    unsigned long begin = 0;
+    unsigned long end = 0;
+    std::array<char, 5> rights{};
+    unsigned long resident = 0;  // KiB
+    if (std::sscanf(line.c_str(), "%lx-%lx %4s", &begin, &end, rights.data()) == 3) {
+      mapped = std::string_view(rights.data()) == "rw-p" ? end - begin : 0;
+    } else if (mapped == server_stack && std::sscanf(line.c_str(), "Rss: %lu", &resident) == 1) {
+      touched = std::max(touched, resident * 1024);
+    }
+  }
+  return touched;
+}
+
+TEST(ServeRequests, StartsNothingForARequestThatIsCutOff) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const FileDescriptor socket = connected(daemon.port());
+  send_text(socket,
+            "POST /api/v1/scans HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            "Content-Length: 300\r\n\r\n");
+  ::shutdown(socket.number(), SHUT_WR);
+  EXPECT_EQ(reply_from(receive_all(socket)).status, 400);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+}
+
+TEST(ServeRequests, MakesAModelByTheParametersOfTheQuery) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(quick);
+  ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
+  const std::string model = scan + "/Scan.stl";
+  const std::string coarse = daemon.get(model + "?leaf_size_mm=8").body;
+  EXPECT_LT(triangles_of_whole_stl(coarse), triangles_of_whole_stl(daemon.get(model).body) / 2);
+  EXPECT_TRUE(daemon.get(model + "?leaf%5Fsize_mm=%38").body == coarse);
+  for (const char* const query :
+       {"?x=1", "?leaf_size_mm", "?leaf_size_mm=", "?leaf_size_mm=fine", "?=8", "?&",
+        "?leaf_size_mm=8&leaf_size_mm=8", "?leaf_size_mm=8&level=2&a=1"}) {
+    EXPECT_EQ(daemon.get(model + query).status, 400) << query;
+  }
+}
+
+TEST(ServeRequests, UsesNoMoreThanThreeQuartersOfAStack) {
+  const TemporaryFolder folder;
+  Daemon daemon(folder.path());
+  const std::string scan = daemon.start(quick);
+  ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
+  const std::string nested = std::string(30'000, '[') + std::string(30'000, ']');
+  for (int i = 0; i < 40; ++i) {  // so that each thread has its turn at something
+    for (const std::string& path :
+         {scan, scan + "/Scan.stl", scan + "/Scan.stl?leaf_size_mm=8", scan + "/preview.stl",
+          std::string("/api/v1/scans"), std::string("/api/v1/status"), std::string("/nothing"),
+          std::string("/")}) {
+      daemon.get(path);
+    }
+    daemon.post("/api/v1/scans", nested);
+    request(daemon.port(), "PATCH", scan, R"({"name": "Hase"})");
+  }
+  for (const char* const path :
+       {"/api/v1/doctor", "/api/v1/diagnostics.zip", "/api/v1/preview/depth.png"}) {
+    EXPECT_EQ(daemon.get(path).status, 200);
+  }
+  const std::size_t touched = max_touched_stack(daemon.program().process());
+  EXPECT_GT(touched, 0U);
+  EXPECT_LE(touched, max_touched);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -10,12 +10,12 @@
 
 namespace octurn {
 
-/// The points of a snapshot, in the order of its depth image. A point without a reading, or
-/// clipped away, is `no_point`: not a number, so that every comparison with it is false.
+/// The points of a snapshot, in the order of its depth image. A sample without a reading, or
+/// outside the clip box, is `no_point`: not a number, so that every comparison with it is false.
 struct PointGrid {
   int width = 0;
   int height = 0;
-  std::vector<Eigen::Vector3f> points = {};  // metres, platform frame at angle 0
+  std::vector<Eigen::Vector3f> points = {};  // metres, object's frame, row by row
 };
 
 inline const Eigen::Vector3f no_point =
@@ -23,13 +23,15 @@ inline const Eigen::Vector3f no_point =
 
 inline bool is_point(const Eigen::Vector3f& point) { return !std::isnan(point.x()); }
 
-/// The points of a snapshot in the frame that turns with the platform.
+/// Back-projects a snapshot's samples into the object's frame, by the pinhole formula of
+/// `Intrinsics`.
 ///
 /// Deterministic: the same snapshot gives the same bits on x86-64 and arm64.
 /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
 PointGrid world_points(const Snapshot& snapshot);
 
-/// Takes away the points outside `box` (metres); those on its faces stay.
+/// Replaces the points outside `box` (metres, object's frame) by `no_point`; those on its faces
+/// stay.
 void clip(PointGrid& grid, const Box& box);
 
 }  // namespace octurn

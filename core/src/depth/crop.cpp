@@ -9,25 +9,25 @@
 namespace octurn {
 namespace {
 
-constexpr int margin = 4;  // pixels: what a sighting looks at beside one, and rounding
-constexpr int grain =
-    16;  // pixels, to which the window's corner is aligned, as are a sighting's bounds
+constexpr int margin = 4;      // pixels: conditioning reads three beside a pixel, and rounding
+constexpr int alignment = 16;  // pixels, of the window's corner: texels of a `DepthPyramid` stay
+                               // those of the whole image
 
-/// Pixels from `first` up to but without `end`.
-struct Span {
-  double low = std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::lowest();
+/// The pixels along one axis that points project to, with a margin.
+struct PixelInterval {
+  double min = std::numeric_limits<double>::max();
+  double max = std::numeric_limits<double>::lowest();
 
   void extend(double at) {
-    low = std::min(low, at);
-    high = std::max(high, at);
+    min = std::min(min, at);
+    max = std::max(max, at);
   }
   int first(int size) const {
-    return static_cast<int>(std::clamp(low - margin, 0.0, static_cast<double>(size))) / grain *
-           grain;
+    return static_cast<int>(std::clamp(min - margin, 0.0, static_cast<double>(size))) / alignment *
+           alignment;
   }
   int end(int size) const {
-    return static_cast<int>(std::ceil(std::clamp(high + margin, 0.0, static_cast<double>(size))));
+    return static_cast<int>(std::ceil(std::clamp(max + margin, 0.0, static_cast<double>(size))));
   }
 };
 
@@ -37,8 +37,8 @@ Snapshot crop(const Snapshot& snapshot, const Box& box) {
   const auto& [frame, intrinsics, object_from_sensor] = snapshot;
   check_size(frame, intrinsics, "crop");
   const Eigen::Isometry3d sensor_from_object = object_from_sensor.inverse();
-  Span u;
-  Span v;
+  PixelInterval u;
+  PixelInterval v;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d p =
         sensor_from_object * Eigen::Vector3d((corner & 1 ? box.max : box.min).x(),

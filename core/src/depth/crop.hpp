@@ -5,11 +5,12 @@
 
 namespace octurn {
 
-/// The part of a snapshot whose rays may meet a box, with some pixels around it that conditioning
-/// looks at; all of it, if no part does, or the box reaches up to the sensor.
+/// Crops a snapshot to the window of pixels whose rays may meet a box, with a margin for the
+/// windows of conditioning. Returns all of it if no ray does, or if the box reaches up to the
+/// sensor.
 ///
-/// @param snapshot  its frame has the intrinsics' size
-/// @param box       metres, platform frame
+/// @param snapshot  of a frame of the intrinsics' size
+/// @param box       metres, object's frame
 /// @throws std::invalid_argument  if the frame has another size
 Snapshot crop(const Snapshot& snapshot, const Box& box);
 

@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// Metres: nearer than any depth sensor sees.
+/// Metres: closer than the range of any depth sensor.
 inline constexpr double nearest_z = 0.05;
 
 /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics

@@ -103,15 +103,15 @@ class Fusion {
         v0 >= sighting_.intrinsics().height) {
       return NodeClass::nothing;
     }
-    const ConditionedDepth::Range range = sighting_.range(u0, v0, u1, v1);
-    if (near > range.greatest + deepest_behind * truncation_) {
+    const DepthPyramid::MinMax depth = sighting_.min_max(u0, v0, u1, v1);
+    if (near > depth.max_free + deepest_behind * truncation_) {
       return NodeClass::nothing;
     }
-    if (far < range.least - free_margin * truncation_) {
+    if (far < depth.min_free - free_margin * truncation_) {
       return NodeClass::free;
     }
-    const bool near_surface = near <= range.farthest_surface + deepest_behind * truncation_ &&
-                              far >= range.nearest_surface - deepest_behind * truncation_;
+    const bool near_surface = near <= depth.max_surface + deepest_behind * truncation_ &&
+                              far >= depth.min_surface - deepest_behind * truncation_;
     return near_surface ? NodeClass::surface : NodeClass::mixed;
   }
 

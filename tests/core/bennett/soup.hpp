@@ -1,15 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <random>
 
 #include "bennett/voxelize_triangle.hpp"
+#include "support/random.hpp"
 
 namespace octurn {
 
-/// Triangles of all the kinds that an exact intersection must get right, at random: tiny and huge,
-/// without area, with corners beside the faces of leaves, partly and wholly outside the root.
+/// Random triangles of all the kinds that exact voxelization must get right: tiny and huge, without
+/// area, with corners beside the faces of leaves, partly and wholly outside the root.
 class Soup {
  public:
   Soup(std::uint32_t seed, int levels) : random_(seed), leaf_(1 << (SnapGrid::bits - levels)) {}
@@ -41,10 +42,10 @@ class Soup {
     return corners;
   }
 
-  int between(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
+  int between(int low, int high) { return random_.between(low, high); }
 
  private:
-  std::mt19937 random_;
+  Random random_;
   int leaf_;
 };
 

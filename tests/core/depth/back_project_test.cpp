@@ -4,8 +4,9 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <stdexcept>
+
+#include "support/random.hpp"
 
 namespace octurn {
 namespace {
@@ -57,10 +58,9 @@ TEST(WorldPoints, AreInTheOrderOfTheImage) {
 
 TEST(WorldPoints, AgreeWithTheFormulaAtEverySampleOfAKinect) {
   Snapshot snapshot = snapshot_of({}, 0);
-  std::mt19937 random(7);
-  std::uniform_int_distribution<int> depth(4000, 15000);  // 0.4 m to 1.5 m
+  Random random(7);
   for (std::uint16_t& sample : snapshot.frame.depth) {
-    sample = static_cast<std::uint16_t>(depth(random));
+    sample = static_cast<std::uint16_t>(random.between(4000, 15000));  // 0.4 m to 1.5 m
   }
   snapshot.object_from_sensor =
       Eigen::Translation3d(0.02, -0.62, 0.31) *

@@ -30,17 +30,17 @@ Snapshot plane_snapshot(const Eigen::Vector3d& normal, double offset) {
 
 TEST(ConditionedDepth, FindsThePlaneThatItSees) {
   const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.1, -1).normalized();
-  const ConditionedDepth sighting(plane_snapshot(normal, 0.5), everywhere);
+  const ConditionedDepth conditioned(plane_snapshot(normal, 0.5), everywhere);
   for (int v = 4; v < 44; ++v) {
     for (int u = 4; u < 60; ++u) {
-      const DepthObservation& sight = sighting.at(u, v);
-      ASSERT_GT(sight.weight, 0);
+      const DepthObservation& observation = conditioned.at(u, v);
+      ASSERT_GT(observation.weight, 0);
       // Depths are rounded to 0.05 mm; the window's samples are 9 mm apart.
-      const Eigen::Vector3d found = Eigen::Vector3f(sight.normal.data()).cast<double>();
+      const Eigen::Vector3d found = Eigen::Vector3f(observation.normal.data()).cast<double>();
       EXPECT_LT((found - normal).norm(), 0.01);
       const double z = -0.5 / normal.dot(Eigen::Vector3d((u - 32) / 60.0, (v - 24) / 60.0, 1));
       const Eigen::Vector3d point(z * (u - 32) / 60.0, z * (v - 24) / 60.0, z);
-      EXPECT_NEAR(found.dot(point) + static_cast<double>(sight.offset), 0, 0.0001);
+      EXPECT_NEAR(found.dot(point) + static_cast<double>(observation.offset), 0, 0.0001);
     }
   }
 }
@@ -50,46 +50,46 @@ TEST(ConditionedDepth, LeavesOutALoneReading) {
   for (const int column : {30, 31, 32}) {  // three that bear each other out are too few
     snapshot.frame.depth[static_cast<std::size_t>(20 * 64 + column)] = 4500;
   }
-  const ConditionedDepth sighting(snapshot, everywhere);
-  EXPECT_EQ(sighting.at(31, 20).weight, 0);
-  EXPECT_EQ(sighting.at(31, 20).free_space_depth, 0);
-  EXPECT_GT(sighting.at(31, 24).weight, 0);
+  const ConditionedDepth conditioned(snapshot, everywhere);
+  EXPECT_EQ(conditioned.at(31, 20).weight, 0);
+  EXPECT_EQ(conditioned.at(31, 20).free_space_depth, 0);
+  EXPECT_GT(conditioned.at(31, 24).weight, 0);
 }
 
 TEST(ConditionedDepth, HasNoSurfaceOutsideTheClipBoxButSeesAsFar) {
-  const ConditionedDepth sighting(plane_snapshot({0, 0, -1}, 0.5),
-                                  {.min = {-0.1, -1, -1}, .max = {0.1, 1, 1}});
-  EXPECT_GT(sighting.at(32, 24).weight, 0);
-  EXPECT_EQ(sighting.at(60, 24).weight, 0);
-  EXPECT_FLOAT_EQ(sighting.at(60, 24).free_space_depth, 0.5F);
+  const ConditionedDepth conditioned(plane_snapshot({0, 0, -1}, 0.5),
+                                     {.min = {-0.1, -1, -1}, .max = {0.1, 1, 1}});
+  EXPECT_GT(conditioned.at(32, 24).weight, 0);
+  EXPECT_EQ(conditioned.at(60, 24).weight, 0);
+  EXPECT_FLOAT_EQ(conditioned.at(60, 24).free_space_depth, 0.5F);
 }
 
 TEST(ConditionedDepth, BoundsWhatEveryPixelOfARectangleSays) {
-  const ConditionedDepth sighting(rendered(hollowed_block({0.07, 0.05, 0.045}, 0.02), 1).read(0),
-                                  {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}});
+  const ConditionedDepth conditioned(rendered(hollowed_block({0.07, 0.05, 0.045}, 0.02), 1).read(0),
+                                     {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}});
   int with_surface = 0;
   for (int i = 0; i < 2000; ++i) {
     const int u0 = i * 37 % 240;
     const int v0 = i * 101 % 180;
     const int u1 = std::min(u0 + i % 61, 239);
     const int v1 = std::min(v0 + i % 43, 179);
-    const ConditionedDepth::Range range = sighting.range(u0, v0, u1, v1);
+    const DepthPyramid::MinMax depth = conditioned.min_max(u0, v0, u1, v1);
     for (int v = v0; v <= v1; ++v) {
       for (int u = u0; u <= u1; ++u) {
-        const DepthObservation& sight = sighting.at(u, v);
-        ASSERT_LE(range.least, sight.free_space_depth);
-        ASSERT_GE(range.greatest, sight.free_space_depth);
-        if (sight.weight > 0) {
-          ASSERT_LE(range.nearest_surface, sight.free_space_depth);
-          ASSERT_GE(range.farthest_surface, sight.free_space_depth);
+        const DepthObservation& observation = conditioned.at(u, v);
+        ASSERT_LE(depth.min_free, observation.free_space_depth);
+        ASSERT_GE(depth.max_free, observation.free_space_depth);
+        if (observation.weight > 0) {
+          ASSERT_LE(depth.min_surface, observation.free_space_depth);
+          ASSERT_GE(depth.max_surface, observation.free_space_depth);
           ++with_surface;
         }
       }
     }
   }
   EXPECT_GT(with_surface, 10000);
-  EXPECT_EQ(sighting.range(-1, 0, 5, 5).least, 0);
-  EXPECT_EQ(sighting.range(230, 170, 240, 175).least, 0);
+  EXPECT_EQ(conditioned.min_max(-1, 0, 5, 5).min_free, 0);
+  EXPECT_EQ(conditioned.min_max(230, 170, 240, 175).min_free, 0);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <random>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
+
+#include "support/random.hpp"
 
 namespace octurn {
 namespace {
@@ -54,12 +56,11 @@ TEST(MergeFrames, BringsNoiseDownByTheRootOfTheFrames) {
   // The mean of n readings has a standard deviation of sigma / sqrt(n). Rounding to whole units
   // adds 1/12; the bound is five standard deviations of the estimate from 10,000 pixels.
   constexpr double sigma = 20.0;  // depth units
-  std::mt19937 random(1);
-  std::normal_distribution<double> noise(8000.0, sigma);
+  Random random(1);
   std::vector<DepthFrame> frames(10, {.width = 100, .height = 100, .depth = Depths(10'000)});
   for (DepthFrame& frame : frames) {
     for (std::uint16_t& depth : frame.depth) {
-      depth = static_cast<std::uint16_t>(noise(random));
+      depth = static_cast<std::uint16_t>(8000.0 + sigma * random.normal());
     }
   }
 

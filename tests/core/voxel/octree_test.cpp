@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
+
+#include "support/random.hpp"
 
 namespace octurn {
 namespace {
@@ -22,17 +23,17 @@ TEST(Octree, LeavesAreTheFirstLevelAtOrBelowTheMinimumLeafSize) {
 TEST(Octree, KnowsTheBricksThatWereSetAndNoOthers) {
   constexpr int levels = 7;
   Octree octree(1.0, levels);
-  std::mt19937 random(3);
-  std::uniform_int_distribution<int> coordinate(0, (1 << levels) - 1);
+  Random random(3);
+  const auto coordinate = [&] { return random.between(0, (1 << levels) - 1); };
   std::set<std::tuple<int, int, int>> expected;
   for (int i = 0; i < 2000; ++i) {
-    const Index3 leaf{coordinate(random), coordinate(random), coordinate(random)};
+    const Index3 leaf{coordinate(), coordinate(), coordinate()};
     octree.set(leaf);
     expected.insert({leaf.x, leaf.y, leaf.z});
   }
   EXPECT_EQ(octree.leaf_count(), expected.size());
   for (int i = 0; i < 2000; ++i) {
-    const Index3 leaf{coordinate(random), coordinate(random), coordinate(random)};
+    const Index3 leaf{coordinate(), coordinate(), coordinate()};
     const Brick* brick = octree.find({leaf.x / 8, leaf.y / 8, leaf.z / 8});
     const bool is_set = brick != nullptr && (brick->layers[static_cast<std::size_t>(leaf.z % 8)] >>
                                                  (leaf.x % 8 + 8 * (leaf.y % 8)) &

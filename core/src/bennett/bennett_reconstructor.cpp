@@ -52,7 +52,7 @@ int thread_count(const ReconstructOptions& options) {
 }
 
 /// The bytes that each octree may take: one is merged to, and each thread but one has its own. The
-/// list of the cells of a layer takes up to as much again.
+/// list of the pseudo-voxels of a layer takes up to as much again.
 std::size_t octree_bytes(const ReconstructOptions& options) {
   if (options.memory_limit == 0) {
     return std::numeric_limits<std::size_t>::max();
@@ -73,7 +73,7 @@ LeafLayers leaf_layers(const BrickLayers& slab) {
 
 }  // namespace
 
-// Nodes of a coarser level are found directly: the lattice makes that the same (see `intersect`).
+// Nodes of a coarser level are found directly, as they are the same (see `voxelize_triangle`).
 BennettReconstructor::BennettReconstructor(const ReconstructOptions& options)
     : options_(checked(options)),
       wanted_threads_(options.threads),
@@ -88,27 +88,36 @@ void BennettReconstructor::add(const Snapshot& snapshot, const std::stop_token& 
 }
 
 void BennettReconstructor::see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const {
-  const SnapGrid lattice(octree.side());
+  const SnapGrid snap_grid(octree.side());
   PointGrid grid = world_points(snapshot);
   clip(grid, options_.clip);
   triangulate(grid, static_cast<float>(options_.threshold),
               [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-                const auto p = lattice.snap(a);
-                const auto q = lattice.snap(b);
-                const auto r = lattice.snap(c);
-                for (bool done = !(p && q && r); !done;) {
-                  try {
-                    voxelize_triangle(octree, *p, *q, *r, leaf_layers(slab));
-                    done = true;
-                  } catch (const OutOfBudget&) {
-                    keep_what_fits(octree, slab);
-                  }
+                const auto p = snap_grid.snap(a);
+                const auto q = snap_grid.snap(b);
+                const auto r = snap_grid.snap(c);
+                if (p && q && r) {
+                  within_budget(octree, slab,
+                                [&] { voxelize_triangle(octree, *p, *q, *r, leaf_layers(slab)); });
                 }
               });
 }
 
+/// Does what fills the octree, again each time that the budget is spent, after the slab has shrunk.
+template <typename Fill>
+void BennettReconstructor::within_budget(Octree& octree, BrickLayers& slab, Fill fill) const {
+  for (bool done = false; !done;) {
+    try {
+      fill();
+      done = true;
+    } catch (const OutOfBudget&) {
+      shrink_slab(octree, slab);
+    }
+  }
+}
+
 /// Lowers the slab's end, so that its bricks take about half of what they took.
-void BennettReconstructor::keep_what_fits(Octree& octree, BrickLayers& slab) const {
+void BennettReconstructor::shrink_slab(Octree& octree, BrickLayers& slab) const {
   std::vector<std::size_t> bricks;  // in the slab's layers
   std::size_t all = 0;
   for (int layer = slab.low; layer < slab.end; ++layer) {
@@ -117,8 +126,9 @@ void BennettReconstructor::keep_what_fits(Octree& octree, BrickLayers& slab) con
   }
   if (slab.end - slab.low <= 1) {
     const Eigen::Vector3d sides = (options_.clip.max - options_.clip.min) / octree.leaf_side();
-    const double most = 2 * (sides.x() / Brick::side + 2) * (sides.y() / Brick::side + 2);
-    const auto layers = static_cast<std::size_t>(most * 2 * sizeof(Brick));  // and their nodes
+    const double max_bricks = 2 * (sides.x() / Brick::side + 2) * (sides.y() / Brick::side + 2);
+    const auto layers =
+        static_cast<std::size_t>(max_bricks * 2 * sizeof(Brick));  // and their nodes
     const auto threads = static_cast<std::size_t>(wanted_threads_);
     const std::size_t enough = program_bytes + threads * thread_bytes + (threads + 1) * layers;
     throw Error("memory-limit", "memory limit: one layer of the octree does not fit",
@@ -159,15 +169,10 @@ void BennettReconstructor::add(const SnapshotSource& snapshots, const std::stop_
 }
 
 void BennettReconstructor::merge(Octree& other) {
-  for (bool done = false; !done;) {
+  within_budget(octree_, slab_, [&] {
     other.remove_layers_from(slab_.end + 1);
-    try {
-      octree_.merge(other);
-      done = true;
-    } catch (const OutOfBudget&) {
-      keep_what_fits(octree_, slab_);
-    }
-  }
+    octree_.merge(other);
+  });
 }
 
 void BennettReconstructor::begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots,

@@ -7,15 +7,13 @@
 
 namespace octurn {
 
-/// A model in the making by voxel octree intersection: snapshots are added, then its surface is
-/// asked for.
+/// Voxel octree intersection (Bennett 2014): world_points -> clip -> triangulate -> snap ->
+/// voxelize_triangle, then marching_tetrahedra.
 ///
-/// Where the octree does not fit in the memory limit, it keeps as many of its lowest layers as do:
-/// a slab. The surface is then made slab by slab, and for each the snapshots are read again.
-/// Neither slabs nor threads change a byte of it.
-///
-/// What the members do, and throw, `Reconstruction` says; `count` is a moment's work if there is
-/// one slab.
+/// Where the octree exceeds the memory limit it keeps a slab: as many of its lowest layers as fit.
+/// The surface is then made slab by slab, and for each the snapshots are read again. Neither slabs
+/// nor threads change a byte of it. `Reconstructor` documents the members; with one slab, `count`
+/// is quick.
 class BennettReconstructor final : public Reconstructor {
  public:
   explicit BennettReconstructor(const ReconstructOptions& options);
@@ -29,7 +27,9 @@ class BennettReconstructor final : public Reconstructor {
 
  private:
   void see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
-  void keep_what_fits(Octree& octree, BrickLayers& slab) const;
+  template <typename Fill>
+  void within_budget(Octree& octree, BrickLayers& slab, Fill fill) const;
+  void shrink_slab(Octree& octree, BrickLayers& slab) const;
   void merge(Octree& other);
   void begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots,
                   const std::stop_token& stop);
@@ -39,7 +39,7 @@ class BennettReconstructor final : public Reconstructor {
   ReconstructOptions options_;
   int wanted_threads_;  // of which the memory limit leaves as many as the options say
   Octree octree_;
-  BrickLayers slab_ = {};  // the octree holds these, and the lowest leaves of the layer after them
+  BrickLayers slab_ = {};  // in the octree, and beside it the lowest leaves of the layer after it
 };
 
 }  // namespace octurn

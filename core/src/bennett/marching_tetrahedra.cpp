@@ -19,77 +19,78 @@ namespace {
 /// The 8 x 8 x 8 pseudo-voxels whose lowest corners are the leaves of one brick position, and the
 /// up to eight bricks that hold their corners: bit 0 of the index is one brick on in x, bit 1 in y,
 /// bit 2 in z.
-struct CellBrick {
+struct PseudoVoxelBrick {
   Index3 position = {};
   std::array<const Brick*, 8> bricks = {};
 };
 
 constexpr Brick no_leaves{};
 
-/// The bricks of a layer, and of the one above it, that have leaves which are corners of the
-/// layer's pseudo-voxels: of those above only the lowest leaves are. The others may be missing,
-/// where the layer is the last of a slab, and must not matter.
+/// Bricks contributing corners to one layer's pseudo-voxels: those of the layer itself, and the
+/// bottom leaf layer of the bricks above, which is all that a slab keeps of them.
 class CornerBricks {
  public:
   CornerBricks(const Octree& octree, int layer) : layer_(layer) {
     for (int up = 0; up < 2; ++up) {
-      octree.for_each_brick(layer + up, [&](const Index3& cell, const Brick& brick) {
+      octree.for_each_brick(layer + up, [&](const Index3& position, const Brick& brick) {
         if (up == 0 || brick.layers[0] != 0) {
-          bricks_.push_back({cell, &brick});
+          bricks_.push_back({position, &brick});
         }
       });
     }
     by_row_ = bricks_;
     std::ranges::sort(by_row_, {}, [](const Found& found) {
-      return std::tuple(found.cell.y, found.cell.z, found.cell.x);
+      return std::tuple(found.position.y, found.position.z, found.position.x);
     });
-    rows_.resize(by_row_.empty() ? 0 : row_of(by_row_.back().cell) + 2);
+    rows_.resize(by_row_.empty() ? 0 : row_of(by_row_.back().position) + 2);
     for (const Found& found : by_row_) {
-      ++rows_[row_of(found.cell) + 1];
+      ++rows_[row_of(found.position) + 1];
     }
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
   }
 
-  /// Calls `visit(cell, up)` for all of them, those above last.
+  /// Calls `visit(brick, up)` for each, with its position, and 1 for those of the layer above,
+  /// which come last.
   template <typename Visit>
   void for_each(Visit visit) const {
     for (const Found& found : bricks_) {
-      visit(found.cell, found.cell.z - layer_);
+      visit(found.position, found.position.z - layer_);
     }
   }
 
-  const Brick* find(const Index3& cell) const {
-    if (cell.y < 0 || row_of(cell) + 1 >= rows_.size()) {
+  const Brick* find(const Index3& position) const {
+    if (position.y < 0 || row_of(position) + 1 >= rows_.size()) {
       return nullptr;
     }
-    const auto row = std::span(by_row_).subspan(rows_[row_of(cell)],
-                                                rows_[row_of(cell) + 1] - rows_[row_of(cell)]);
-    const auto found =
-        std::ranges::lower_bound(row, cell.x, {}, [](const Found& one) { return one.cell.x; });
-    return found != row.end() && found->cell.x == cell.x ? found->brick : nullptr;
+    const auto row = std::span(by_row_).subspan(
+        rows_[row_of(position)], rows_[row_of(position) + 1] - rows_[row_of(position)]);
+    const auto found = std::ranges::lower_bound(row, position.x, {},
+                                                [](const Found& one) { return one.position.x; });
+    return found != row.end() && found->position.x == position.x ? found->brick : nullptr;
   }
 
  private:
   struct Found {
-    Index3 cell;
+    Index3 position;
     const Brick* brick;
   };
 
   /// Rows along x, of the layer and of the one above in turn.
-  std::size_t row_of(const Index3& cell) const {
-    return 2 * static_cast<std::size_t>(cell.y) + static_cast<std::size_t>(cell.z - layer_);
+  std::size_t row_of(const Index3& position) const {
+    return 2 * static_cast<std::size_t>(position.y) + static_cast<std::size_t>(position.z - layer_);
   }
 
   int layer_;
   std::vector<Found> bricks_ = {};
   std::vector<Found> by_row_ = {};
-  std::vector<std::uint32_t> rows_ = {};  // where each begins in `by_row_`, and its end
+  std::vector<std::uint32_t> rows_ =
+      {};  // index in `by_row_` of each row's first; one more at the end
 };
 
-/// The cell bricks of one layer that have any leaf in them.
-class LayerOfCells {
+/// The pseudo-voxel bricks of one layer that have any leaf in them.
+class PseudoVoxelLayer {
  public:
-  LayerOfCells(const Octree& octree, int layer) {
+  PseudoVoxelLayer(const Octree& octree, int layer) {
     const CornerBricks bricks(octree, layer);
     bricks.for_each([&](const Index3& brick, int up) {
       for (int corner = 0; corner < 4; ++corner) {
@@ -98,24 +99,25 @@ class LayerOfCells {
     });
   }
 
-  const std::vector<CellBrick>& cells() const { return cells_; }
+  const std::vector<PseudoVoxelBrick>& bricks() const { return bricks_; }
 
  private:
-  /// Adds the cell brick at `position`, unless one of its bricks before `corner` did so already.
+  /// Adds the pseudo-voxel brick at `position`, unless one of its bricks before `corner` did so
+  /// already.
   void add(const CornerBricks& bricks, const Index3& position, int corner) {
-    CellBrick cell{.position = position, .bricks = {}};
+    PseudoVoxelBrick added{.position = position, .bricks = {}};
     for (int i = 0; i < 8; ++i) {
       const Brick* brick =
           bricks.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
       if (brick != nullptr && i < corner) {
         return;
       }
-      cell.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
+      added.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
     }
-    cells_.push_back(cell);
+    bricks_.push_back(added);
   }
 
-  std::vector<CellBrick> cells_ = {};
+  std::vector<PseudoVoxelBrick> bricks_ = {};
 };
 
 /// The corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1) of 8 x 8 pseudo-voxels on one layer of
@@ -139,13 +141,14 @@ CornerLayer corner_layer(const std::array<const Brick*, 4>& bricks, std::size_t 
   return {here, x, shifted_y(here, behind), shifted_y(x, shifted_x(behind, across))};
 }
 
-/// Calls `visit(x, y, z, pattern)` for the pseudo-voxels of a cell brick that the surface crosses.
+/// Calls `visit(x, y, z, pattern)` for the pseudo-voxels of a pseudo-voxel brick that the surface
+/// crosses.
 template <typename Visit>
-void for_each_mixed(const CellBrick& cell, Visit visit) {
-  const std::array<const Brick*, 4> lower{cell.bricks[0], cell.bricks[1], cell.bricks[2],
-                                          cell.bricks[3]};
-  const std::array<const Brick*, 4> upper{cell.bricks[4], cell.bricks[5], cell.bricks[6],
-                                          cell.bricks[7]};
+void for_each_mixed(const PseudoVoxelBrick& brick, Visit visit) {
+  const std::array<const Brick*, 4> lower{brick.bricks[0], brick.bricks[1], brick.bricks[2],
+                                          brick.bricks[3]};
+  const std::array<const Brick*, 4> upper{brick.bricks[4], brick.bricks[5], brick.bricks[6],
+                                          brick.bricks[7]};
   CornerLayer above = corner_layer(lower, 0);
   for (int z = 0; z < Brick::side; ++z) {
     const CornerLayer below = above;
@@ -167,13 +170,13 @@ void for_each_mixed(const CellBrick& cell, Visit visit) {
   }
 }
 
-/// Millimetres of the half-leaf positions of one cell brick, on each axis.
+/// Millimetres of the half-leaf positions of one pseudo-voxel brick, on each axis.
 struct HalfStepPositions {
   static constexpr std::size_t count = 2 * Brick::side + 1;
   std::array<std::array<float, count>, 3> mm = {};
 
-  HalfStepPositions(const Octree& octree, const Index3& cell) {
-    const std::array<int, 3> first{cell.x, cell.y, cell.z};
+  HalfStepPositions(const Octree& octree, const Index3& brick) {
+    const std::array<int, 3> first{brick.x, brick.y, brick.z};
     const double half_leaf = octree.leaf_side() / 2;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double corner = axis < 2 ? -octree.side() / 2 : 0.0;
@@ -185,15 +188,16 @@ struct HalfStepPositions {
   }
 };
 
-void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Facet>& facets) {
-  const HalfStepPositions positions(octree, cell.position);
-  for_each_mixed(cell, [&](int x, int y, int z, std::size_t pattern) {
-    const CellSurface& surface = marching_tetrahedra_cases[pattern];
+void append_facets(const Octree& octree, const PseudoVoxelBrick& brick,
+                   std::vector<Facet>& facets) {
+  const HalfStepPositions positions(octree, brick.position);
+  for_each_mixed(brick, [&](int x, int y, int z, std::size_t pattern) {
+    const TetrahedraCase& surface = marching_tetrahedra_cases[pattern];
     const std::array<const float*, 3> mm{&positions.mm[0][static_cast<std::size_t>(2 * x)],
                                          &positions.mm[1][static_cast<std::size_t>(2 * y)],
                                          &positions.mm[2][static_cast<std::size_t>(2 * z)]};
     for (std::size_t i = 0; i < surface.count; ++i) {
-      const CellFacet& from = surface.facets[i];
+      const CaseFacet& from = surface.facets[i];
       std::array<std::array<float, 3>, 3> corners;  // aligned, as those of a facet are not
       for (std::size_t corner = 0; corner < 3; ++corner) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -209,51 +213,52 @@ void append_facets(const Octree& octree, const CellBrick& cell, std::vector<Face
 /// bottom begin one leaf below it.
 int first_layer(const BrickLayers& layers) { return layers.low == 0 ? -1 : layers.low; }
 
-/// Some cell bricks of a layer, which lives as long as they are looked at.
-struct CellBricks {
-  std::shared_ptr<const LayerOfCells> layer;
-  std::span<const CellBrick> bricks;
+/// Some pseudo-voxel bricks of a layer, which they keep alive.
+struct PseudoVoxelPiece {
+  std::shared_ptr<const PseudoVoxelLayer> layer;
+  std::span<const PseudoVoxelBrick> bricks;
 };
 
-/// Cuts the cell bricks of layer after layer in pieces that make some hundred kilobytes of facets.
-class CellSource {
+/// Source of an `OrderedPipeline`: pieces of a layer, layer after layer, small enough that a
+/// piece's facets take some hundred kilobytes.
+class PieceSource {
  public:
-  CellSource(const Octree& octree, const BrickLayers& layers)
+  PieceSource(const Octree& octree, const BrickLayers& layers)
       : octree_(octree), next_(first_layer(layers)), end_(layers.end) {}
 
-  std::optional<CellBricks> operator()() {
-    constexpr std::size_t most = 8;
+  std::optional<PseudoVoxelPiece> operator()() {
+    constexpr std::size_t max_bricks = 8;
     while (rest_.empty() && next_ < end_) {
-      layer_ = std::make_shared<const LayerOfCells>(octree_, next_++);
-      rest_ = layer_->cells();
+      layer_ = std::make_shared<const PseudoVoxelLayer>(octree_, next_++);
+      rest_ = layer_->bricks();
     }
     if (rest_.empty()) {
       return std::nullopt;
     }
-    const auto bricks = rest_.first(std::min(most, rest_.size()));
+    const auto bricks = rest_.first(std::min(max_bricks, rest_.size()));
     rest_ = rest_.subspan(bricks.size());
-    return CellBricks{.layer = layer_, .bricks = bricks};
+    return PseudoVoxelPiece{.layer = layer_, .bricks = bricks};
   }
 
  private:
   const Octree& octree_;
   int next_;
   int end_;
-  std::shared_ptr<const LayerOfCells> layer_ = {};
-  std::span<const CellBrick> rest_ = {};  // of the layer
+  std::shared_ptr<const PseudoVoxelLayer> layer_ = {};
+  std::span<const PseudoVoxelBrick> rest_ = {};  // of the layer
 };
 
 }  // namespace
 
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink) {
-  OrderedPipeline<CellSource, std::vector<Facet>> pieces(CellSource(octree, layers), 4 * threads);
+  OrderedPipeline<PieceSource, std::vector<Facet>> pieces(PieceSource(octree, layers), 4 * threads);
   fork_join(threads, [&](int) {
     pieces.run(
-        [&](const CellBricks& cells, std::vector<Facet>& facets) {
+        [&](const PseudoVoxelPiece& piece, std::vector<Facet>& facets) {
           facets.clear();
-          for (const CellBrick& cell : cells.bricks) {
-            append_facets(octree, cell, facets);
+          for (const PseudoVoxelBrick& brick : piece.bricks) {
+            append_facets(octree, brick, facets);
           }
         },
         [&](const std::vector<Facet>& facets) { sink(facets); });
@@ -263,9 +268,9 @@ void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int th
 std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
   std::uint64_t count = 0;
   for (int layer = first_layer(layers); layer < layers.end; ++layer) {
-    const LayerOfCells cells(octree, layer);
-    for (const CellBrick& cell : cells.cells()) {
-      for_each_mixed(cell, [&](int, int, int, std::size_t pattern) {
+    const PseudoVoxelLayer pseudo_voxels(octree, layer);
+    for (const PseudoVoxelBrick& brick : pseudo_voxels.bricks()) {
+      for_each_mixed(brick, [&](int, int, int, std::size_t pattern) {
         count += marching_tetrahedra_cases[pattern].count;
       });
     }

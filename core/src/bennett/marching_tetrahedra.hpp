@@ -12,28 +12,30 @@ inline BrickLayers all_layers(const Octree& octree) {
   return {.low = 0, .end = octree.brick_layers()};
 }
 
-/// The surface between the octree's leaves and the empty space around them.
+/// Draws the surface between the octree's leaves and the empty space around them, and streams it.
 ///
 /// The centres of eight adjacent leaves are the corners of a pseudo-voxel, each 1 where the leaf
-/// exists and 0 where it does not (Bennett 2014). A pseudo-voxel is cut in six tetrahedra about its
-/// main diagonal, the same way everywhere, and each tetrahedron by Marching Tetrahedra at half way.
-/// The surface is closed and manifold by construction, and its vertices, functions of whole half
-/// leaves, are bit-equal in neighbouring facets.
+/// is occupied and 0 where it is not (Bennett 2014). A pseudo-voxel is cut into six tetrahedra
+/// about its main diagonal, the same way everywhere, and marching tetrahedra cut each edge in its
+/// middle. The surface is closed and manifold by construction. Its vertices lie on multiples of
+/// half a leaf, so they are bit-equal in neighbouring facets.
 ///
-/// The order of the facets depends on the leaves alone: layers of bricks from below, in each the
-/// bricks in Morton order. So the surfaces of successive ranges of layers, one after the other, are
-/// the surface of them all, and an octree needs to hold no more than the layers of one range, and
-/// the lowest leaves of the layer after it.
+/// The order of facets depends on the leaves alone: layers of bricks from the bottom up, in each
+/// the bricks in Morton order. So the surfaces of successive slabs, one after the other, are the
+/// surface of the whole, and an octree needs to hold only the slab, and the lowest leaves of the
+/// layer after it.
 ///
-/// @param threads  that make facets; `sink` is called by one at a time, and what it throws ends all
+/// @param layers   the slab, layers of bricks
+/// @param threads  that make facets
+/// @param sink     called by one thread at a time; millimetres; what it throws ends the call
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink);
 
-/// The surface of the octree's leaves, or of the finest level above that has no more than
+/// Streams the surface of the finest level, that of the leaves included, that has no more than
 /// `max_facets`.
 void coarse_surface(Octree octree, std::uint64_t max_facets, const FacetSink& sink);
 
-/// The number of facets that `isosurface` gives, without making them.
+/// Counts the facets of `marching_tetrahedra` without making them.
 std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers);
 
 }  // namespace octurn

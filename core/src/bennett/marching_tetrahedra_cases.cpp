@@ -20,7 +20,7 @@ HalfSteps middle(Corner a, Corner b) {
 }
 
 /// Adds a facet, turned so that the corner `inside` lies behind it.
-void add_facet(CellSurface& surface, HalfSteps a, HalfSteps b, HalfSteps c, Corner inside) {
+void add_facet(TetrahedraCase& surface, HalfSteps a, HalfSteps b, HalfSteps c, Corner inside) {
   std::array<int, 3> ab{};
   std::array<int, 3> ac{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -36,7 +36,7 @@ void add_facet(CellSurface& surface, HalfSteps a, HalfSteps b, HalfSteps c, Corn
   }
   const int sign = ahead < 0 ? -1 : 1;
   const int square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-  CellFacet& facet = surface.facets[surface.count++];
+  CaseFacet& facet = surface.facets[surface.count++];
   facet.corners = sign < 0 ? std::array{a, c, b} : std::array{a, b, c};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     facet.normal[axis] =
@@ -44,7 +44,8 @@ void add_facet(CellSurface& surface, HalfSteps a, HalfSteps b, HalfSteps c, Corn
   }
 }
 
-void add_tetrahedron(CellSurface& surface, const std::array<Corner, 4>& tetrahedron, int pattern) {
+void add_tetrahedron(TetrahedraCase& surface, const std::array<Corner, 4>& tetrahedron,
+                     int pattern) {
   std::array<Corner, 4> in{};
   std::array<Corner, 4> out{};
   std::size_t ins = 0;
@@ -64,8 +65,8 @@ void add_tetrahedron(CellSurface& surface, const std::array<Corner, 4>& tetrahed
   }
 }
 
-std::array<CellSurface, 256> all_patterns() {
-  std::array<CellSurface, 256> surfaces{};
+std::array<TetrahedraCase, 256> all_patterns() {
+  std::array<TetrahedraCase, 256> surfaces{};
   for (int pattern = 0; pattern < 256; ++pattern) {
     for (const std::array<Corner, 4>& tetrahedron : tetrahedra) {
       add_tetrahedron(surfaces[static_cast<std::size_t>(pattern)], tetrahedron, pattern);
@@ -76,6 +77,6 @@ std::array<CellSurface, 256> all_patterns() {
 
 }  // namespace
 
-const std::array<CellSurface, 256> marching_tetrahedra_cases = all_patterns();
+const std::array<TetrahedraCase, 256> marching_tetrahedra_cases = all_patterns();
 
 }  // namespace octurn

@@ -9,21 +9,21 @@ namespace octurn {
 /// A corner of a facet inside a pseudo-voxel, in halves of its side: 0, 1 or 2 on each axis.
 using HalfSteps = std::array<std::int8_t, 3>;
 
-struct CellFacet {
+struct CaseFacet {
   std::array<HalfSteps, 3> corners = {};
   std::array<float, 3> normal = {};  // of length one, outward
 };
 
 /// The facets of a pseudo-voxel by the pattern of its corners: bit x + 2y + 4z is set where the
 /// corner (x, y, z) is inside.
-struct CellSurface {
+struct TetrahedraCase {
   static constexpr std::size_t max_facets = 12;  // two in each of six tetrahedra
-  std::array<CellFacet, max_facets> facets = {};
+  std::array<CaseFacet, max_facets> facets = {};
   std::size_t count = 0;
 };
 
 /// Marching Tetrahedra for all 256 patterns, on the six tetrahedra that share the diagonal from
 /// corner 0 to corner 7.
-extern const std::array<CellSurface, 256> marching_tetrahedra_cases;
+extern const std::array<TetrahedraCase, 256> marching_tetrahedra_cases;
 
 }  // namespace octurn

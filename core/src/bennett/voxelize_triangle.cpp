@@ -13,17 +13,17 @@ using Int64 = std::int64_t;
 // 2 * (1.5 * 2^19)^2 < 2^41, and a plane's value at a box near it 3 * 2^41 * 1.5 * 2^20 < 2^63.
 
 /// Leaves along one axis, both ends included.
-struct Range {
-  int low = 0;
-  int high = -1;
-  bool empty() const { return low > high; }
+struct Interval {
+  int min = 0;
+  int max = -1;
+  bool empty() const { return min > max; }
 };
 
-Range common(const Range& a, const Range& b) {
-  return {std::max(a.low, b.low), std::min(a.high, b.high)};
+Interval intersection(const Interval& a, const Interval& b) {
+  return {std::max(a.min, b.min), std::min(a.max, b.max)};
 }
 
-using Ranges = std::array<Range, 3>;
+using LeafBox = std::array<Interval, 3>;
 
 /// An axis and the two that follow it, which span the plane across it.
 struct Axes {
@@ -34,8 +34,8 @@ struct Axes {
 
 constexpr std::array<Axes, 3> all_axes{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}}};
 
-/// A triangle's shadow across an axis, as three half-planes that a leaf's shadow must reach into:
-/// normal_u u + normal_v v + offset >= 0, for the leaf at (u, v), counted in leaves.
+/// A triangle's projection along an axis, as three half-planes that a leaf's projection must reach
+/// into: normal_u u + normal_v v + offset >= 0, for the leaf at (u, v), counted in leaves.
 struct Projection2d {
   struct Edge {
     Int64 normal_u = 0;
@@ -45,10 +45,10 @@ struct Projection2d {
   std::array<Edge, 3> edges = {};
 
   bool meets(int u, int v) const {
-    const auto reached = [&](const Edge& edge) {
+    const auto value = [&](const Edge& edge) {
       return edge.normal_u * u + edge.normal_v * v + edge.offset;
     };
-    return (reached(edges[0]) | reached(edges[1]) | reached(edges[2])) >= 0;  // no sign bit is set
+    return (value(edges[0]) | value(edges[1]) | value(edges[2])) >= 0;  // no sign bit is set
   }
 };
 
@@ -74,24 +74,24 @@ struct Triangle {
 
   Int64 leaf() const { return Int64{1} << leaf_bits; }
 
-  Projection2d shadow(const Axes& axes) const {
+  Projection2d project(const Axes& axes) const {
     const Int64 sign = normal[axes.w] < 0 ? -1 : 1;
-    Projection2d shadow;
+    Projection2d projection;
     for (std::size_t i = 0; i < 3; ++i) {
       const Int64 normal_u = -edges[i][axes.v] * sign;
       const Int64 normal_v = edges[i][axes.u] * sign;
       const Int64 reach = (std::max<Int64>(normal_u, 0) + std::max<Int64>(normal_v, 0))
                           << leaf_bits;
-      shadow.edges[i] = {
+      projection.edges[i] = {
           .normal_u = normal_u * leaf(),
           .normal_v = normal_v * leaf(),
           .offset = reach - normal_u * corners[i][axes.u] - normal_v * corners[i][axes.v]};
     }
-    return shadow;
+    return projection;
   }
 };
 
-/// The plane of a triangle, cut along the axis that its normal is nearest to.
+/// The plane of a triangle, solved for the axis w of its normal's largest component.
 class Plane {
  public:
   explicit Plane(const Triangle& triangle) {
@@ -110,32 +110,32 @@ class Plane {
     const Int64 leaf = triangle.leaf();
     slope_u_ = normal_u * leaf;
     slope_v_ = normal_v * leaf;
-    pitch_ = normal_w * leaf;
-    lowest_ = offset - std::max<Int64>(slope_u_, 0) - std::max<Int64>(slope_v_, 0);
-    highest_ = offset - std::min<Int64>(slope_u_, 0) - std::min<Int64>(slope_v_, 0);
+    step_w_ = normal_w * leaf;
+    min_ = offset - std::max<Int64>(slope_u_, 0) - std::max<Int64>(slope_v_, 0);
+    max_ = offset - std::min<Int64>(slope_u_, 0) - std::min<Int64>(slope_v_, 0);
   }
 
   const Axes& axes() const { return axes_; }
 
-  /// The leaves of `range` that the plane meets, along `axes().w` in the column (u, v).
-  Range column(int u, int v, Range range) const {
-    if (pitch_ == 0) {
-      return range;  // no area, no plane
+  /// The leaves of `interval` that the plane meets, along `axes().w` at (u, v).
+  Interval w_interval(int u, int v, Interval interval) const {
+    if (step_w_ == 0) {
+      return interval;  // a triangle without area has no plane
     }
     const Int64 slope = slope_u_ * u + slope_v_ * v;
-    const Int64 lowest = lowest_ - slope;
-    const Int64 highest = highest_ - slope;
-    if (range.high - range.low > steps_worth_a_division) {
-      range = common(range, {static_cast<int>(-floor_quotient(-lowest, pitch_) - 1),
-                             static_cast<int>(floor_quotient(highest, pitch_))});
+    const Int64 min = min_ - slope;
+    const Int64 max = max_ - slope;
+    if (interval.max - interval.min > steps_worth_a_division) {
+      interval = intersection(interval, {static_cast<int>(-floor_quotient(-min, step_w_) - 1),
+                                         static_cast<int>(floor_quotient(max, step_w_))});
     }
-    while (range.low <= range.high && (range.low + 1) * pitch_ < lowest) {
-      ++range.low;
+    while (interval.min <= interval.max && (interval.min + 1) * step_w_ < min) {
+      ++interval.min;
     }
-    while (range.low <= range.high && range.high * pitch_ > highest) {
-      --range.high;
+    while (interval.min <= interval.max && interval.max * step_w_ > max) {
+      --interval.max;
     }
-    return range;
+    return interval;
   }
 
  private:
@@ -144,52 +144,54 @@ class Plane {
   static Int64 floor_quotient(Int64 a, Int64 b) { return a / b - (a % b < 0 ? 1 : 0); }
 
   Axes axes_ = {};
-  Int64 slope_u_ = 0;  // of the normal, over one leaf
+  Int64 slope_u_ = 0;  // the plane's value grows by these from leaf to leaf
   Int64 slope_v_ = 0;
-  Int64 pitch_ = 0;
-  Int64 lowest_ = 0;
-  Int64 highest_ = 0;
+  Int64 step_w_ = 0;
+  Int64 min_ = 0;  // of w * step_w_ on the plane, over the leaf at (0, 0)
+  Int64 max_ = 0;
 };
 
-/// All of `box`: right where at most one of its ranges is more than one leaf.
-void fill_box(Octree& octree, const Ranges& box) {
-  for (int z = box[2].low; z <= box[2].high; ++z) {
-    for (int y = box[1].low; y <= box[1].high; ++y) {
-      for (int x = box[0].low; x <= box[0].high; ++x) {
+/// Sets all of `box`. Exact where the box is thicker than one leaf along one axis at most.
+void fill_box(Octree& octree, const LeafBox& box) {
+  for (int z = box[2].min; z <= box[2].max; ++z) {
+    for (int y = box[1].min; y <= box[1].max; ++y) {
+      for (int x = box[0].min; x <= box[0].max; ++x) {
         octree.set({x, y, z});
       }
     }
   }
 }
 
-/// Where `box` is one leaf thick along `axes.w`, a leaf is met if its shadow along that axis is.
-void voxelize_2d(Octree& octree, const Triangle& triangle, const Ranges& box, const Axes& axes) {
-  const Projection2d shadow = triangle.shadow(axes);
+/// Sets the leaves of a box that is one leaf thick along `axes.w`: a leaf is met if its projection
+/// along that axis is.
+void voxelize_2d(Octree& octree, const Triangle& triangle, const LeafBox& box, const Axes& axes) {
+  const Projection2d projection = triangle.project(axes);
   std::array<int, 3> leaf{};
-  leaf[axes.w] = box[axes.w].low;
-  for (leaf[axes.v] = box[axes.v].low; leaf[axes.v] <= box[axes.v].high; ++leaf[axes.v]) {
-    for (leaf[axes.u] = box[axes.u].low; leaf[axes.u] <= box[axes.u].high; ++leaf[axes.u]) {
-      if (shadow.meets(leaf[axes.u], leaf[axes.v])) {
+  leaf[axes.w] = box[axes.w].min;
+  for (leaf[axes.v] = box[axes.v].min; leaf[axes.v] <= box[axes.v].max; ++leaf[axes.v]) {
+    for (leaf[axes.u] = box[axes.u].min; leaf[axes.u] <= box[axes.u].max; ++leaf[axes.u]) {
+      if (projection.meets(leaf[axes.u], leaf[axes.v])) {
         octree.set({leaf[0], leaf[1], leaf[2]});
       }
     }
   }
 }
 
-void voxelize_3d(Octree& octree, const Triangle& triangle, const Ranges& box) {
+/// Sets the leaves of a box by all tests: the triangle's plane and its three projections.
+void voxelize_3d(Octree& octree, const Triangle& triangle, const LeafBox& box) {
   const Plane plane(triangle);
   const Axes axes = plane.axes();
-  const Projection2d across_w = triangle.shadow(axes);
-  const Projection2d across_u = triangle.shadow(all_axes[axes.u]);  // on the plane of v and w
-  const Projection2d across_v = triangle.shadow(all_axes[axes.v]);  // on the plane of w and u
+  const Projection2d across_w = triangle.project(axes);
+  const Projection2d across_u = triangle.project(all_axes[axes.u]);  // on the plane of v and w
+  const Projection2d across_v = triangle.project(all_axes[axes.v]);  // on the plane of w and u
   std::array<int, 3> leaf{};
-  for (leaf[axes.v] = box[axes.v].low; leaf[axes.v] <= box[axes.v].high; ++leaf[axes.v]) {
-    for (leaf[axes.u] = box[axes.u].low; leaf[axes.u] <= box[axes.u].high; ++leaf[axes.u]) {
+  for (leaf[axes.v] = box[axes.v].min; leaf[axes.v] <= box[axes.v].max; ++leaf[axes.v]) {
+    for (leaf[axes.u] = box[axes.u].min; leaf[axes.u] <= box[axes.u].max; ++leaf[axes.u]) {
       if (!across_w.meets(leaf[axes.u], leaf[axes.v])) {
         continue;
       }
-      const Range range = plane.column(leaf[axes.u], leaf[axes.v], box[axes.w]);
-      for (leaf[axes.w] = range.low; leaf[axes.w] <= range.high; ++leaf[axes.w]) {
+      const Interval met = plane.w_interval(leaf[axes.u], leaf[axes.v], box[axes.w]);
+      for (leaf[axes.w] = met.min; leaf[axes.w] <= met.max; ++leaf[axes.w]) {
         if (across_u.meets(leaf[axes.v], leaf[axes.w]) &&
             across_v.meets(leaf[axes.w], leaf[axes.u])) {
           octree.set({leaf[0], leaf[1], leaf[2]});
@@ -205,15 +207,15 @@ void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, c
                        const LeafLayers& layers) {
   const int leaf_bits = SnapGrid::bits - octree.levels();
   const int last = octree.leaves_per_side() - 1;
-  Ranges box;  // of the leaves in the root and the layers
+  LeafBox box;  // of the leaves in the root and the layers
   std::array<bool, 3> thick{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Range whole{std::min({a[axis], b[axis], c[axis]}) >> leaf_bits,
-                      std::max({a[axis], b[axis], c[axis]}) >> leaf_bits};
-    thick[axis] = whole.low < whole.high;
-    box[axis] = common(whole, {0, last});
+    const Interval whole{std::min({a[axis], b[axis], c[axis]}) >> leaf_bits,
+                         std::max({a[axis], b[axis], c[axis]}) >> leaf_bits};
+    thick[axis] = whole.min < whole.max;
+    box[axis] = intersection(whole, {0, last});
   }
-  box[2] = common(box[2], {layers.low, layers.high});
+  box[2] = intersection(box[2], {layers.low, layers.high});
   if (box[0].empty() || box[1].empty() || box[2].empty()) {
     return;
   }

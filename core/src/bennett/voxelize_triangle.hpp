@@ -12,9 +12,9 @@ namespace octurn {
 /// A point in whole half-units of a `SnapGrid`.
 using SnapPoint = std::array<std::int32_t, 3>;
 
-/// The lattice that all intersections are decided on: 2^18 units on a side of the root, points in
-/// the middle of one, so that their coordinates in half-units are odd, and none lies on a node's
-/// face. With a root of 1 m a unit is 3.8 micrometres.
+/// The grid that triangles' corners are snapped to: 2^18 units on a side of the root. A grid point
+/// is the middle of a unit, so that its coordinates in half-units are odd, and none lies on the
+/// face of a node. With a root of 1 m a unit is 3.8 micrometres.
 class SnapGrid {
  public:
   static constexpr int bits = 19;  // a side of the root is 2^19 half-units
@@ -22,7 +22,7 @@ class SnapGrid {
   /// @param root_side  metres
   explicit SnapGrid(double root_side) : units_per_metre_(units_per_side / root_side) {}
 
-  /// The lattice point nearest to `point` (metres, platform frame); nothing if it is no point, or
+  /// The grid point nearest to `point` (metres, object's frame); nothing if it is `no_point`, or
   /// further outside the root than the root is wide.
   std::optional<SnapPoint> snap(const Eigen::Vector3f& point) const {
     // Counted from one side of the root below its lowest corner, so that the cast rounds down.
@@ -50,16 +50,16 @@ struct LeafLayers {
   int high = (1 << Octree::max_levels) - 1;
 };
 
-/// Sets the leaves, of those layers, that a triangle meets, their faces included. What lies outside
-/// the root meets none.
+/// Sets the leaves of those layers that a triangle meets, faces included. Parts of the triangle
+/// outside the root meet none.
 ///
-/// Exact: all arithmetic is on integers, so the leaves do not depend on the processor, on the order
-/// of triangles or corners, nor, on a coarser level, on the size of the leaves.
+/// Exact: all arithmetic is on integers. So the leaves depend neither on the processor nor on the
+/// order of triangles and corners, and the nodes of a coarser level are those found directly.
 /// The test is that of Schwarz and Seidel 2010 (Fast parallel surface and solid voxelization on
-/// GPUs, section 3.1): box against box, box against plane, and the box's three shadows against the
-/// triangle's. Most triangles are as small as a leaf, and need only the first.
+/// GPUs, section 3.1): box against box, box against plane, and the projections of both along the
+/// three axes. Most triangles are as small as a leaf and need only the first.
 ///
-/// @throws OutOfBudget  some of the leaves are then set; to set all of them, call again
+/// @throws OutOfBudget  with some of the leaves set; calling again with more room sets them all
 void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
                        const LeafLayers& layers = {});
 

@@ -42,7 +42,7 @@ DepthFrame merge_frames(std::span<const DepthFrame> frames, DepthFilter filter) 
     return first;
   }
 
-  const std::size_t least = filter == DepthFilter::average_discard ? frames.size() : 1;
+  const std::size_t min_valid = filter == DepthFilter::average_discard ? frames.size() : 1;
   DepthFrame merged{.width = first.width, .height = first.height, .depth = {}};
   merged.depth.resize(first.depth.size());
   for (std::size_t i = 0; i < merged.depth.size(); ++i) {
@@ -52,7 +52,7 @@ DepthFrame merge_frames(std::span<const DepthFrame> frames, DepthFilter filter) 
       sum += frame.depth[i];
       valid += frame.depth[i] != 0 ? 1U : 0U;
     }
-    if (valid >= least) {
+    if (valid >= min_valid) {
       merged.depth[i] = static_cast<std::uint16_t>((sum + valid / 2) / valid);
     }
   }

@@ -8,7 +8,7 @@
 namespace octurn {
 
 /// Runs `work(i)` for i from 0 to threads - 1, each on a thread of its own (0 on the caller's), and
-/// returns when all have ended. The exception of the lowest i goes on to the caller.
+/// returns when all have ended. Of several exceptions, that of the lowest i reaches the caller.
 template <typename Work>
 void fork_join(int threads, Work work) {
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(threads));

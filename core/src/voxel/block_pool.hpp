@@ -8,8 +8,9 @@
 
 namespace octurn {
 
-/// Items of one kind, in blocks that never move and are added one at a time, so that memory never
-/// doubles. Items are named by their index; index 0 is taken from the start and means "none".
+/// A pool of items in blocks that never move and are added one at a time, so that memory never
+/// doubles as a vector's does. An item has an index; index 0 is taken from the start and means
+/// "none".
 template <typename Item>
 class BlockPool {
  public:
@@ -18,7 +19,7 @@ class BlockPool {
 
   BlockPool() { add(); }
 
-  /// The index of a new item, which is as `Item{}`.
+  /// The index of a new item, equal to `Item{}`.
   std::uint32_t add() {
     if (!free_.empty()) {
       const std::uint32_t index = free_.back();
@@ -32,10 +33,10 @@ class BlockPool {
     return used_++;
   }
 
-  /// Gives an item back, for `add` to use again.
+  /// Frees an item, whose index `add` then gives out again.
   void remove(std::uint32_t index) { free_.push_back(index); }
 
-  /// Whether the next `add` takes a new block.
+  /// Whether the next `add` allocates a block.
   bool is_full() const { return free_.empty() && used_ == blocks_.size() * block_items; }
 
   Item& operator[](std::uint32_t i) { return (*blocks_[i / block_items])[i % block_items]; }
@@ -43,7 +44,7 @@ class BlockPool {
     return (*blocks_[i / block_items])[i % block_items];
   }
 
-  /// Memory taken, given back or not.
+  /// Memory allocated, of removed items too.
   std::size_t bytes() const {
     return blocks_.size() * block_bytes + free_.capacity() * sizeof(std::uint32_t);
   }

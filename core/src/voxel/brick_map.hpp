@@ -10,39 +10,41 @@
 
 namespace octurn {
 
-/// The bricks of a field that exist, each at its place in a row of so many.
+/// A sparse array of bricks: a dense table of indices into a BlockPool.
 template <typename Item>
 class BrickMap {
  public:
-  explicit BrickMap(std::size_t places) : names_(places) {}
+  explicit BrickMap(std::size_t size) : indices_(size) {}
 
-  /// The brick at a place, if it exists.
-  const Item* find(std::size_t place) const {
-    return names_[place] == 0 ? nullptr : &bricks_[names_[place]];
+  /// The brick of that position in the table, if it exists.
+  const Item* find(std::size_t at) const {
+    return indices_[at] == 0 ? nullptr : &bricks_[indices_[at]];
   }
-  Item* find(std::size_t place) { return names_[place] == 0 ? nullptr : &bricks_[names_[place]]; }
+  Item* find(std::size_t at) { return indices_[at] == 0 ? nullptr : &bricks_[indices_[at]]; }
 
-  /// A new brick, at a place where there is none.
-  Item& add(std::size_t place) {
-    names_[place] = bricks_.add();
-    return bricks_[names_[place]];
+  /// A new brick, where there is none.
+  Item& add(std::size_t at) {
+    indices_[at] = bricks_.add();
+    return bricks_[indices_[at]];
   }
 
-  void remove(std::size_t place) { bricks_.remove(std::exchange(names_[place], 0)); }
+  void remove(std::size_t at) { bricks_.remove(std::exchange(indices_[at], 0)); }
 
   void clear() {
     bricks_ = {};
-    std::ranges::fill(names_, 0U);
+    std::ranges::fill(indices_, 0U);
   }
 
-  /// Whether the next `add` takes `BlockPool<Item>::block_bytes` more.
+  /// Whether the next `add` allocates `BlockPool<Item>::block_bytes`.
   bool is_full() const { return bricks_.is_full(); }
 
-  std::size_t bytes() const { return bricks_.bytes() + names_.capacity() * sizeof(std::uint32_t); }
+  std::size_t bytes() const {
+    return bricks_.bytes() + indices_.capacity() * sizeof(std::uint32_t);
+  }
 
  private:
   BlockPool<Item> bricks_ = {};
-  std::vector<std::uint32_t> names_;  // in the pool; 0 is none
+  std::vector<std::uint32_t> indices_;  // in the pool; 0 is none
 };
 
 }  // namespace octurn

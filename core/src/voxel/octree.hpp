@@ -20,11 +20,11 @@ struct alignas(64) Brick {
   std::array<std::uint64_t, side> layers = {};
 };
 
-/// The voxel octree: a root cube, halved along each axis `levels` times, of which only the nodes
-/// exist that something meets. A node of any level is the union of its leaves, so leaves are all
-/// that is stored: as bits, in bricks, below a tree of eight children a node.
+/// A sparse voxel octree of occupancy: a root cube, halved along each axis `levels` times, of which
+/// only the nodes with an occupied leaf exist. A node of any level is the union of its leaves, so
+/// only leaves are stored: a bit for each, in bricks, below a tree of eight children a node.
 ///
-/// The root stands on the platform: x and y from -side/2 to side/2, z from 0 to side.
+/// The root stands on the platform: x and y from -side/2 to side/2, z from 0 to side, metres.
 class Octree {
  public:
   static constexpr int max_levels = octurn::max_levels;
@@ -44,13 +44,13 @@ class Octree {
   std::size_t bytes() const { return nodes_.bytes() + bricks_.bytes(); }
   std::uint64_t leaf_count() const { return leaf_count(0, brick_layers()); }
 
-  /// Of the layers of bricks from `low` up to but without `end`.
+  /// Occupied leaves in the layers of bricks from `low` up to but without `end`.
   std::uint64_t leaf_count(int low, int end) const;
 
-  /// Of one layer.
+  /// Bricks in one layer.
   std::size_t brick_count(int layer) const;
 
-  /// Makes the leaf one that something meets. It must lie in the root. @throws OutOfBudget
+  /// Occupies a leaf, which must lie in the root. @throws OutOfBudget
   void set(const Index3& leaf) {
     const auto x = static_cast<unsigned>(leaf.x);
     const auto y = static_cast<unsigned>(leaf.y);
@@ -59,7 +59,7 @@ class Octree {
         std::uint64_t{1} << (x % Brick::side + y % Brick::side * Brick::side);
   }
 
-  /// A brick, if it exists. Any coordinates may be asked for.
+  /// The brick at that position, if it exists. The position may lie outside the root.
   const Brick* find(const Index3& brick) const;
 
   /// Calls `visit(Index3 brick, const Brick&)` for the bricks of one layer, x before y in Morton
@@ -82,12 +82,13 @@ class Octree {
   /// Adds the leaves of another octree of the same side and levels. @throws OutOfBudget
   void merge(const Octree& other);
 
-  /// Takes away the bricks of this layer and all above it; their memory serves new ones.
+  /// Removes the bricks of this layer and all above it. Their memory is kept for new ones.
   void remove_layers_from(int layer);
 
   void clear() { remove_layers_from(0); }
 
   /// The octree cut off at a coarser level: its leaves are this one's nodes of that level.
+  /// @throws std::invalid_argument  unless 0 <= level <= levels()
   Octree at_level(int level) const;
 
  private:
@@ -104,13 +105,14 @@ class Octree {
   void merge(std::uint32_t to, const Octree& other, std::uint32_t from, int height);
   void remove(std::uint32_t index, int height, int low, int layer);
 
-  /// Neighbouring samples fall in neighbouring bricks: those set last are found without a descent.
+  /// The brick at that position, made if missing. Neighbouring samples fall into neighbouring
+  /// bricks, so a cache of those set last saves most descents.
   Brick& brick_near(unsigned x, unsigned y, unsigned z) {
     Recent& recent = recent_[x % 4 + y % 4 * 4 + z % 4 * 16];
-    const std::uint64_t name = x | std::uint64_t{y} << 20U | std::uint64_t{z} << 40U;
-    if (recent.brick == nullptr || recent.name != name) {
+    const std::uint64_t key = x | std::uint64_t{y} << 20U | std::uint64_t{z} << 40U;
+    if (recent.brick == nullptr || recent.key != key) {
       recent = {
-          .name = name,
+          .key = key,
           .brick = &brick_at({static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)})};
     }
     return *recent.brick;
@@ -133,7 +135,7 @@ class Octree {
   }
 
   struct Recent {
-    std::uint64_t name = 0;  // of the brick: its coordinates
+    std::uint64_t key = 0;  // the brick's coordinates, 20 bits each
     Brick* brick = nullptr;
   };
 

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <vector>
 
 #include "core/mesh/surface.hpp"
 #include "octurn/error.hpp"
 #include "octurn/mesh_report.hpp"
-#include "octurn/scan_folder.hpp"
 #include "support/ball_scan.hpp"
-#include "support/shared_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -149,34 +146,6 @@ TEST(Reconstruction, SaysWhatIsWrongWithItsOptions) {
   EXPECT_EQ(thrown_by([](auto& o) { o.level = -1; }), "bad-settings");
   EXPECT_EQ(thrown_by([](auto& o) { o.threads = 0; }), "bad-settings");
   EXPECT_EQ(thrown_by([](auto& o) { o.memory_limit = 1; }), "memory-limit");
-}
-
-// The figures of an independent implementation in floating point of the same technique; leaves at
-// the border of a triangle may differ.
-TEST(Reconstruction, GivesTheLeavesAndTrianglesOfAnotherImplementation) {
-  const std::filesystem::path folder = shared_folder() / "scans/bunny8";
-  if (!std::filesystem::exists(folder)) {
-    GTEST_SKIP() << folder << " is not there: set OCTURN_SHARED to the folder of scans";
-  }
-  const Scan scan = read_scan(folder);
-  const SnapshotSource snapshots{.count = scan.shots.size(), .read = [&](std::size_t i) {
-                                   return read_snapshot(folder, scan, scan.shots[i]);
-                                 }};
-  struct Expected {
-    double leaf_size;
-    double leaves;
-    double facets;
-  };
-  for (const auto& [leaf_size, leaves, facets] :
-       {Expected{0.002, 27095, 248660}, {0.001, 130304, 1011032}, {0.0005, 664686, 4550412}}) {
-    ReconstructOptions options = ball_options(leaf_size);
-    options.clip = scan.clip;
-    const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
-    reconstruction->add(snapshots);
-    const SurfaceCount count = reconstruction->count(snapshots);
-    EXPECT_NEAR(static_cast<double>(count.leaves), leaves, leaves * 0.001);
-    EXPECT_NEAR(static_cast<double>(count.facets), facets, facets * 0.001);
-  }
 }
 
 }  // namespace

@@ -84,10 +84,11 @@ BennettReconstructor::BennettReconstructor(const ReconstructOptions& options)
 
 void BennettReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) {
   throw_if_stopped(stop);
-  see(snapshot, octree_, slab_);
+  voxelize(snapshot, octree_, slab_);
 }
 
-void BennettReconstructor::see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const {
+void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
+                                    BrickLayers& slab) const {
   const SnapGrid snap_grid(octree.side());
   PointGrid grid = world_points(snapshot);
   clip(grid, options_.clip);
@@ -157,7 +158,7 @@ void BennettReconstructor::add(const SnapshotSource& snapshots, const std::stop_
     Octree& octree = i > 0 ? *others[i] : octree_;
     for (std::size_t shot = next++; shot < snapshots.count; shot = next++) {
       throw_if_stopped(stop);
-      see(snapshots.read(shot), octree, slabs[i]);
+      voxelize(snapshots.read(shot), octree, slabs[i]);
     }
   });
   slab_ = *std::ranges::min_element(slabs, {}, &BrickLayers::end);

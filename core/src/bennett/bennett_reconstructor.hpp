@@ -26,7 +26,7 @@ class BennettReconstructor final : public Reconstructor {
                const std::stop_token& stop = {}) const override;
 
  private:
-  void see(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
+  void voxelize(const Snapshot& snapshot, Octree& octree, BrickLayers& slab) const;
   template <typename Fill>
   void within_budget(Octree& octree, BrickLayers& slab, Fill fill) const;
   void shrink_slab(Octree& octree, BrickLayers& slab) const;

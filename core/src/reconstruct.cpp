@@ -5,6 +5,19 @@
 
 namespace octurn {
 
+std::string_view name_of(Method method) {
+  return method == Method::solid ? "solid" : "intersection";
+}
+
+std::optional<Method> method_named(std::string_view name) {
+  for (const Method method : {Method::intersection, Method::solid}) {
+    if (name_of(method) == name) {
+      return method;
+    }
+  }
+  return std::nullopt;
+}
+
 std::unique_ptr<Reconstructor> make_reconstructor(const ReconstructOptions& options) {
   switch (options.method) {
     case Method::intersection:

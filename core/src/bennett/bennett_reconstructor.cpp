@@ -12,12 +12,12 @@
 #include "bennett/marching_tetrahedra.hpp"
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
-#include "checked_levels.hpp"
 #include "depth/back_project.hpp"
-#include "memory_limit.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
+#include "voxel/checked_levels.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 namespace {

@@ -11,10 +11,8 @@
 #include <vector>
 
 #include "bennett/marching_tetrahedra.hpp"
-#include "checked_levels.hpp"
 #include "depth/condition_depth.hpp"
 #include "depth/crop.hpp"
-#include "memory_limit.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
@@ -23,6 +21,8 @@
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/marching_cubes.hpp"
+#include "voxel/checked_levels.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 namespace {

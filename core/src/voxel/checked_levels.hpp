@@ -4,7 +4,8 @@
 
 namespace octurn {
 
-/// The number of levels that the options ask for, if what all methods need is in its range.
+/// The number of times that the root cube is halved down to the leaves, if the options that both
+/// methods have are in their ranges.
 /// @throws Error "bad-settings"  that says which option is out of its range
 int checked_levels(const ReconstructOptions& options);
 

@@ -1,9 +1,9 @@
+#include "voxel/checked_levels.hpp"
+
 #include <cmath>
 #include <string>
 
-#include "checked_levels.hpp"
 #include "octurn/error.hpp"
-#include "octurn/reconstruct.hpp"
 #include "octurn/units.hpp"
 #include "voxel/octree.hpp"
 
@@ -22,19 +22,6 @@ std::string mm_text(double metres) {
 }
 
 }  // namespace
-
-std::string_view name_of(Method method) {
-  return method == Method::solid ? "solid" : "intersection";
-}
-
-std::optional<Method> method_named(std::string_view name) {
-  for (const Method method : {Method::intersection, Method::solid}) {
-    if (name_of(method) == name) {
-      return method;
-    }
-  }
-  return std::nullopt;
-}
 
 int checked_levels(const ReconstructOptions& options) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };

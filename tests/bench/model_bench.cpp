@@ -63,10 +63,10 @@ BENCHMARK(triangulate_a_snapshot)->Unit(benchmark::kMillisecond);
 
 void intersect_a_snapshot(benchmark::State& state) {
   std::vector<std::array<SnapPoint, 3>> triangles;
-  const SnapGrid lattice(1.0);
+  const SnapGrid snap_grid(1.0);
   triangulate(clipped_points(snapshots().front()), threshold,
               [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-                triangles.push_back({*lattice.snap(a), *lattice.snap(b), *lattice.snap(c)});
+                triangles.push_back({*snap_grid.snap(a), *snap_grid.snap(b), *snap_grid.snap(c)});
               });
   const int levels = Octree::level_of(1.0, options_for(state).leaf_size);
   for (auto unused : state) {

@@ -245,7 +245,7 @@ class PlainSurface {
 
 std::uint64_t run(const std::string& folder, const std::string& output, double leaf_size) {
   const Scan scan = read_scan(folder);
-  const SnapGrid lattice(1.0);
+  const SnapGrid snap_grid(1.0);
   PlainOctree octree(Octree::level_of(1.0, leaf_size));
   for (const Shot& shot : scan.shots) {
     PointGrid grid = world_points(read_snapshot(folder, scan, shot));
@@ -255,7 +255,7 @@ std::uint64_t run(const std::string& folder, const std::string& output, double l
                   std::array<Vector, 3> corners{};
                   std::size_t next = 0;
                   for (const Eigen::Vector3f& point : {a, b, c}) {
-                    const auto nearest = lattice.snap(point);
+                    const auto nearest = snap_grid.snap(point);
                     corners[next++] = {(*nearest)[0], (*nearest)[1], (*nearest)[2]};
                   }
                   octree.add(Triangle(corners));

@@ -21,21 +21,21 @@ ReconstructOptions options_for(const benchmark::State& state) {
 
 void condition_a_snapshot(benchmark::State& state) {
   for (auto unused : state) {
-    const ConditionedDepth sighting(snapshots().front(), ball_clip);
-    benchmark::DoNotOptimize(sighting.at(320, 240));
+    const ConditionedDepth conditioned(snapshots().front(), ball_clip);
+    benchmark::DoNotOptimize(conditioned.at(320, 240));
   }
 }
 BENCHMARK(condition_a_snapshot)->Unit(benchmark::kMillisecond);
 
 void fuse_a_snapshot(benchmark::State& state) {
-  const ConditionedDepth sighting(snapshots().front(), ball_clip);
+  const ConditionedDepth conditioned(snapshots().front(), ball_clip);
   const double leaf_size = options_for(state).leaf_size;
   const int levels = Octree::level_of(1.0, leaf_size);
   // A field that has seen it already: no brick is new.
   TsdfVolume field(VoxelGrid(1.0, levels, ball_clip, 0.0035));
-  fuse(field, sighting);
+  fuse(field, conditioned);
   for (auto unused : state) {
-    fuse(field, sighting);
+    fuse(field, conditioned);
     benchmark::DoNotOptimize(field.bytes());
   }
 }

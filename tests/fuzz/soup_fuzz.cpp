@@ -62,8 +62,8 @@ using Corners = std::array<SnapPoint, 3>;
 
 std::int32_t in_reach(int at) { return std::clamp(at, -root, 2 * root - 1) | 1; }
 
-/// Corners anywhere that the lattice reaches, or as offsets from the first, in units or in leaves.
-Corners lattice_triangle(Bytes& bytes, int levels, int kind) {
+/// Corners anywhere on the snap grid, or as offsets from the first, in units or in leaves.
+Corners grid_triangle(Bytes& bytes, int levels, int kind) {
   const int leaf = 1 << (SnapGrid::bits - levels);
   Corners corners{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -83,13 +83,13 @@ Corners lattice_triangle(Bytes& bytes, int levels, int kind) {
 }
 
 /// Corners of any bits, as metres: huge, infinite and no numbers among them.
-std::optional<Corners> metre_triangle(Bytes& bytes, const SnapGrid& lattice) {
+std::optional<Corners> metre_triangle(Bytes& bytes, const SnapGrid& snap_grid) {
   Corners corners{};
   for (SnapPoint& corner : corners) {
     const auto metres = [&] { return std::bit_cast<float>(bytes.take(4)); };
     const float x = metres();
     const float y = metres();
-    const auto nearest = lattice.snap({x, y, metres()});
+    const auto nearest = snap_grid.snap({x, y, metres()});
     if (!nearest) {
       return std::nullopt;
     }
@@ -100,11 +100,11 @@ std::optional<Corners> metre_triangle(Bytes& bytes, const SnapGrid& lattice) {
 
 std::vector<Corners> soup_from(Bytes& bytes, int levels) {
   std::vector<Corners> soup;
-  const SnapGrid lattice(1.0);
+  const SnapGrid snap_grid(1.0);
   for (int i = 0; i < most_triangles && !bytes.empty(); ++i) {
     const int kind = bytes.between(0, 3, 1);
     const std::optional<Corners> corners =
-        kind == 3 ? metre_triangle(bytes, lattice) : lattice_triangle(bytes, levels, kind);
+        kind == 3 ? metre_triangle(bytes, snap_grid) : grid_triangle(bytes, levels, kind);
     if (corners && leaves_across(*corners, levels) <= most_leaves_across) {
       soup.push_back(*corners);
     }
@@ -142,7 +142,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   plain::Octree plain(levels);
   for (const Corners& corners : soup) {
     voxelize_triangle(octree, corners[0], corners[1], corners[2]);
-    plain.intersect(corners);
+    plain.voxelize(corners);
   }
   require(leaves_of(octree) == plain.leaves());
   require(octree.leaf_count() == plain.leaves().size());

@@ -37,7 +37,7 @@ RandomLeaves random_leaves(std::uint32_t seed, int levels, int extent, int perce
   return random;
 }
 
-TEST(Isosurface, GivesTheTrianglesOfThePlainImplementation) {
+TEST(MarchingTetrahedra, GivesTheTrianglesOfThePlainImplementation) {
   for (const auto& [levels, extent, percent] :
        {std::tuple{0, 1, 100}, {1, 2, 50}, {3, 8, 30}, {4, 16, 10}, {5, 20, 50}, {5, 32, 95}}) {
     const RandomLeaves random = random_leaves(5, levels, extent, percent);
@@ -48,7 +48,7 @@ TEST(Isosurface, GivesTheTrianglesOfThePlainImplementation) {
   }
 }
 
-TEST(Isosurface, IsClosedAndManifoldWhateverTheLeaves) {
+TEST(MarchingTetrahedra, IsClosedAndManifoldWhateverTheLeaves) {
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const RandomLeaves random = random_leaves(seed, 5, 18, 5 + 12 * static_cast<int>(seed));
     const Topology topology = topology_of(surface_of(random.octree));
@@ -57,13 +57,13 @@ TEST(Isosurface, IsClosedAndManifoldWhateverTheLeaves) {
   }
 }
 
-TEST(Isosurface, OfOneLeafIsASphereInTopology) {
+TEST(MarchingTetrahedra, OfOneLeafIsASphereInTopology) {
   Octree octree(1.0, 6);
   octree.set({20, 30, 40});
   EXPECT_EQ(topology_of(surface_of(octree)).euler, 2);
 }
 
-TEST(Isosurface, OfARingOfLeavesIsATorusInTopology) {
+TEST(MarchingTetrahedra, OfARingOfLeavesIsATorusInTopology) {
   Octree octree(1.0, 6);
   for (int i = 0; i < 10; ++i) {
     octree.set({10 + i, 10, 15});
@@ -74,7 +74,7 @@ TEST(Isosurface, OfARingOfLeavesIsATorusInTopology) {
   EXPECT_EQ(topology_of(surface_of(octree)).euler, 0);
 }
 
-TEST(Isosurface, OfABlockHasItsBoxAndNormalsThatPointOutward) {
+TEST(MarchingTetrahedra, OfABlockHasItsBoxAndNormalsThatPointOutward) {
   Octree octree(1.0, 6);  // leaves of 15.625 mm
   for (int z = 0; z < 12; ++z) {
     for (int y = 20; y < 36; ++y) {
@@ -105,7 +105,7 @@ TEST(Isosurface, OfABlockHasItsBoxAndNormalsThatPointOutward) {
   }
 }
 
-TEST(Isosurface, OfNothingIsNothing) {
+TEST(MarchingTetrahedra, OfNothingIsNothing) {
   EXPECT_TRUE(surface_of(Octree(1.0, 10)).empty());
   EXPECT_EQ(count_facets(Octree(1.0, 10), {.low = 0, .end = 128}), 0U);
 }

@@ -65,12 +65,10 @@ Triangle outward(Triangle t, const std::array<int, 3>& inside) {
 
 }  // namespace
 
-void Octree::intersect(const std::array<SnapPoint, 3>& corners) {
-  intersect(corners, 0, {0, 0, 0});
-}
+void Octree::voxelize(const std::array<SnapPoint, 3>& corners) { voxelize(corners, 0, {0, 0, 0}); }
 
-void Octree::intersect(const std::array<SnapPoint, 3>& corners, int level,
-                       const std::array<int, 3>& node) {
+void Octree::voxelize(const std::array<SnapPoint, 3>& corners, int level,
+                      const std::array<int, 3>& node) {
   const std::int64_t side = std::int64_t{1} << (SnapGrid::bits - level);
   std::array<Vector, 3> points;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -84,7 +82,7 @@ void Octree::intersect(const std::array<SnapPoint, 3>& corners, int level,
     return;
   }
   for (int child = 0; child < 8; ++child) {
-    intersect(
+    voxelize(
         corners, level + 1,
         {2 * node[0] + (child & 1), 2 * node[1] + (child >> 1 & 1), 2 * node[2] + (child >> 2)});
   }

@@ -13,13 +13,13 @@ namespace octurn::plain {
 
 /// The technique as its text tells it, with nothing done for speed: nodes that own their eight
 /// children, every triangle tested from the root down by all thirteen separating axes, leaves in a
-/// set, pseudo-voxels one by one. It shares nothing with `octurn::Octree` but the lattice that
+/// set, pseudo-voxels one by one. It shares nothing with `octurn::Octree` but the snap grid that
 /// corners are rounded to. What the fast implementation does must agree with it exactly.
 class Octree {
  public:
   explicit Octree(int levels) : levels_(levels) {}
 
-  void intersect(const std::array<SnapPoint, 3>& corners);
+  void voxelize(const std::array<SnapPoint, 3>& corners);
 
   /// Lowest corners of the leaves, counted in leaves.
   const std::set<std::array<int, 3>>& leaves() const { return leaves_; }
@@ -28,8 +28,7 @@ class Octree {
   std::set<std::array<int, 3>> nodes(int level) const;
 
  private:
-  void intersect(const std::array<SnapPoint, 3>& corners, int level,
-                 const std::array<int, 3>& node);
+  void voxelize(const std::array<SnapPoint, 3>& corners, int level, const std::array<int, 3>& node);
 
   int levels_;
   std::set<std::array<int, 3>> leaves_ = {};

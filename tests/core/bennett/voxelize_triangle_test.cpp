@@ -11,9 +11,9 @@
 namespace octurn {
 namespace {
 
-class IntersectAtLevel : public testing::TestWithParam<int> {};
+class VoxelizeTriangleAtLevel : public testing::TestWithParam<int> {};
 
-TEST_P(IntersectAtLevel, FindsTheLeavesThatSeparatingAxesFind) {
+TEST_P(VoxelizeTriangleAtLevel, FindsTheLeavesThatSeparatingAxesFind) {
   const int levels = GetParam();
   Soup soup(static_cast<std::uint32_t>(levels), levels);
   std::size_t met = 0;
@@ -25,17 +25,17 @@ TEST_P(IntersectAtLevel, FindsTheLeavesThatSeparatingAxesFind) {
     Octree octree(1.0, levels);
     plain::Octree plain(levels);
     voxelize_triangle(octree, corners[0], corners[1], corners[2]);
-    plain.intersect(corners);
+    plain.voxelize(corners);
     ASSERT_EQ(leaves_of(octree), plain.leaves()) << "triangle " << i;
     met += plain.leaves().size();
   }
   EXPECT_GT(met, 100U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Levels, IntersectAtLevel,
+INSTANTIATE_TEST_SUITE_P(Levels, VoxelizeTriangleAtLevel,
                          testing::Values(0, 1, 2, 3, 4, 5, 6, 8, 10, 13, 16));
 
-TEST(Intersect, DoesNotDependOnTheOrderOfCorners) {
+TEST(VoxelizeTriangle, DoesNotDependOnTheOrderOfCorners) {
   constexpr int levels = 6;
   Soup soup(7, levels);
   for (int i = 0; i < 300; ++i) {
@@ -48,7 +48,7 @@ TEST(Intersect, DoesNotDependOnTheOrderOfCorners) {
   }
 }
 
-TEST(Intersect, MeetsTheSameNodesAtACoarseLevelAsDirectly) {
+TEST(VoxelizeTriangle, MeetsTheSameNodesAtACoarseLevelAsDirectly) {
   Soup soup(11, 8);
   Octree fine(1.0, 8);
   Octree coarse(1.0, 5);
@@ -62,9 +62,9 @@ TEST(Intersect, MeetsTheSameNodesAtACoarseLevelAsDirectly) {
 }
 
 TEST(SnapGrid, HasAPointWithinHalfAUnit) {
-  const SnapGrid lattice(1.0);
+  const SnapGrid snap_grid(1.0);
   const Eigen::Vector3f point(0.12345F, -0.4321F, 0.98765F);
-  const auto nearest = lattice.snap(point);
+  const auto nearest = snap_grid.snap(point);
   ASSERT_TRUE(nearest);
   const double half_unit = 1.0 / (1 << SnapGrid::bits);
   EXPECT_NEAR((*nearest)[0] * half_unit, 0.5 + 0.12345, half_unit);
@@ -73,11 +73,11 @@ TEST(SnapGrid, HasAPointWithinHalfAUnit) {
 }
 
 TEST(SnapGrid, HasNoneForNoPointAndForOneFarOutside) {
-  const SnapGrid lattice(1.0);
-  EXPECT_FALSE(lattice.snap(Eigen::Vector3f::Constant(std::nanf(""))));
-  EXPECT_FALSE(lattice.snap({0.0F, 0.0F, 2.0F}));
-  EXPECT_FALSE(lattice.snap({0.0F, -1.6F, 0.0F}));
-  EXPECT_TRUE(lattice.snap({0.0F, -1.4F, 1.9F}));
+  const SnapGrid snap_grid(1.0);
+  EXPECT_FALSE(snap_grid.snap(Eigen::Vector3f::Constant(std::nanf(""))));
+  EXPECT_FALSE(snap_grid.snap({0.0F, 0.0F, 2.0F}));
+  EXPECT_FALSE(snap_grid.snap({0.0F, -1.6F, 0.0F}));
+  EXPECT_TRUE(snap_grid.snap({0.0F, -1.4F, 1.9F}));
 }
 
 }  // namespace

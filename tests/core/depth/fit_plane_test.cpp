@@ -50,7 +50,7 @@ TEST(FitPlane, HasNoPlaneForTooFewReadingsOrALine) {
       if (u != 4) {
         set(line, u, v, 0);
       }
-      if (u < 4 || u > 5 || v < 4 || v > 7) {
+      if (u < 3 || u > 5 || v < 4 || v > 6 || (u == 5 && v == 6)) {  // eight are left
         set(few, u, v, 0);
       }
     }

@@ -169,6 +169,57 @@ TEST(QemSimplify, LeavesNothingOutsideOfItsHeights) {
   }
 }
 
+/// How many triangles a mesh has after all vertices but the first two were locked, and up to a
+/// target that refuses nothing.
+std::size_t triangles_after_first_edge(std::vector<MeshVertex> vertices,
+                                       std::vector<MeshTriangle> triangles) {
+  IndexedMesh mesh =
+      indexed({.vertices = std::move(vertices), .triangles = std::move(triangles), .layers = {}});
+  std::vector<char> locked(mesh.vertices.size(), 1);
+  locked[0] = 0;
+  locked[1] = 0;
+  qem_simplify(mesh, locked, {.target_error = 1000});
+  return mesh.triangles.size();
+}
+
+TEST(QemSimplify, TurnsNoTriangleOver) {
+  // In a plane, the middle of the edge from 0 to 1 lies beyond the line from 2 to 3, if 2 is near.
+  const auto triangles_after = [](float x, float y) {
+    return triangles_after_first_edge({{.position = {0, 0, 1}},
+                                       {.position = {4, 0, 1}},
+                                       {.position = {x, y, 1}},
+                                       {.position = {0, 3, 1}},
+                                       {.position = {-3, 0, 1}},
+                                       {.position = {0, -3, 1}},
+                                       {.position = {x, -y, 1}},
+                                       {.position = {5, -3, 1}},
+                                       {.position = {5, 3, 1}}},
+                                      {{0, 1, 2},
+                                       {0, 2, 3},
+                                       {0, 3, 4},
+                                       {0, 4, 5},
+                                       {0, 5, 6},
+                                       {0, 6, 1},
+                                       {1, 6, 7},
+                                       {1, 7, 8},
+                                       {1, 8, 2}});
+  };
+  EXPECT_EQ(triangles_after(2, 2), 7U);
+  EXPECT_EQ(triangles_after(1, 0.3F), 9U);
+}
+
+TEST(QemSimplify, CollapsesNoEdgeWhoseEndsHaveAThirdNeighbourInCommon) {
+  // A spike over the triangle 0, 1, 2 of a plane: without 1, two of its sides would lie on each
+  // other.
+  const std::vector<MeshVertex> vertices{{.position = {-1, 0, 1}},    {.position = {1, 0, 1}},
+                                         {.position = {0, 1.73F, 1}}, {.position = {0, 0.58F, 21}},
+                                         {.position = {0, -4, 1}},    {.position = {5, 2, 1}},
+                                         {.position = {0, 6, 1}},     {.position = {-5, 2, 1}}};
+  const std::vector<MeshTriangle> spike{{0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 6}, {2, 6, 7},
+                                        {0, 2, 7}, {0, 7, 4}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  EXPECT_EQ(triangles_after_first_edge(vertices, spike), spike.size());
+}
+
 TEST(QemSimplify, LeavesEdgesBetweenTrianglesWithoutArea) {
   // A closed needle: all vertices on one line, so that no plane tells where a vertex should go.
   IndexedMesh mesh{.vertices = {}, .quadrics = std::vector<Quadric>(8), .triangles = {}};

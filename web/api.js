@@ -39,7 +39,7 @@
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device
- * @property {'ready' | 'missing' | 'failed'} state
+ * @property {'unknown' | 'ready' | 'missing' | 'failed'} state
  * @property {string} name
  * @property {boolean} simulated
  * @property {string} message

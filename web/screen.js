@@ -154,7 +154,7 @@ const rowOf = (state) => (/** @type {Scan} */ scan) => ({
 /** @param {string} role @param {Device} device */
 function deviceOf(role, device) {
   const isReady = device.state === 'ready';
-  const words = {ready: 'ready', missing: 'not found', failed: 'failed'};
+  const words = {unknown: 'being looked for', ready: 'ready', missing: 'not found', failed: 'failed'};
   return {
     role,
     tone: isReady ? 'good' : 'bad',

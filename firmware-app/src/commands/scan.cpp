@@ -91,7 +91,7 @@ void scan(const ScanArguments& arguments) {
   load_sensor_drivers();  // before the first thread, as it asks
 
   const SignalStop signal;
-  const ScanStore store(config.data);
+  ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
 
   scanner.expect_ready();             // or there would be no more than an empty folder

@@ -22,21 +22,19 @@ std::string page_address(const HttpOptions& options, int port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-/// Until SIGINT or SIGTERM. As long as the daemon can answer what the page asks all the time, which
-/// takes all its locks, systemd is told that it lives.
-void wait(Api& api) {
+/// Until SIGINT or SIGTERM. As long as the worker's heart beats, systemd is told that the daemon
+/// lives.
+void wait(const Scanner& scanner) {
   const auto interval = watchdog_interval();
   if (!interval) {
     wait_for_signal();
     return;
   }
   while (!wait_for_signal(*interval / 3)) {
-    const Response status =
-        api.answer({.path = "/api/v1/status", .headers = {{"Host", "localhost"}}});
-    if (status.status == 200) {
+    if (scanner.is_alive()) {
       notify_alive();
     } else {
-      log::error("octurn", "the status has failed: " + std::to_string(status.status));
+      log::error("octurn", "the scanner's worker has stopped working");
     }
   }
 }
@@ -49,7 +47,7 @@ void serve(const ServeArguments& arguments) {
   load_sensor_drivers();  // before the first thread, as it asks
 
   const Page page(arguments.web ? *arguments.web : page_folder());
-  const ScanStore store(config.data);
+  ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   std::optional<Appliance> appliance;
   if (arguments.appliance) {
@@ -65,7 +63,7 @@ void serve(const ServeArguments& arguments) {
   std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;
   log::info("octurn", "version " + std::string(version()) + " ready");
   notify_ready("serving the page at port " + std::to_string(server.port()));
-  wait(api);
+  wait(scanner);
   log::info("octurn", "ending");
   notify_stopping();
   scanner.request_stop();  // so that no request waits for it while the server ends

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "doctor/system_files.hpp"
+#include "scan/job_file.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "turntable/gpio_chip.hpp"
 #include "version.hpp"
@@ -114,7 +115,7 @@ json scans_without_names(std::span<const Job> scans) {
   json all = json::array();
   std::size_t bytes = 0;
   for (const Job& job : scans) {
-    json scan = json_of(job);
+    json scan = to_job_json(job);
     scan.erase("name");
     bytes += scan.dump(1, ' ', false, json::error_handler_t::replace).size();
     if (bytes > most_of_scans) {

@@ -66,7 +66,7 @@ std::vector<Finding> examine(Patient patient, Scanner& scanner) {
   SensorLook look = Failure{.code = "busy",
                             .detail = "not looked at: a scan is running",
                             .hint = "Check again when the scan has ended."};
-  scanner.lend_rig(
+  scanner.check_devices(
       [&](Rig& rig, const std::stop_token& stop) { look = look_at_sensor(rig, stop); });
   return examine(patient, look);
 }

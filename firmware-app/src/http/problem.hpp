@@ -1,7 +1,7 @@
 #pragma once
 
+#include "failure.hpp"
 #include "http/message.hpp"
-#include "scan/job.hpp"
 
 namespace octurn {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "failure.hpp"
 #include "http/message.hpp"
-#include "scan/job.hpp"
 
 namespace octurn {
 

@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
-
-#include "octurn/json_object.hpp"
-#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
-
-using nlohmann::json;
-using Seconds = std::chrono::duration<double>;
 
 template <typename Value>
 using Names = std::pair<Value, std::string_view>;
@@ -32,76 +23,10 @@ constexpr std::array<Names<Phase>, 5> phases{{{Phase::starting, "starting"},
                                               {Phase::building, "building"},
                                               {Phase::done, "done"}}};
 
-constexpr double most = std::numeric_limits<double>::max();
-constexpr double most_whole = 1e15;  // a double holds every whole number up to there
-
-/// Thousandths, as people and the page read them.
-double rounded(double value) { return std::round(value * 1000) / 1000; }
-
-json json_of(const Model& model, const std::string& id) {
-  const ModelReport& report = model.report;
-  return {{"parts", report.parts == 0 ? json(nullptr) : json(report.parts)},
-          {"filled_share", report.parts == 0 ? json(nullptr) : json(rounded(report.filled_share))},
-          {"url", "/api/v1/scans/" + id + "/Scan.stl"},
-          {"bytes", report.bytes},
-          {"triangles", report.triangles},
-          {"leaves", report.leaves},
-          {"watertight", report.watertight},
-          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
-          {"size_mm",
-           {rounded(mm_from_metres(report.size.x())), rounded(mm_from_metres(report.size.y())),
-            rounded(mm_from_metres(report.size.z()))}},
-          {"seconds", rounded(model.build_time.count())}};
-}
-
-std::uint64_t count(const JsonValue& value) {
-  return static_cast<std::uint64_t>(value.number(0, most_whole));
-}
-
-/// Of what not every method counts.
-double number_or_none(JsonObject& keys, std::string_view key, double largest) {
-  const auto value = keys.value(key);
-  return !value || value->json().is_null() ? 0 : value->number(0, largest);
-}
-
 template <typename Value, std::size_t size>
-Value one_of(const JsonValue& value, const std::array<Names<Value>, size>& names) {
-  const auto* found = std::ranges::find(names, value.text(), &Names<Value>::second);
-  if (found == names.end()) {
-    value.refuse("a name that this version knows");
-  }
-  return found->first;
-}
-
-std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
-  if (!object || object->json().is_null()) {
-    return std::nullopt;
-  }
-  JsonObject keys(*object);
-  return Failure{.code = keys.at("code").text(),
-                 .detail = keys.at("detail").text(),
-                 .hint = keys.at("hint").text()};
-}
-
-std::optional<Model> model_from(const std::optional<JsonValue>& object) {
-  if (!object || object->json().is_null()) {
-    return std::nullopt;
-  }
-  JsonObject keys(*object);
-  Model model{
-      .report = {.leaves = count(keys.at("leaves")),
-                 .triangles = count(keys.at("triangles")),
-                 .bytes = count(keys.at("bytes")),
-                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
-                 .filled_share = number_or_none(keys, "filled_share", 1),
-                 .watertight = keys.flag("watertight").value_or(false),
-                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
-      .build_time = Seconds(keys.at("seconds").number(0, most))};
-  const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
-  for (int axis = 0; axis < 3; ++axis) {
-    model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());
-  }
-  return model;
+std::optional<Value> named(std::string_view name, const std::array<Names<Value>, size>& names) {
+  const auto* found = std::ranges::find(names, name, &Names<Value>::second);
+  return found == names.end() ? std::nullopt : std::optional(found->first);
 }
 
 }  // namespace
@@ -118,26 +43,9 @@ std::string_view name_of(Phase phase) {
   return std::ranges::find(phases, phase, &Names<Phase>::first)->second;
 }
 
-Failure failure_of(const Error& error) {
-  return {.code = error.code(), .detail = error.what(), .hint = error.hint()};
-}
+std::optional<JobState> job_state_named(std::string_view name) { return named(name, states); }
 
-Failure current_failure() {
-  const std::string hint = "Please report this.";
-  try {
-    throw;
-  } catch (const Error& error) {
-    return failure_of(error);
-  } catch (const std::exception& error) {
-    return {.code = "internal", .detail = error.what(), .hint = hint};
-  } catch (...) {
-    return {.code = "internal", .detail = "an unknown exception", .hint = hint};
-  }
-}
-
-bool is_device_fault(const Failure& failure) {
-  return failure.code.starts_with("sensor-") || failure.code.starts_with("turntable-");
-}
+std::optional<Phase> phase_named(std::string_view name) { return named(name, phases); }
 
 Failure interruption() {
   return {.code = "interrupted",
@@ -145,47 +53,13 @@ Failure interruption() {
           .hint = "Resume it if neither the object nor the platform was moved since."};
 }
 
-json json_of(const Job& job) {
-  json object{{"id", job.id},
-              {"name", job.name},
-              {"state", name_of(job.state)},
-              {"phase", name_of(job.phase)},
-              {"created", job.created},
-              {"snapshots_done", job.snapshots_done},
-              {"snapshots_total", job.settings.snapshots},
-              {"seconds_elapsed", rounded(job.elapsed.count())},
-              {"seconds_left", nullptr},
-              {"late_pulses", job.late_pulses},
-              {"settings", json_of(job.settings)},
-              {"error", nullptr},
-              {"model", nullptr}};
-  if (job.left) {
-    object["seconds_left"] = rounded(job.left->count());
-  }
-  if (job.failure) {
-    object["error"] = {
-        {"code", job.failure->code}, {"detail", job.failure->detail}, {"hint", job.failure->hint}};
-  }
-  if (job.model) {
-    object["model"] = json_of(*job.model, job.id);
-  }
-  return object;
-}
-
-Job job_from(const json& object) {
-  JsonObject keys(object, "job-malformed", "");
-  constexpr int most_int = std::numeric_limits<int>::max();
-  return {.id = keys.at("id").text(),
-          .name = keys.at("name").text(),
-          .state = one_of(keys.at("state"), states),
-          .phase = one_of(keys.at("phase"), phases),
-          .created = keys.at("created").text(),
-          .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
-          .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
-          .settings = stored_settings_from(keys.at("settings")),
-          .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
-          .failure = failure_from(keys.value("error")),
-          .model = model_from(keys.value("model"))};
+Job to_interrupted(Job job, int snapshots) {
+  job.state = JobState::interrupted;
+  job.phase = Phase::done;
+  job.snapshots_done = snapshots;
+  job.left.reset();
+  job.failure = interruption();
+  return job;
 }
 
 }  // namespace octurn

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <chrono>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "octurn/error.hpp"
+#include "failure.hpp"
 #include "octurn/mesh_report.hpp"
 #include "scan/scan_settings.hpp"
 
@@ -30,20 +29,9 @@ bool is_resumable(JobState state);
 std::string_view name_of(JobState state);
 std::string_view name_of(Phase phase);
 
-/// Why something did not work, as the API tells it.
-struct Failure {
-  std::string code = {};
-  std::string detail = {};
-  std::string hint = {};
-};
-
-Failure failure_of(const Error& error);
-
-/// The exception that is being handled; one that is no Error becomes "internal". Only in a `catch`.
-Failure current_failure();
-
-/// Whether the sensor or the turntable is to blame: what a person can mend while the scan waits.
-bool is_device_fault(const Failure& failure);
+/// The state or phase of that name, if there is one.
+std::optional<JobState> job_state_named(std::string_view name);
+std::optional<Phase> phase_named(std::string_view name);
 
 /// Why a scan has no model whose daemon ended while it ran.
 Failure interruption();
@@ -70,11 +58,8 @@ struct Job {
   std::optional<Model> model = {};
 };
 
-/// A scan as the API has it.
-nlohmann::json json_of(const Job& job);
-
-/// Reads what `json_of` has written.
-/// @throws Error "job-malformed"  that says what is missing or wrong
-Job job_from(const nlohmann::json& object);
+/// A scan that ended with the program, or whose end could not be written down: it can go on.
+/// @param snapshots  that are stored
+Job to_interrupted(Job job, int snapshots);
 
 }  // namespace octurn

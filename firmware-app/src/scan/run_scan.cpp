@@ -11,6 +11,7 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "scan/plan.hpp"
+#include "scan/stored_scan.hpp"
 
 namespace octurn {
 namespace {
@@ -18,10 +19,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Frames older than the end of a move that a sensor may still hand out: a second of them, at 30 Hz.
-constexpr int most_stale_frames = 30;
+constexpr int max_stale_frames = 30;
+
+constexpr auto wait_interval = std::chrono::milliseconds(500);
 
 // A sensor that is well sees about as much at every stop: what turns is a part of the picture.
-constexpr double least_sight = 0.6;  // of the readings in the scan's first snapshot
+constexpr double min_coverage = 0.6;  // of the readings in the scan's first snapshot
 
 /// Takes frames whose exposure ended after `settled`; none if stopped first.
 std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_point settled,
@@ -35,7 +38,7 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
     if (timed->time > settled) {
       observer.on_frame(timed->frame, sensor.intrinsics().depth_unit);
       frames.push_back(std::move(timed->frame));
-    } else if (++stale > most_stale_frames) {
+    } else if (++stale > max_stale_frames) {
       throw Error("sensor-failed", sensor.name() + ": its frames are older than they may be",
                   "Unplug the sensor, and plug it in again.");
     }
@@ -88,9 +91,10 @@ class Run {
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
   void begin();
-  void go_on();
-  std::optional<DepthFrame> look_at(std::int64_t position);
-  void expect_sight(const DepthFrame& frame);
+  void resume();
+  std::optional<DepthFrame> take_depth_image(std::int64_t position);
+  void require_coverage(const DepthFrame& frame);
+  void wait_for_added();
   template <typename Add>
   void add(Add add_to);
 
@@ -107,23 +111,23 @@ class Run {
 
 bool Run::take_snapshots() {
   if (done() == settings_.snapshots) {
-    go_on();
+    resume();
     return true;
   }
   Turntable& turntable = rig_.turntable();
   if (done() == 0) {
     begin();
   } else {
-    go_on();
+    resume();
   }
   const int steps = turntable.steps_per_turn();
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
-    std::optional<DepthFrame> frame = look_at(position);
+    std::optional<DepthFrame> frame = take_depth_image(position);
     if (!frame) {
       return false;
     }
-    expect_sight(*frame);
+    require_coverage(*frame);
     const Shot shot{.file = shot_file(done()),
                     .angle = radians_from_degrees(angle_deg_at(position, steps))};
     store(folder_, scan_, shot, *frame);
@@ -145,19 +149,18 @@ void Run::begin() {
 }
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
-void Run::go_on() {
+void Run::resume() {
   if (done() < settings_.snapshots && rig_.sensor().intrinsics() != scan_.intrinsics) {
     throw Error("sensor-other", "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
   }
-  first_readings_ = readings_in(read_snapshot(folder_, scan_, scan_.shots.front()).frame);
-  add([stored = stored_snapshots(folder_, scan_, {}), this](Reconstructor& reconstruction) {
-    reconstruction.add(stored, stop_);
-  });
+  const SnapshotSource stored = readable_snapshots(folder_, scan_, stop_);
+  first_readings_ = readings_in(stored.read(0).frame);
+  add([stored, this](Reconstructor& reconstruction) { reconstruction.add(stored, stop_); });
 }
 
 /// Turns to a stop, and takes its depth image; nothing if stopped first.
-std::optional<DepthFrame> Run::look_at(std::int64_t position) {
+std::optional<DepthFrame> Run::take_depth_image(std::int64_t position) {
   Turntable& turntable = rig_.turntable();
   DepthSensor& sensor = rig_.sensor();
   const double angle_deg = angle_deg_at(position, turntable.steps_per_turn());
@@ -173,13 +176,13 @@ std::optional<DepthFrame> Run::look_at(std::int64_t position) {
   return frames.empty() ? std::nullopt : std::optional(merge_frames(frames, settings_.filter));
 }
 
-void Run::expect_sight(const DepthFrame& frame) {
+void Run::require_coverage(const DepthFrame& frame) {
   const std::ptrdiff_t readings = readings_in(frame);
   if (done() == 0) {
     first_readings_ = readings;
   }
   if (readings == 0 ||
-      static_cast<double>(readings) < least_sight * static_cast<double>(first_readings_)) {
+      static_cast<double>(readings) < min_coverage * static_cast<double>(first_readings_)) {
     throw Error("sensor-blind",
                 scan_.sensor_name + ": has " + std::to_string(readings) +
                     " readings in its picture, and had " + std::to_string(first_readings_) +
@@ -188,11 +191,18 @@ void Run::expect_sight(const DepthFrame& frame) {
   }
 }
 
-template <typename Add>
-void Run::add(Add add_to) {
+void Run::wait_for_added() {
+  while (adding_.valid() && adding_.wait_for(wait_interval) != std::future_status::ready) {
+    observer_.on_wait();
+  }
   if (adding_.valid()) {
     adding_.get();
   }
+}
+
+template <typename Add>
+void Run::add(Add add_to) {
+  wait_for_added();
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
     add_to(*reconstruction_);
     if (done < settings_.snapshots && !stop_.stop_requested()) {  // else comes the model itself
@@ -206,11 +216,11 @@ void Run::add(Add add_to) {
 std::optional<Model> Run::build() {
   observer_.on_progress(Phase::building, done());
   const Clock::time_point captured = Clock::now();
-  adding_.get();
+  wait_for_added();
   if (stop_.stop_requested()) {
     return std::nullopt;  // before all was added
   }
-  const auto report = write_model(*reconstruction_, stored_snapshots(folder_, scan_, stop_),
+  const auto report = write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
                                   folder_ / "Scan.stl", stop_);
   return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
                 : std::nullopt;

@@ -18,8 +18,10 @@ struct ScanObserver {
   std::function<void(double angle_deg)> on_turn = [](double) {};
   std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
                                                                                 double) {};
-  std::function<void(const Reconstructor& seen, int snapshots)> on_added = [](const Reconstructor&,
-                                                                              int) {};
+  std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
+      [](const Reconstructor&, int) {};
+  /// Now and then while the last snapshot is still being added.
+  std::function<void()> on_wait = [] {};
 };
 
 /// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.

@@ -1,17 +1,9 @@
 #include "scan/scan_store.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <ratio>
 #include <system_error>
 #include <utility>
 
@@ -20,6 +12,8 @@
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "scan/job_file.hpp"
+#include "scan/scan_id.hpp"
 #include "utc.hpp"
 
 namespace octurn {
@@ -28,73 +22,16 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Date and time of day (UTC), and how far into the second, in steps of 20 us. So ids sort by time.
-constexpr std::string_view id_form = "00000000-000000-xxxx";
-using Moment = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::ratio<1, 50000>>>;
-
 // Folders in the making, and on their way out, begin with a dot: they are not listed, and the next
 // start clears them away.
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
-
-constexpr const char* lock_file = "lock";
 
 constexpr double most = std::numeric_limits<double>::max();
 
 constexpr std::size_t max_job_bytes = std::size_t{1} << 20U;  // a hundred times what is written
 constexpr std::size_t max_name_bytes = 4096;
 constexpr std::size_t max_platform_bytes = 4096;
-
-// A 16-bit depth image that does not compress at all, and a fine model.
-constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
-constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
-
-std::string id_of(Moment moment) {
-  auto fraction = (moment - std::chrono::floor<std::chrono::seconds>(moment)).count();
-  std::string digits(4, '0');
-  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, fraction >>= 4) {
-    *digit = "0123456789abcdef"[fraction & 0xf];
-  }
-  return utc_text(moment, "%Y%m%d-%H%M%S-") + digits;
-}
-
-Moment moment_of(const std::string& id) {
-  std::tm utc{};
-  const char* const fraction = ::strptime(id.c_str(), "%Y%m%d-%H%M%S-", &utc);
-  return Moment(std::chrono::seconds(::timegm(&utc))) +
-         Moment::duration(fraction == nullptr ? 0 : std::strtol(fraction, nullptr, 16));
-}
-
-[[noreturn]] void fail(const fs::path& path, const std::string& doing, std::error_code reason) {
-  const bool full = reason == std::errc::no_space_on_device;
-  throw Error(
-      full ? "disk-full" : "data-failed",
-      path.string() + ": cannot " + doing + ": " + reason.message(),
-      full ? "Delete scans that are no longer needed."
-           : "Check that this program may write there, or choose another folder with --data.");
-}
-
-/// The names in a folder; those that could be read, if the disk fails meanwhile.
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  while (!error && entry != fs::directory_iterator()) {
-    names.push_back(entry->path().filename().string());
-    entry.increment(error);
-  }
-  return names;
-}
-
-/// Removes what begins with a dot: temporary files, and folders that were not finished.
-void clear_unfinished(const fs::path& folder) {
-  std::error_code ignored;  // what cannot be cleared away does no harm
-  for (const std::string& name : names_in(folder)) {
-    if (name.starts_with('.')) {
-      fs::remove_all(folder / name, ignored);
-    }
-  }
-}
 
 int stored_snapshots(const fs::path& folder) {
   try {
@@ -106,13 +43,13 @@ int stored_snapshots(const fs::path& folder) {
 
 /// As `job.json` has it. Names and messages may hold bytes that are no UTF-8: those are replaced.
 std::string text_of(const Job& job) {
-  return json_of(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+  return to_job_json(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 /// @throws Error "job-malformed", "read-failed"
 Job read_job(const fs::path& folder) {
-  return job_from(parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
-                             "job-malformed", "the file"));
+  return to_job(parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
+                           "job-malformed", "the file"));
 }
 
 /// What a person called a scan; empty if that cannot be read, as the scan itself can be.
@@ -124,61 +61,51 @@ std::string read_name(const fs::path& folder) {
   }
 }
 
+/// The scan of a folder; one that cannot be read has failed.
+Job load(const fs::path& folder) {
+  Job job;
+  try {
+    job = read_job(folder);
+  } catch (...) {
+    const Failure failure = current_failure();
+    job.state = JobState::failed;
+    job.phase = Phase::done;
+    job.failure =
+        Failure{.code = failure.code == "read-failed" ? "read-failed" : "job-malformed",
+                .detail = "job.json: " + failure.detail,
+                .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
+  }
+  job.id = folder.filename().string();
+  job.name = read_name(folder);
+  return job;
+}
+
+[[noreturn]] void throw_no_such_scan(std::string_view id) {
+  throw Error("no-such-scan", "there is no scan " + std::string(id),
+              "GET /api/v1/scans lists them.");
+}
+
 }  // namespace
-
-bool is_scan_id(std::string_view text) {
-  return std::ranges::equal(text, id_form, [](char c, char form) {
-    const bool digit = c >= '0' && c <= '9';
-    return form == '0' ? digit : form == 'x' ? digit || (c >= 'a' && c <= 'f') : c == form;
-  });
-}
-
-std::uint64_t most_bytes_of(const ScanSettings& settings) {
-  return model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
-}
-
-fs::path existing_part(fs::path folder) {
-  std::error_code ignored;
-  while (!folder.empty() && !fs::exists(folder, ignored) && folder != folder.parent_path()) {
-    folder = folder.parent_path();
-  }
-  return folder.empty() ? fs::path(".") : folder;
-}
-
-std::uint64_t free_bytes_in(const fs::path& folder) {
-  std::error_code error;
-  const fs::space_info space = fs::space(existing_part(folder), error);
-  if (error) {
-    fail(folder, "read", error);
-  }
-  return space.available;
-}
-
-bool is_in_use(const fs::path& data) {
-  const FileDescriptor lock(::open((data / lock_file).c_str(), O_RDONLY | O_CLOEXEC));
-  return lock.is_open() && ::flock(lock.number(), LOCK_SH | LOCK_NB) != 0;
-}
 
 ScanStore::ScanStore(fs::path data)
     : data_(std::move(data)), scans_(data_ / "scans"), platform_(data_ / "platform.json") {
   std::error_code error;
   fs::create_directories(scans_, error);
   if (error) {
-    fail(scans_, "make the folder", error);
+    throw_data_error(scans_, "make the folder", error);
   }
-  const fs::path file = data_ / lock_file;
-  lock_ = FileDescriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-  if (!lock_.is_open()) {
-    fail(file, "open", {errno, std::generic_category()});
-  }
-  if (::flock(lock_.number(), LOCK_EX | LOCK_NB) != 0) {
-    throw Error("data-in-use", data_.string() + ": another octurn works in this folder",
-                "End it first, or choose another folder with --data.");
+  lock_ = lock_data_folder(data_);
+  clear_unfinished(scans_);
+  for (const std::string& id : names_in(scans_)) {
+    std::error_code unknown;
+    if (is_scan_id(id) && fs::is_directory(folder(id), unknown)) {
+      jobs_.emplace(id, load(folder(id)));
+    }
   }
   recover();
 }
 
-Job ScanStore::create(const ScanSettings& settings) const {
+Job ScanStore::create(const ScanSettings& settings) {
   const std::uint64_t needed = most_bytes_of(settings);
   if (const std::uint64_t available = free_bytes(); available < needed) {
     const auto mb = [](std::uint64_t bytes) {
@@ -189,90 +116,108 @@ Job ScanStore::create(const ScanSettings& settings) const {
                     std::to_string(settings.snapshots) + " snapshots needs " + mb(needed),
                 "Delete scans that are no longer needed.");
   }
-  // A Pi has no clock of its own: after a power cut the time may have gone back.
-  auto now = std::chrono::floor<Moment::duration>(std::chrono::system_clock::now());
-  if (const std::vector<std::string> ids = ids_newest_first(); !ids.empty()) {
-    now = std::max(now, moment_of(ids.front()) + Moment::duration(1));
-  }
-  Job job{.id = id_of(now), .created = utc_text(now, rfc3339), .settings = settings};
+  const std::lock_guard writing(writing_);
+  const ScanTime now = next_time();
+  Job job{.id = to_scan_id(now), .created = utc_text(now, rfc3339), .settings = settings};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
   std::error_code error;
   fs::create_directory(beginning, error);
   if (error) {
-    fail(beginning, "make the folder", error);
+    throw_data_error(beginning, "make the folder", error);
   }
   write_file(beginning / "job.json", text_of(job));
   fs::rename(beginning, folder(job.id), error);
   if (error) {
-    fail(folder(job.id), "make the folder", error);
+    throw_data_error(folder(job.id), "make the folder", error);
   }
   sync_folder(scans_);
+  const std::lock_guard lock(mutex_);
+  jobs_.emplace(job.id, job);
   return job;
 }
 
-void ScanStore::save(const Job& job) const {
+ScanTime ScanStore::next_time() const {
+  const auto now = std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now());
+  const std::lock_guard lock(mutex_);
+  return jobs_.empty() ? now : std::max(now, to_time(jobs_.begin()->first) + ScanTime::duration(1));
+}
+
+void ScanStore::save(const Job& job) {
+  const std::lock_guard writing(writing_);
+  get(job.id);  // or there is no such scan
   write_file(folder(job.id) / "job.json", text_of(job));
+  const std::lock_guard lock(mutex_);
+  Job& held = jobs_.find(job.id)->second;
+  const std::string name = held.name;  // given meanwhile
+  held = job;
+  held.name = name;
+}
+
+Job ScanStore::interrupt(std::string_view id) {
+  const int snapshots = stored_snapshots(folder(id));
+  const std::lock_guard writing(writing_);
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) {
+    throw_no_such_scan(id);
+  }
+  found->second = to_interrupted(found->second, snapshots);
+  return found->second;
 }
 
 std::vector<Job> ScanStore::list() const {
+  const std::lock_guard lock(mutex_);
   std::vector<Job> jobs;
-  for (const std::string& id : ids_newest_first()) {
-    if (auto job = find(id)) {
-      jobs.push_back(*std::move(job));
-    }
+  jobs.reserve(jobs_.size());
+  for (const auto& [id, job] : jobs_) {
+    jobs.push_back(job);
   }
   return jobs;
 }
 
 std::optional<Job> ScanStore::find(std::string_view id) const {
-  std::error_code unknown;
-  if (!is_scan_id(id) || !fs::is_directory(folder(id), unknown)) {
-    return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  return found == jobs_.end() ? std::nullopt : std::optional(found->second);
+}
+
+Job ScanStore::get(std::string_view id) const {
+  std::optional<Job> job = find(id);
+  if (!job) {
+    throw_no_such_scan(id);
   }
-  Job job;
-  try {
-    job = read_job(folder(id));
-  } catch (const std::exception& error) {
-    job = {};
-    job.state = JobState::failed;
-    job.phase = Phase::done;
-    job.failure =
-        Failure{.code = current_failure().code == "read-failed" ? "read-failed" : "job-malformed",
-                .detail = std::string("job.json: ") + error.what(),
-                .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
-  }
-  job.id = id;
-  job.name = read_name(folder(id));
-  return job;
+  return *std::move(job);
 }
 
 std::optional<Job> ScanStore::newest_finished() const {
-  for (const std::string& id : ids_newest_first()) {
-    if (auto job = find(id); job && job->state == JobState::finished) {
-      return job;
-    }
-  }
-  return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find_if(
+      jobs_, [](const auto& entry) { return entry.second.state == JobState::finished; });
+  return found == jobs_.end() ? std::nullopt : std::optional(found->second);
 }
 
-void ScanStore::rename(std::string_view id, std::string_view name) const {
-  if (!find(id)) {
-    throw Error("no-such-scan", "there is no scan " + std::string(id));
-  }
+void ScanStore::rename(std::string_view id, std::string_view name) {
+  const std::lock_guard writing(writing_);
+  get(id);  // or there is no such scan
   write_file(folder(id) / "name.txt", name);
+  const std::lock_guard lock(mutex_);
+  jobs_.find(id)->second.name = name;
 }
 
-void ScanStore::remove(std::string_view id) const {
-  if (!find(id)) {
-    throw Error("no-such-scan", "there is no scan " + std::string(id));
-  }
-  // Renamed first: a scan that is half removed is never seen.
+void ScanStore::remove(std::string_view id) {
   const fs::path leaving = scans_ / (std::string(removed) + std::string(id));
   std::error_code error;
-  fs::rename(folder(id), leaving, error);
-  if (error) {
-    fail(folder(id), "remove", error);
+  {
+    const std::lock_guard writing(writing_);
+    get(id);  // or there is no such scan
+    // Renamed first: a scan that is half removed is never seen.
+    fs::rename(folder(id), leaving, error);
+    if (error && error != std::errc::no_such_file_or_directory) {
+      throw_data_error(folder(id), "remove", error);
+    }
+    const std::lock_guard lock(mutex_);
+    jobs_.erase(jobs_.find(id));
   }
   fs::remove_all(leaving, error);
   if (error) {
@@ -302,36 +247,21 @@ void ScanStore::save_platform_angle_deg(double angle_deg) const {
 
 std::uint64_t ScanStore::free_bytes() const { return free_bytes_in(scans_); }
 
-std::vector<std::string> ScanStore::ids_newest_first() const {
-  std::vector<std::string> ids;
-  for (std::string& name : names_in(scans_)) {
-    if (is_scan_id(name)) {
-      ids.push_back(std::move(name));
-    }
-  }
-  std::ranges::sort(ids, std::ranges::greater());  // they begin with the time
-  return ids;
-}
-
-void ScanStore::recover() const {
-  clear_unfinished(scans_);
-  for (Job& job : list()) {
+void ScanStore::recover() {
+  for (auto& [id, job] : jobs_) {
     if (job.state != JobState::running) {
       continue;
     }
-    clear_unfinished(folder(job.id));
-    clear_unfinished(folder(job.id) / "snapshots");
-    job.state = JobState::interrupted;
-    job.phase = Phase::done;
-    job.snapshots_done = stored_snapshots(folder(job.id));
-    job.failure = interruption();
-    log::info("store", "scan " + job.id + " was interrupted after " +
+    clear_unfinished(folder(id));
+    clear_unfinished(folder(id) / "snapshots");
+    job = to_interrupted(job, stored_snapshots(folder(id)));
+    log::info("store", "scan " + id + " was interrupted after " +
                            std::to_string(job.snapshots_done) + " snapshots");
     try {
-      save(job);
-    } catch (const Error& error) {
-      // A full disk: the API calls the scan interrupted all the same, and the page can delete it.
-      log::warning("store", error.what());
+      write_file(folder(id) / "job.json", text_of(job));
+    } catch (...) {
+      // A full or read-only disk: the scan is interrupted all the same, and can be deleted.
+      log::warning("store", current_failure().detail);
     }
   }
 }

@@ -2,64 +2,60 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "file_descriptor.hpp"
+#include "scan/data_folder.hpp"
 #include "scan/job.hpp"
+#include "scan/scan_id.hpp"
 
 namespace octurn {
-
-/// Whether a text has the form of a scan's name in paths: "20261121-081500-3f2a". Nothing else may
-/// become part of a path.
-bool is_scan_id(std::string_view text);
-
-/// What a scan with these settings takes on the disk at most.
-std::uint64_t most_bytes_of(const ScanSettings& settings);
-
-/// The folder, or the nearest one above it that exists.
-std::filesystem::path existing_part(std::filesystem::path folder);
-
-/// What may still be written into a folder, or where it would be made. @throws Error "data-failed"
-std::uint64_t free_bytes_in(const std::filesystem::path& folder);
-
-/// Whether a program works in that folder of scans just now.
-bool is_in_use(const std::filesystem::path& data);
 
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
 /// asked for and what became of it) and `name.txt` (what a person called it). And
 /// `DATA/platform.json`, which tells where the platform stands.
 ///
-/// Holds nothing but the path. Each file appears whole or not at all and has one writer (the worker
-/// those of the scan, an HTTP thread the name and what ends a paused scan), so any thread may call
-/// anything at any time.
+/// The files are read once, at the beginning, and then held: what is listed needs no disk. Each
+/// file appears whole or not at all. Any thread may call anything at any time.
 class ScanStore {
  public:
-  /// Takes hold of the folder, clears away what a dead process left unfinished, and marks the scans
-  /// that it was making as interrupted.
-  /// @throws Error "data-in-use" if another process holds it; if it cannot be made or written to
+  /// Takes hold of the folder, clears away what a dead process left unfinished, and takes the scans
+  /// that it was making as interrupted, also where that cannot be written down.
+  /// @throws Error "data-in-use" if another process holds it; if it cannot be made or read
   explicit ScanStore(std::filesystem::path data);
 
   /// Makes the folder of a new scan, in state running. Its id comes after every other's, even where
   /// the clock has gone back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
-  Job create(const ScanSettings& settings) const;
+  Job create(const ScanSettings& settings);
 
-  /// Writes `job.json`.
-  void save(const Job& job) const;
+  /// Writes `job.json`. Where that fails, the scan is what it was.
+  /// @throws Error "no-such-scan", "disk-full", "write-failed"
+  void save(const Job& job);
 
-  /// All scans, newest first. One whose `job.json` cannot be read is listed as failed.
+  /// Takes a scan as interrupted whose end could not be saved: what the next start would make of
+  /// what is on the disk.
+  /// @throws Error "no-such-scan"
+  Job interrupt(std::string_view id);
+
+  /// All scans, newest first. One whose `job.json` could not be read is listed as failed.
   std::vector<Job> list() const;
   std::optional<Job> find(std::string_view id) const;
+  /// @throws Error "no-such-scan"
+  Job get(std::string_view id) const;
 
   /// The newest finished scan, if there is one.
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
-  void rename(std::string_view id, std::string_view name) const;
-  void remove(std::string_view id) const;
+  void rename(std::string_view id, std::string_view name);
+  void remove(std::string_view id);
 
   /// @param id  that exists
   std::filesystem::path folder(std::string_view id) const;
@@ -72,13 +68,16 @@ class ScanStore {
   std::uint64_t free_bytes() const;
 
  private:
-  std::vector<std::string> ids_newest_first() const;
-  void recover() const;
+  ScanTime next_time() const;
+  void recover();
 
   std::filesystem::path data_;
   std::filesystem::path scans_;
   std::filesystem::path platform_;
-  FileDescriptor lock_;  // locked while it is open
+  FileDescriptor lock_;       // locked while it is open
+  std::mutex writing_;        // held by who writes a scan's files; taken before mutex_
+  mutable std::mutex mutex_;  // guards jobs_, and is never held while the disk is used
+  std::map<std::string, Job, std::greater<>> jobs_;
 };
 
 }  // namespace octurn

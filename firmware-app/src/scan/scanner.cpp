@@ -1,6 +1,9 @@
 #include "scan/scanner.hpp"
 
+#include <future>
 #include <utility>
+
+#include "scan/worker.hpp"
 
 namespace octurn {
 namespace {
@@ -8,68 +11,81 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto view_patience =
+constexpr auto camera_patience =
     15s;  // a sensor takes 1 to 2 s to its first frame, on a busy machine more
-constexpr auto view_interest = 5s;  // frames are read for that long after someone asked
-constexpr auto failure_lasts = 2s;  // so long a failure needs no other look
-constexpr auto fresh = 200ms;       // a view of that age shows what is there now
+constexpr auto camera_interest = 5s;  // frames are read for that long after someone asked
+constexpr auto failure_lasts = 2s;    // so long a failure needs no other look
+constexpr auto fresh = 200ms;         // a frame of that age shows what is there now
+constexpr auto max_silence = 30s;     // of the worker: ten times what a device may take
+
+RigOptions at_angle(RigOptions rig, double angle_deg) {
+  rig.platform_angle_deg = angle_deg;
+  return rig;
+}
 
 }  // namespace
 
-Scanner::Scanner(RigOptions rig, const Limits& limits, const ScanStore& store)
-    : rig_options_(std::move(rig)), limits_(limits), store_(store), board_(rig_options_) {
-  rig_options_.platform_angle_deg = store_.platform_angle_deg();
-  worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store)
+    : store_(store), board_(rig) {
+  slot_.want_camera(Clock::now() + camera_interest);  // so that the status tells what is there
+  worker_ =
+      std::jthread([this, limits, rig = at_angle(std::move(rig), store.platform_angle_deg())] {
+        Worker(rig, limits, {store_, board_, slot_, heartbeat_, scans_}).work();
+      });
+}
+
+Scanner::~Scanner() { request_stop(); }
+
+void Scanner::request_stop() {
+  slot_.end();
+  ending_.request_stop();
 }
 
 std::optional<Job> Scanner::start(const ScanSettings& settings) {
-  const std::lock_guard lock(mutex_);
-  if (order_) {
+  const std::lock_guard lock(scans_);
+  if (slot_.has_scan()) {
     return std::nullopt;
   }
   const Job job = store_.create(settings);
-  give_order(job);
-  return job;
+  return hand_over(job, ScanCommand{job});
 }
 
 std::optional<Job> Scanner::resume(std::string_view id) {
-  const std::lock_guard lock(mutex_);
-  if (order_) {
+  const std::lock_guard lock(scans_);
+  if (slot_.has_scan()) {
     return std::nullopt;
   }
-  std::optional<Job> job = store_.find(id);
-  if (!job) {
-    throw Error("no-such-scan", "there is no scan " + std::string(id));
-  }
-  if (!is_resumable(job->state)) {
-    throw Error("not-paused", "this scan is " + std::string(name_of(job->state)),
+  Job job = store_.get(id);
+  if (!is_resumable(job.state)) {
+    throw Error("not-paused", "this scan is " + std::string(name_of(job.state)),
                 "Only a scan that was paused or interrupted can be resumed.");
   }
-  job->state = JobState::running;
-  job->phase = Phase::starting;
-  job->failure.reset();
-  store_.save(*job);
-  give_order(*job);
+  job.state = JobState::running;
+  job.phase = Phase::starting;
+  job.failure.reset();
+  store_.save(job);
+  return hand_over(job, ResumeCommand{job});
+}
+
+/// Gives a scan to the worker, which has none; `scans_` is held.
+std::optional<Job> Scanner::hand_over(Job job, Command command) {
+  board_.begin_scan(job, Clock::now() - std::chrono::duration_cast<Clock::duration>(job.elapsed));
+  if (!slot_.offer_scan(std::move(command))) {
+    board_.set_job(store_.interrupt(job.id));  // this program is ending
+    return std::nullopt;
+  }
   return job;
 }
 
-/// Fills the job slot, which is empty; `mutex_` is held.
-void Scanner::give_order(const Job& job) {
-  order_ = Order{.job = job};
-  board_.set_job(job);
-  if (leave_) {
-    leave_->request_stop();
-  }
-  if (loan_ != nullptr) {
-    loan_->stop.request_stop();
-  }
-  wake_.notify_all();
+bool Scanner::is_running(std::string_view id) const {
+  const Status now = status();
+  return now.busy() && now.job->id == id;
 }
 
 bool Scanner::cancel(std::string_view id) {
-  const std::lock_guard lock(mutex_);
-  if (order_ && order_->job.id == id) {
-    order_->cancel.request_stop();
+  const std::lock_guard lock(scans_);
+  if (is_running(id)) {
+    slot_.stop_scan();
     return true;
   }
   std::optional<Job> job = store_.find(id);
@@ -79,94 +95,109 @@ bool Scanner::cancel(std::string_view id) {
   job->state = JobState::cancelled;
   job->failure.reset();
   store_.save(*job);
-  board_.set_outcome(*job);
+  board_.set_job(*job);
   return true;
 }
 
-std::unique_ptr<Scanner::Leave> Scanner::leave_to_reconstruct() {
-  const std::lock_guard lock(mutex_);
-  if (order_ || leave_ || worker_.get_stop_token().stop_requested()) {
-    return nullptr;
+void Scanner::remove(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  if (is_running(id)) {
+    throw Error("busy", "this scan is running", "Cancel it first.");
   }
-  leave_.emplace();
-  return std::make_unique<Leave>(*this, leave_->get_token());
+  store_.remove(id);
 }
 
-void Scanner::take_leave_back() {
-  const std::lock_guard lock(mutex_);
-  leave_.reset();
-  wake_.notify_all();
+void Scanner::rename(std::string_view id, std::string_view name) {
+  store_.rename(id, name);
+  board_.rename(id, name);
 }
 
-bool Scanner::lend_rig(const std::function<void(Rig& rig, const std::stop_token& stop)>& use) {
-  Loan loan{.use = use};
-  std::unique_lock lock(mutex_);
-  const auto is_ending = [&] { return worker_.get_stop_token().stop_requested(); };
-  wake_.wait(lock, [&] { return loan_ == nullptr || order_ || is_ending(); });
-  if (loan_ != nullptr || order_ || is_ending()) {
-    return false;
-  }
-  loan_ = &loan;
-  wake_.notify_all();
-  wake_.wait(lock, [&] { return loan.done || (order_ && !loan.taken); });
-  if (!loan.done) {
-    loan_ = nullptr;  // the scan is first
-  }
-  if (loan.failure) {
-    std::rethrow_exception(loan.failure);
-  }
-  return loan.used;
+Job Scanner::find(std::string_view id) const {
+  const Job stored = store_.get(id);
+  const Status now = status();
+  return now.busy() && now.job->id == id ? *now.job : stored;
 }
 
-void Scanner::request_stop() {
-  worker_.request_stop();
-  const std::lock_guard lock(mutex_);
-  if (leave_) {
-    leave_->request_stop();
+std::vector<Job> Scanner::list() const {
+  std::vector<Job> jobs = store_.list();
+  if (const Status now = status(); now.busy()) {
+    for (Job& job : jobs) {
+      if (job.id == now.job->id) {
+        job = *now.job;
+      }
+    }
   }
+  return jobs;
 }
 
 Status Scanner::wait_until_done(std::chrono::milliseconds patience) const {
-  board_.latest_status().wait(worker_.get_stop_token(), patience,
+  board_.latest_status().wait(ending_.get_token(), patience,
                               [](const Status& status) { return !status.busy(); });
   return status();
 }
 
-std::shared_ptr<const View> Scanner::view() {
-  const bool scanning = board_.latest_status().get()->busy();
+std::shared_ptr<const CameraFrame> Scanner::camera_frame() {
+  const bool scanning = slot_.has_scan();
+  const bool rebuilding = !scanning && slot_.is_occupied();
   const Clock::time_point asked = Clock::now();
-  {
-    const std::lock_guard lock(mutex_);
-    view_wanted_until_ = asked + view_interest;
+  slot_.want_camera(asked + camera_interest);
+  auto frame = board_.camera_frame().wait(
+      ending_.get_token(), camera_patience, [&](const CameraFrame& latest) {
+        const auto age = asked - latest.time;
+        return rebuilding || (latest.failure ? age < failure_lasts
+                                             : age < fresh || (scanning && latest.depth_unit > 0));
+      });
+  if (frame->failure) {
+    throw to_error(*frame->failure);
   }
-  wake_.notify_all();
-  auto view = board_.view().wait(worker_.get_stop_token(), view_patience, [&](const View& latest) {
-    const auto age = asked - latest.time;
-    return latest.failure ? age < failure_lasts
-                          : age < fresh || (scanning && latest.depth_unit > 0);
-  });
-  if (view->failure) {
-    throw Error(view->failure->code, view->failure->detail, view->failure->hint);
+  if (rebuilding && frame->depth_unit == 0) {
+    throw Error("busy", "a model is being made", "Wait for its end.");
   }
-  if (!scanning && asked - view->time >= fresh) {
+  if (!scanning && !rebuilding && asked - frame->time >= fresh) {
     throw Error("sensor-silent", "the sensor has sent no frame yet", "Try again in a moment.");
   }
-  return view;
+  return frame;
 }
 
 void Scanner::expect_ready() {
-  const auto failed = [](const DeviceStatus& device) {
-    return device.state != DeviceStatus::State::ready;
+  const auto is_ready = [](const DeviceStatus& device) {
+    return device.state == DeviceStatus::State::ready;
   };
+  if (slot_.is_occupied()) {
+    return;  // nobody can look
+  }
   Status now = status();
-  if (!now.busy() && (failed(now.sensor) || failed(now.turntable))) {
-    view();  // looks at both
+  if (!is_ready(now.sensor) || !is_ready(now.turntable)) {
+    camera_frame();  // looks at both
     now = status();
   }
-  if (!now.busy() && failed(now.turntable)) {
-    const Failure& failure = now.turntable.failure;
-    throw Error(failure.code, failure.detail, failure.hint);
+  if (!now.busy() && !is_ready(now.turntable)) {
+    throw to_error(now.turntable.failure);
   }
 }
+
+std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
+                                                   const ReconstructOptions& options) {
+  const auto pipe = std::make_shared<ModelPipe>();
+  const RebuildCommand rebuild{.folder = store_.folder(id), .options = options, .pipe = pipe};
+  return slot_.offer_rebuild(rebuild, pipe->stop()) ? std::make_unique<ModelStream>(pipe) : nullptr;
+}
+
+bool Scanner::check_devices(std::function<void(Rig& rig, const std::stop_token& stop)> check) {
+  DeviceCheckCommand command{
+      .check = std::packaged_task<void(Rig&, const std::stop_token&)>(std::move(check))};
+  std::future<void> done = command.check.get_future();
+  if (!slot_.offer_check(std::move(command))) {
+    return false;
+  }
+  try {
+    done.get();
+    return true;
+  } catch (const std::future_error&) {
+    return false;  // a scan took its place
+  }
+}
+
+bool Scanner::is_alive() const { return heartbeat_.is_alive(max_silence); }
 
 }  // namespace octurn

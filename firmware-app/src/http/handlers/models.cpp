@@ -6,9 +6,8 @@
 #include "http/entity_tags.hpp"
 #include "http/file_response.hpp"
 #include "http/scan_view.hpp"
-#include "log.hpp"
 #include "octurn/json_object.hpp"
-#include "scan/model_stream.hpp"
+#include "scan/model_pipe.hpp"
 
 namespace octurn {
 namespace {
@@ -50,21 +49,14 @@ Response make_model(App& app, const Request& request, const Job& job) {
   if (job.state != JobState::running && job.snapshots_done == 0) {
     throw Error("no-model", "this scan has no snapshots", "Start a new scan.");
   }
-  auto leave = app.scanner.leave_to_reconstruct();
-  if (!leave) {
+  auto model = app.scanner.stream_model(job.id, options);
+  if (!model) {
     throw Error("busy", "a scan is running, or another model is being made", "Wait for its end.");
   }
-  auto model = std::make_unique<ModelStream>(app.store.folder(job.id), options, std::move(leave));
   const std::uint64_t bytes = model->bytes();
   ByteStream stream{.length = bytes, .stop = model->stop()};
   stream.make = std::packaged_task<void(const ByteSink&)>(
-      [made = std::move(model), id = job.id](const ByteSink& sink) {
-        try {
-          made->send(sink);
-        } catch (const std::exception& error) {
-          log::error("http", "model of scan " + id + ": " + error.what());
-        }
-      });
+      [made = std::move(model)](const ByteSink& sink) { made->send(sink); });
   return {.headers = {{"Content-Type", "model/stl"},
                       {"Content-Disposition", attachment(file_name(job))},
                       {"Accept-Ranges", "none"},
@@ -96,7 +88,7 @@ Response send_model(App& app, const Request& request, std::string_view id) {
 
 Response send_preview(App& app, const Request& request, std::string_view id) {
   find_scan(app, id);  // or there is no such scan
-  const auto preview = app.scanner.preview();
+  const auto preview = app.scanner.mesh_preview();
   if (preview->id != id || preview->snapshots == 0) {
     throw Error("no-preview", "there is nothing of this scan to show",
                 "Only the latest scan has a preview, from its first snapshot on.");

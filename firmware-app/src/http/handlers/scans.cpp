@@ -57,15 +57,12 @@ Response rename_scan(App& app, const Request& request, std::string_view id) {
   if (!name || name->size() > max_name || std::ranges::any_of(*name, is_control)) {
     throw Error("bad-name", "\"name\" must be text of at most 100 bytes on one line");
   }
-  app.store.rename(id, *name);
+  app.scanner.rename(id, *name);
   return send_scan(app, id);
 }
 
 Response remove_scan(App& app, std::string_view id) {
-  if (find_scan(app, id).state == JobState::running) {
-    throw Error("busy", "this scan is running", "Cancel it first.");
-  }
-  app.store.remove(id);
+  app.scanner.remove(id);
   return {.status = 204};
 }
 

@@ -66,9 +66,9 @@ Response send_diagnostics(App& app) {
 }
 
 Response send_depth_picture(App& app) {
-  const auto view = app.scanner.view();
+  const auto camera = app.scanner.camera_frame();
   return {.headers = {{"Content-Type", "image/png"}, {"Cache-Control", "no-store"}},
-          .body = preview_png(view->frame, view->depth_unit)};
+          .body = preview_png(camera->frame, camera->depth_unit)};
 }
 
 }  // namespace octurn

@@ -1,4 +1,4 @@
-// Scanner::lend_rig, and the doctor that it is for.
+// Scanner::check_devices, and the doctor that it is for.
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@ namespace {
 
 constexpr const char* fast_sensor = "octurn-simulator://?speed=20";
 
-class LendRig : public ::testing::Test {
+class CheckDevices : public ::testing::Test {
  protected:
   static RigOptions rig() { return {.sensor_uri = fast_sensor, .speed = 20}; }
 
   /// Reads the sensor for as long as it may. @return a thread that does, and has begun to
   std::thread borrower() {
     std::thread thread([&] {
-      scanner_.lend_rig([&](Rig& lent, const std::stop_token& stop) {
+      scanner_.check_devices([&](Rig& lent, const std::stop_token& stop) {
         while (lent.sensor().read(stop)) {
           is_lent_ = true;
           is_lent_.notify_all();
@@ -40,26 +40,26 @@ class LendRig : public ::testing::Test {
   Scanner scanner_{rig(), {}, store_};
 };
 
-TEST_F(LendRig, LetsTheRigBeUsedBetweenScans) {
+TEST_F(CheckDevices, LetsTheRigBeUsedBetweenScans) {
   std::string name;
-  EXPECT_TRUE(scanner_.lend_rig(
+  EXPECT_TRUE(scanner_.check_devices(
       [&](Rig& lent, const std::stop_token& /*stop*/) { name = lent.sensor().name(); }));
   EXPECT_EQ(name, "Kinect v1 (simulated)");
 }
 
-TEST_F(LendRig, RefusesDuringAScan) {
+TEST_F(CheckDevices, RefusesDuringAScan) {
   ASSERT_TRUE(scanner_.start(few_snapshots(200)));
-  EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));
+  EXPECT_FALSE(scanner_.check_devices([](Rig&, const std::stop_token&) { FAIL(); }));
 }
 
-TEST_F(LendRig, GivesTheRigBackToAScanThatStarts) {
+TEST_F(CheckDevices, GivesTheRigBackToAScanThatStarts) {
   std::thread borrower = this->borrower();
   EXPECT_TRUE(scanner_.start(few_snapshots()));
   borrower.join();
   EXPECT_EQ(scanner_.wait_until_done(patience).job->state, JobState::finished);
 }
 
-TEST_F(LendRig, LendsToOneAfterTheOther) {
+TEST_F(CheckDevices, LendsToOneAfterTheOther) {
   std::atomic<int> users = 0;
   std::atomic<int> most = 0;
   const auto use = [&](Rig& lent, const std::stop_token& stop) {
@@ -68,27 +68,27 @@ TEST_F(LendRig, LendsToOneAfterTheOther) {
     --users;
   };
   {
-    std::jthread one([&] { EXPECT_TRUE(scanner_.lend_rig(use)); });
-    std::jthread other([&] { EXPECT_TRUE(scanner_.lend_rig(use)); });
+    std::jthread one([&] { EXPECT_TRUE(scanner_.check_devices(use)); });
+    std::jthread other([&] { EXPECT_TRUE(scanner_.check_devices(use)); });
   }
   EXPECT_EQ(most, 1);
 }
 
-TEST_F(LendRig, HandsOnWhatItsUserThrows) {
+TEST_F(CheckDevices, HandsOnWhatItsUserThrows) {
   EXPECT_THROW(
-      scanner_.lend_rig([](Rig&, const std::stop_token&) { throw std::runtime_error("no"); }),
+      scanner_.check_devices([](Rig&, const std::stop_token&) { throw std::runtime_error("no"); }),
       std::runtime_error);
-  EXPECT_TRUE(scanner_.lend_rig([](Rig&, const std::stop_token&) {}));
+  EXPECT_TRUE(scanner_.check_devices([](Rig&, const std::stop_token&) {}));
 }
 
-TEST_F(LendRig, EndsWithTheScanner) {
+TEST_F(CheckDevices, EndsWithTheScanner) {
   std::thread borrower = this->borrower();
   scanner_.request_stop();
   borrower.join();
-  EXPECT_FALSE(scanner_.lend_rig([](Rig&, const std::stop_token&) { FAIL(); }));
+  EXPECT_FALSE(scanner_.check_devices([](Rig&, const std::stop_token&) { FAIL(); }));
 }
 
-TEST_F(LendRig, LetsTheDoctorLookAtTheSensor) {
+TEST_F(CheckDevices, LetsTheDoctorLookAtTheSensor) {
   const auto findings = examine({.rig = rig(), .config = {.data = folder_.path()}}, scanner_);
   EXPECT_EQ(findings[0].check, "sensor");
   EXPECT_EQ(findings[0].state, Finding::State::ok);

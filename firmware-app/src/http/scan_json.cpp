@@ -1,0 +1,57 @@
+#include "http/scan_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// Thousandths, as people and the page read them.
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+json to_json(const Failure& failure) {
+  return {{"code", failure.code}, {"detail", failure.detail}, {"hint", failure.hint}};
+}
+
+json to_json(const Model& model, const std::string& id) {
+  const ModelReport& report = model.report;
+  const bool counted = report.parts > 0;
+  json size_mm = json::array();
+  for (const double side : report.size) {
+    size_mm.push_back(rounded(mm_from_metres(side)));
+  }
+  return {{"url", "/api/v1/scans/" + id + "/Scan.stl"},
+          {"bytes", report.bytes},
+          {"triangles", report.triangles},
+          {"leaves", report.leaves},
+          {"parts", counted ? json(report.parts) : json()},
+          {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
+          {"watertight", report.watertight},
+          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
+          {"size_mm", size_mm},
+          {"seconds", rounded(model.build_time.count())}};
+}
+
+}  // namespace
+
+json to_json(const Job& job) {
+  return {{"id", job.id},
+          {"name", job.name},
+          {"state", name_of(job.state)},
+          {"phase", name_of(job.phase)},
+          {"created", job.created},
+          {"snapshots_done", job.snapshots_done},
+          {"snapshots_total", job.settings.snapshots},
+          {"seconds_elapsed", rounded(job.elapsed.count())},
+          {"seconds_left", job.left ? json(rounded(job.left->count())) : json()},
+          {"late_pulses", job.late_pulses},
+          {"settings", json_of(job.settings)},
+          {"error", job.failure ? to_json(*job.failure) : json()},
+          {"model", job.model ? to_json(*job.model, job.id) : json()}};
+}
+
+}  // namespace octurn

@@ -1,0 +1,144 @@
+#include "scan/command_slot.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace octurn {
+namespace {
+
+// As Command has them: what is more urgent comes later.
+constexpr std::size_t camera_rank = 0;
+constexpr std::size_t check_rank = 1;
+constexpr std::size_t rebuild_rank = 2;
+constexpr std::size_t scan_rank = 3;
+
+std::size_t to_rank(const Command& command) { return std::min(command.index(), scan_rank); }
+
+}  // namespace
+
+/// Whether nothing of that rank, or a higher one, waits or is carried out; `mutex_` is held.
+bool CommandSlot::rank_is_free(std::size_t rank) const {
+  return !ended_ && (!waiting_ || to_rank(waiting_->command) < rank) && (!rank_ || *rank_ < rank);
+}
+
+/// Puts a command into the slot in place of what waits there; `mutex_` is held.
+void CommandSlot::put(Command command, std::stop_source stop) {
+  if (waiting_) {
+    waiting_->stop.request_stop();
+  }
+  const bool is_scan = to_rank(command) == scan_rank;
+  waiting_.emplace(Taken{std::move(command), std::move(stop)});
+  if (rank_ && (is_scan || *rank_ == camera_rank)) {
+    stop_.request_stop();
+  }
+  changed_.notify_all();
+}
+
+bool CommandSlot::offer_scan(Command scan) {
+  const std::lock_guard lock(mutex_);
+  if (!rank_is_free(scan_rank)) {
+    return false;
+  }
+  put(std::move(scan), {});
+  return true;
+}
+
+bool CommandSlot::offer_rebuild(RebuildCommand rebuild, std::stop_source stop) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return !waiting_ || !rank_is_free(rebuild_rank); });
+  if (!rank_is_free(rebuild_rank)) {
+    return false;
+  }
+  put(std::move(rebuild), std::move(stop));
+  return true;
+}
+
+bool CommandSlot::offer_check(DeviceCheckCommand check) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return rank_is_free(check_rank) || !rank_is_free(rebuild_rank); });
+  if (!rank_is_free(rebuild_rank)) {
+    return false;
+  }
+  put(std::move(check), {});
+  return true;
+}
+
+void CommandSlot::want_camera(Clock::time_point until) {
+  {
+    const std::lock_guard lock(mutex_);
+    camera_wanted_until_ = until;
+  }
+  changed_.notify_all();
+}
+
+void CommandSlot::stop_scan() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_ && to_rank(waiting_->command) == scan_rank) {
+    waiting_->stop.request_stop();
+  }
+  if (rank_ == scan_rank) {
+    stop_.request_stop();
+  }
+}
+
+bool CommandSlot::has_scan() const {
+  const std::lock_guard lock(mutex_);
+  return (waiting_ && to_rank(waiting_->command) == scan_rank) || rank_ == scan_rank;
+}
+
+bool CommandSlot::is_occupied() const {
+  const std::lock_guard lock(mutex_);
+  return !rank_is_free(rebuild_rank);
+}
+
+void CommandSlot::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    stop_.request_stop();
+    if (waiting_) {
+      waiting_->stop.request_stop();
+    }
+  }
+  changed_.notify_all();
+}
+
+bool CommandSlot::has_ended() const {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
+std::optional<CommandSlot::Taken> CommandSlot::take(Clock::duration patience) {
+  std::unique_lock lock(mutex_);
+  const auto camera_is_wanted = [&] { return Clock::now() < camera_wanted_until_; };
+  changed_.wait_for(lock, patience, [&] { return waiting_ || ended_ || camera_is_wanted(); });
+  std::optional<Taken> taken = std::exchange(waiting_, std::nullopt);
+  if (!taken && !ended_ && camera_is_wanted()) {
+    taken.emplace();
+  }
+  if (taken) {
+    rank_ = to_rank(taken->command);
+    stop_ = taken->stop;
+    if (ended_) {
+      stop_.request_stop();
+    }
+  }
+  changed_.notify_all();
+  return taken;
+}
+
+void CommandSlot::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    rank_.reset();
+  }
+  changed_.notify_all();
+}
+
+void CommandSlot::wait_for_command(Clock::duration patience) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, stop_.get_token(), patience,
+                    [&] { return waiting_.has_value() || ended_; });
+}
+
+}  // namespace octurn

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <variant>
+
+#include "octurn/reconstruct.hpp"
+#include "scan/job.hpp"
+#include "scan/model_pipe.hpp"
+#include "scan/rig.hpp"
+
+namespace octurn {
+
+/// Read the sensor once, for who looks at the picture.
+struct CameraCommand {};
+
+/// Have the rig checked.
+struct DeviceCheckCommand {
+  /// Returns soon after its token has a stop request.
+  std::packaged_task<void(Rig& rig, const std::stop_token& stop)> check = {};
+};
+
+/// Make a model from a stored scan, with other settings.
+struct RebuildCommand {
+  std::filesystem::path folder = {};
+  ReconstructOptions options = {};  ///< but for the clip box, which is the scan's
+  std::shared_ptr<ModelPipe> pipe = {};
+};
+
+/// Run a scan that has just been created.
+struct ScanCommand {
+  Job job = {};
+};
+
+/// Go on with a scan that was paused or interrupted.
+struct ResumeCommand {
+  Job job = {};
+};
+
+/// What the worker can be asked to do, the least urgent first.
+using Command =
+    std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, ScanCommand, ResumeCommand>;
+
+/// The one command that waits, and the one that is carried out. A scan ends whatever else is
+/// carried out and takes the place of what waits; nothing else does. Any thread may call anything.
+class CommandSlot {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Taken {
+    Command command = {};
+    std::stop_source stop = {};
+  };
+
+  /// Puts a scan there. @return false if one waits or runs, or this has ended
+  bool offer_scan(Command scan);
+
+  /// The same for a model. @param stop  that ends it
+  /// @return false also if another model waits or is made
+  bool offer_rebuild(RebuildCommand rebuild, std::stop_source stop);
+
+  /// Waits for a free place. @return false if a scan or a model waits or is made
+  bool offer_check(DeviceCheckCommand check);
+
+  /// Has the camera read until then.
+  void want_camera(Clock::time_point until);
+
+  /// Asks the scan that waits or runs to stop.
+  void stop_scan();
+
+  /// Whether a scan waits or runs.
+  bool has_scan() const;
+
+  /// Whether a scan or a model waits or is made.
+  bool is_occupied() const;
+
+  /// Asks what is carried out to stop, and takes no more.
+  void end();
+  bool has_ended() const;
+
+  // For the worker.
+
+  /// Waits for a command, and takes it. @return nothing if none came for so long, or this has ended
+  std::optional<Taken> take(Clock::duration patience);
+
+  /// The command that was taken is done.
+  void finish();
+
+  /// Waits until a command waits or what is carried out is stopped, but no longer than `patience`.
+  void wait_for_command(Clock::duration patience);
+
+ private:
+  bool rank_is_free(std::size_t rank) const;
+  void put(Command command, std::stop_source stop);
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::condition_variable_any changed_;
+  std::optional<Taken> waiting_;
+  std::optional<std::size_t> rank_;  // of the command that is carried out
+  std::stop_source stop_;            // of the same
+  Clock::time_point camera_wanted_until_ = {};
+  bool ended_ = false;
+};
+
+}  // namespace octurn

@@ -1,0 +1,105 @@
+#include "scan/data_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <cerrno>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* lock_file = "lock";
+
+// A 16-bit depth image that does not compress at all, and a fine model.
+constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
+constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
+
+std::error_code last_error() { return {errno, std::generic_category()}; }
+
+/// Opens the file that is locked; the folder itself where the disk is read-only and has none.
+FileDescriptor open_lock(const fs::path& data) {
+  const fs::path file = data / lock_file;
+  FileDescriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!lock.is_open() && errno == EROFS) {
+    lock = FileDescriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  }
+  if (!lock.is_open() && errno == ENOENT) {
+    lock = FileDescriptor(::open(data.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  }
+  if (!lock.is_open()) {
+    throw_data_error(file, "open", last_error());
+  }
+  return lock;
+}
+
+}  // namespace
+
+void throw_data_error(const fs::path& path, const std::string& doing, std::error_code reason) {
+  const bool full = reason == std::errc::no_space_on_device;
+  throw Error(
+      full ? "disk-full" : "data-failed",
+      path.string() + ": cannot " + doing + ": " + reason.message(),
+      full ? "Delete scans that are no longer needed."
+           : "Check that this program may write there, or choose another folder with --data.");
+}
+
+std::uint64_t most_bytes_of(const ScanSettings& settings) {
+  return model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
+}
+
+fs::path existing_part(fs::path folder) {
+  std::error_code ignored;
+  while (!folder.empty() && !fs::exists(folder, ignored) && folder != folder.parent_path()) {
+    folder = folder.parent_path();
+  }
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+std::uint64_t free_bytes_in(const fs::path& folder) {
+  std::error_code error;
+  const fs::space_info space = fs::space(existing_part(folder), error);
+  if (error) {
+    throw_data_error(folder, "read", error);
+  }
+  return space.available;
+}
+
+bool is_in_use(const fs::path& data) {
+  const FileDescriptor lock(::open((data / lock_file).c_str(), O_RDONLY | O_CLOEXEC));
+  return lock.is_open() && ::flock(lock.number(), LOCK_SH | LOCK_NB) != 0;
+}
+
+FileDescriptor lock_data_folder(const fs::path& data) {
+  FileDescriptor lock = open_lock(data);
+  if (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
+    throw Error("data-in-use", data.string() + ": another octurn works in this folder",
+                "End it first, or choose another folder with --data.");
+  }
+  return lock;
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  fs::directory_iterator entry(folder, error);
+  while (!error && entry != fs::directory_iterator()) {
+    names.push_back(entry->path().filename().string());
+    entry.increment(error);
+  }
+  return names;
+}
+
+void clear_unfinished(const fs::path& folder) {
+  std::error_code ignored;  // what cannot be cleared away does no harm
+  for (const std::string& name : names_in(folder)) {
+    if (name.starts_with('.')) {
+      fs::remove_all(folder / name, ignored);
+    }
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,131 @@
+#include "scan/job_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "octurn/json_object.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+using Seconds = std::chrono::duration<double>;
+
+constexpr double most = std::numeric_limits<double>::max();
+constexpr double most_whole = 1e15;  // a double holds every whole number up to there
+
+/// Thousandths, as people and the page read them.
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+json to_json(const Model& model) {
+  const ModelReport& report = model.report;
+  return {{"parts", report.parts == 0 ? json(nullptr) : json(report.parts)},
+          {"filled_share", report.parts == 0 ? json(nullptr) : json(rounded(report.filled_share))},
+          {"bytes", report.bytes},
+          {"triangles", report.triangles},
+          {"leaves", report.leaves},
+          {"watertight", report.watertight},
+          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
+          {"size_mm",
+           {rounded(mm_from_metres(report.size.x())), rounded(mm_from_metres(report.size.y())),
+            rounded(mm_from_metres(report.size.z()))}},
+          {"seconds", rounded(model.build_time.count())}};
+}
+
+std::uint64_t count(const JsonValue& value) {
+  return static_cast<std::uint64_t>(value.number(0, most_whole));
+}
+
+/// Of what not every method counts.
+double number_or_none(JsonObject& keys, std::string_view key, double largest) {
+  const auto value = keys.value(key);
+  return !value || value->json().is_null() ? 0 : value->number(0, largest);
+}
+
+/// @param named  finds the value of a name
+template <typename Value>
+Value one_of(const JsonValue& name, std::optional<Value> (*named)(std::string_view)) {
+  const std::optional<Value> value = named(name.text());
+  if (!value) {
+    name.refuse("a name that this version knows");
+  }
+  return *value;
+}
+
+std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
+  if (!object || object->json().is_null()) {
+    return std::nullopt;
+  }
+  JsonObject keys(*object);
+  return Failure{.code = keys.at("code").text(),
+                 .detail = keys.at("detail").text(),
+                 .hint = keys.at("hint").text()};
+}
+
+std::optional<Model> model_from(const std::optional<JsonValue>& object) {
+  if (!object || object->json().is_null()) {
+    return std::nullopt;
+  }
+  JsonObject keys(*object);
+  Model model{
+      .report = {.leaves = count(keys.at("leaves")),
+                 .triangles = count(keys.at("triangles")),
+                 .bytes = count(keys.at("bytes")),
+                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
+                 .filled_share = number_or_none(keys, "filled_share", 1),
+                 .watertight = keys.flag("watertight").value_or(false),
+                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
+      .build_time = Seconds(keys.at("seconds").number(0, most))};
+  const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());
+  }
+  return model;
+}
+
+}  // namespace
+
+json to_job_json(const Job& job) {
+  json object{{"id", job.id},
+              {"name", job.name},
+              {"state", name_of(job.state)},
+              {"phase", name_of(job.phase)},
+              {"created", job.created},
+              {"snapshots_done", job.snapshots_done},
+              {"snapshots_total", job.settings.snapshots},
+              {"seconds_elapsed", rounded(job.elapsed.count())},
+              {"late_pulses", job.late_pulses},
+              {"settings", json_of(job.settings)},
+              {"error", nullptr},
+              {"model", nullptr}};
+  if (job.failure) {
+    object["error"] = {
+        {"code", job.failure->code}, {"detail", job.failure->detail}, {"hint", job.failure->hint}};
+  }
+  if (job.model) {
+    object["model"] = to_json(*job.model);
+  }
+  return object;
+}
+
+Job to_job(const json& object) {
+  JsonObject keys(object, "job-malformed", "");
+  constexpr int most_int = std::numeric_limits<int>::max();
+  return {.id = keys.at("id").text(),
+          .name = keys.at("name").text(),
+          .state = one_of(keys.at("state"), job_state_named),
+          .phase = one_of(keys.at("phase"), phase_named),
+          .created = keys.at("created").text(),
+          .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
+          .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+          .settings = stored_settings_from(keys.at("settings")),
+          .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
+          .failure = failure_from(keys.value("error")),
+          .model = model_from(keys.value("model"))};
+}
+
+}  // namespace octurn

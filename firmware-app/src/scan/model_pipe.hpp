@@ -1,0 +1,79 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+namespace octurn {
+
+/// The bytes of a model from the thread that makes it to the one that sends it, at most
+/// `max_bytes` of them at a time. Either end may stop it; then no end waits for the other.
+class ModelPipe {
+ public:
+  static constexpr std::size_t max_bytes = std::size_t{1} << 20U;
+
+  std::stop_source stop() const { return stop_; }
+
+  // The end that makes the model.
+
+  void set_length(std::uint64_t bytes);
+  /// Waits for room. @throws Stopped  if stopped
+  void write(std::span<const std::byte> bytes);
+  /// All is written.
+  void close();
+  /// There will be no more, because of that.
+  void fail(std::exception_ptr reason);
+
+  // The end that sends it.
+
+  /// Waits for the length. @throws Error "busy" if stopped before, or the reason of `fail`
+  std::uint64_t length();
+  /// Waits for bytes; none at the end, or if stopped or failed.
+  std::vector<std::byte> read();
+
+ private:
+  std::stop_source stop_;
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable_any changed_;
+  std::optional<std::uint64_t> length_;
+  std::deque<std::vector<std::byte>> blocks_;
+  std::size_t held_bytes_ = 0;
+  bool closed_ = false;
+  std::exception_ptr failure_;
+};
+
+/// A model that is made while it is sent: the sending end of a pipe. Gives the model up when it is
+/// destroyed.
+class ModelStream {
+ public:
+  /// Waits until the model's size is known.
+  /// @throws Error  if a snapshot is damaged, the model is empty or does not fit into memory
+  /// @throws Error "busy"  if a scan starts meanwhile
+  explicit ModelStream(std::shared_ptr<ModelPipe> pipe);
+  ~ModelStream();
+  ModelStream(const ModelStream&) = delete;
+  ModelStream& operator=(const ModelStream&) = delete;
+
+  std::uint64_t bytes() const { return bytes_; }
+
+  /// Has a stop request as soon as the model is not made to its end, as when a scan starts.
+  std::stop_token stop() const { return pipe_->stop().get_token(); }
+
+  /// Hands the STL over, once. Ends early if `sink` returns false or the model is stopped.
+  void send(const std::function<bool(std::span<const std::byte>)>& sink);
+
+ private:
+  std::shared_ptr<ModelPipe> pipe_;  // shared with the thread that makes the model
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace octurn

@@ -1,0 +1,38 @@
+#include "scan/stored_scan.hpp"
+
+#include <string>
+#include <vector>
+
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/platform_pose.hpp"
+
+namespace octurn {
+namespace {
+
+Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
+  const Intrinsics& lens = scan.intrinsics;
+  const auto size = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
+  return {.frame = {.width = lens.width,
+                    .height = lens.height,
+                    .depth = std::vector<std::uint16_t>(size)},
+          .intrinsics = lens,
+          .object_from_sensor = object_from_sensor(scan.platform_from_sensor, shot.angle)};
+}
+
+}  // namespace
+
+SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Scan& scan,
+                                  const std::stop_token& stop) {
+  return {.count = scan.shots.size(),
+          .read = [scan, stored = stored_snapshots(folder, scan, stop)](std::size_t index) {
+            try {
+              return stored.read(index);
+            } catch (const Error& error) {
+              log::warning("scan", std::string("a snapshot is left out: ") + error.what());
+              return empty_snapshot(scan, scan.shots[index]);
+            }
+          }};
+}
+
+}  // namespace octurn

@@ -1,0 +1,95 @@
+#include "scan/worker.hpp"
+
+#include <utility>
+
+#include "log.hpp"
+#include "scan/rebuild.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto retry_interval = 2s;     // between looks at a sensor that failed
+constexpr auto open_without_use = 30s;  // then the sensor is closed: its light and traffic end
+constexpr auto idle_beat = 5s;          // between heartbeats while there is nothing to do
+
+}  // namespace
+
+Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports)
+    : rig_(rig), speed_(rig.speed), limits_(limits), ports_(ports) {}
+
+void Worker::work() {
+  look_for_turntable();  // so that the status tells what is there
+  Clock::time_point last_use = Clock::now();
+  for (;;) {
+    ports_.heartbeat.beat();
+    std::optional<CommandSlot::Taken> taken = ports_.slot.take(idle_beat);
+    if (taken) {
+      carry_out(*taken);
+      last_use = Clock::now();
+    } else if (ports_.slot.has_ended()) {
+      return;
+    } else if (Clock::now() - last_use >= open_without_use) {
+      rig_.close_sensor();
+    }
+  }
+}
+
+/// Nothing that is thrown leaves it: the worker outlives whatever it is asked to do.
+void Worker::carry_out(CommandSlot::Taken& taken) {
+  try {
+    std::visit([&](auto& command) { carry_out(command, taken.stop); }, taken.command);
+  } catch (...) {
+    log::error("scanner", current_failure().detail);
+  }
+  ports_.slot.finish();
+}
+
+void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop) {
+  if (!turntable_is_ready_) {
+    look_for_turntable();  // whose lines may have become free since
+  }
+  try {
+    DepthSensor& sensor = rig_.sensor();
+    if (const std::optional<TimedFrame> timed = sensor.read(stop.get_token())) {
+      ports_.board.set_camera_frame(timed->frame, sensor.intrinsics().depth_unit);
+      ports_.board.set_sensor_ready(sensor.name());
+    }
+  } catch (...) {
+    const Failure failure = current_failure();
+    rig_.close_sensor();
+    ports_.board.set_sensor_failed(failure);
+    ports_.slot.wait_for_command(retry_interval);
+  }
+}
+
+void Worker::carry_out(DeviceCheckCommand& command, const std::stop_source& stop) {
+  command.check(rig_, stop.get_token());
+}
+
+void Worker::carry_out(RebuildCommand& command, const std::stop_source& /*stop*/) {
+  ports_.heartbeat.suspend();
+  rebuild(command);
+}
+
+void Worker::carry_out(ScanCommand& command, const std::stop_source& stop) {
+  run(std::move(command.job), stop.get_token());
+}
+
+void Worker::carry_out(ResumeCommand& command, const std::stop_source& stop) {
+  run(std::move(command.job), stop.get_token());
+}
+
+void Worker::look_for_turntable() {
+  try {
+    rig_.turntable();
+    turntable_is_ready_ = true;
+    ports_.board.set_turntable_ready();
+  } catch (...) {
+    turntable_is_ready_ = false;
+    ports_.board.set_turntable_failed(current_failure());
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "scan/command_slot.hpp"
+#include "scan/heartbeat.hpp"
+#include "scan/run_scan.hpp"
+#include "scan/scan_store.hpp"
+#include "scan/status_board.hpp"
+
+namespace octurn {
+
+/// What the worker shares with the rest of a Scanner.
+struct WorkerPorts {
+  ScanStore& store;
+  StatusBoard& board;
+  CommandSlot& slot;
+  Heartbeat& heartbeat;
+  std::mutex& scans;  ///< held while the state of a scan changes that others may change, too
+};
+
+/// Carries out the commands of a slot, one after the other, on the thread that calls `work`. Owns
+/// sensor, turntable and the running scan; all that others learn of them is what it publishes.
+class Worker {
+ public:
+  Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports);
+
+  /// Returns when the slot has ended.
+  void work();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void carry_out(CommandSlot::Taken& taken);
+  void carry_out(CameraCommand& command, const std::stop_source& stop);
+  void carry_out(DeviceCheckCommand& command, const std::stop_source& stop);
+  void carry_out(RebuildCommand& command, const std::stop_source& stop);
+  void carry_out(ScanCommand& command, const std::stop_source& stop);
+  void carry_out(ResumeCommand& command, const std::stop_source& stop);
+
+  void look_for_turntable();
+  void run(Job job, const std::stop_token& stop);
+  void run_until_it_ends(const std::stop_token& stop);
+  void attempt(const std::stop_token& stop);
+  ScanObserver observer(const std::stop_token& stop);
+  void show_progress(Phase phase, int snapshots_done);
+  void close_device(const Failure& failure);
+  void release_rig();
+  void save_platform_angle(double angle_deg);
+  void finish();
+
+  Rig rig_;
+  double speed_;  // of a simulated rig, relative to life
+  Limits limits_;
+  WorkerPorts ports_;
+  Job job_ = {};  // the scan that runs
+  Clock::time_point job_started_ = {};
+  bool turntable_is_ready_ = false;
+};
+
+}  // namespace octurn

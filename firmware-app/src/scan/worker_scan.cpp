@@ -1,0 +1,197 @@
+// How the worker runs a scan.
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "log.hpp"
+#include "octurn/stl.hpp"
+#include "scan/worker.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A scan whose device fails tries the same stop again for so long, and once more at least: enough
+// for a Kinect that was unplugged and plugged in, which is back after 2 to 3 s.
+constexpr auto attempts_time = 30s;
+constexpr auto attempt_interval = 2s;
+
+// A preview is sent after every snapshot: at most 3 MB, and of leaves as fine as a screen shows.
+constexpr double preview_leaf_size = 0.004;  // metres
+constexpr std::uint64_t max_preview_facets = 60'000;
+
+MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruction, int snapshots,
+                         const std::stop_token& stop) {
+  std::vector<Facet> facets;
+  const auto append = [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  };
+  reconstruction.preview(preview_leaf_size, max_preview_facets, append, stop);
+  return facets.empty() ? MeshPreview{.id = id}
+                        : MeshPreview{.id = id, .snapshots = snapshots, .stl = stl_text(facets)};
+}
+
+}  // namespace
+
+void Worker::run(Job job, const std::stop_token& stop) {
+  job_ = std::move(job);
+  job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.elapsed);
+  log::info("scanner", "scan " + job_.id +
+                           " started, snapshots=" + std::to_string(job_.settings.snapshots) +
+                           ", of which taken=" + std::to_string(job_.snapshots_done));
+  const int late_before = rig_.late_pulses();
+  try {
+    run_until_it_ends(stop);
+  } catch (...) {
+    job_.failure = current_failure();
+    job_.state = JobState::failed;
+  }
+  if (job_.state == JobState::cancelled && ports_.slot.has_ended()) {
+    job_ = to_interrupted(job_, job_.snapshots_done);
+  }
+  release_rig();
+  job_.late_pulses += rig_.late_pulses() - late_before;
+  finish();
+}
+
+/// Tries a stop again where a device fails, until that has lasted too long: then the scan pauses.
+void Worker::run_until_it_ends(const std::stop_token& stop) {
+  const auto at_speed = [&](std::chrono::duration<double> life) {
+    return std::chrono::duration_cast<Clock::duration>(life / speed_);
+  };
+  int failed_at = -1;  // snapshots that were done then
+  Clock::time_point last_attempt = {};
+  while (!stop.stop_requested()) {
+    attempt(stop);
+    if (job_.state != JobState::paused) {
+      return;
+    }
+    const Clock::time_point now = Clock::now();
+    if (job_.snapshots_done > failed_at) {
+      failed_at = job_.snapshots_done;
+      last_attempt = now + at_speed(attempts_time);
+    }
+    if (now >= last_attempt) {
+      job_.failure->hint += " Then resume the scan.";
+      return;
+    }
+    job_.state = JobState::running;
+    ports_.board.set_job(job_);
+    ports_.heartbeat.beat();
+    ports_.slot.wait_for_command(at_speed(attempt_interval));
+  }
+  job_.state = JobState::cancelled;
+  job_.failure.reset();
+}
+
+/// Runs a scan from where it stands to its end, or until something fails. A device that failed is
+/// closed, so that the next use opens it again.
+void Worker::attempt(const std::stop_token& stop) {
+  try {
+    job_.model =
+        run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
+    job_.state = job_.model ? JobState::finished : JobState::cancelled;
+    job_.failure.reset();
+  } catch (...) {
+    job_.failure = current_failure();
+    job_.state = job_.failure->device() == Device::none ? JobState::failed : JobState::paused;
+    close_device(*job_.failure);
+  }
+}
+
+ScanObserver Worker::observer(const std::stop_token& stop) {
+  return {.on_progress = [this](Phase phase, int done) { show_progress(phase, done); },
+          .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
+          .on_frame =
+              [this](const DepthFrame& frame, double depth_unit) {
+                ports_.heartbeat.beat();
+                ports_.board.set_camera_frame(frame, depth_unit);
+                ports_.board.set_sensor_ready(rig_.sensor().name());
+              },
+          .on_added =
+              [this, stop, id = job_.id](const Reconstructor& reconstruction, int snapshots) {
+                if (MeshPreview preview = make_preview(id, reconstruction, snapshots, stop);
+                    preview.snapshots > 0) {
+                  ports_.board.set_mesh_preview(std::move(preview));
+                }
+              },
+          .on_wait = [this] { ports_.heartbeat.beat(); }};
+}
+
+void Worker::show_progress(Phase phase, int snapshots_done) {
+  if (snapshots_done > job_.snapshots_done) {
+    job_.failure.reset();
+  }
+  job_.phase = phase;
+  job_.snapshots_done = snapshots_done;
+  std::optional<Clock::time_point> expected_end;
+  if (snapshots_done > 0) {
+    const Clock::time_point now = Clock::now();
+    const auto each = (now - job_started_) / snapshots_done;
+    expected_end = now + each * (job_.settings.snapshots - snapshots_done);
+  }
+  ports_.board.set_job(job_, expected_end);
+  if (phase == Phase::capturing) {  // the platform has turned
+    turntable_is_ready_ = true;
+    ports_.board.set_turntable_ready();
+    ports_.heartbeat.beat();
+  } else {
+    ports_.heartbeat.suspend();  // a whole turn, or a model, may take minutes
+  }
+}
+
+void Worker::close_device(const Failure& failure) {
+  if (failure.device() == Device::sensor) {
+    ports_.board.set_sensor_failed(failure);
+    rig_.close_sensor();
+  } else if (failure.device() == Device::turntable) {
+    turntable_is_ready_ = false;
+    ports_.board.set_turntable_failed(failure);
+    rig_.close_turntable();
+  }
+}
+
+void Worker::release_rig() {
+  try {
+    rig_.release_turntable();
+  } catch (...) {
+    turntable_is_ready_ = false;
+    ports_.board.set_turntable_failed(current_failure());
+    rig_.close_turntable();  // without its lines the motor is off too
+  }
+  save_platform_angle(rig_.platform_angle_deg());
+}
+
+/// So that a scan that this program does not see the end of can be resumed by its next run.
+void Worker::save_platform_angle(double angle_deg) {
+  try {
+    ports_.store.save_platform_angle_deg(angle_deg);
+  } catch (...) {
+    log::warning("scanner", current_failure().detail);
+  }
+}
+
+void Worker::finish() {
+  job_.phase = Phase::done;
+  job_.elapsed = Clock::now() - job_started_;
+  const std::string outcome = "scan " + job_.id + " " + std::string(name_of(job_.state));
+  if (job_.failure) {
+    log::error("scanner", outcome + ": " + job_.failure->detail);
+  } else {
+    log::info("scanner", outcome);
+  }
+  const std::lock_guard lock(ports_.scans);
+  try {
+    ports_.store.save(job_);
+  } catch (...) {
+    // What is on the disk says that it still runs: so it is interrupted, now as after a start.
+    log::error("scanner", current_failure().detail);
+    job_ = ports_.store.interrupt(job_.id);
+  }
+  ports_.slot.finish();  // before anybody is told
+  ports_.board.set_job(job_);
+}
+
+}  // namespace octurn

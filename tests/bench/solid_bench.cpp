@@ -6,6 +6,7 @@
 #include "bench/ball_snapshots.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/solid_reconstructor.hpp"
+#include "voxel/octree.hpp"
 
 // The solid method, with eight snapshots of a ball at the size of a Kinect v1's image. The argument
 // is the leaf size in micrometres.
@@ -21,25 +22,25 @@ ReconstructOptions options_for(const benchmark::State& state) {
 
 void condition_a_snapshot(benchmark::State& state) {
   for (auto unused : state) {
-    const ConditionedDepth conditioned(snapshots().front(), ball_clip);
-    benchmark::DoNotOptimize(conditioned.at(320, 240));
+    const ConditionedDepth depth(snapshots().front(), ball_clip);
+    benchmark::DoNotOptimize(depth.at(320, 240));
   }
 }
 BENCHMARK(condition_a_snapshot)->Unit(benchmark::kMillisecond);
 
-void fuse_a_snapshot(benchmark::State& state) {
-  const ConditionedDepth conditioned(snapshots().front(), ball_clip);
+void integrate_a_snapshot(benchmark::State& state) {
+  const ConditionedDepth depth(snapshots().front(), ball_clip);
   const double leaf_size = options_for(state).leaf_size;
   const int levels = Octree::level_of(1.0, leaf_size);
-  // A field that has seen it already: no brick is new.
-  TsdfVolume field(VoxelGrid(1.0, levels, ball_clip, 0.0035));
-  fuse(field, conditioned);
+  // A volume that it was integrated into before: no brick is new.
+  TsdfVolume volume(VoxelGrid(1.0, levels, ball_clip, 0.0035));
+  integrate(volume, depth);
   for (auto unused : state) {
-    fuse(field, conditioned);
-    benchmark::DoNotOptimize(field.bytes());
+    integrate(volume, depth);
+    benchmark::DoNotOptimize(volume.bytes());
   }
 }
-BENCHMARK(fuse_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
+BENCHMARK(integrate_a_snapshot)->Arg(2000)->Arg(1000)->Arg(500)->Unit(benchmark::kMillisecond);
 
 void make_the_surface(benchmark::State& state, double target_error) {
   ReconstructOptions options = options_for(state);

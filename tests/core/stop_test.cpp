@@ -132,9 +132,9 @@ TEST(StoppedPhase, IntegratesNothing) {
   TsdfVolume volume(VoxelGrid(1.0, 9, clip_box, 0.005));
   const auto bricks = [&] {
     int count = 0;
-    for (int z = 0; z < volume.size().z; ++z) {
-      for (int y = 0; y < volume.size().y; ++y) {
-        for (int x = 0; x < volume.size().x; ++x) {
+    for (int z = 0; z < volume.grid().size().z; ++z) {
+      for (int y = 0; y < volume.grid().size().y; ++y) {
+        for (int x = 0; x < volume.grid().size().x; ++x) {
           count += volume.find({x, y, z}) != nullptr ? 1 : 0;
         }
       }
@@ -142,9 +142,9 @@ TEST(StoppedPhase, IntegratesNothing) {
     return count;
   };
   const ConditionedDepth depth(rendered(block({0.06, 0.05, 0.06}), 1).read(0), clip_box);
-  EXPECT_THROW(fuse(volume, depth, stopped_token()), Stopped);
+  EXPECT_THROW(integrate(volume, depth, stopped_token()), Stopped);
   EXPECT_EQ(bricks(), 0);
-  fuse(volume, depth);
+  integrate(volume, depth);
   EXPECT_GT(bricks(), 0);
 }
 

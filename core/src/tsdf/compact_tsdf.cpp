@@ -5,40 +5,40 @@
 namespace octurn {
 namespace {
 
-// What a sample needs to count as seen: of one good reading a tenth, and no less than the snapshots
-// that saw through.
-constexpr float least_weight = 0.1F;
+/// A surface is observed from this weight on: a tenth of that of one good reading.
+constexpr float min_weight = 0.1F;
 
-/// @param free  snapshots that saw through the sample
-VoxelState sighted(const TsdfBrick& brick, std::size_t sample, int free) {
+/// A voxel is observed if its weight reaches the minimum, and one for each ray that passed through.
+/// @param free  snapshots whose ray passed through the voxel
+VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int free) {
   const float w = static_cast<float>(brick.weight[sample]) / TsdfVolume::weight_ticks;
-  if (w >= least_weight && w >= static_cast<float>(free)) {
-    return VoxelState::seen;
+  if (w >= min_weight && w >= static_cast<float>(free)) {
+    return VoxelState::observed;
   }
   if (free > 0) {
     return VoxelState::free;
   }
-  return brick.distance[sample] < 0 && w > 0 ? VoxelState::behind : VoxelState::unknown;
+  return brick.distance[sample] < 0 && w > 0 ? VoxelState::occluded : VoxelState::unknown;
 }
 
-/// @param position  of the brick
-CompactBrick seen(const TsdfVolume& field, const TsdfBrick& from, const Index3& position) {
-  const int per_brick = field.blocks_per_brick();
-  const int leaves = field.block_voxels();
-  std::array<int, Brick::side> free{};  // of the samples of a row, by their cells
-  CompactBrick brick{.distance = from.distance, .sighted = {}};
+CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index) {
+  constexpr int side = VoxelGrid::brick_side;
+  const int per_brick = volume.grid().blocks_per_brick();
+  const int voxels = volume.grid().block_voxels();
+  std::array<int, side> free{};  // counts of the blocks that a row of voxels crosses
+  CompactBrick brick{.distance = from.distance, .states = {}};
   std::size_t sample = 0;
-  for (int z = 0; z < Brick::side; ++z) {
-    for (int y = 0; y < Brick::side; ++y) {
-      if (y % leaves == 0) {
-        for (int x = 0; x < Brick::side; ++x) {
-          free[static_cast<std::size_t>(x)] = field.free_cell(
-              {position.x * per_brick + x / leaves, position.y * per_brick + y / leaves,
-               position.z * per_brick + z / leaves});
+  for (int z = 0; z < side; ++z) {
+    for (int y = 0; y < side; ++y) {
+      if (y % voxels == 0) {
+        for (int x = 0; x < side; ++x) {
+          free[static_cast<std::size_t>(x)] =
+              volume.free_count({index.x * per_brick + x / voxels, index.y * per_brick + y / voxels,
+                                 index.z * per_brick + z / voxels});
         }
       }
-      for (const int of_cell : free) {
-        brick.set(sample, sighted(from, sample, of_cell + from.free[sample]));
+      for (const int of_block : free) {
+        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample]));
         ++sample;
       }
     }
@@ -48,26 +48,27 @@ CompactBrick seen(const TsdfVolume& field, const TsdfBrick& from, const Index3& 
 
 }  // namespace
 
-CompactTsdf::CompactTsdf(const VoxelGrid& shape)
-    : VoxelGrid(shape), bricks_(brick_count()), free_(cell_count()) {}
+CompactTsdf::CompactTsdf(const VoxelGrid& grid)
+    : grid_(grid), bricks_(grid.brick_count()), free_(grid.block_count()) {}
 
-void CompactTsdf::add(const TsdfVolume& field, const std::stop_token& stop) {
-  const auto& [low, end] = field.layers();
+void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
+  const auto& [low, end] = volume.layers();
+  const Index3& size = grid_.size();
   for (int z = low; z < end; ++z) {
     throw_if_stopped(stop);
-    for (int y = 0; y < size().y; ++y) {
-      for (int x = 0; x < size().x; ++x) {
-        if (const TsdfBrick* brick = field.find({x, y, z})) {
-          bricks_.add(brick_index({x, y, z})) = seen(field, *brick, {x, y, z});
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        if (const TsdfBrick* brick = volume.find({x, y, z})) {
+          bricks_.add(grid_.brick_index({x, y, z})) = compact(volume, *brick, {x, y, z});
         }
       }
     }
   }
-  const int per_brick = blocks_per_brick();
+  const int per_brick = grid_.blocks_per_brick();
   for (int z = low * per_brick; z < end * per_brick; ++z) {
-    for (int y = 0; y < size().y * per_brick; ++y) {
-      for (int x = 0; x < size().x * per_brick; ++x) {
-        free_[cell_index({x, y, z})] = field.free_cell({x, y, z}) > 0 ? 1 : 0;
+    for (int y = 0; y < size.y * per_brick; ++y) {
+      for (int x = 0; x < size.x * per_brick; ++x) {
+        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) > 0 ? 1 : 0;
       }
     }
   }

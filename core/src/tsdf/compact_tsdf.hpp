@@ -11,47 +11,53 @@
 
 namespace octurn {
 
-/// What all snapshots together say of a sample.
+/// What all snapshots together say of a voxel.
 enum class VoxelState : std::uint8_t {
-  unknown,
-  behind,  // faintly seen, behind a surface
-  free,    // seen through
-  seen,    // near a surface that enough was seen of
+  unknown,   ///< no snapshot says anything
+  occluded,  ///< behind an observed surface, with too little weight to be one
+  free,      ///< some ray passed through
+  observed,  ///< within the truncation of a surface that was observed well enough
 };
 
-/// 8 x 8 x 8 samples, x + 8 y + 64 z: distances to the surface, positive outside, in ticks, and two
-/// bits for each of what is known.
+/// 8 x 8 x 8 samples in the order of `TsdfBrick`: signed distances, and the states in two bits
+/// each.
 struct CompactBrick {
-  std::array<std::int16_t, TsdfBrick::samples> distance = {};
-  std::array<std::uint8_t, TsdfBrick::samples / 4> sighted = {};
+  std::array<std::int16_t, TsdfBrick::samples> distance = {};  // ticks, positive outside
+  std::array<std::uint8_t, TsdfBrick::samples / 4> states = {};
 
-  VoxelState at(std::size_t sample) const {
-    return static_cast<VoxelState>(sighted[sample / 4] >> sample % 4 * 2 & 3);
+  VoxelState state(std::size_t sample) const {
+    return static_cast<VoxelState>(states[sample / 4] >> sample % 4 * 2 & 3);
   }
-  void set(std::size_t sample, VoxelState value) {
-    sighted[sample / 4] = static_cast<std::uint8_t>(sighted[sample / 4] |
-                                                    static_cast<unsigned>(value) << sample % 4 * 2);
+  /// Sets a state that is still unknown.
+  void set_state(std::size_t sample, VoxelState value) {
+    states[sample / 4] = static_cast<std::uint8_t>(states[sample / 4] | static_cast<unsigned>(value)
+                                                                            << sample % 4 * 2);
   }
 };
 
-/// What is left of a distance field when all snapshots are fused: less than half its size, so that
-/// a field which is made in slabs has room as a whole.
-class CompactTsdf : public VoxelGrid {
+/// A finished TSDF without its weights: less than half the size of a `TsdfVolume`, so that a volume
+/// which was integrated in slabs fits in memory as a whole.
+class CompactTsdf {
  public:
-  explicit CompactTsdf(const VoxelGrid& shape);
+  explicit CompactTsdf(const VoxelGrid& grid);
 
-  /// Takes over the layers that `field` holds. @throws Stopped
-  void add(const TsdfVolume& field, const std::stop_token& stop = {});
+  const VoxelGrid& grid() const { return grid_; }
 
-  /// A brick, if it exists.
-  const CompactBrick* find(const Index3& brick) const { return bricks_.find(brick_index(brick)); }
+  /// Copies the layers that `volume` holds. @throws Stopped
+  void add(const TsdfVolume& volume, const std::stop_token& stop = {});
 
-  /// Whether any snapshot saw through a cell.
-  bool is_free(const Index3& cell) const { return free_[cell_index(cell)] != 0; }
+  /// The brick at an index, or null where there is none.
+  const CompactBrick* find(const Index3& brick) const {
+    return bricks_.find(grid_.brick_index(brick));
+  }
+
+  /// Whether any snapshot saw through a whole block.
+  bool is_free(const Index3& block) const { return free_[grid_.block_index(block)] != 0; }
 
   std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }
 
  private:
+  VoxelGrid grid_;
   BrickMap<CompactBrick> bricks_;
   std::vector<std::uint8_t> free_;
 };

@@ -6,99 +6,74 @@
 #include <vector>
 
 #include "tsdf/compact_tsdf.hpp"
+#include "tsdf/laplace_fill.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {
 
-/// A distance field with a value everywhere: what no snapshot saw is filled in smoothly.
+/// A signed distance field that is defined everywhere: the holes of a TSDF, which no snapshot
+/// observed, are filled smoothly.
 ///
-/// Leaves that are neither seen nor free take a harmonic function between the others, on the
-/// field's cells. Below the foot each layer is as the foot's, and the model ends on the platform's
-/// plane.
+/// The distances of blocks of voxels are filled by Laplace's equation (`laplace_fill`) and
+/// interpolated trilinearly at unknown and occluded voxels. Below the base layer each layer repeats
+/// it, and the field is cut at the platform's plane, so that the model gets a flat base.
 class HoleFilledSdf {
  public:
-  /// @param field  must outlive this
-  /// @param foot   the lowest layer of leaves that counts; those below take its values
+  /// @param known       must outlive this
+  /// @param base_layer  the lowest layer of voxels whose samples count
   /// @throws Stopped
-  HoleFilledSdf(const CompactTsdf& field, int foot, const std::stop_token& stop = {});
+  HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {});
 
-  /// The box of leaves outside which there is nothing: from `low` up to but without `end`.
+  const VoxelGrid& grid() const { return known_.grid(); }
+
+  /// The half-open box of voxels outside which nothing is inside: all bricks, and one around them.
   const Index3& low() const { return low_; }
   const Index3& end() const { return end_; }
 
-  double leaf_side() const { return field_.leaf_side(); }
-  double centre(int leaf, std::size_t axis) const { return field_.centre(leaf, axis); }
+  double voxel_side() const { return grid().voxel_side(); }
+  double centre(int voxel, std::size_t axis) const { return grid().centre(voxel, axis); }
 
-  /// Half a leaf's side in ticks.
-  float half_leaf() const {
-    return static_cast<float>(field_.leaf_side() / 2 / field_.truncation() * VoxelGrid::ticks);
+  /// Half a voxel's side, ticks.
+  float half_voxel() const {
+    return static_cast<float>(grid().voxel_side() / 2 / grid().truncation() * VoxelGrid::ticks);
   }
 
   struct Value {
-    float distance = 0;  // ticks, positive outside
-    bool seen = false;
+    float distance = 0;     // ticks, positive outside
+    bool observed = false;  // or filled
   };
 
-  /// At the centre of a leaf of that box, or of one below it.
-  Value at(const Index3& leaf) const;
+  /// The value at the centre of a voxel of that box, or of one below it.
+  Value at(const Index3& voxel) const;
 
-  /// The leaves of that box at which the distance is negative, but for those on its sides and top.
+  /// The voxels of that box with a negative distance, but for those on its sides and top.
   /// @throws Stopped
   VoxelMask inside(const std::stop_token& stop = {}) const;
 
  private:
-  struct Grid {
-    Index3 size = {};
-    std::vector<float> values = {};
-    std::vector<char> known = {};
-    std::size_t index(int x, int y, int z) const {
-      return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size.y) +
-              static_cast<std::size_t>(y)) *
-                 static_cast<std::size_t>(size.x) +
-             static_cast<std::size_t>(x);
-    }
-  };
-
-  void find_box();
-  void classify(const std::stop_token& stop);
-  void classify(const Index3& cell, std::size_t index);
-
-  struct RunningMean {
-    int known = 0;
-    float sum = 0;  // of distances, ticks
-    void add(float distance) {
-      ++known;
-      sum += distance;
-    }
-  };
-  RunningMean mean_known_distance(const CompactBrick& brick, const Index3& position,
-                                  const Index3& cell) const;
-  static void solve_laplace(Grid& fine, const std::stop_token& stop);
-  static void gauss_seidel_sweep(Grid& grid, const std::stop_token& stop);
-  static void gauss_seidel_sweep(Grid& grid, int x, int y, int z);
-  VoxelState sighted(const Index3& leaf, const CompactBrick* brick) const;
-  const CompactBrick* brick_at(const Index3& leaf) const;
-
-  /// The first of two neighbouring cells, and how far it is from its centre to the other's.
+  /// Two neighbouring blocks on an axis, and the second one's weight.
   struct LerpWeight {
     int first = 0;
     float part = 0;
   };
-  std::vector<LerpWeight> lerp_weights(int leaves, int cells) const;
-  float interpolated(const LerpWeight& x, const LerpWeight& y, const LerpWeight& z) const;
-  float interpolated(const Index3& leaf) const;
   enum class Side { inside, outside, both };
-  Side side_of(const Index3& brick) const;
-  std::uint64_t inside(const Index3& first) const;
-  void add_inside(const Index3& brick, VoxelMask& set) const;
 
-  const CompactTsdf& field_;
+  std::vector<LerpWeight> lerp_weights(int voxels, int blocks) const;
+  float trilinear(const LerpWeight& x, const LerpWeight& y, const LerpWeight& z) const;
+  float filled_at(const Index3& voxel) const;
+  VoxelState state_at(const Index3& voxel, const CompactBrick* brick) const;
+  const CompactBrick* brick_at(const Index3& voxel) const;
+  Side side_of(const Index3& brick) const;
+  std::uint64_t inside_bits(const Index3& first) const;
+  void add_inside(const Index3& brick, VoxelMask& mask) const;
+
+  const CompactTsdf& known_;
   int base_layer_;
   Index3 low_ = {};
   Index3 end_ = {};
-  Index3 low_cell_ = {};
-  Grid grid_ = {};
-  std::array<std::vector<LerpWeight>, 3> lerp_weights_ = {};  // of the box's leaves on each axis
+  Index3 low_brick_ = {};
+  PartialGrid blocks_ = {};                                   // distances in ticks
+  std::array<std::vector<LerpWeight>, 3> lerp_weights_ = {};  // of the box's voxels on each axis
 };
 
 }  // namespace octurn

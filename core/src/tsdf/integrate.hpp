@@ -7,15 +7,19 @@
 
 namespace octurn {
 
-/// Fuses one snapshot into the layers that a signed distance field holds.
+/// Integrates one snapshot into the layers that a TSDF volume holds.
 ///
-/// A sample within the truncation of a pixel's tangent plane takes its distance to it, by a
-/// weighted running mean (Curless and Levoy 1996, eq. 3-4); what lies in front of that is counted
-/// as seen through. Nodes of the octree are met with the least and greatest depth of the pixels
-/// they cover, so that only those near the surface are looked into.
+/// A sample within the truncation of its pixel's tangent plane takes its distance to it, by a
+/// weighted running mean (Curless and Levoy 1996, eq. 3-4); a sample further in front of it counts
+/// as seen through. The volume is descended as a hierarchy of cubes, each compared with the minimum
+/// and maximum depth of the pixels that it covers, so that only voxels near the surface are
+/// sampled.
 ///
-/// @throws OutOfBudget  if not even one layer fits; some of the snapshot is then fused
+/// Deterministic: the same bits on x86-64 and arm64. O(pixels * truncation / voxel side).
+///
+/// @param volume  updated in place
+/// @throws OutOfBudget  if not even one layer fits; some of the snapshot is then integrated
 /// @throws Stopped  between two bricks
-void fuse(TsdfVolume& field, const ConditionedDepth& sighting, const std::stop_token& stop = {});
+void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::stop_token& stop = {});
 
 }  // namespace octurn

@@ -13,13 +13,14 @@
 namespace octurn {
 namespace {
 
-/// Vertices closer than this are melded by slicers: CuraEngine's limit is 0.030.
-constexpr double least_gap_mm = 0.036;
+/// Slicers meld vertices that are closer than this: CuraEngine below 0.030 mm.
+constexpr double min_gap_mm = 0.036;
 
-/// Vertices beyond these parts of an edge could cut the surface, in the few patterns that can.
-constexpr float least_part_of_cutting = 0.3F;
+/// On edges of the few cases whose triangles could intersect, vertices keep this share of the edge
+/// from its ends.
+constexpr float ambiguous_margin = 0.3F;
 
-/// A layer of cubes between two layers of leaves.
+/// A layer of cubes between two layers of voxels.
 struct CubeLayer {
   struct Cube {
     int x = 0;
@@ -27,23 +28,45 @@ struct CubeLayer {
     std::uint8_t pattern = 0;
   };
   std::vector<Cube> mixed = {};
-  std::vector<std::uint8_t> cutting = {};  // of each cube of the layer; empty if there is none
+  std::vector<std::uint8_t> ambiguous = {};  // 1 for each cube of such a case; empty: there is none
 };
 
+/// The centres of a grid's voxels, all at one distance from the surface.
+class MidpointField {
+ public:
+  MidpointField(double root_side, double voxel_side)
+      : root_side_(root_side), voxel_side_(voxel_side) {}
+
+  double voxel_side() const { return voxel_side_; }
+  double centre(int voxel, std::size_t axis) const {
+    return (voxel + 0.5) * voxel_side_ - (axis < 2 ? root_side_ / 2 : 0.0);
+  }
+  float half_voxel() const { return 1; }
+  HoleFilledSdf::Value at(const Index3& /*voxel*/) const {
+    return {.distance = 0, .observed = true};
+  }
+
+ private:
+  double root_side_;
+  double voxel_side_;
+};
+
+/// @tparam Field  `HoleFilledSdf` or `MidpointField`
+template <typename Field>
 class MarchingCubes {
  public:
-  MarchingCubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink)
+  MarchingCubes(const VoxelMask& inside, const Field& field, const MeshSink& sink)
       : inside_(inside),
         field_(field),
         sink_(sink),
         width_(static_cast<std::size_t>(inside.size().x)),
         empty_row_(inside.words_per_row()) {
     const std::size_t layer = width_ * static_cast<std::size_t>(inside.size().y);
-    for (auto& names : names_) {
-      names.resize(layer);
+    for (auto& indices : indices_) {
+      indices.resize(layer);
     }
-    least_part_ = static_cast<float>(
-        std::min(least_gap_mm / (std::numbers::sqrt2 * mm_from_metres(field.leaf_side())), 0.3));
+    end_margin_ = static_cast<float>(
+        std::min(min_gap_mm / (std::numbers::sqrt2 * mm_from_metres(field.voxel_side())), 0.3));
   }
 
   void run(const std::stop_token& stop) {
@@ -61,10 +84,10 @@ class MarchingCubes {
         sink_({.vertices = vertices_, .triangles = triangles_});
       }
       // The edges along x and y above these cubes are those below the next.
-      std::swap(names_[0], names_[3]);
-      std::swap(names_[1], names_[4]);
+      std::swap(indices_[0], indices_[3]);
+      std::swap(indices_[1], indices_[4]);
       for (const std::size_t used : {2U, 3U, 4U}) {
-        std::ranges::fill(names_[used], 0U);
+        std::ranges::fill(indices_[used], 0U);
       }
       below = std::move(here);
       here = std::move(above);
@@ -88,7 +111,7 @@ class MarchingCubes {
   }
 
   /// Adds those of 64 cubes along x that the surface crosses.
-  /// @param rows  of leaves that they lie between
+  /// @param rows  of voxels that they lie between
   void add_mixed(const std::array<std::span<const std::uint64_t>, 4>& rows, std::size_t word, int y,
                  CubeLayer& layer) const {
     std::array<std::uint64_t, 8> corners{};
@@ -110,8 +133,8 @@ class MarchingCubes {
       const int x = static_cast<int>(word) * 64 + bit;
       layer.mixed.push_back({x, y, static_cast<std::uint8_t>(pattern)});
       if (is_self_intersecting_case(pattern)) {
-        layer.cutting.resize(names_[0].size());
-        layer.cutting[at(x, y)] = 1;
+        layer.ambiguous.resize(indices_[0].size());
+        layer.ambiguous[at(x, y)] = 1;
       }
     }
   }
@@ -128,21 +151,21 @@ class MarchingCubes {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const CubeEdge edge = surface.triangles[i][corner];
         const std::size_t axis = edge / 4U;
-        const Index3 leaf = start_of(edge, {cube.x, cube.y, z});
-        const bool is_above = axis < 2 && leaf.z > z;
-        std::uint32_t& name = names_[axis + (is_above ? 3 : 0)][at(leaf.x, leaf.y)];
-        if (name == 0) {
-          name = ++last_name_;
+        const Index3 voxel = start_of(edge, {cube.x, cube.y, z});
+        const bool is_above = axis < 2 && voxel.z > z;
+        std::uint32_t& index = indices_[axis + (is_above ? 3 : 0)][at(voxel.x, voxel.y)];
+        if (index == 0) {
+          index = ++vertex_count_;
           vertices_.push_back(
-              vertex(leaf, axis, is_above || axis == 2 ? here : below, is_above ? above : here));
+              vertex(voxel, axis, is_above || axis == 2 ? here : below, is_above ? above : here));
         }
-        triangle[corner] = name - 1;
+        triangle[corner] = index - 1;
       }
       triangles_.push_back(triangle);
     }
   }
 
-  /// The leaf that an edge of a cube begins at.
+  /// The voxel that an edge of a cube begins at.
   static Index3 start_of(CubeEdge edge, Index3 cube) {
     const int u = edge % 2;
     const int v = edge / 2 % 2;
@@ -156,73 +179,79 @@ class MarchingCubes {
     }
   }
 
-  /// @param below, above  the layers of cubes that meet in the edge from `leaf` along `axis`
-  MeshVertex vertex(const Index3& leaf, std::size_t axis, const CubeLayer& below,
+  /// @param below, above  the layers of cubes that meet in the edge from `voxel` along `axis`
+  MeshVertex vertex(const Index3& voxel, std::size_t axis, const CubeLayer& below,
                     const CubeLayer& above) const {
     const Index3& low = inside_.low();
-    Index3 first{leaf.x + low.x, leaf.y + low.y, leaf.z + low.z};
+    Index3 first{voxel.x + low.x, voxel.y + low.y, voxel.z + low.z};
     Index3 second = first;
     (axis == 0 ? second.x : axis == 1 ? second.y : second.z) += 1;
-    const bool first_inside = inside_.contains(leaf.x, leaf.y, leaf.z);
-    const HoleFilledSdf::Value a = field_.at(first);
-    const HoleFilledSdf::Value b = field_.at(second);
+    const bool first_inside = inside_.contains(voxel.x, voxel.y, voxel.z);
+    const auto a = field_.at(first);
+    const auto b = field_.at(second);
     const float from_first = magnitude(a.distance, first_inside);
     const float from_second = magnitude(b.distance, !first_inside);
-    float part = from_first / (from_first + from_second);
-    part = std::clamp(part, least_part_, 1 - least_part_);
+    float fraction = from_first / (from_first + from_second);
+    fraction = std::clamp(fraction, end_margin_, 1 - end_margin_);
     if (axis == 2 && first.z == -1) {
-      part = 0.5F;  // the platform's plane
-    } else if (touches_ambiguous_case(leaf, axis, below, above)) {
-      part = std::clamp(part, least_part_of_cutting, 1 - least_part_of_cutting);
+      fraction = 0.5F;  // the platform's plane
+    } else if (touches_ambiguous_case(voxel, axis, below, above)) {
+      fraction = std::clamp(fraction, ambiguous_margin, 1 - ambiguous_margin);
     }
-    MeshVertex vertex{.position = {}, .observed = a.seen && b.seen};
-    const std::array<int, 3> cell{first.x, first.y, first.z};
+    MeshVertex vertex{.position = {}, .observed = a.observed && b.observed};
+    const std::array<int, 3> position{first.x, first.y, first.z};
     for (std::size_t i = 0; i < 3; ++i) {
-      const double step = i == axis ? static_cast<double>(part) : 0.0;
-      vertex.position[i] =
-          static_cast<float>(mm_from_metres(field_.centre(cell[i], i) + step * field_.leaf_side()));
+      const double step = i == axis ? static_cast<double>(fraction) : 0.0;
+      vertex.position[i] = static_cast<float>(
+          mm_from_metres(field_.centre(position[i], i) + step * field_.voxel_side()));
     }
     return vertex;
   }
 
-  /// How far a leaf is from the surface, in ticks; half a leaf where the field has another sign
-  /// than the set.
+  /// A voxel's distance to the surface, ticks; half a voxel where the field's sign contradicts the
+  /// mask.
   float magnitude(float distance, bool is_inside) const {
     const float outward = is_inside ? -distance : distance;
-    return outward > 0 ? outward : field_.half_leaf();
+    return outward > 0 ? outward : field_.half_voxel();
   }
 
-  bool touches_ambiguous_case(const Index3& leaf, std::size_t axis, const CubeLayer& below,
+  bool touches_ambiguous_case(const Index3& voxel, std::size_t axis, const CubeLayer& below,
                               const CubeLayer& above) const {
-    const auto is_cutting = [&](const CubeLayer& layer, int x, int y) {
-      return !layer.cutting.empty() && x >= 0 && y >= 0 && layer.cutting[at(x, y)] != 0;
+    const auto is_ambiguous = [&](const CubeLayer& layer, int x, int y) {
+      return !layer.ambiguous.empty() && x >= 0 && y >= 0 && layer.ambiguous[at(x, y)] != 0;
     };
-    const int x = leaf.x - (axis == 0 ? 0 : 1);
-    const int y = leaf.y - (axis == 1 ? 0 : 1);
-    return is_cutting(below, leaf.x, leaf.y) || is_cutting(below, x, y) ||
-           is_cutting(above, leaf.x, leaf.y) || is_cutting(above, x, y) ||
-           (axis == 2 && (is_cutting(below, x, leaf.y) || is_cutting(below, leaf.x, y)));
+    const int x = voxel.x - (axis == 0 ? 0 : 1);
+    const int y = voxel.y - (axis == 1 ? 0 : 1);
+    return is_ambiguous(below, voxel.x, voxel.y) || is_ambiguous(below, x, y) ||
+           is_ambiguous(above, voxel.x, voxel.y) || is_ambiguous(above, x, y) ||
+           (axis == 2 && (is_ambiguous(below, x, voxel.y) || is_ambiguous(below, voxel.x, y)));
   }
 
   const VoxelMask& inside_;
-  const HoleFilledSdf& field_;
+  const Field& field_;
   const MeshSink& sink_;
   std::size_t width_;
   std::vector<std::uint64_t> empty_row_;
-  float least_part_ = 0;
-  // Numbers of vertices, from 1, by the leaf that an edge begins at: along x and y below the cubes,
-  // along z, along x and y above.
-  std::array<std::vector<std::uint32_t>, 5> names_ = {};
-  std::uint32_t last_name_ = 0;
+  float end_margin_ = 0;
+  // Vertex indices plus 1 (0: none yet) by the voxel that an edge begins at: along x and y below
+  // the cubes, along z, along x and y above.
+  std::array<std::vector<std::uint32_t>, 5> indices_ = {};
+  std::uint32_t vertex_count_ = 0;
   std::vector<MeshVertex> vertices_ = {};
   std::vector<MeshTriangle> triangles_ = {};
 };
 
 }  // namespace
 
-void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink,
+void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop) {
-  MarchingCubes(inside, field, sink).run(stop);
+  MarchingCubes(inside, sdf, sink).run(stop);
+}
+
+void marching_cubes(const VoxelMask& inside, double root_side, double voxel_side,
+                    const MeshSink& sink, const std::stop_token& stop) {
+  const MidpointField midpoints(root_side, voxel_side);
+  MarchingCubes(inside, midpoints, sink).run(stop);
 }
 
 }  // namespace octurn

@@ -8,15 +8,22 @@
 
 namespace octurn {
 
-/// The surface between the leaves of a set and those around it, with its vertices where the field
-/// crosses zero; a layer of leaves at a time.
+/// Marching cubes (Lorensen and Cline 1987): the surface between the voxels of a mask and those
+/// around it, with vertices where the signed distance crosses zero, one layer of voxels at a time.
 ///
-/// Closed and manifold whatever the signs are (see `marching_cubes_cases`), without cuts through
-/// itself, and with no two vertices closer than slicers meld. Leaves on the sides of the set's box
-/// must be empty, but for its lowest layer.
+/// Closed and manifold for every pattern of signs (see `marching_cubes_cases`), free of
+/// self-intersections, and with no two vertices so close that slicers meld them.
 ///
+/// @param inside  empty on the sides of its box, but for its lowest layer
 /// @throws Stopped  between two layers
-void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& field, const MeshSink& sink,
+void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop = {});
+
+/// The same for a mask alone: vertices lie half way between voxels.
+///
+/// @param root_side   metres, of the root cube, whose lowest corner voxels are counted from
+/// @param voxel_side  metres
+void marching_cubes(const VoxelMask& inside, double root_side, double voxel_side,
+                    const MeshSink& sink, const std::stop_token& stop = {});
 
 }  // namespace octurn

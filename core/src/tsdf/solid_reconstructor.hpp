@@ -4,28 +4,25 @@
 
 #include "octurn/reconstruct.hpp"
 #include "tsdf/compact_tsdf.hpp"
+#include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/tsdf_volume.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {
 
-/// A model in the making by signed distances: snapshots are fused, then one closed part is made of
-/// them.
+/// Reconstruction of one closed solid by a truncated signed distance function.
 ///
-/// Each snapshot is conditioned (`ConditionedDepth`) and fused (`fuse`) in a field of distances, in
-/// the order of the scan, and what that says of each leaf is kept (`CompactTsdf`). Then what nobody
-/// saw is filled in (`HoleFilledSdf`), the part that stands on the platform is kept without its
-/// cavities
-/// (`VoxelMask`), and its surface is made
-/// (`marching_cubes`) with no more triangles than it needs (`StreamSimplifier`), all of it
-/// streamed.
+/// Each snapshot is conditioned (`ConditionedDepth`) and integrated (`integrate`) into a
+/// `TsdfVolume`, in the order of the scan; each voxel's distance and state are kept
+/// (`CompactTsdf`). Then holes are filled (`HoleFilledSdf`), the main connected component is kept
+/// without spurs and cavities (`VoxelMask`), marching cubes draw its surface (`marching_cubes`) and
+/// edges are collapsed (`StreamSimplifier`), all of it streamed.
 ///
-/// Where the field does not fit in the memory limit, it holds as many of its lowest layers as do: a
-/// slab. For the others the snapshots are read again. Neither slabs nor threads change a byte of
-/// the surface.
+/// Where the volume does not fit in the memory limit it holds a slab, and the snapshots are read
+/// again for each further one. Neither slabs nor threads change a byte of the surface.
 ///
-/// A facet's attributes are `filled_in` where nobody saw the surface. What the members do, and
-/// throw, `Reconstruction` says; `count` is as much work as `surface`.
+/// Facets in holes have the attribute `filled_in`. The contract of the members is
+/// `Reconstructor`'s; `count` takes as long as `surface`.
 class SolidReconstructor final : public Reconstructor {
  public:
   explicit SolidReconstructor(const ReconstructOptions& options);
@@ -38,11 +35,14 @@ class SolidReconstructor final : public Reconstructor {
                const std::stop_token& stop = {}) const override;
 
  private:
-  CompactTsdf seen(const SnapshotSource& snapshots, const std::stop_token& stop);
-  int foot() const;
+  CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
+  void expect_room_for_masks(const CompactTsdf& known, const HoleFilledSdf& sdf) const;
+  int base_layer() const;
+  void draw(const VoxelMask& solid, const HoleFilledSdf& sdf, const FacetSink& sink,
+            const std::stop_token& stop) const;
 
   ReconstructOptions options_;
-  TsdfVolume field_;
+  TsdfVolume volume_;
 };
 
 }  // namespace octurn

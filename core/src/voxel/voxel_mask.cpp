@@ -10,21 +10,21 @@
 namespace octurn {
 namespace {
 
-/// Leaves of one row that follow each other: from `first` up to but without `end`.
+/// Neighbouring voxels of one row: the half-open range from `first` to `end`.
 struct Run {
   int first = 0;
   int end = 0;
   std::uint32_t parent = 0;
 };
 
-/// The connected components of a set or of its complement, as runs joined by union and find.
+/// The connected components of a mask or of its complement: runs of voxels joined by union-find.
 class Components {
  public:
-  enum class Of { leaves, gaps };
+  enum class Of { voxels, gaps };
 
-  Components(const VoxelMask& set, Of of, const std::stop_token& stop)
-      : set_(set), of_(of), stop_(stop) {
-    const Index3& size = set.size();
+  Components(const VoxelMask& mask, Of of, const std::stop_token& stop)
+      : mask_(mask), of_(of), stop_(stop) {
+    const Index3& size = mask.size();
     first_.reserve(static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) + 1);
     for (int z = 0; z < size.z; ++z) {
       throw_if_stopped(stop_);
@@ -50,7 +50,7 @@ class Components {
   /// Calls `visit(y, z, index, run)` for all of them.
   template <typename Visit>
   void for_each(Visit visit) const {
-    const Index3& size = set_.size();
+    const Index3& size = mask_.size();
     std::size_t row = 0;
     for (int z = 0; z < size.z; ++z) {
       throw_if_stopped(stop_);
@@ -64,23 +64,23 @@ class Components {
 
  private:
   void add_row(int y, int z) {
-    const auto row = set_.row(y, z);
+    const auto row = mask_.row(y, z);
     const std::uint64_t flip = of_ == Of::gaps ? ~std::uint64_t{0} : 0;
     const auto next = [&](int from, std::uint64_t invert) {
       std::size_t word = static_cast<std::size_t>(from) / 64;
-      if (from >= set_.size().x) {
-        return set_.size().x;
+      if (from >= mask_.size().x) {
+        return mask_.size().x;
       }
       std::uint64_t bits = (row[word] ^ flip ^ invert) >> (from % 64) << (from % 64);
       while (bits == 0) {
         if (++word == row.size()) {
-          return set_.size().x;
+          return mask_.size().x;
         }
         bits = row[word] ^ flip ^ invert;
       }
-      return std::min(static_cast<int>(word) * 64 + std::countr_zero(bits), set_.size().x);
+      return std::min(static_cast<int>(word) * 64 + std::countr_zero(bits), mask_.size().x);
     };
-    for (int x = next(0, 0); x < set_.size().x;) {
+    for (int x = next(0, 0); x < mask_.size().x;) {
       const int end = next(x, ~std::uint64_t{0});
       runs_.push_back({x, end, static_cast<std::uint32_t>(runs_.size())});
       x = next(end, 0);
@@ -88,8 +88,8 @@ class Components {
   }
 
   void join_row(int y, int z) {
-    // Gaps also meet across edges: those of one plane a leaf apart, those of two planes above
-    // another.
+    // The background is 18-connected (faces and edges): reach 1 adds the neighbours across xy and
+    // xz edges, the rows (y - 1, z - 1) and (y + 1, z - 1) those across yz edges.
     const int reach = of_ == Of::gaps ? 1 : 0;
     if (y > 0) {
       join(y - 1, z, reach);
@@ -99,7 +99,7 @@ class Components {
       if (of_ == Of::gaps && y > 0) {
         join(y - 1, z - 1, 0);
       }
-      if (of_ == Of::gaps && y + 1 < set_.size().y) {
+      if (of_ == Of::gaps && y + 1 < mask_.size().y) {
         join(y + 1, z - 1, 0);
       }
     }
@@ -107,7 +107,7 @@ class Components {
 
   /// Joins the runs of the last row with those of an earlier one that come within `reach`.
   void join(int y, int z, int reach) {
-    const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(set_.size().y) +
+    const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(mask_.size().y) +
                      static_cast<std::size_t>(y);
     std::uint32_t other = first_[row];
     const std::uint32_t others = first_[row + 1];
@@ -123,7 +123,7 @@ class Components {
     }
   }
 
-  const VoxelMask& set_;
+  const VoxelMask& mask_;
   Of of_;
   const std::stop_token& stop_;
   std::vector<Run> runs_ = {};
@@ -159,25 +159,25 @@ std::uint64_t VoxelMask::count() const {
 }
 
 void VoxelMask::keep_main_component(const std::stop_token& stop) {
-  Components parts(*this, Components::Of::leaves, stop);
-  if (parts.count() == 0) {
+  Components components(*this, Components::Of::voxels, stop);
+  if (components.count() == 0) {
     return;
   }
-  std::vector<std::uint64_t> volumes(parts.count());
-  std::vector<char> stands(parts.count());
-  parts.for_each([&](int, int z, std::uint32_t i, const Run& run) {
-    const std::uint32_t part = parts.root(i);
-    volumes[part] += static_cast<std::uint64_t>(run.end - run.first);
-    stands[part] = static_cast<char>(stands[part] | (z == 0 ? 1 : 0));
+  std::vector<std::uint64_t> volumes(components.count());
+  std::vector<char> at_base(components.count());
+  components.for_each([&](int, int z, std::uint32_t i, const Run& run) {
+    const std::uint32_t root = components.root(i);
+    volumes[root] += static_cast<std::uint64_t>(run.end - run.first);
+    at_base[root] = static_cast<char>(at_base[root] | (z == 0 ? 1 : 0));
   });
   std::size_t kept = 0;
   for (std::size_t i = 1; i < volumes.size(); ++i) {
-    if (std::pair(stands[i], volumes[i]) > std::pair(stands[kept], volumes[kept])) {
+    if (std::pair(at_base[i], volumes[i]) > std::pair(at_base[kept], volumes[kept])) {
       kept = i;
     }
   }
-  parts.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
-    if (parts.root(i) != kept) {
+  components.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
+    if (components.root(i) != kept) {
       assign(row(y, z), run, false);
     }
   });
@@ -195,29 +195,29 @@ void VoxelMask::remove_spurs(const std::stop_token& stop) {
   }
 }
 
-/// Removes the leaves of a row that meet no more than one other. @return whether there were any
+/// Removes the voxels of a row with at most one face neighbour. @return whether there were any
 bool VoxelMask::remove_spurs_of(int y, int z) {
-  const auto leaves = row(y, z);
+  const auto voxels = row(y, z);
   const auto word = [&](int other_y, int other_z, std::size_t i) {
     const bool is_there = other_y >= 0 && other_z >= 0 && other_y < size_.y && other_z < size_.z;
     return is_there ? bits_[first_word(other_y, other_z) + i] : 0;
   };
   bool removed = false;
   for (std::size_t i = 0; i < words_; ++i) {
-    if (leaves[i] == 0) {
+    if (voxels[i] == 0) {
       continue;
     }
     std::uint64_t any = 0;
     std::uint64_t two = 0;
     for (const std::uint64_t neighbours :
-         {leaves[i] << 1 | (i > 0 ? leaves[i - 1] >> 63 : 0),
-          leaves[i] >> 1 | (i + 1 < words_ ? leaves[i + 1] << 63 : 0), word(y - 1, z, i),
+         {voxels[i] << 1 | (i > 0 ? voxels[i - 1] >> 63 : 0),
+          voxels[i] >> 1 | (i + 1 < words_ ? voxels[i + 1] << 63 : 0), word(y - 1, z, i),
           word(y + 1, z, i), word(y, z - 1, i), word(y, z + 1, i)}) {
       two |= any & neighbours;
       any |= neighbours;
     }
-    removed = removed || (leaves[i] & ~two) != 0;
-    leaves[i] &= two;
+    removed = removed || (voxels[i] & ~two) != 0;
+    voxels[i] &= two;
   }
   return removed;
 }
@@ -228,11 +228,11 @@ VoxelMask VoxelMask::cropped() const {
   Index3 last{-1, -1, -1};
   for (int z = 0; z < size_.z; ++z) {
     for (int y = 0; y < size_.y; ++y) {
-      const auto leaves = row(y, z);
-      if (std::ranges::any_of(leaves, [](std::uint64_t word) { return word != 0; })) {
+      const auto voxels = row(y, z);
+      if (std::ranges::any_of(voxels, [](std::uint64_t word) { return word != 0; })) {
         first = {first.x, std::min(first.y, y), std::min(first.z, z)};
         last = {last.x, std::max(last.y, y), std::max(last.z, z)};
-        std::ranges::transform(columns, leaves, columns.begin(), std::bit_or());
+        std::ranges::transform(columns, voxels, columns.begin(), std::bit_or());
       }
     }
   }
@@ -248,24 +248,46 @@ VoxelMask VoxelMask::cropped() const {
   }
   const int skipped = std::max(first.x - 1, 0) / 64;  // words
   const int low_y = std::max(first.y - 1, 0);
-  VoxelMask set({low_.x + 64 * skipped, low_.y + low_y, low_.z + first.z},
-                {low_.x + std::min(last.x + 2, size_.x), low_.y + std::min(last.y + 2, size_.y),
-                 low_.z + last.z + 1});
-  for (int z = 0; z < set.size_.z; ++z) {
-    for (int y = 0; y < set.size_.y; ++y) {
+  VoxelMask mask({low_.x + 64 * skipped, low_.y + low_y, low_.z + first.z},
+                 {low_.x + std::min(last.x + 2, size_.x), low_.y + std::min(last.y + 2, size_.y),
+                  low_.z + last.z + 1});
+  for (int z = 0; z < mask.size_.z; ++z) {
+    for (int y = 0; y < mask.size_.y; ++y) {
       std::ranges::copy(
-          row(low_y + y, first.z + z).subspan(static_cast<std::size_t>(skipped), set.words_),
-          set.row(y, z).begin());
+          row(low_y + y, first.z + z).subspan(static_cast<std::size_t>(skipped), mask.words_),
+          mask.row(y, z).begin());
     }
   }
-  return set;
+  return mask;
+}
+
+VoxelMask VoxelMask::halved(const std::stop_token& stop) const {
+  const auto above = [](int end) { return ((end + 1) >> 1) + 1; };
+  VoxelMask coarse({(low_.x >> 1) - 1, (low_.y >> 1) - 1, low_.z >> 1},
+                   {above(low_.x + size_.x), above(low_.y + size_.y), above(low_.z + size_.z)});
+  for (int z = 0; z < size_.z; ++z) {
+    throw_if_stopped(stop);
+    for (int y = 0; y < size_.y; ++y) {
+      const auto to =
+          coarse.row(((low_.y + y) >> 1) - coarse.low_.y, ((low_.z + z) >> 1) - coarse.low_.z);
+      const auto from = row(y, z);
+      for (std::size_t word = 0; word < words_; ++word) {
+        for (std::uint64_t rest = from[word]; rest != 0; rest &= rest - 1) {
+          const int x = low_.x + static_cast<int>(word) * 64 + std::countr_zero(rest);
+          const auto at = static_cast<std::size_t>((x >> 1) - coarse.low_.x);
+          to[at / 64] |= std::uint64_t{1} << (at % 64);
+        }
+      }
+    }
+  }
+  return coarse;
 }
 
 std::uint64_t VoxelMask::component_count(const std::stop_token& stop) const {
-  Components parts(*this, Components::Of::leaves, stop);
+  Components components(*this, Components::Of::voxels, stop);
   std::uint64_t count = 0;
-  parts.for_each(
-      [&](int, int, std::uint32_t i, const Run&) { count += parts.root(i) == i ? 1 : 0; });
+  components.for_each(
+      [&](int, int, std::uint32_t i, const Run&) { count += components.root(i) == i ? 1 : 0; });
   return count;
 }
 

@@ -5,29 +5,29 @@
 #include <stop_token>
 #include <vector>
 
-#include "voxel/octree.hpp"
+#include "voxel/index3.hpp"
 
 namespace octurn {
 
-/// A set of leaves in a box of the lattice, a bit for each, in rows along x.
+/// A set of voxels in a box of a grid, as a bitmap in rows along x.
 ///
 /// What takes a stop token throws `Stopped` between two layers, and is then left incomplete.
 class VoxelMask {
  public:
-  /// From `low` up to but without `end`.
+  /// An empty mask of the half-open box from `low` to `end`.
   VoxelMask(const Index3& low, const Index3& end);
 
   const Index3& low() const { return low_; }
   const Index3& size() const { return size_; }
   std::size_t words_per_row() const { return words_; }
 
-  /// A row of the box, counted from `low`; bits past its end are 0.
+  /// A row of the box, indexed from `low`; bits past its end are 0.
   std::span<std::uint64_t> row(int y, int z) { return {&bits_[first_word(y, z)], words_}; }
   std::span<const std::uint64_t> row(int y, int z) const {
     return {&bits_[first_word(y, z)], words_};
   }
 
-  /// Counted from `low`; false outside the box.
+  /// Indexed from `low`; false outside the box.
   bool contains(int x, int y, int z) const {
     return x >= 0 && y >= 0 && z >= 0 && x < size_.x && y < size_.y && z < size_.z &&
            (row(y, z)[static_cast<std::size_t>(x) / 64] >> (x % 64) & 1) != 0;
@@ -36,22 +36,25 @@ class VoxelMask {
   std::uint64_t count() const;
   std::size_t bytes() const { return bits_.size() * sizeof bits_[0]; }
 
-  /// Keeps the one part that stands on the platform: of those in the lowest layer of the box the
-  /// largest, or the largest of all if none is. Leaves of a part meet in faces.
+  /// Keeps one connected component (voxels that share faces): the largest of those that reach the
+  /// box's lowest layer, or the largest of all if none does.
   void keep_main_component(const std::stop_token& stop = {});
 
-  /// Removes needles one leaf thick, from their ends: leaves that meet no more than one other,
-  /// again and again. What is thin along one axis only, stays.
+  /// Removes spurs, which are one voxel thick along two axes, from their ends: voxels with at most
+  /// one face neighbour, until there are none. Plates, thin along one axis only, stay.
   void remove_spurs(const std::stop_token& stop = {});
 
-  /// The same leaves in a smaller box, which leaves one leaf free, at least, around them in x and
-  /// y.
+  /// The same voxels in a smaller box, with a margin of at least one empty voxel in x and y.
   VoxelMask cropped() const;
 
-  /// How many parts there are.
+  /// The mask of voxels twice as wide: one is set if any of its eight is. Its box has a margin of
+  /// one empty voxel, but below.
+  VoxelMask halved(const std::stop_token& stop = {}) const;
+
+  /// The number of connected components.
   std::uint64_t component_count(const std::stop_token& stop = {}) const;
 
-  /// Adds what no way leads to from outside the box, through faces and edges of leaves.
+  /// Fills cavities: gaps that no path through voxels' faces and edges joins to a side of the box.
   void fill_cavities(const std::stop_token& stop = {});
 
  private:

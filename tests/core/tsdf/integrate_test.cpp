@@ -8,32 +8,35 @@
 #include <vector>
 
 #include "core/tsdf/rendered.hpp"
+#include "tsdf/integration_model.hpp"
 
 namespace octurn {
 namespace {
 
-/// What a field should hold at the centre of a leaf, worked out in the most obvious way: of every
-/// leaf, of every snapshot, without bricks, cells or bounds, in doubles.
+/// What a volume should hold at the centre of a voxel, computed in the most obvious way: for every
+/// voxel and snapshot, without bricks, blocks or bounds, in doubles.
 struct PlainSample {
   double distance = 0;  // metres
   double weight = 0;
   int free = 0;
-  int clearly_free = 0;   // by more than a cell's diagonal
+  int clearly_free = 0;   // by more than a block's diagonal
   bool doubtful = false;  // rounding, or a bound that is allowed to, could decide otherwise
 };
 
-/// How much a reading counts that is this far in front of a sample.
-double trust(double distance, double leaf_side, double truncation) {
-  const double behind = std::max(0.0, -distance - leaf_side);
-  return std::pow(std::max(0.0, 1 - behind / (truncation - leaf_side)), 3);
+/// The share of a reading's weight that a sample at this signed distance takes.
+double falloff(double distance, double voxel_side, double truncation) {
+  const double behind = std::max(0.0, -distance - voxel_side);
+  return std::pow(std::max(0.0, 1 - behind / (truncation - voxel_side)), falloff_power);
 }
 
-void look(PlainSample& sample, const Eigen::Vector3d& point, const ConditionedDepth& sighting,
-          const TsdfVolume& field) {
+void observe(PlainSample& sample, const Eigen::Vector3d& point, const ConditionedDepth& depth,
+             const VoxelGrid& grid) {
   constexpr double doubt = 1e-3;  // pixels, and parts of the truncation
-  const double truncation = field.truncation();
-  const Eigen::Vector3d p = sighting.sensor_from_object() * point;
-  const Intrinsics& intrinsics = sighting.intrinsics();
+  const double truncation = grid.truncation();
+  const double free_margin_m = double{free_margin} * truncation;
+  const double max_behind_m = double{max_behind} * truncation;
+  const Eigen::Vector3d p = depth.sensor_from_object() * point;
+  const Intrinsics& intrinsics = depth.intrinsics();
   const double u = p.x() / p.z() * intrinsics.fx + intrinsics.cx;
   const double v = p.y() / p.z() * intrinsics.fy + intrinsics.cy;
   const auto between_pixels = [](double at) { return std::abs(at - std::floor(at) - 0.5) < doubt; };
@@ -43,32 +46,32 @@ void look(PlainSample& sample, const Eigen::Vector3d& point, const ConditionedDe
   if (column < 0 || row < 0 || column >= intrinsics.width || row >= intrinsics.height) {
     return;
   }
-  const DepthObservation& sight = sighting.at(column, row);
-  const double before = static_cast<double>(sight.free_space_depth) - p.z();  // along the ray
-  const double diagonal = field.block_voxels() * field.leaf_side() * std::numbers::sqrt3;
-  const auto see_through = [&](double least) {
-    sample.free += before > least ? 1 : 0;
-    sample.clearly_free += before > least + diagonal ? 1 : 0;
+  const DepthObservation& reading = depth.at(column, row);
+  const double before = static_cast<double>(reading.free_space_depth) - p.z();  // along the ray
+  const double diagonal = grid.block_voxels() * grid.voxel_side() * std::numbers::sqrt3;
+  const auto see_through = [&](double min) {
+    sample.free += before > min ? 1 : 0;
+    sample.clearly_free += before > min + diagonal ? 1 : 0;
   };
   const auto is_near = [&](double a, double b) { return std::abs(a - b) < doubt * truncation; };
-  if (sight.weight == 0) {
-    see_through(1.5 * truncation);
-    sample.doubtful = sample.doubtful || is_near(before, 1.5 * truncation);
+  if (reading.weight == 0) {
+    see_through(free_margin_m);
+    sample.doubtful = sample.doubtful || is_near(before, free_margin_m);
     return;
   }
-  double distance = static_cast<double>(sight.offset);
+  double distance = static_cast<double>(reading.offset);
   for (int axis = 0; axis < 3; ++axis) {
-    distance += static_cast<double>(sight.normal[static_cast<std::size_t>(axis)]) * p[axis];
+    distance += static_cast<double>(reading.normal[static_cast<std::size_t>(axis)]) * p[axis];
   }
   sample.doubtful = sample.doubtful || is_near(std::abs(distance), truncation) ||
-                    is_near(before, truncation) || is_near(before, -2.5 * truncation);
+                    is_near(before, truncation) || is_near(before, -max_behind_m);
   if (distance >= truncation) {
     see_through(truncation);
-  } else if (distance > -truncation && before > -2.5 * truncation) {
-    // So far before a grazed surface that the cell around may count as free.
-    sample.doubtful = sample.doubtful || before > 1.5 * truncation;
+  } else if (distance > -truncation && before > -max_behind_m) {
+    // So far before a grazed surface that the block around may count as free.
+    sample.doubtful = sample.doubtful || before > free_margin_m;
     const double weight =
-        static_cast<double>(sight.weight) * trust(distance, field.leaf_side(), truncation);
+        static_cast<double>(reading.weight) * falloff(distance, grid.voxel_side(), truncation);
     if (weight > 0) {
       sample.distance =
           (sample.distance * sample.weight + distance * weight) / (sample.weight + weight);
@@ -77,43 +80,43 @@ void look(PlainSample& sample, const Eigen::Vector3d& point, const ConditionedDe
   }
 }
 
-class Fuse : public testing::Test {
+class Integrate : public testing::Test {
  protected:
-  /// Visits every leaf that a snapshot may write to, counted from the field's lowest corner.
+  /// Visits every voxel that a snapshot may write to, counted from the field's lowest corner.
   template <typename Visit>
-  void for_each_leaf(Visit visit) const {
-    const Index3& size = field_.size();
-    for (int z = Brick::side; z < (size.z - 1) * Brick::side; ++z) {
-      for (int y = Brick::side; y < (size.y - 1) * Brick::side; ++y) {
-        for (int x = Brick::side; x < (size.x - 1) * Brick::side; ++x) {
+  void for_each_voxel(Visit visit) const {
+    const Index3& size = volume_.grid().size();
+    for (int z = VoxelGrid::brick_side; z < (size.z - 1) * VoxelGrid::brick_side; ++z) {
+      for (int y = VoxelGrid::brick_side; y < (size.y - 1) * VoxelGrid::brick_side; ++y) {
+        for (int x = VoxelGrid::brick_side; x < (size.x - 1) * VoxelGrid::brick_side; ++x) {
           visit(Index3{x, y, z});
         }
       }
     }
   }
 
-  Eigen::Vector3d centre(const Index3& leaf) const {
-    const Index3& low = field_.low();
-    return {field_.centre(leaf.x + low.x * Brick::side, 0),
-            field_.centre(leaf.y + low.y * Brick::side, 1),
-            field_.centre(leaf.z + low.z * Brick::side, 2)};
+  Eigen::Vector3d centre(const Index3& voxel) const {
+    const Index3& low = volume_.grid().low();
+    return {volume_.grid().centre(voxel.x + low.x * VoxelGrid::brick_side, 0),
+            volume_.grid().centre(voxel.y + low.y * VoxelGrid::brick_side, 1),
+            volume_.grid().centre(voxel.z + low.z * VoxelGrid::brick_side, 2)};
   }
 
-  PlainSample plain(const Index3& leaf) const {
+  PlainSample plain(const Index3& voxel) const {
     PlainSample sample;
-    for (const ConditionedDepth& sighting : sightings_) {
-      look(sample, centre(leaf), sighting, field_);
+    for (const ConditionedDepth& depth : depths_) {
+      observe(sample, centre(voxel), depth, volume_.grid());
     }
     return sample;
   }
 
-  PlainSample fused(const Index3& leaf) const {
+  PlainSample integrated(const Index3& voxel) const {
     PlainSample sample;
-    const int cell = field_.block_voxels();
-    sample.free = field_.free_cell({leaf.x / cell, leaf.y / cell, leaf.z / cell});
-    if (const TsdfBrick* brick = field_.find({leaf.x / 8, leaf.y / 8, leaf.z / 8})) {
-      const auto i = static_cast<std::size_t>(leaf.x % 8 + 8 * (leaf.y % 8) + 64 * (leaf.z % 8));
-      sample.distance = brick->distance[i] * field_.truncation() / TsdfVolume::ticks;
+    const int block = volume_.grid().block_voxels();
+    sample.free = volume_.free_count({voxel.x / block, voxel.y / block, voxel.z / block});
+    if (const TsdfBrick* brick = volume_.find({voxel.x / 8, voxel.y / 8, voxel.z / 8})) {
+      const auto i = static_cast<std::size_t>(voxel.x % 8 + 8 * (voxel.y % 8) + 64 * (voxel.z % 8));
+      sample.distance = brick->distance[i] * volume_.grid().truncation() / TsdfVolume::ticks;
       sample.weight = static_cast<double>(brick->weight[i]) / TsdfVolume::weight_ticks;
       sample.free += brick->free[i];
     }
@@ -122,29 +125,29 @@ class Fuse : public testing::Test {
 
   static constexpr int shots = 4;
   Box clip_{.min = {-0.05, -0.05, 0.002}, .max = {0.05, 0.05, 0.06}};
-  TsdfVolume field_{VoxelGrid(1.0, 9, clip_, 0.005)};
-  std::vector<ConditionedDepth> sightings_ = [this] {
+  TsdfVolume volume_{VoxelGrid(1.0, 9, clip_, 0.005)};
+  std::vector<ConditionedDepth> depths_ = [this] {
     const SnapshotSource source = rendered(hollowed_block({0.07, 0.05, 0.045}, 0.02), shots);
     std::vector<ConditionedDepth> all;
     for (std::size_t i = 0; i < shots; ++i) {
       all.emplace_back(source.read(i), clip_);
-      fuse(field_, all.back());
+      integrate(volume_, all.back());
     }
     return all;
   }();
 };
 
-TEST_F(Fuse, AveragesWhatThePlainLoopsAverage) {
-  const double tick = field_.truncation() / TsdfVolume::ticks;
+TEST_F(Integrate, AveragesWhatThePlainLoopsAverage) {
+  const double tick = volume_.grid().truncation() / TsdfVolume::ticks;
   int compared = 0;
   int doubtful = 0;
-  for_each_leaf([&](const Index3& leaf) {
-    const PlainSample expected = plain(leaf);
+  for_each_voxel([&](const Index3& voxel) {
+    const PlainSample expected = plain(voxel);
     if (expected.doubtful) {
       ++doubtful;
       return;
     }
-    const PlainSample sample = fused(leaf);
+    const PlainSample sample = integrated(voxel);
     // Each snapshot rounds: the weight to its tick, the mean of distances to its.
     ASSERT_NEAR(sample.weight, expected.weight, 2.0 * shots / TsdfVolume::weight_ticks);
     if (expected.weight > 0.05) {
@@ -156,13 +159,13 @@ TEST_F(Fuse, AveragesWhatThePlainLoopsAverage) {
   EXPECT_LT(doubtful, compared / 4);
 }
 
-TEST_F(Fuse, SeesThroughWhatThePlainLoopsSeeThrough) {
+TEST_F(Integrate, SeesThroughWhatThePlainLoopsSeeThrough) {
   int seen_through = 0;
   int missed = 0;
-  for_each_leaf([&](const Index3& leaf) {
-    const PlainSample expected = plain(leaf);
+  for_each_voxel([&](const Index3& voxel) {
+    const PlainSample expected = plain(voxel);
     if (!expected.doubtful) {
-      const PlainSample sample = fused(leaf);
+      const PlainSample sample = integrated(voxel);
       ASSERT_LE(sample.free, expected.free);
       if (expected.clearly_free > 0) {
         ++seen_through;
@@ -171,7 +174,7 @@ TEST_F(Fuse, SeesThroughWhatThePlainLoopsSeeThrough) {
     }
   });
   EXPECT_GT(seen_through, 10000);
-  // Cells that pixels without a reading touch, along outlines, count as free in part: not at all.
+  // Blocks that pixels without a reading touch, along outlines, count as free in part: not at all.
   EXPECT_LT(missed, seen_through / 8);
 }
 

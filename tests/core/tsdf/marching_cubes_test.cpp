@@ -23,7 +23,7 @@ void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& fac
     double x = 0;
     int turn = 0;
   };
-  const double leaf_mm = mm_from_metres(filled.leaf_side());
+  const double leaf_mm = mm_from_metres(filled.voxel_side());
   const Index3 low = filled.low();
   const Index3 end = filled.end();
   const auto centre_mm = [&](int leaf, std::size_t axis) {
@@ -145,29 +145,26 @@ TEST(MarchingCubes, KeepsVerticesApart) {
 
 TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
   const Shape shape = ball({0.0002, -0.0003, 0.0141}, 0.01);
-  TsdfVolume field(
+  TsdfVolume volume(
       VoxelGrid(1.0, 10, {.min = {-0.012, -0.012, 0.002}, .max = {0.012, 0.012, 0.026}}, 0.0035));
-  for (int z = 1; z + 1 < field.size().z; ++z) {
-    for (int y = 1; y + 1 < field.size().y; ++y) {
-      for (int x = 1; x + 1 < field.size().x; ++x) {
-        TsdfBrick& brick = *field.make({x, y, z});
-        for (int i = 0; i < static_cast<int>(TsdfBrick::samples); ++i) {
-          const auto centre = [&](int at, int low, int leaf, std::size_t axis) {
-            return field.centre((at + low) * Brick::side + leaf, axis);
-          };
-          const double distance =
-              shape({centre(x, field.low().x, i % 8, 0), centre(y, field.low().y, i / 8 % 8, 1),
-                     centre(z, field.low().z, i / 64, 2)});
-          const double part = std::clamp(distance / field.truncation(), -1.0, 1.0);
-          brick.distance[static_cast<std::size_t>(i)] =
-              static_cast<std::int16_t>(std::lround(part * TsdfVolume::ticks));
-          brick.weight[static_cast<std::size_t>(i)] = TsdfVolume::weight_ticks;
-        }
-      }
+  const VoxelGrid& grid = volume.grid();
+  for_each_inner_brick(grid, [&](const Index3& index) {
+    TsdfBrick& brick = *volume.make(index);
+    for (int i = 0; i < static_cast<int>(TsdfBrick::samples); ++i) {
+      const auto centre = [&](int at, int low, int voxel, std::size_t axis) {
+        return grid.centre((at + low) * VoxelGrid::brick_side + voxel, axis);
+      };
+      const double distance = shape({centre(index.x, grid.low().x, i % 8, 0),
+                                     centre(index.y, grid.low().y, i / 8 % 8, 1),
+                                     centre(index.z, grid.low().z, i / 64, 2)});
+      const double share = std::clamp(distance / grid.truncation(), -1.0, 1.0);
+      brick.distance[static_cast<std::size_t>(i)] =
+          static_cast<std::int16_t>(std::lround(share * TsdfVolume::ticks));
+      brick.weight[static_cast<std::size_t>(i)] = TsdfVolume::weight_ticks;
     }
-  }
-  CompactTsdf seen(field);
-  seen.add(field);
+  });
+  CompactTsdf seen(grid);
+  seen.add(volume);
   const HoleFilledSdf filled(seen, 3);
   const std::vector<Facet> facets = surface_of(filled.inside(), filled);
   EXPECT_GT(facets.size(), 1000U);

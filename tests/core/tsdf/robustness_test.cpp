@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -59,9 +60,18 @@ Errors errors_of(const std::vector<Facet>& facets, const Shape& truth) {
   return errors;
 }
 
-/// Fails unless the model is one closed part within these errors: half again what was measured.
+// What a reading errs by, millimetres: the root mean square over the platform at 0.65 m of the mean
+// of ten frames, as kinect_noise_test measures it (simulated_kinect.hpp). Conditioning and the
+// average over snapshots only make it less.
+constexpr double reading_sigma_mm = 0.60;
+
+/// Fails unless the model is one closed part whose observed surface errs no more than single
+/// readings of normal noise do: on average sqrt(2 / pi) sigma, in 95 of 100 places 1.96 sigma.
+/// @param noise  times a real Kinect's
 void expect_sound(const std::string& what, const std::vector<Snapshot>& snapshots,
-                  const SimulatedObject& object, const Errors& most) {
+                  const SimulatedObject& object, double noise = 1) {
+  const double sigma = noise * reading_sigma_mm;
+  const Errors max{.mean = std::sqrt(2 / std::numbers::pi) * sigma, .p95 = 1.96 * sigma};
   const SolidModel model = solid_of(scan_options(), snapshots);
   ASSERT_FALSE(model.facets.empty());
   EXPECT_EQ(model.count.parts, 1U);
@@ -69,8 +79,8 @@ void expect_sound(const std::string& what, const std::vector<Snapshot>& snapshot
   MeshCheck check;
   check.add(model.facets);
   const Errors errors = errors_of(model.facets, object.distance);
-  EXPECT_LT(errors.mean, most.mean);
-  EXPECT_LT(errors.p95, most.p95);
+  EXPECT_LT(errors.mean, max.mean);
+  EXPECT_LT(errors.p95, max.p95);
   std::printf("| %s | %.2f | %.2f | %.0f %% | %.1f |\n", what.c_str(), errors.mean, errors.p95,
               100 * check.filled_share(), check.volume_mm3() / 1000);
 }
@@ -81,23 +91,20 @@ SimulatedObject hollow() {
 }
 
 TEST(Robustness, OfAnOrdinaryScan) {
-  expect_sound("robot", simulated_scan(robot()), robot(), {0.36, 1.0});
-  expect_sound("hollowed block", simulated_scan(hollow()), hollow(), {0.3, 0.7});
+  expect_sound("robot", simulated_scan(robot()), robot());
+  expect_sound("hollowed block", simulated_scan(hollow()), hollow());
 }
 
 TEST(Robustness, ToTwiceTheNoise) {
   const SimulatedTurn noisy{.noise = 2};
-  expect_sound("robot, noise doubled", simulated_scan(robot(), noisy), robot(), {0.7, 1.9});
-  expect_sound("hollowed block, noise doubled", simulated_scan(hollow(), noisy), hollow(),
-               {0.55, 1.4});
+  expect_sound("robot, noise doubled", simulated_scan(robot(), noisy), robot(), 2);
+  expect_sound("hollowed block, noise doubled", simulated_scan(hollow(), noisy), hollow(), 2);
 }
 
 TEST(Robustness, ToMissingSnapshots) {
   const std::vector<Snapshot> all = simulated_scan(robot());
-  expect_sound("robot, every other snapshot missing", {all[0], all[2], all[4], all[6]}, robot(),
-               {0.45, 1.3});
-  expect_sound("robot, half the turn missing", {all[0], all[1], all[2], all[3]}, robot(),
-               {0.45, 1.2});
+  expect_sound("robot, every other snapshot missing", {all[0], all[2], all[4], all[6]}, robot());
+  expect_sound("robot, half the turn missing", {all[0], all[1], all[2], all[3]}, robot());
 }
 
 TEST(Robustness, ToHolesInTheDepth) {
@@ -119,17 +126,17 @@ TEST(Robustness, ToHolesInTheDepth) {
       }
     }
   }
-  expect_sound("robot, holes in the depth", snapshots, robot(), {0.4, 1.0});
+  expect_sound("robot, holes in the depth", snapshots, robot());
 }
 
 TEST(Robustness, ToAnObjectOffCentre) {
   const SimulatedObject object = standing_block({0.05, 0.04, 0.06}, {0.09, 0.06, 0});
-  expect_sound("block, 11 cm off the axis", simulated_scan(object), object, {0.3, 0.9});
+  expect_sound("block, 11 cm off the axis", simulated_scan(object), object);
 }
 
 TEST(Robustness, ToAnObjectTallerThanTheView) {
   const SimulatedObject object = standing_block({0.05, 0.04, 0.42});
-  expect_sound("column of 42 cm", simulated_scan(object), object, {0.3, 0.7});
+  expect_sound("column of 42 cm", simulated_scan(object), object);
 }
 
 TEST(Robustness, ToAnEmptyPlatform) {

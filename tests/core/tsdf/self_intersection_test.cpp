@@ -19,7 +19,6 @@
 #include "core/tsdf/simulated_scan.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/scan_folder.hpp"
-#include "support/shared_folder.hpp"
 #include "tsdf/marching_cubes.hpp"
 
 namespace octurn {
@@ -109,12 +108,9 @@ TEST(SelfIntersection, IsNotInATallColumn) {
   expect_no_cuts(simulated_scan(standing_block({0.04, 0.03, 0.24})));
 }
 
-TEST(SelfIntersection, IsNotInSharedScans) {
-  for (const char* const name : {"bunny8", "bunny36"}) {
-    const std::filesystem::path folder = shared_folder() / "scans" / name;
-    if (!std::filesystem::exists(folder)) {
-      GTEST_SKIP() << "no scan " << folder;
-    }
+TEST(SelfIntersection, IsNotInStoredScans) {
+  for (const char* const name : {"figure_scan", "tower_scan"}) {
+    const std::filesystem::path folder = std::filesystem::path(OCTURN_GOLDEN) / name;
     const Scan scan = read_scan(folder);
     std::vector<Snapshot> snapshots;
     for (const Shot& shot : scan.shots) {

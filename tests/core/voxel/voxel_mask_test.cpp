@@ -2,10 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <tuple>
+#include <vector>
+
 namespace octurn {
 namespace {
 
-/// Adds the leaves from `low` up to but without `end`, counted from the box's lowest corner.
+/// Adds the half-open box of voxels from `low` to `end`, indexed from the mask's lowest corner.
 void add_block(VoxelMask& set, const Index3& low, const Index3& end) {
   for (int z = low.z; z < end.z; ++z) {
     for (int y = low.y; y < end.y; ++y) {
@@ -37,7 +45,7 @@ TEST(VoxelMask, RemovesANeedleInAnyDirection) {
 
 TEST(VoxelMask, KeepsAPlateAndARing) {
   VoxelMask set = empty_set();
-  add_block(set, {5, 5, 0}, {100, 6, 30});  // one leaf thick
+  add_block(set, {5, 5, 0}, {100, 6, 30});  // one voxel thick
   add_block(set, {5, 20, 0}, {30, 30, 1});
   VoxelMask hole = empty_set();
   add_block(hole, {6, 21, 0}, {29, 29, 1});
@@ -53,7 +61,7 @@ TEST(VoxelMask, KeepsAPlateAndARing) {
   EXPECT_EQ(set.count(), count);
 }
 
-TEST(VoxelMask, HoldsTheSameLeavesWhenCropped) {
+TEST(VoxelMask, HoldsTheSameVoxelsWhenCropped) {
   VoxelMask set = empty_set();
   add_block(set, {129, 10, 3}, {140, 12, 9});
   add_block(set, {150, 30, 20}, {151, 31, 21});
@@ -68,6 +76,164 @@ TEST(VoxelMask, HoldsTheSameLeavesWhenCropped) {
   EXPECT_TRUE(cropped.contains(129 - shift.x, 10 - shift.y, 3 - shift.z));
   EXPECT_TRUE(cropped.contains(150 - shift.x, 30 - shift.y, 20 - shift.z));
   EXPECT_EQ(empty_set().cropped().count(), 0U);
+}
+
+/// Noise of that density, in a box of more than one word a row.
+VoxelMask noise(std::uint32_t seed, double density) {
+  VoxelMask mask({-70, 3, 0}, {0, 3 + 14, 12});
+  std::mt19937 random(seed);
+  for (int z = 0; z < mask.size().z; ++z) {
+    for (int y = 0; y < mask.size().y; ++y) {
+      for (int x = 0; x < mask.size().x; ++x) {
+        if (static_cast<double>(random()) < density * 4294967296.0) {
+          add_block(mask, {x, y, z}, {x + 1, y + 1, z + 1});
+        }
+      }
+    }
+  }
+  return mask;
+}
+
+using Label = std::vector<int>;  // by x + size.x (y + size.y z); -1: not in the set
+
+/// Connected components by a plain flood fill, numbered from 0.
+/// @param max_steps  1: neighbours share a face; 2: a face or an edge
+Label flood_fill(const VoxelMask& mask, bool of_gaps, int max_steps) {
+  const Index3& size = mask.size();
+  const auto index = [&](const Index3& p) {
+    return static_cast<std::size_t>(p.x + size.x * (p.y + size.y * p.z));
+  };
+  Label labels(static_cast<std::size_t>(size.x * size.y * size.z), -1);
+  const auto is_open = [&](const Index3& p) {
+    return p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < size.x && p.y < size.y && p.z < size.z &&
+           mask.contains(p.x, p.y, p.z) != of_gaps && labels[index(p)] < 0;
+  };
+  int count = 0;
+  for (int i = 0; i < size.x * size.y * size.z; ++i) {
+    const Index3 start{i % size.x, i / size.x % size.y, i / size.x / size.y};
+    if (!is_open(start)) {
+      continue;
+    }
+    std::vector<Index3> open{start};
+    labels[index(start)] = count;
+    while (!open.empty()) {
+      const Index3 p = open.back();
+      open.pop_back();
+      for (int step = 0; step < 27; ++step) {
+        const int dx = step % 3 - 1;
+        const int dy = step / 3 % 3 - 1;
+        const int dz = step / 9 - 1;
+        const Index3 q{p.x + dx, p.y + dy, p.z + dz};
+        if (std::abs(dx) + std::abs(dy) + std::abs(dz) <= max_steps && is_open(q)) {
+          labels[index(q)] = count;
+          open.push_back(q);
+        }
+      }
+    }
+    ++count;
+  }
+  return labels;
+}
+
+template <typename Visit>
+void for_each_voxel(const VoxelMask& mask, Visit visit) {
+  std::size_t i = 0;
+  for (int z = 0; z < mask.size().z; ++z) {
+    for (int y = 0; y < mask.size().y; ++y) {
+      for (int x = 0; x < mask.size().x; ++x) {
+        visit(Index3{x, y, z}, i++);
+      }
+    }
+  }
+}
+
+TEST(VoxelMask, FillsTheCavitiesThatAFloodFromOutsideDoesNotReach) {
+  std::uint64_t filled = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const VoxelMask before = noise(seed, 0.5 + 0.05 * seed);
+    const Label gaps = flood_fill(before, true, 2);
+    std::set<int> outside;
+    for_each_voxel(before, [&](const Index3& p, std::size_t i) {
+      const Index3& size = before.size();
+      if (p.x == 0 || p.y == 0 || p.z == 0 || p.x == size.x - 1 || p.y == size.y - 1 ||
+          p.z == size.z - 1) {
+        outside.insert(gaps[i]);
+      }
+    });
+    VoxelMask after = before;
+    after.fill_cavities();
+    for_each_voxel(before, [&](const Index3& p, std::size_t i) {
+      const bool expected = gaps[i] < 0 || !outside.contains(gaps[i]);
+      ASSERT_EQ(after.contains(p.x, p.y, p.z), expected) << p.x << " " << p.y << " " << p.z;
+    });
+    filled += after.count() - before.count();
+  }
+  EXPECT_GT(filled, 20U);  // so that masks without cavities do not pass
+}
+
+TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestAtTheBase) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    VoxelMask before = noise(seed, 0.1 + 0.03 * seed);
+    if (seed % 2 == 0) {  // nothing at the base: the largest of all
+      for (int y = 0; y < before.size().y; ++y) {
+        std::ranges::fill(before.row(y, 0), 0U);
+      }
+    }
+    const Label labels = flood_fill(before, false, 1);
+    const int count = *std::ranges::max_element(labels) + 1;
+    std::vector<std::uint64_t> volumes(static_cast<std::size_t>(count));
+    std::vector<bool> at_base(static_cast<std::size_t>(count));
+    for_each_voxel(before, [&](const Index3& p, std::size_t i) {
+      if (labels[i] >= 0) {
+        const auto label = static_cast<std::size_t>(labels[i]);
+        ++volumes[label];
+        at_base[label] = at_base[label] || p.z == 0;
+      }
+    });
+    EXPECT_EQ(before.component_count(), volumes.size());
+    const bool any_at_base = std::ranges::find(at_base, true) != at_base.end();
+    std::uint64_t largest = 0;
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+      largest = at_base[i] || !any_at_base ? std::max(largest, volumes[i]) : largest;
+    }
+
+    VoxelMask after = before;
+    after.keep_main_component();
+
+    EXPECT_EQ(after.count(), largest) << "seed " << seed;
+    EXPECT_EQ(after.component_count(), 1U);
+    std::set<int> kept;
+    for_each_voxel(before, [&](const Index3& p, std::size_t i) {
+      if (after.contains(p.x, p.y, p.z)) {
+        kept.insert(labels[i]);
+      }
+    });
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_EQ(at_base[static_cast<std::size_t>(*kept.begin())], any_at_base);
+  }
+}
+
+TEST(VoxelMask, HalvesToTheVoxelsThatHoldAny) {
+  const VoxelMask fine = noise(3, 0.02);
+  const VoxelMask coarse = fine.halved();
+  std::set<std::tuple<int, int, int>> expected;
+  for_each_voxel(fine, [&](const Index3& p, std::size_t) {
+    if (fine.contains(p.x, p.y, p.z)) {
+      expected.insert({static_cast<int>(std::floor((fine.low().x + p.x) / 2.0)),
+                       static_cast<int>(std::floor((fine.low().y + p.y) / 2.0)),
+                       static_cast<int>(std::floor((fine.low().z + p.z) / 2.0))});
+    }
+  });
+  std::set<std::tuple<int, int, int>> found;
+  for_each_voxel(coarse, [&](const Index3& p, std::size_t) {
+    if (coarse.contains(p.x, p.y, p.z)) {
+      EXPECT_TRUE(p.x > 0 && p.y > 0 && p.x + 1 < coarse.size().x && p.y + 1 < coarse.size().y &&
+                  p.z + 1 < coarse.size().z);
+      found.insert({coarse.low().x + p.x, coarse.low().y + p.y, coarse.low().z + p.z});
+    }
+  });
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(coarse.count(), expected.size());
 }
 
 }  // namespace

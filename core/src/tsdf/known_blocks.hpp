@@ -1,0 +1,28 @@
+#pragma once
+
+#include <stop_token>
+
+#include "tsdf/compact_tsdf.hpp"
+#include "tsdf/laplace_fill.hpp"
+
+namespace octurn {
+
+/// The mean signed distances of the blocks in a box of bricks, where they are known.
+struct KnownBlocks {
+  /// Half-open box of bricks: those that exist and one around them, without the layer below the
+  /// platform. Empty if there is no brick.
+  Index3 low = {};
+  Index3 end = {};
+  /// Ticks, positive outside; indexed from the box's lowest block.
+  PartialGrid distances = {};
+};
+
+/// A block is known if a quarter of its voxels is, or a ray passed through all of it. Blocks of the
+/// grid's border are free.
+///
+/// @param base_layer  the lowest layer of voxels that counts
+/// @throws Stopped
+KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
+                         const std::stop_token& stop = {});
+
+}  // namespace octurn

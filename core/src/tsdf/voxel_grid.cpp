@@ -1,0 +1,55 @@
+#include "tsdf/voxel_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace octurn {
+namespace {
+
+// A block has about the size of the smallest detail that a Kinect v1 resolves.
+constexpr double block_side = 0.004;  // metres
+
+int block_voxels_for(double voxel_side) {
+  int voxels = 2;
+  while (voxels < VoxelGrid::brick_side && voxels * voxel_side * 1.5 < block_side) {
+    voxels *= 2;
+  }
+  return voxels;
+}
+
+}  // namespace
+
+VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double truncation)
+    : root_side_(root_side),
+      levels_(levels),
+      voxel_side_(root_side / (1 << levels)),
+      truncation_(truncation),
+      block_voxels_(block_voxels_for(voxel_side_)) {
+  const double brick_metres = voxel_side_ * brick_side;
+  const auto bricks = [&](Eigen::Index axis) {
+    const double corner = axis < 2 ? -root_side / 2 : 0.0;
+    const int last = std::max((1 << levels) / brick_side, 1) - 1;
+    const auto brick_at = [&](double at) {
+      return std::clamp(static_cast<int>(std::floor((at - corner) / brick_metres)), 0, last);
+    };
+    // The model stands on the platform, wherever the clip box begins.
+    const int first = axis == 2 ? 0 : brick_at(clip.min[axis]);
+    return std::array{first - 1, brick_at(clip.max[axis]) - first + 3};
+  };
+  low_ = {bricks(0)[0], bricks(1)[0], bricks(2)[0]};
+  size_ = {bricks(0)[1], bricks(1)[1], bricks(2)[1]};
+}
+
+Box VoxelGrid::box() const {
+  const auto corner = [&](const Index3& brick) {
+    const auto at = [&](int bricks, std::size_t axis) {
+      return centre(bricks * brick_side, axis) - voxel_side_ / 2;
+    };
+    return Eigen::Vector3d(at(brick.x, 0), at(brick.y, 1), at(brick.z, 2));
+  };
+  return {.min = corner(low_),
+          .max = corner({low_.x + size_.x, low_.y + size_.y, low_.z + size_.z})};
+}
+
+}  // namespace octurn

@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-/// Looks along each row of leaves, a little beside their centres, and visits each leaf with how
+/// Looks along each row of voxels, a little beside their centres, and visits each voxel with how
 /// often the surface ahead is left more than it is entered: 1 inside a closed surface, 0 outside.
 template <typename Visit>
 void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& facets, Visit visit) {
@@ -23,15 +23,15 @@ void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& fac
     double x = 0;
     int turn = 0;
   };
-  const double leaf_mm = mm_from_metres(filled.voxel_side());
+  const double voxel_mm = mm_from_metres(filled.voxel_side());
   const Index3 low = filled.low();
   const Index3 end = filled.end();
-  const auto centre_mm = [&](int leaf, std::size_t axis) {
-    return mm_from_metres(filled.centre(leaf, axis));
+  const auto centre_mm = [&](int voxel, std::size_t axis) {
+    return mm_from_metres(filled.centre(voxel, axis));
   };
-  // Corners lie 0.025 leaves and more from the centres: these rows pass on the same side of all.
-  const double beside_y = 0.00113 * leaf_mm;
-  const double beside_z = 0.00071 * leaf_mm;
+  // Corners lie 0.025 voxels and more from the centres: these rows pass on the same side of all.
+  const double beside_y = 0.00113 * voxel_mm;
+  const double beside_z = 0.00071 * voxel_mm;
   std::map<std::pair<int, int>, std::vector<Crossing>> rows;
   for (const Facet& facet : facets) {
     const auto corners = facet.corners;
@@ -163,36 +163,36 @@ TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
       brick.weight[static_cast<std::size_t>(i)] = TsdfVolume::weight_ticks;
     }
   });
-  CompactTsdf seen(grid);
-  seen.add(volume);
-  const HoleFilledSdf filled(seen, 3);
+  CompactTsdf known(grid);
+  known.add(volume);
+  const HoleFilledSdf filled(known, 3);
   const std::vector<Facet> facets = surface_of(filled.inside(), filled);
   EXPECT_GT(facets.size(), 1000U);
   for (const Facet& facet : facets) {
     const auto corners = facet.corners;
     for (const auto& corner : corners) {
       const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
-      // Along an edge of h the distance bends by h^2 / 8 r; corners keep 0.025 mm from leaves.
+      // Along an edge of h the distance bends by h^2 / 8 r; corners keep 0.025 mm from voxels.
       EXPECT_NEAR(shape(point), 0, 0.000012 + 0.000026);
     }
   }
 }
 
-TEST(MarchingCubes, PartsEveryLeafInsideFromEveryLeafOutside) {
+TEST(MarchingCubes, PartsEveryVoxelInsideFromEveryVoxelOutside) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
     const CompactTsdf field = random_field(seed, 0.2 * seed);
     const HoleFilledSdf filled(field, 3);
     const VoxelMask inside = filled.inside();
-    std::size_t leaves_inside = 0;
+    std::size_t voxels_inside = 0;
     std::size_t wrong = 0;
-    for_each_winding(filled, surface_of(inside, filled), [&](const Index3& leaf, int winding) {
-      const bool is_inside = inside.contains(leaf.x, leaf.y, leaf.z);
-      leaves_inside += is_inside ? 1 : 0;
+    for_each_winding(filled, surface_of(inside, filled), [&](const Index3& voxel, int winding) {
+      const bool is_inside = inside.contains(voxel.x, voxel.y, voxel.z);
+      voxels_inside += is_inside ? 1 : 0;
       wrong += winding != (is_inside ? 1 : 0) ? 1 : 0;
     });
     EXPECT_EQ(wrong, 0U) << "seed " << seed;
-    EXPECT_EQ(leaves_inside, inside.count());
-    EXPECT_GT(leaves_inside, 500U);
+    EXPECT_EQ(voxels_inside, inside.count());
+    EXPECT_GT(voxels_inside, 500U);
   }
 }
 

@@ -1,5 +1,5 @@
-// What the solid method makes of scans that went badly: always one closed part, whose seen surface
-// is still near the true one. Prints what it measures.
+// What the solid method makes of scans that went badly: always one closed part, whose observed
+// surface is still near the true one. Prints what it measures.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace octurn {
 namespace {
 
-/// How far the seen surface is from the true one, each facet by its area, millimetres.
+/// How far the observed surface is from the true one, each facet by its area, millimetres.
 struct Errors {
   double mean = 0;
   double p95 = 0;

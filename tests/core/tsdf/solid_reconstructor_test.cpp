@@ -37,7 +37,8 @@ MeshCheck checked(const std::vector<Facet>& facets) {
   return check;
 }
 
-/// The greatest distance of a seen corner to the shape, but for those near the platform, metres.
+/// The greatest distance of an observed corner to the shape, but for those near the platform,
+/// metres.
 double worst_of(const std::vector<Facet>& facets, const Shape& shape) {
   double worst = 0;
   for (const Facet& facet : facets) {
@@ -65,7 +66,7 @@ TEST(Solid, HasTheVolumeAndTheSurfaceOfABlock) {
   const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
   const MeshCheck check = checked(facets);
   EXPECT_NEAR(check.volume_mm3(), 60 * 40 * 70, 60 * 40 * 70 * 0.02);
-  EXPECT_LT(worst_of(facets, shape), 0.002);  // a leaf, at its rounded edges
+  EXPECT_LT(worst_of(facets, shape), 0.002);  // a voxel, at its rounded edges
   EXPECT_NEAR(check.bounds_mm().max.z(), 70, 0.3);
 }
 
@@ -182,6 +183,32 @@ TEST(Solid, GivesTheSameBytesOneByOne) {
   EXPECT_EQ(count.facets, facets.size());
   EXPECT_EQ(count.parts, 1U);
   EXPECT_EQ(solid.count(snapshots).facets, facets.size());
+}
+
+TEST(Solid, ShowsAPreviewThatCoversTheModelOnCoarserVoxels) {
+  const SnapshotSource snapshots = rendered(block({0.06, 0.04, 0.07}), 8);
+  SolidReconstructor solid(options());
+  solid.add(snapshots);
+  const auto preview = [&](double leaf_size, std::uint64_t max_facets) {
+    MeshCheck check;
+    solid.preview(leaf_size, max_facets, [&](std::span<const Facet> some) { check.add(some); });
+    return check;
+  };
+  const MeshCheck model = checked(part_of(options(), snapshots));
+  const MeshCheck coarse = preview(0.008, 1'000'000);
+  EXPECT_TRUE(coarse.closed());
+  EXPECT_EQ(coarse.bounds_mm().min.z(), 0.0);
+  // A coarse voxel is set if any in it is: its faces lie up to its side, 1000 / 128 mm, outside the
+  // model, and no further inside than half a fine voxel.
+  const Eigen::Array3d beyond = coarse.bounds_mm().max - model.bounds_mm().max;
+  EXPECT_TRUE((beyond > -500.0 / 512).all() && (beyond < 1000.0 / 128 + 500.0 / 512).all())
+      << beyond;
+
+  const MeshCheck coarser = preview(0.008, coarse.facets() - 1);
+  EXPECT_TRUE(coarser.closed());
+  EXPECT_LT(coarser.facets(), coarse.facets() / 2);  // a level coarser has about a quarter
+  EXPECT_GT(coarser.facets(), coarse.facets() / 8);
+  EXPECT_EQ(preview(0.0001, 1'000'000).facets(), preview(0.002, 1'000'000).facets());
 }
 
 TEST(Solid, HasNoSurfaceOnAnEmptyPlatform) {

@@ -156,10 +156,11 @@ TEST_F(ScannerTest, CancelsAScanWhoseEndCouldNotBeSaved) {
   EXPECT_EQ(scanner.find(job->id).state, JobState::cancelled);
 }
 
-/// A model of a finished scan, finer than its own.
+/// A model of a finished scan, finer than its own, and larger than what a pipe holds.
 std::unique_ptr<ModelStream> stream_of(Scanner& scanner, const Job& job) {
   ReconstructOptions options = reconstruct_options(job.settings, {});
-  options.leaf_size = 0.002;
+  options.method = Method::intersection;
+  options.leaf_size = 0.001;
   return scanner.stream_model(job.id, options);
 }
 
@@ -193,6 +194,7 @@ TEST_F(ScannerTest, StartsAScanWhileNobodyTakesAModel) {
   const Job job = scan(scanner, few_snapshots());
   const auto model = stream_of(scanner, job);
   ASSERT_TRUE(model);
+  ASSERT_GT(model->bytes(), 2 * ModelPipe::max_bytes);
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
   EXPECT_TRUE(model->stop().stop_requested());
   std::uint64_t sent = 0;

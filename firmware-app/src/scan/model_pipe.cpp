@@ -16,6 +16,9 @@ void ModelPipe::set_length(std::uint64_t bytes) {
 }
 
 void ModelPipe::write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) {
+    return;  // an empty block would be the end
+  }
   {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop_.get_token(), [&] { return held_bytes_ < max_bytes; });

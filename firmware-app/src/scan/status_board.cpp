@@ -100,8 +100,9 @@ void StatusBoard::set_turntable_ready() {
 }
 
 void StatusBoard::set_sensor_failed(const Failure& failure) {
-  camera_frame_.set({.time = Clock::now(), .failure = failure});
   status_.update([&](Status& status) { set_failed(status.sensor, failure); });
+  camera_frame_.set(
+      {.time = Clock::now(), .failure = failure});  // who waits for it finds the status
 }
 
 void StatusBoard::set_turntable_failed(const Failure& failure) {

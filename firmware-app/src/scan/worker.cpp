@@ -53,8 +53,8 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
   try {
     DepthSensor& sensor = rig_.sensor();
     if (const std::optional<TimedFrame> timed = sensor.read(stop.get_token())) {
-      ports_.board.set_camera_frame(timed->frame, sensor.intrinsics().depth_unit);
       ports_.board.set_sensor_ready(sensor.name());
+      ports_.board.set_camera_frame(timed->frame, sensor.intrinsics().depth_unit);
     }
   } catch (...) {
     const Failure failure = current_failure();

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/intrinsics.hpp"
+
+namespace octurn {
+
+/// The depth images of one turn of the platform, and the rig as it was told.
+struct CalibrationTurn {
+  Intrinsics intrinsics = {};
+  /// Optical frame to platform frame, metres.
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
+  /// Of each stop: radians, counter-clockwise seen from above.
+  std::vector<double> angles = {};
+  /// The depth image of a stop, read once; called by several threads at once.
+  std::function<DepthFrame(std::size_t stop)> read = {};
+};
+
+/// Something about the rig that a new pose does not cure.
+struct CalibrationFinding {
+  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved"
+  std::string detail = {};
+  std::string hint = {};
+  std::optional<int> stop = {};      ///< of a slip, counted from 0
+  std::optional<double> angle = {};  ///< of a slip, radians
+};
+
+/// Where the sensor stands, as the depth images of a turn tell.
+struct CalibrationReport {
+  bool accepted = false;
+  std::string reason = {};  ///< why not, for people; empty if accepted
+  /// As solved, if accepted: optical frame to platform frame, metres. The turn about the platform's
+  /// axis, which depth images cannot tell, is as told.
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
+  double shift = 0;            ///< metres: how far the axis moves, at the platform's surface
+  double lift = 0;             ///< metres: how far that surface moves along the axis
+  double tilt = 0;             ///< radians, between the axis as told and as solved
+  double position_sigma = 0;   ///< metres, of the axis, 5 cm above the platform
+  double direction_sigma = 0;  ///< radians, of the axis
+  double before = 0;  ///< metres: median distance between what two stops saw of the object, as told
+  double after = 0;   ///< the same, as solved
+  std::vector<double> stop_offsets = {};  ///< radians: the angle of each stop as seen less as told;
+                                          ///< 0 at the first stop; empty if too little was seen
+  std::vector<CalibrationFinding> findings = {};
+
+  /// Whether the told pose is right as far as can be seen: within three sigma of the solved one, or
+  /// within 0.1 mm and 0.05 degrees.
+  bool confirms_told() const;
+};
+
+/// Finds the platform's plane and turning axis in the sensor's frame from the depth images of one
+/// turn of any object.
+///
+/// The platform's surface gives tilt and height. The axis is where the stops agree about the
+/// object: a reading of one stop, turned back, must lie on the surface that another stop saw
+/// (point-to-plane distances, minimised by Gauss-Newton over two rotations and two translations).
+/// The plane is a prior of the axis's direction. docs/calibration.md has the derivation.
+///
+/// The same on every machine and for any number of threads. About 12 MB for 36 stops of 640 x 480.
+/// @throws std::invalid_argument  if a depth image has another size than the intrinsics say
+CalibrationReport calibrate(const CalibrationTurn& turn, int threads = 1);
+
+}  // namespace octurn

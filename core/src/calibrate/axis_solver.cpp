@@ -1,0 +1,169 @@
+#include "calibrate/axis_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Matrix4d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+constexpr int max_iterations = 14;
+constexpr double max_motion = 0.03;    // radians or metres in one iteration
+constexpr double settled_step = 5e-6;  // metres
+constexpr std::size_t min_residuals = 60;
+constexpr double lever = 0.05;  // metres above the platform, where positions are judged
+
+// Far starts compare with what is far off; then only what fits is left.
+constexpr std::array schedule = {
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
+    ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
+    ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
+    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
+};
+
+/// The normal equations, and what weighs them.
+struct Sums {
+  Matrix4d normal_matrix = Matrix4d::Zero();
+  Vector4d right = Vector4d::Zero();
+  double weight = 0;
+  double squares = 0;
+  std::size_t count = 0;
+
+  void operator+=(const Sums& other) {
+    normal_matrix += other.normal_matrix;
+    right += other.right;
+    weight += other.weight;
+    squares += other.squares;
+    count += other.count;
+  }
+};
+
+Sums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std::size_t stop,
+                  const ResidualLimits& limits) {
+  Sums sums;
+  const std::vector<double> as_told(turn.angles.size(), 0.0);
+  for_each_residual(turn, pose, as_told, stop, limits, [&](const StopResidual& residual) {
+    const Vector3d turning = residual.point_from.cross(residual.normal_from) -
+                             residual.point_to.cross(residual.normal_to);
+    const Vector3d moving = residual.normal_from - residual.normal_to;
+    const Vector4d row(turning.x(), turning.y(), moving.x(), moving.y());
+    const double weight = limits.weight(residual.distance);
+    sums.normal_matrix += weight * row * row.transpose();
+    sums.right -= weight * residual.distance * row;
+    sums.weight += weight;
+    sums.squares += weight * residual.distance * residual.distance;
+    ++sums.count;
+  });
+  return sums;
+}
+
+/// Over all stops. Their sums are added in their order, so that threads change no bit.
+Sums sums_of_turn(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                  const ResidualLimits& limits, int threads) {
+  std::vector<Sums> of_stops(turn.views.size());
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t stop = next++; stop < of_stops.size(); stop = next++) {
+      of_stops[stop] = sums_of_stop(turn, pose, stop, limits);
+    }
+  });
+  Sums all;
+  for (const Sums& sums : of_stops) {
+    all += sums;
+  }
+  return all;
+}
+
+/// Adds the plane as a measurement of the axis's direction: the normal's x and y should be 0.
+void add_plane(Sums& scaled, const Vector3d& normal, double sigma) {
+  const double information = 1 / (sigma * sigma);
+  // A small rotation w takes a normal near z to n + (w_y, -w_x, 0).
+  scaled.normal_matrix(1, 1) += information;
+  scaled.right(1) -= information * normal.x();
+  scaled.normal_matrix(0, 0) += information;
+  scaled.right(0) += information * normal.y();
+}
+
+Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Vector4d& motion) {
+  const Vector3d rotation(motion[0], motion[1], 0);
+  const double angle = rotation.norm();
+  Eigen::Isometry3d change = Eigen::Isometry3d::Identity();
+  if (angle > 0) {
+    change.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+  }
+  change.translation() = Vector3d(motion[2], motion[3], 0);
+  return change * pose;
+}
+
+/// Slides the origin along the axis to where that meets the plane.
+Eigen::Isometry3d with_origin_on(const PlatformPlane& plane, Eigen::Isometry3d pose) {
+  const Vector3d normal = pose.linear() * plane.normal;
+  const double height = normal.dot(pose * (plane.normal * plane.offset)) / normal.z();
+  pose.translation().z() -= height;
+  return pose;
+}
+
+double step_of(const Vector4d& motion) {
+  return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
+}
+
+}  // namespace
+
+double AxisSolution::position_sigma() const {
+  Eigen::Matrix<double, 2, 4> at_lever = Eigen::Matrix<double, 2, 4>::Zero();
+  at_lever << 0, lever, 1, 0, -lever, 0, 0, 1;
+  const Eigen::Matrix2d spread = at_lever * covariance * at_lever.transpose();
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().maxCoeff());
+}
+
+double AxisSolution::direction_sigma() const {
+  const Eigen::Matrix2d spread = covariance.topLeftCorner<2, 2>();
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().maxCoeff());
+}
+
+std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlane& plane,
+                                       const Eigen::Isometry3d& start, double direction_sigma,
+                                       int threads) {
+  AxisSolution solution{.platform_from_sensor = start};
+  for (int i = 0; i < max_iterations; ++i) {
+    const auto& limits = schedule[std::min(static_cast<std::size_t>(i), schedule.size() - 1)];
+    const Sums sums = sums_of_turn(turn, solution.platform_from_sensor, limits, threads);
+    if (sums.count < min_residuals) {
+      return std::nullopt;
+    }
+    // In units of the measurements' own variance, so that the plane's sigma has its meaning.
+    const double variance = sums.squares / sums.weight * turn.correlation;
+    Sums scaled{.normal_matrix = sums.normal_matrix / variance, .right = sums.right / variance};
+    add_plane(scaled, solution.platform_from_sensor.linear() * plane.normal, direction_sigma);
+    solution.covariance = scaled.normal_matrix.inverse();
+    const Vector4d wanted = scaled.normal_matrix.ldlt().solve(scaled.right);
+    if (!wanted.allFinite()) {
+      return std::nullopt;
+    }
+    const double largest = wanted.cwiseAbs().maxCoeff();
+    const Vector4d motion =
+        largest > max_motion ? Vector4d(wanted * (max_motion / largest)) : wanted;
+    solution.platform_from_sensor =
+        with_origin_on(plane, moved(solution.platform_from_sensor, motion));
+    solution.last_step = step_of(motion);
+    if (i + 1 >= static_cast<int>(schedule.size()) && solution.last_step < settled_step) {
+      break;
+    }
+  }
+  return solution;
+}
+
+}  // namespace octurn

@@ -1,0 +1,266 @@
+#include "octurn/calibrate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "calibrate/axis_solver.hpp"
+#include "calibrate/object_view.hpp"
+#include "calibrate/platform_plane.hpp"
+#include "calibrate/stop_offsets.hpp"
+#include "calibrate/stop_residuals.hpp"
+#include "depth/depth_limits.hpp"
+#include "octurn/units.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int platform_step = 4;         // pixels between readings that the plane is fitted to
+constexpr double readings_wanted = 300;  // of the object at a stop: more cost time and tell little
+constexpr int max_step = 6;              // pixels
+constexpr double correlated_pixels = 400;  // the sensor's errors are alike in some 20 x 20 pixels
+
+// When a solution is not to be trusted.
+constexpr double min_object_pixels = 960;  // at a stop, on average
+constexpr std::size_t min_pairs = 6;       // three, in both directions
+constexpr std::size_t min_plane_inliers = 500;
+constexpr double max_plane_rms = 0.0015;  // metres
+constexpr double min_plane_share = 0.3;
+constexpr double max_position_sigma = 0.0003;  // metres
+constexpr double max_direction_sigma_deg = 0.1;
+constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
+constexpr double may_worsen = 1.02;   // of the median, which is not what is minimised
+constexpr double max_shift = 0.040;   // metres
+constexpr double max_tilt_deg = 6;
+constexpr double max_last_step = 0.00001;  // metres
+
+// The plane as a prior of the axis's direction: loose, and as good as a platform is true.
+constexpr double loose_direction_deg = 0.2;
+constexpr double tight_direction_deg = 0.02;
+constexpr double wobble_sigmas = 3;
+
+constexpr double agreeing_shift = 0.0001;  // metres
+constexpr double agreeing_tilt_deg = 0.05;
+constexpr double agreeing_sigmas = 3;
+
+std::string text(const char* format, double value) {
+  std::array<char, 96> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+std::string mm_text(double metres) { return text("%.2f mm", mm_from_metres(metres)); }
+std::string deg_text(double radians) { return text("%.2f degrees", degrees_from_radians(radians)); }
+
+/// Calls `work(stop)` for each stop, on several threads.
+template <typename Work>
+void for_each_stop(std::size_t stops, int threads, Work work) {
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t stop = next++; stop < stops; stop = next++) {
+      work(stop);
+    }
+  });
+}
+
+/// A coarse grid of pixels of all stops.
+PlatformSamples platform_samples(const CalibrationTurn& turn, int threads) {
+  const Intrinsics& lens = turn.intrinsics;
+  PlatformSamples samples{
+      .columns = static_cast<std::size_t>((lens.width + platform_step - 1) / platform_step),
+      .rays = {},
+      .depths = std::vector<std::vector<float>>(turn.angles.size())};
+  for (int v = 0; v < lens.height; v += platform_step) {
+    for (int u = 0; u < lens.width; u += platform_step) {
+      samples.rays.emplace_back((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+    }
+  }
+  for_each_stop(turn.angles.size(), threads, [&](std::size_t stop) {
+    const DepthFrame frame = turn.read(stop);
+    check_size(frame, lens, "calibrate");
+    for (int v = 0; v < frame.height; v += platform_step) {
+      for (int u = 0; u < frame.width; u += platform_step) {
+        const auto z = static_cast<float>(
+            frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                        static_cast<std::size_t>(u)] *
+            lens.depth_unit);
+        samples.depths[stop].push_back(static_cast<double>(z) > nearest_z ? z : 0.0F);
+      }
+    }
+  });
+  return samples;
+}
+
+TurnViews object_views(const CalibrationTurn& turn, const PlatformPlane& plane,
+                       const Eigen::Isometry3d& levelled, int threads) {
+  const ObjectView::Mask mask{.plane = plane, .axis_point = levelled.inverse().translation()};
+  std::vector<std::optional<ObjectView>> views(turn.angles.size());
+  for_each_stop(views.size(), threads, [&](std::size_t stop) {
+    views[stop].emplace(turn.read(stop), turn.intrinsics, mask);
+  });
+  TurnViews seen{.angles = turn.angles, .pairs = make_stop_pairs(turn.angles)};
+  double pixels = 0;
+  for (auto& view : views) {
+    pixels += view->pixels();
+    seen.views.push_back(*std::move(view));
+  }
+  const double each = pixels / static_cast<double>(std::max<std::size_t>(views.size(), 1));
+  const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
+  seen.correlation = std::max(1.0, correlated_pixels / (step * step));
+  for (const ObjectView& view : seen.views) {
+    seen.readings.push_back(view.readings(step));
+  }
+  return seen;
+}
+
+double mean_object_pixels(const TurnViews& views) {
+  double pixels = 0;
+  for (const ObjectView& view : views.views) {
+    pixels += view.pixels();
+  }
+  return pixels / static_cast<double>(std::max<std::size_t>(views.views.size(), 1));
+}
+
+/// The angle between the solved axis and the plane's normal.
+double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
+  const Vector3d normal = solution.platform_from_sensor.linear() * plane.normal;
+  return std::atan2(std::hypot(normal.x(), normal.y()), normal.z());
+}
+
+/// The axis with the plane as a prior; without it as a tight one where the object contradicts it.
+std::optional<AxisSolution> solve(const TurnViews& views, const PlatformPlane& plane,
+                                  const Eigen::Isometry3d& levelled, int threads,
+                                  std::vector<CalibrationFinding>& findings) {
+  auto loose =
+      solve_axis(views, plane, levelled, radians_from_degrees(loose_direction_deg), threads);
+  if (!loose) {
+    return std::nullopt;
+  }
+  const double off = direction_off(*loose, plane);
+  const double prior = radians_from_degrees(loose_direction_deg);
+  const double sigma = loose->direction_sigma();
+  // Of the object alone: without what the prior adds.
+  const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
+  if (off < wobble_sigmas / std::sqrt(information)) {
+    return solve_axis(views, plane, loose->platform_from_sensor,
+                      radians_from_degrees(tight_direction_deg), threads);
+  }
+  findings.push_back({.code = "wobble",
+                      .detail = "the platform stands " + deg_text(off) + " from square to its axis",
+                      .hint = "Look whether the platform sits straight on the motor.",
+                      .stop = {},
+                      .angle = {}});
+  return loose;
+}
+
+/// Tells how far a solution is from the told pose.
+void compare(CalibrationReport& report, const Eigen::Isometry3d& told) {
+  const Eigen::Isometry3d solved_from_told = report.platform_from_sensor * told.inverse();
+  const Vector3d origin = solved_from_told.translation();
+  const Vector3d axis = solved_from_told.linear() * Vector3d::UnitZ();
+  report.shift = std::hypot(origin.x(), origin.y());
+  report.lift = std::abs(origin.z());
+  report.tilt = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+}
+
+std::string refuse_plane(const std::optional<PlatformPlane>& plane) {
+  if (!plane || plane->inliers < min_plane_inliers || plane->inlier_share < min_plane_share) {
+    return "the platform was not found: too little of its surface is seen near where it should be";
+  }
+  if (plane->rms > max_plane_rms) {
+    return "the platform's surface is not flat: " + mm_text(plane->rms);
+  }
+  return {};
+}
+
+std::string refuse_object(const TurnViews& views) {
+  if (views.pairs.size() < min_pairs) {
+    return "too few stops: the object must be seen from at least four directions of a turn";
+  }
+  if (mean_object_pixels(views) < min_object_pixels) {
+    return "too little of an object is seen: stand something larger on the platform";
+  }
+  return {};
+}
+
+std::string refuse_solution(const CalibrationReport& report, double last_step) {
+  if (last_step > max_last_step) {
+    return "the axis did not settle";
+  }
+  if (report.position_sigma > max_position_sigma) {
+    return "the axis is uncertain by " + mm_text(report.position_sigma) +
+           ": stand another object on the platform";
+  }
+  if (report.direction_sigma > radians_from_degrees(max_direction_sigma_deg)) {
+    return "the axis is uncertain by " + deg_text(report.direction_sigma) +
+           ": stand another object on the platform";
+  }
+  if (report.after > max_after) {
+    return "the stops disagree by " + mm_text(report.after) + ": something moved";
+  }
+  if (report.after > may_worsen * report.before) {
+    return "the stops agree better as told";
+  }
+  if (std::hypot(report.shift, report.lift) > max_shift ||
+      report.tilt > radians_from_degrees(max_tilt_deg)) {
+    return "the sensor stands " + mm_text(std::hypot(report.shift, report.lift)) + " and " +
+           deg_text(report.tilt) + " from where it was told: calibrate the rig";
+  }
+  return {};
+}
+
+CalibrationReport refused(CalibrationReport report, std::string reason) {
+  report.reason = std::move(reason);
+  return report;
+}
+
+}  // namespace
+
+bool CalibrationReport::confirms_told() const {
+  const double near = std::max(agreeing_shift, agreeing_sigmas * position_sigma);
+  return accepted && shift <= near && lift <= near &&
+         tilt <=
+             std::max(radians_from_degrees(agreeing_tilt_deg), agreeing_sigmas * direction_sigma);
+}
+
+CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
+  CalibrationReport report;
+  const auto plane = fit_platform_plane(platform_samples(turn, threads), turn.platform_from_sensor);
+  if (std::string reason = refuse_plane(plane); !reason.empty()) {
+    return refused(std::move(report), std::move(reason));
+  }
+  const Eigen::Isometry3d levelled = level(turn.platform_from_sensor, *plane);
+  const TurnViews views = object_views(turn, *plane, levelled, threads);
+  if (std::string reason = refuse_object(views); !reason.empty()) {
+    return refused(std::move(report), std::move(reason));
+  }
+  const auto solution = solve(views, *plane, levelled, threads, report.findings);
+  if (!solution) {
+    return refused(std::move(report), "too little of the object is seen from two stops");
+  }
+  const std::vector<double> as_told(turn.angles.size(), 0.0);
+  report.platform_from_sensor = solution->platform_from_sensor;
+  report.position_sigma = solution->position_sigma();
+  report.direction_sigma = solution->direction_sigma();
+  report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
+  report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
+  compare(report, turn.platform_from_sensor);
+  if (const auto offsets = solve_stop_offsets(views, report.platform_from_sensor, threads)) {
+    report.stop_offsets = offsets->offsets;
+    std::ranges::move(find_slips(turn.angles, *offsets), std::back_inserter(report.findings));
+  }
+  std::string reason = refuse_solution(report, solution->last_step);
+  report.accepted = reason.empty();
+  return refused(std::move(report), std::move(reason));
+}
+
+}  // namespace octurn

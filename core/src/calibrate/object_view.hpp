@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calibrate/platform_plane.hpp"
+#include "octurn/depth_frame.hpp"
+#include "octurn/intrinsics.hpp"
+
+namespace octurn {
+
+/// One reading of a surface, optical frame, metres.
+struct SurfaceReading {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< as read: a smoothed one would be biased
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of length one, towards the sensor
+};
+
+/// What one stop saw of the object: a rectangle of its depth image.
+class ObjectView {
+ public:
+  /// Which readings are the object's: high enough above the platform and near enough to its axis.
+  struct Mask {
+    PlatformPlane plane = {};
+    Eigen::Vector3d axis_point = Eigen::Vector3d::Zero();  ///< metres, optical frame
+    bool contains(const Eigen::Vector3d& point) const;
+  };
+
+  /// @throws std::invalid_argument  if the image has another size than the intrinsics say
+  ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask);
+
+  /// Pixels that are the object's.
+  int pixels() const { return pixels_; }
+
+  /// The reading nearest to where a point is seen.
+  /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
+  std::optional<SurfaceReading> look_up(const Eigen::Vector3d& point) const;
+
+  /// The object's readings, of pixels `step` apart.
+  std::vector<SurfaceReading> readings(int step) const;
+
+ private:
+  std::optional<SurfaceReading> read(int u, int v) const;
+  float at(int u, int v) const {
+    return inverse_depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+                          static_cast<std::size_t>(u)];
+  }
+
+  Intrinsics intrinsics_;
+  Mask mask_;
+  int left_ = 0;  // of the rectangle, in the image
+  int top_ = 0;
+  int width_ = 0;
+  int height_ = 0;
+  int pixels_ = 0;
+  std::vector<float> inverse_depth_ = {};  // 1/metres, row by row; 0 is no reading
+};
+
+}  // namespace octurn

@@ -1,0 +1,243 @@
+#include "calibrate/platform_plane.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double max_height = 0.06;  // metres from the told surface: a rig is told 30 mm wrong,
+constexpr double max_radius = 0.17;  // and 5 degrees, which is 15 mm at this distance of the axis
+constexpr double max_slope_deg = 6;  // of a plane, against the told surface
+constexpr double inlier_height = 0.003;
+constexpr double object_height = 0.006;  // above the plane: no noise of the platform
+constexpr int candidates = 400;
+constexpr std::size_t scored_points = 4000;  // that a candidate is judged by
+constexpr std::size_t fitted_points = 60000;
+constexpr double good_support = 0.6;  // of the best candidate's
+constexpr int refinements = 8;
+constexpr double cauchy_scale = 0.001;  // metres
+constexpr double refined_height = 0.01;
+
+/// Numbers that are the same on every machine (PCG XSH RR 64/32, O'Neill 2014).
+class Random {
+ public:
+  std::size_t below(std::size_t end) {
+    const std::uint64_t old = state_;
+    state_ = old * 6364136223846793005ULL + 1442695040888963407ULL;
+    const auto mixed = static_cast<std::uint32_t>(((old >> 18U) ^ old) >> 27U);
+    const auto turn = static_cast<std::uint32_t>(old >> 59U);
+    const std::uint32_t bits = (mixed >> turn) | (mixed << (-turn & 31U));
+    return static_cast<std::size_t>((std::uint64_t{bits} * end) >> 32U);
+  }
+
+ private:
+  std::uint64_t state_ = 0x853c49e6748fea9bULL;
+};
+
+struct Candidate {
+  Vector3d normal = Vector3d::UnitZ();
+  double offset = 0;
+  std::size_t support = 0;
+};
+
+/// The plane through three points, upward; nothing if it is too steep, as told by `up`.
+std::optional<Candidate> plane_through(const Vector3d& a, const Vector3d& b, const Vector3d& c,
+                                       const Vector3d& up) {
+  Vector3d normal = (b - a).cross(c - a);
+  const double length = normal.norm();
+  if (!(length > 1e-6)) {
+    return std::nullopt;
+  }
+  normal /= normal.dot(up) < 0 ? -length : length;
+  if (normal.dot(up) < std::cos(radians_from_degrees(max_slope_deg))) {
+    return std::nullopt;
+  }
+  return Candidate{.normal = normal, .offset = normal.dot(a)};
+}
+
+/// Whether a reading may be the platform's: near the surface as told, and near its axis.
+/// @param point  metres, in the platform's frame as told
+bool may_be_platform(const Vector3d& point) {
+  return std::abs(point.z()) < max_height &&
+         point.head<2>().squaredNorm() < max_radius * max_radius;
+}
+
+/// Readings that `accept(pixel, point)` takes, spread over all stops.
+template <typename Accept>
+std::vector<Vector3d> spread(const PlatformSamples& samples, std::size_t count, Accept accept) {
+  std::vector<Vector3d> points;
+  for (const std::vector<float>& depths : samples.depths) {
+    for (std::size_t pixel = 0; pixel < depths.size(); ++pixel) {
+      const Vector3d point = samples.rays[pixel] * static_cast<double>(depths[pixel]);
+      if (depths[pixel] > 0 && accept(pixel, point)) {
+        points.push_back(point);
+      }
+    }
+  }
+  const std::size_t step = std::max<std::size_t>(points.size() / count, 1);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    points[kept++] = points[i];
+  }
+  points.resize(kept);
+  return points;
+}
+
+/// Whether most stops read the plane at a pixel, and none anything above it.
+bool is_plane_at(const PlatformSamples& samples, const PlatformPlane& plane, std::size_t pixel) {
+  double heights = 0;
+  std::size_t count = 0;
+  for (const std::vector<float>& depths : samples.depths) {
+    if (depths[pixel] > 0) {
+      const double height = plane.height(samples.rays[pixel] * static_cast<double>(depths[pixel]));
+      if (height > object_height) {
+        return false;
+      }
+      heights += height;
+      ++count;
+    }
+  }
+  return 2 * count > samples.depths.size() &&
+         std::abs(heights / static_cast<double>(count)) < inlier_height;
+}
+
+/// For each pixel, whether it and its eight neighbours see the plane.
+std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane) {
+  const std::size_t columns = samples.columns;
+  std::vector<bool> seen(samples.rays.size());
+  for (std::size_t pixel = 0; pixel < seen.size(); ++pixel) {
+    seen[pixel] = is_plane_at(samples, plane, pixel);
+  }
+  std::vector<bool> inner(seen.size(), false);
+  for (std::size_t pixel = columns + 1; pixel + columns + 1 < seen.size(); ++pixel) {
+    const auto row = [&](std::size_t middle) {
+      return seen[middle - 1] && seen[middle] && seen[middle + 1];
+    };
+    inner[pixel] = row(pixel - columns) && row(pixel) && row(pixel + columns);
+  }
+  return inner;
+}
+
+/// The lowest of the candidates with much support.
+std::optional<Candidate> find_plane(const std::vector<Vector3d>& points,
+                                    const Eigen::Isometry3d& platform_from_sensor) {
+  const Eigen::Isometry3d sensor_from_platform = platform_from_sensor.inverse();
+  const Vector3d up = sensor_from_platform.linear() * Vector3d::UnitZ();
+  const Vector3d origin = sensor_from_platform.translation();
+  std::vector<Candidate> found;
+  Random random;
+  for (int i = 0; i < candidates; ++i) {
+    const Vector3d& a = points[random.below(points.size())];
+    const Vector3d& b = points[random.below(points.size())];
+    const Vector3d& c = points[random.below(points.size())];
+    if (auto candidate = plane_through(a, b, c, up)) {
+      candidate->support =
+          static_cast<std::size_t>(std::ranges::count_if(points, [&](const Vector3d& point) {
+            return std::abs(candidate->normal.dot(point) - candidate->offset) < inlier_height;
+          }));
+      found.push_back(*candidate);
+    }
+  }
+  const auto best = std::ranges::max_element(found, {}, &Candidate::support);
+  if (best == found.end()) {
+    return std::nullopt;
+  }
+  const double enough = good_support * static_cast<double>(best->support);
+  // Along the told axis: the offset of a plane is no height where its normal differs.
+  const auto height = [&](const Candidate& plane) {
+    return (plane.offset - plane.normal.dot(origin)) / plane.normal.dot(up);
+  };
+  const Candidate* lowest = &*best;
+  for (const Candidate& plane : found) {
+    if (static_cast<double>(plane.support) >= enough &&
+        height(plane) < height(*lowest) - 2 * inlier_height) {
+      lowest = &plane;
+    }
+  }
+  return *lowest;
+}
+
+/// One weighted least-squares fit of z = a x + b y + c in a frame in which the plane is level.
+void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {
+  const Eigen::Quaterniond level =
+      Eigen::Quaterniond::FromTwoVectors(plane.normal, Vector3d::UnitZ());
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Vector3d right = Vector3d::Zero();
+  for (const Vector3d& point : points) {
+    const double distance = plane.height(point);
+    if (std::abs(distance) > refined_height) {
+      continue;
+    }
+    const double ratio = distance / cauchy_scale;
+    const double weight = 1 / (1 + ratio * ratio);
+    const Vector3d levelled = level * point;
+    const Vector3d row(levelled.x(), levelled.y(), 1);
+    normal_matrix += weight * row * row.transpose();
+    right += weight * distance * row;
+  }
+  const Vector3d fit = normal_matrix.ldlt().solve(right);
+  if (!fit.allFinite()) {
+    return;  // all points on a line: the plane stays
+  }
+  const Vector3d tilted = Vector3d(-fit.x(), -fit.y(), 1);
+  const double length = tilted.norm();
+  plane.normal = level.inverse() * (tilted / length);
+  plane.offset = (plane.offset + fit.z()) / length;
+}
+
+}  // namespace
+
+std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
+                                                const Eigen::Isometry3d& platform_from_sensor) {
+  const auto near = [&](std::size_t, const Vector3d& point) {
+    return may_be_platform(platform_from_sensor * point);
+  };
+  const std::vector<Vector3d> scored = spread(samples, scored_points, near);
+  if (scored.size() < 3) {
+    return std::nullopt;
+  }
+  const auto found = find_plane(scored, platform_from_sensor);
+  if (!found) {
+    return std::nullopt;
+  }
+  PlatformPlane plane{.normal = found->normal, .offset = found->offset};
+  const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
+  const std::vector<Vector3d> fitted =
+      spread(samples, fitted_points, [&](std::size_t pixel, const Vector3d& point) {
+        return is_plane[pixel] && near(pixel, point);
+      });
+  for (int i = 0; i < refinements; ++i) {
+    refine(plane, fitted);
+  }
+  double squares = 0;
+  for (const Vector3d& point : fitted) {
+    const double distance = plane.height(point);
+    if (std::abs(distance) < inlier_height) {
+      ++plane.inliers;
+      squares += distance * distance;
+    }
+  }
+  plane.inlier_share = static_cast<double>(plane.inliers) /
+                       static_cast<double>(std::max<std::size_t>(fitted.size(), 1));
+  plane.rms = plane.inliers > 0 ? std::sqrt(squares / static_cast<double>(plane.inliers)) : 0;
+  return plane;
+}
+
+Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane) {
+  const Vector3d normal = platform_from_sensor.linear() * plane.normal;
+  Eigen::Isometry3d levelled =
+      Eigen::Quaterniond::FromTwoVectors(normal, Vector3d::UnitZ()) * platform_from_sensor;
+  // The plane's height in the levelled frame, at any of its points.
+  levelled.translation().z() -= (levelled * (plane.normal * plane.offset)).z();
+  return levelled;
+}
+
+}  // namespace octurn

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace octurn {
+
+/// The platform's surface in the sensor's optical frame.
+struct PlatformPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< upward, of length one
+  double offset = 0;                                  ///< metres: normal . point = offset on it
+  std::size_t inliers = 0;                            ///< readings that support it
+  double inlier_share = 0;                            ///< of the readings near the told surface
+  double rms = 0;                                     ///< metres, of their distances
+
+  double height(const Eigen::Vector3d& point) const { return normal.dot(point) - offset; }
+};
+
+/// A coarse grid of pixels of the depth images of all stops, row by row.
+struct PlatformSamples {
+  std::size_t columns = 0;
+  std::vector<Eigen::Vector3d> rays = {};       ///< of the pixels, optical frame, z = 1
+  std::vector<std::vector<float>> depths = {};  ///< of each stop, metres along z; 0: no reading
+};
+
+/// Fits the platform's plane: RANSAC among planes that are nearly level as told, then least squares
+/// with Cauchy weights. Where several planes have much support, the lowest is the platform: the lid
+/// of a flat box may be the larger one. Least squares take only pixels that see nothing else
+/// at any stop, nor beside them: the object's foot and the rim would tilt the plane.
+///
+/// @param platform_from_sensor as told
+/// @return nothing if no nearly level plane has any support
+std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
+                                                const Eigen::Isometry3d& platform_from_sensor);
+
+/// The pose of least rotation from the told one in which the plane is z = 0.
+Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane);
+
+}  // namespace octurn

@@ -1,0 +1,223 @@
+#include "calibrate/stop_offsets.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "octurn/units.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array schedule = {
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
+    ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.003},
+    ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.002},
+    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
+    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
+};
+
+constexpr double max_sigma_deg = 1.0;  // of a stop's angle: a vase leaves 1.5 degrees open
+constexpr double min_slip_deg = 0.6;
+constexpr double slip_sigmas = 5;
+constexpr double slip_to_noise =
+    5;  // against the other steps: the sensor's fixed pattern is in all
+
+// A sensor's fixed pattern alone looks like a turn of 356 degrees.
+constexpr double min_drift_deg = 8;
+constexpr double straight = 0.97;  // correlation of drift and angle
+
+/// What the pairs that begin at one stop add to the normal equations: an entry for each partner.
+struct PairSums {
+  std::size_t to = 0;
+  double from_from = 0;
+  double from_to = 0;
+  double to_to = 0;
+  double right_from = 0;
+  double right_to = 0;
+};
+
+struct StopSums {
+  std::vector<PairSums> pairs = {};
+  double weight = 0;
+  double squares = 0;
+};
+
+StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                      const std::vector<double>& offsets, std::size_t stop,
+                      const ResidualLimits& limits) {
+  StopSums sums;
+  for_each_residual(turn, pose, offsets, stop, limits, [&](const StopResidual& residual) {
+    if (sums.pairs.empty() || sums.pairs.back().to != residual.to) {
+      sums.pairs.push_back({.to = residual.to});
+    }
+    PairSums& pair = sums.pairs.back();
+    // Further on by a small angle, the same point of the object is at an angle less by that.
+    const double by_from = -residual.normal_from.dot(Vector3d::UnitZ().cross(residual.point_from));
+    const double by_to = residual.normal_to.dot(Vector3d::UnitZ().cross(residual.point_to));
+    const double weight = limits.weight(residual.distance);
+    pair.from_from += weight * by_from * by_from;
+    pair.from_to += weight * by_from * by_to;
+    pair.to_to += weight * by_to * by_to;
+    pair.right_from -= weight * by_from * residual.distance;
+    pair.right_to -= weight * by_to * residual.distance;
+    sums.weight += weight;
+    sums.squares += weight * residual.distance * residual.distance;
+  });
+  return sums;
+}
+
+struct Equations {
+  Eigen::MatrixXd normal_matrix;
+  Eigen::VectorXd right;
+  double variance = 0;
+};
+
+Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                    const std::vector<double>& offsets, const ResidualLimits& limits, int threads) {
+  const std::size_t stops = turn.views.size();
+  std::vector<StopSums> of_stops(stops);
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t stop = next++; stop < stops; stop = next++) {
+      of_stops[stop] = sums_of_stop(turn, pose, offsets, stop, limits);
+    }
+  });
+  const auto size = static_cast<Eigen::Index>(stops);
+  Equations all{.normal_matrix = Eigen::MatrixXd::Zero(size, size),
+                .right = Eigen::VectorXd::Zero(size)};
+  double weight = 0;
+  double squares = 0;
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    const auto from = static_cast<Eigen::Index>(stop);
+    for (const PairSums& pair : of_stops[stop].pairs) {
+      const auto to = static_cast<Eigen::Index>(pair.to);
+      all.normal_matrix(from, from) += pair.from_from;
+      all.normal_matrix(to, to) += pair.to_to;
+      all.normal_matrix(from, to) += pair.from_to;
+      all.normal_matrix(to, from) += pair.from_to;
+      all.right[from] += pair.right_from;
+      all.right[to] += pair.right_to;
+    }
+    weight += of_stops[stop].weight;
+    squares += of_stops[stop].squares;
+  }
+  all.variance = weight > 0 ? squares / weight * turn.correlation : 0;
+  return all;
+}
+
+std::string degrees_text(double angle) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f degrees", degrees_from_radians(angle));
+  return text.data();
+}
+
+/// The largest step between neighbouring stops, if it stands out of the others.
+std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
+  const std::vector<double>& offsets = solved.offsets;
+  std::vector<double> steps;
+  for (std::size_t stop = 1; stop < offsets.size(); ++stop) {
+    steps.push_back(offsets[stop] - offsets[stop - 1]);
+  }
+  std::vector<double> sizes(steps.size());
+  std::ranges::transform(steps, sizes.begin(), [](double step) { return std::abs(step); });
+  const auto largest = std::ranges::max_element(sizes);
+  const auto at = largest - sizes.begin();
+  const auto middle = sizes.size() / 2;
+  std::vector<double> sorted = sizes;
+  std::ranges::sort(sorted);
+  const auto variance = [&](std::ptrdiff_t stop) {
+    return stop == 0 ? 0 : solved.covariance(stop - 1, stop - 1);
+  };
+  const double sigma = std::sqrt(variance(at) + variance(at + 1));
+  if (*largest < radians_from_degrees(min_slip_deg) || *largest < slip_sigmas * sigma ||
+      *largest < slip_to_noise * sorted[middle]) {
+    return std::nullopt;
+  }
+  const int stop = static_cast<int>(at) + 1;
+  const double step = steps[static_cast<std::size_t>(at)];
+  return CalibrationFinding{
+      .code = "slip",
+      .detail = "at stop " + std::to_string(stop) + " the platform stood " + degrees_text(step) +
+                " from where it should",
+      .hint = "Look whether the platform slipped or the motor lost a step; turn more slowly.",
+      .stop = stop,
+      .angle = step};
+}
+
+std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
+                                             const std::vector<double>& offsets) {
+  const auto count = static_cast<double>(angles.size());
+  double sum_a = 0, sum_o = 0, sum_aa = 0, sum_ao = 0, sum_oo = 0;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    sum_a += angles[i];
+    sum_o += offsets[i];
+    sum_aa += angles[i] * angles[i];
+    sum_ao += angles[i] * offsets[i];
+    sum_oo += offsets[i] * offsets[i];
+  }
+  const double spread_a = sum_aa - sum_a * sum_a / count;
+  const double spread_o = sum_oo - sum_o * sum_o / count;
+  const double together = sum_ao - sum_a * sum_o / count;
+  const double turn = 2 * std::numbers::pi;
+  const double drift = turn * together / spread_a;
+  if (std::abs(drift) < radians_from_degrees(min_drift_deg) ||
+      std::abs(together) < straight * std::sqrt(spread_a * spread_o)) {
+    return std::nullopt;
+  }
+  std::array<char, 64> ratio{};
+  std::snprintf(ratio.data(), ratio.size(), "%.4f", turn / (turn + drift));
+  return CalibrationFinding{.code = "turn-not-whole",
+                            .detail = "a whole turn came out as " + degrees_text(turn + drift),
+                            .hint = "Multiply gear_ratio by " + std::string(ratio.data()) + ".",
+                            .stop = {},
+                            .angle = {}};
+}
+
+}  // namespace
+
+std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
+                                              const Eigen::Isometry3d& platform_from_sensor,
+                                              int threads) {
+  const std::size_t stops = turn.views.size();
+  StopOffsets solved{.offsets = std::vector<double>(stops, 0.0), .covariance = {}};
+  for (const ResidualLimits& limits : schedule) {
+    const Equations all = equations(turn, platform_from_sensor, solved.offsets, limits, threads);
+    // The first stop is where the angles are counted from.
+    const auto free = static_cast<Eigen::Index>(stops) - 1;
+    const Eigen::MatrixXd normal_matrix = all.normal_matrix.bottomRightCorner(free, free);
+    const Eigen::LDLT<Eigen::MatrixXd> factors(normal_matrix);
+    const Eigen::VectorXd motion = factors.solve(all.right.tail(free));
+    if (factors.info() != Eigen::Success || !factors.isPositive() || !motion.allFinite()) {
+      return std::nullopt;
+    }
+    for (Eigen::Index i = 0; i < free; ++i) {
+      solved.offsets[static_cast<std::size_t>(i) + 1] += motion[i];
+    }
+    solved.covariance = factors.solve(Eigen::MatrixXd::Identity(free, free)) * all.variance;
+  }
+  const double worst = std::sqrt(solved.covariance.diagonal().maxCoeff());
+  return worst < radians_from_degrees(max_sigma_deg) ? std::optional(std::move(solved))
+                                                     : std::nullopt;
+}
+
+std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,
+                                           const StopOffsets& solved) {
+  std::vector<CalibrationFinding> findings;
+  if (auto drift = find_drift(angles, solved.offsets)) {
+    findings.push_back(*std::move(drift));
+  } else if (auto slip = find_step(solved)) {
+    findings.push_back(*std::move(slip));
+  }
+  return findings;
+}
+
+}  // namespace octurn

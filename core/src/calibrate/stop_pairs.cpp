@@ -1,0 +1,73 @@
+#include "calibrate/stop_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+// Small angles see much of the same surface; large ones tell the axis better.
+constexpr std::array apart_deg = {15.0, 30.0, 45.0, 75.0};
+constexpr double tolerance_deg = 7.6;  // stops of a turn are rarely just so far apart
+constexpr double max_neighbour_deg = 100;
+
+/// From `a` to `b`, from -pi to pi.
+double turn_between(double a, double b) { return std::remainder(b - a, 2 * std::numbers::pi); }
+
+/// The stop whose angle from another is nearest to `wanted`, within the tolerance.
+std::optional<std::size_t> find_stop(const std::vector<double>& angles, std::size_t from,
+                                     double wanted, double tolerance) {
+  std::optional<std::size_t> nearest;
+  double error = tolerance;
+  for (std::size_t to = 0; to < angles.size(); ++to) {
+    const double off = std::abs(turn_between(wanted, turn_between(angles[from], angles[to])));
+    if (to != from && off < error) {
+      error = off;
+      nearest = to;
+    }
+  }
+  return nearest;
+}
+
+std::vector<StopPair> pairs_at(const std::vector<double>& angles, std::span<const double> turns,
+                               double tolerance) {
+  std::vector<StopPair> pairs;
+  for (std::size_t from = 0; from < angles.size(); ++from) {
+    std::vector<std::size_t> partners;
+    for (const double turn : turns) {
+      for (const double wanted : {turn, -turn}) {
+        if (const auto to = find_stop(angles, from, wanted, tolerance)) {
+          partners.push_back(*to);
+        }
+      }
+    }
+    std::ranges::sort(partners);
+    const auto repeated = std::ranges::unique(partners);
+    partners.erase(repeated.begin(), repeated.end());
+    for (const std::size_t to : partners) {
+      pairs.push_back({.from = from, .to = to});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::vector<StopPair> make_stop_pairs(const std::vector<double>& angles) {
+  std::array<double, apart_deg.size()> turns{};
+  std::ranges::transform(apart_deg, turns.begin(), radians_from_degrees);
+  auto pairs = pairs_at(angles, turns, radians_from_degrees(tolerance_deg));
+  if (pairs.empty()) {
+    const std::array half = {radians_from_degrees(max_neighbour_deg / 2)};
+    pairs = pairs_at(angles, half, half.front());
+  }
+  return pairs;
+}
+
+}  // namespace octurn

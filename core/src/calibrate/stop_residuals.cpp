@@ -1,0 +1,35 @@
+#include "calibrate/stop_residuals.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+
+double median_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
+                       const std::vector<double>& stop_offsets, int threads) {
+  std::vector<std::vector<float>> of_stops(turn.views.size());
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t stop = next++; stop < of_stops.size(); stop = next++) {
+      for_each_residual(turn, platform_from_sensor, stop_offsets, stop, {},
+                        [&](const StopResidual& residual) {
+                          of_stops[stop].push_back(static_cast<float>(std::abs(residual.distance)));
+                        });
+    }
+  });
+  std::vector<float> all;
+  for (const std::vector<float>& some : of_stops) {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  if (all.empty()) {
+    return 0;
+  }
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  return static_cast<double>(*middle);
+}
+
+}  // namespace octurn

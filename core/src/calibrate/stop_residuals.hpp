@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "calibrate/object_view.hpp"
+#include "calibrate/stop_pairs.hpp"
+
+namespace octurn {
+
+/// The object as all stops saw it.
+struct TurnViews {
+  std::vector<double> angles = {};  ///< of the stops, radians
+  std::vector<ObjectView> views = {};
+  std::vector<std::vector<SurfaceReading>> readings = {};
+  std::vector<StopPair> pairs = {};
+  /// Readings for each that is independent of the others: the sensor's errors are alike in
+  /// neighbouring pixels.
+  double correlation = 1;
+};
+
+/// How a reading of one stop misses the surface that another saw, in the object's frame.
+struct StopResidual {
+  std::size_t from = 0;
+  std::size_t to = 0;
+  double distance = 0;                                    ///< metres, along the surface's normal
+  Eigen::Vector3d point_from = Eigen::Vector3d::Zero();   ///< platform frame at `from`
+  Eigen::Vector3d normal_from = Eigen::Vector3d::Zero();  ///< the surface's, in the same frame
+  Eigen::Vector3d point_to = Eigen::Vector3d::Zero();  ///< of the surface, platform frame at `to`
+  Eigen::Vector3d normal_to = Eigen::Vector3d::Zero();
+};
+
+/// What is compared, and how much a residual counts.
+struct ResidualLimits {
+  double max_distance = 0.02;   ///< metres: what is farther off is another surface
+  double cauchy_scale = 0.004;  ///< metres
+
+  double weight(double distance) const {
+    const double ratio = distance / cauchy_scale;
+    return 1 / (1 + ratio * ratio);
+  }
+};
+
+/// Compares the readings of one stop with the surfaces that its partners saw.
+/// @param platform_from_sensor  that is tried, metres
+/// @param stop_offsets          radians that each stop turned further than told
+/// @param visit                 called with each StopResidual
+template <typename Visit>
+void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
+                       const std::vector<double>& stop_offsets, std::size_t from,
+                       const ResidualLimits& limits, Visit visit) {
+  constexpr double min_agreement = 0.7;  // cosine between the two normals
+  const Eigen::Isometry3d sensor_from_platform = platform_from_sensor.inverse();
+  for (const StopPair& pair : turn.pairs) {
+    if (pair.from != from) {
+      continue;
+    }
+    const double angle =
+        turn.angles[pair.to] + stop_offsets[pair.to] - turn.angles[from] - stop_offsets[from];
+    const Eigen::Matrix3d to_from_from =
+        Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    for (const SurfaceReading& reading : turn.readings[from]) {
+      const Eigen::Vector3d point = platform_from_sensor * reading.point;
+      const Eigen::Vector3d turned = to_from_from * point;
+      const auto surface = turn.views[pair.to].look_up(sensor_from_platform * turned);
+      if (!surface) {
+        continue;
+      }
+      const Eigen::Vector3d normal = platform_from_sensor.linear() * surface->normal;
+      const Eigen::Vector3d back = to_from_from.transpose() * normal;
+      const Eigen::Vector3d seen = platform_from_sensor * surface->point;
+      const double distance = normal.dot(turned - seen);
+      if (std::abs(distance) < limits.max_distance &&
+          back.dot(platform_from_sensor.linear() * reading.normal) > min_agreement) {
+        visit(StopResidual{.from = from,
+                           .to = pair.to,
+                           .distance = distance,
+                           .point_from = point,
+                           .normal_from = back,
+                           .point_to = seen,
+                           .normal_to = normal});
+      }
+    }
+  }
+}
+
+/// The median of the residuals' magnitudes, metres, of those below 20 mm; 0 if there are none.
+double median_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
+                       const std::vector<double>& stop_offsets, int threads);
+
+}  // namespace octurn

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "depth/back_project.hpp"
-#include "octurn/depth_filter.hpp"
+#include "octurn/depth_frame.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/snapshot.hpp"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "octurn/depth_filter.hpp"
+#include "octurn/depth_frame.hpp"
 #include "octurn/scan_folder.hpp"
 #include "sensor/recording.hpp"
 #include "support/program.hpp"

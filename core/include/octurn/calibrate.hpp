@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 
 namespace octurn {
 

@@ -4,12 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
-#include "parallel/fork_join.hpp"
+#include "calibrate/for_each_stop.hpp"
 
 namespace octurn {
 namespace {
@@ -74,12 +72,8 @@ Sums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std::siz
 Sums sums_of_turn(const TurnViews& turn, const Eigen::Isometry3d& pose,
                   const ResidualLimits& limits, int threads) {
   std::vector<Sums> of_stops(turn.views.size());
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t stop = next++; stop < of_stops.size(); stop = next++) {
-      of_stops[stop] = sums_of_stop(turn, pose, stop, limits);
-    }
-  });
+  for_each_stop(of_stops.size(), threads,
+                [&](std::size_t stop) { of_stops[stop] = sums_of_stop(turn, pose, stop, limits); });
   Sums all;
   for (const Sums& sums : of_stops) {
     all += sums;

@@ -2,22 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
+#include "calibrate/for_each_stop.hpp"
 #include "calibrate/object_view.hpp"
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/stop_offsets.hpp"
 #include "calibrate/stop_residuals.hpp"
 #include "depth/depth_limits.hpp"
 #include "octurn/units.hpp"
-#include "parallel/fork_join.hpp"
 
 namespace octurn {
 namespace {
@@ -27,15 +25,15 @@ using Eigen::Vector3d;
 constexpr int platform_step = 4;         // pixels between readings that the plane is fitted to
 constexpr double readings_wanted = 300;  // of the object at a stop: more cost time and tell little
 constexpr int max_step = 6;              // pixels
-constexpr double correlated_pixels = 400;  // the sensor's errors are alike in some 20 x 20 pixels
+constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
 
 // When a solution is not to be trusted.
-constexpr double min_object_pixels = 960;  // at a stop, on average
+constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
 constexpr std::size_t min_pairs = 6;       // three, in both directions
 constexpr std::size_t min_plane_inliers = 500;
 constexpr double max_plane_rms = 0.0015;  // metres
 constexpr double min_plane_share = 0.3;
-constexpr double max_position_sigma = 0.0003;  // metres
+constexpr double max_position_sigma = 0.0006;  // metres
 constexpr double max_direction_sigma_deg = 0.1;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 constexpr double may_worsen = 1.02;   // of the median, which is not what is minimised
@@ -46,7 +44,7 @@ constexpr double max_last_step = 0.00001;  // metres
 // The plane as a prior of the axis's direction: loose, and as good as a platform is true.
 constexpr double loose_direction_deg = 0.2;
 constexpr double tight_direction_deg = 0.02;
-constexpr double wobble_sigmas = 3;
+constexpr double wobble_sigmas = 5;
 
 constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
@@ -60,17 +58,6 @@ std::string text(const char* format, double value) {
 
 std::string mm_text(double metres) { return text("%.2f mm", mm_from_metres(metres)); }
 std::string deg_text(double radians) { return text("%.2f degrees", degrees_from_radians(radians)); }
-
-/// Calls `work(stop)` for each stop, on several threads.
-template <typename Work>
-void for_each_stop(std::size_t stops, int threads, Work work) {
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t stop = next++; stop < stops; stop = next++) {
-      work(stop);
-    }
-  });
-}
 
 /// A coarse grid of pixels of all stops.
 PlatformSamples platform_samples(const CalibrationTurn& turn, int threads) {
@@ -136,30 +123,46 @@ double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
   return std::atan2(std::hypot(normal.x(), normal.y()), normal.z());
 }
 
-/// The axis with the plane as a prior; without it as a tight one where the object contradicts it.
-std::optional<AxisSolution> solve(const TurnViews& views, const PlatformPlane& plane,
-                                  const Eigen::Isometry3d& levelled, int threads,
-                                  std::vector<CalibrationFinding>& findings) {
-  auto loose =
+/// Radians between the axis and the plane's normal, if more than the object's own sigma explains;
+/// else 0.
+/// @param solution  with the plane as a loose prior
+double find_wobble(const AxisSolution& solution, const PlatformPlane& plane) {
+  const double prior = radians_from_degrees(loose_direction_deg);
+  const double sigma = solution.direction_sigma();
+  // Of the object alone: without what the prior adds.
+  const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
+  const double off = direction_off(solution, plane);
+  return off > wobble_sigmas / std::sqrt(information) ? off : 0;
+}
+
+CalibrationFinding to_finding(double wobble) {
+  return {.code = "wobble",
+          .detail = "the platform stands " + deg_text(wobble) + " from square to its axis",
+          .hint = "Look whether the platform sits straight on the motor.",
+          .stop = {},
+          .angle = {}};
+}
+
+/// Solves the axis and looks for what a new pose does not cure.
+std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
+                                  const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
+                                  int threads) {
+  const auto loose =
       solve_axis(views, plane, levelled, radians_from_degrees(loose_direction_deg), threads);
   if (!loose) {
     return std::nullopt;
   }
-  const double off = direction_off(*loose, plane);
-  const double prior = radians_from_degrees(loose_direction_deg);
-  const double sigma = loose->direction_sigma();
-  // Of the object alone: without what the prior adds.
-  const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
-  if (off < wobble_sigmas / std::sqrt(information)) {
-    return solve_axis(views, plane, loose->platform_from_sensor,
-                      radians_from_degrees(tight_direction_deg), threads);
+  if (const auto offsets = solve_stop_offsets(views, loose->platform_from_sensor, threads)) {
+    report.stop_offsets = offsets->offsets;
+    report.findings = find_slips(views.angles, *offsets);
   }
-  findings.push_back({.code = "wobble",
-                      .detail = "the platform stands " + deg_text(off) + " from square to its axis",
-                      .hint = "Look whether the platform sits straight on the motor.",
-                      .stop = {},
-                      .angle = {}});
-  return loose;
+  // A slip tilts the axis, too.
+  if (const double wobble = find_wobble(*loose, plane); wobble > 0 && report.findings.empty()) {
+    report.findings.push_back(to_finding(wobble));
+    return loose;
+  }
+  return solve_axis(views, plane, loose->platform_from_sensor,
+                    radians_from_degrees(tight_direction_deg), threads);
 }
 
 /// Tells how far a solution is from the told pose.
@@ -243,7 +246,7 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   if (std::string reason = refuse_object(views); !reason.empty()) {
     return refused(std::move(report), std::move(reason));
   }
-  const auto solution = solve(views, *plane, levelled, threads, report.findings);
+  const auto solution = solve(report, views, *plane, levelled, threads);
   if (!solution) {
     return refused(std::move(report), "too little of the object is seen from two stops");
   }
@@ -254,10 +257,6 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   compare(report, turn.platform_from_sensor);
-  if (const auto offsets = solve_stop_offsets(views, report.platform_from_sensor, threads)) {
-    report.stop_offsets = offsets->offsets;
-    std::ranges::move(find_slips(turn.angles, *offsets), std::back_inserter(report.findings));
-  }
   std::string reason = refuse_solution(report, solution->last_step);
   report.accepted = reason.empty();
   return refused(std::move(report), std::move(reason));

@@ -6,7 +6,6 @@
 
 #include "calibrate/platform_plane.hpp"
 #include "octurn/depth_frame.hpp"
-#include "octurn/intrinsics.hpp"
 
 namespace octurn {
 

@@ -3,13 +3,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
+#include "calibrate/for_each_stop.hpp"
 #include "octurn/units.hpp"
-#include "parallel/fork_join.hpp"
 
 namespace octurn {
 namespace {
@@ -28,8 +27,7 @@ constexpr std::array schedule = {
 constexpr double max_sigma_deg = 1.0;  // of a stop's angle: a vase leaves 1.5 degrees open
 constexpr double min_slip_deg = 0.6;
 constexpr double slip_sigmas = 5;
-constexpr double slip_to_noise =
-    5;  // against the other steps: the sensor's fixed pattern is in all
+constexpr double slip_to_noise = 5;  // times the median step: the sensor's fixed pattern is in all
 
 // A sensor's fixed pattern alone looks like a turn of 356 degrees.
 constexpr double min_drift_deg = 8;
@@ -85,11 +83,8 @@ Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
                     const std::vector<double>& offsets, const ResidualLimits& limits, int threads) {
   const std::size_t stops = turn.views.size();
   std::vector<StopSums> of_stops(stops);
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t stop = next++; stop < stops; stop = next++) {
-      of_stops[stop] = sums_of_stop(turn, pose, offsets, stop, limits);
-    }
+  for_each_stop(stops, threads, [&](std::size_t stop) {
+    of_stops[stop] = sums_of_stop(turn, pose, offsets, stop, limits);
   });
   const auto size = static_cast<Eigen::Index>(stops);
   Equations all{.normal_matrix = Eigen::MatrixXd::Zero(size, size),
@@ -120,6 +115,16 @@ std::string degrees_text(double angle) {
   return text.data();
 }
 
+/// Of the step from a stop to the next; the first stop's angle is given.
+/// @param covariance  of the offsets from the second stop on
+double step_sigma(const Eigen::MatrixXd& covariance, Eigen::Index stop) {
+  if (stop == 0) {
+    return std::sqrt(covariance(0, 0));
+  }
+  return std::sqrt(covariance(stop - 1, stop - 1) + covariance(stop, stop) -
+                   2 * covariance(stop - 1, stop));
+}
+
 /// The largest step between neighbouring stops, if it stands out of the others.
 std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   const std::vector<double>& offsets = solved.offsets;
@@ -134,10 +139,7 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   const auto middle = sizes.size() / 2;
   std::vector<double> sorted = sizes;
   std::ranges::sort(sorted);
-  const auto variance = [&](std::ptrdiff_t stop) {
-    return stop == 0 ? 0 : solved.covariance(stop - 1, stop - 1);
-  };
-  const double sigma = std::sqrt(variance(at) + variance(at + 1));
+  const double sigma = step_sigma(solved.covariance, at);
   if (*largest < radians_from_degrees(min_slip_deg) || *largest < slip_sigmas * sigma ||
       *largest < slip_to_noise * sorted[middle]) {
     return std::nullopt;
@@ -156,7 +158,11 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
 std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
                                              const std::vector<double>& offsets) {
   const auto count = static_cast<double>(angles.size());
-  double sum_a = 0, sum_o = 0, sum_aa = 0, sum_ao = 0, sum_oo = 0;
+  double sum_a = 0;
+  double sum_o = 0;
+  double sum_aa = 0;
+  double sum_ao = 0;
+  double sum_oo = 0;
   for (std::size_t i = 0; i < angles.size(); ++i) {
     sum_a += angles[i];
     sum_o += offsets[i];

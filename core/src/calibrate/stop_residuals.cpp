@@ -1,24 +1,20 @@
 #include "calibrate/stop_residuals.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
-#include "parallel/fork_join.hpp"
+#include "calibrate/for_each_stop.hpp"
 
 namespace octurn {
 
 double median_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
                        const std::vector<double>& stop_offsets, int threads) {
   std::vector<std::vector<float>> of_stops(turn.views.size());
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t stop = next++; stop < of_stops.size(); stop = next++) {
-      for_each_residual(turn, platform_from_sensor, stop_offsets, stop, {},
-                        [&](const StopResidual& residual) {
-                          of_stops[stop].push_back(static_cast<float>(std::abs(residual.distance)));
-                        });
-    }
+  for_each_stop(of_stops.size(), threads, [&](std::size_t stop) {
+    for_each_residual(turn, platform_from_sensor, stop_offsets, stop, {},
+                      [&](const StopResidual& residual) {
+                        of_stops[stop].push_back(static_cast<float>(std::abs(residual.distance)));
+                      });
   });
   std::vector<float> all;
   for (const std::vector<float>& some : of_stops) {

@@ -1,10 +1,10 @@
-#include "octurn/depth_filter.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
+
+#include "octurn/depth_frame.hpp"
 
 namespace octurn {
 namespace {

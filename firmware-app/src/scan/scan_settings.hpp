@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "octurn/box.hpp"
-#include "octurn/depth_filter.hpp"
+#include "octurn/depth_frame.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/reconstruct.hpp"
 #include "rig/nominal_pose.hpp"

@@ -1,5 +1,3 @@
-#include "octurn/depth_filter.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "octurn/depth_frame.hpp"
 #include "support/random.hpp"
 
 namespace octurn {

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "core/tsdf/rendered.hpp"
+#include "octurn/calibrate.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+
+/// A sensor 0.62 m from the axis, 0.36 m above the platform, looking 25 degrees down.
+inline Eigen::Isometry3d true_platform_from_sensor() {
+  Eigen::Matrix3d upright;  // optical X right, Y down, Z forward, in the platform's axes
+  upright << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = Eigen::AngleAxisd(radians_from_degrees(-25), Eigen::Vector3d::UnitX()) * upright;
+  pose.translation() = Eigen::Vector3d(0, -0.62, 0.36);
+  return pose;
+}
+
+/// A pose that is wrong by a shift (metres) of the platform's origin and a rotation about it.
+inline Eigen::Isometry3d wrong_pose(const Eigen::Vector3d& shift, const Eigen::Vector3d& axis,
+                                    double angle_deg) {
+  return Eigen::Translation3d(shift) *
+         Eigen::AngleAxisd(radians_from_degrees(angle_deg), axis.normalized()) *
+         true_platform_from_sensor();
+}
+
+inline Shape moved(const Shape& shape, const Eigen::Vector3d& by) {
+  return [=](const Eigen::Vector3d& p) { return shape(p - by); };
+}
+
+inline Shape joined(const Shape& a, const Shape& b) {
+  return [=](const Eigen::Vector3d& p) { return std::min(a(p), b(p)); };
+}
+
+/// Some 12 cm tall, with a face of its own for each direction.
+inline Shape figure() {
+  return joined(block({0.07, 0.045, 0.06}),
+                joined(ball({0.02, 0.01, 0.085}, 0.035), ball({-0.03, -0.015, 0.06}, 0.025)));
+}
+
+/// Depth of an object turned by `angle` on a disc of 30 cm, with noise that is uniform in
+/// disparity, as a Kinect's is, of 0.3 of its steps.
+inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random) {
+  constexpr double disparity_unit = 345.489;  // of a Kinect v1: disparity = 345.489 m / z
+  constexpr double noise = 0.5;               // steps, half the uniform distribution's width
+  const Intrinsics lens;
+  const Eigen::Isometry3d pose = true_platform_from_sensor();
+  const Eigen::AngleAxisd back(-angle, Eigen::Vector3d::UnitZ());
+  DepthFrame frame{.width = lens.width, .height = lens.height, .depth = {}};
+  for (int v = 0; v < lens.height; ++v) {
+    for (int u = 0; u < lens.width; ++u) {
+      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+      const Eigen::Vector3d direction = pose.linear() * ray;
+      const double to_disc = -pose.translation().z() / direction.z();
+      const bool on_disc =
+          to_disc > 0 && (pose.translation() + to_disc * direction).head<2>().norm() < 0.15;
+      const double end = on_disc ? to_disc : 1.0;
+      double z = 0.4;
+      for (double gap = 1; gap > 1e-5 && z < end;) {
+        gap = object(back * (pose * (z * ray)));
+        z += gap / ray.norm();
+      }
+      const double error = noise * (2 * static_cast<double>(random()) / 4294967295.0 - 1);
+      const double read = 1 / (1 / std::min(z, end) + error / disparity_unit);
+      const bool is_read = on_disc || z < end;
+      frame.depth.push_back(
+          static_cast<std::uint16_t>(is_read ? std::lround(read / lens.depth_unit) : 0));
+    }
+  }
+  return frame;
+}
+
+/// A turn of so many stops, told the truth but for `offsets`: radians that the platform stood
+/// further on than told, 0 at the stops that it does not have.
+inline CalibrationTurn rendered_turn(const Shape& object, std::size_t stops,
+                                     const std::vector<double>& offsets = {}) {
+  CalibrationTurn turn{.intrinsics = {}, .platform_from_sensor = true_platform_from_sensor()};
+  std::mt19937 random(1);
+  std::vector<DepthFrame> frames;
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    turn.angles.push_back(2 * std::numbers::pi * static_cast<double>(stop) /
+                          static_cast<double>(stops));
+    const double offset = stop < offsets.size() ? offsets[stop] : 0;
+    frames.push_back(rendered_frame(object, turn.angles.back() + offset, random));
+  }
+  turn.read = [frames = std::move(frames)](std::size_t stop) { return frames[stop]; };
+  return turn;
+}
+
+/// How far a pose's axis is from the true one.
+struct AxisError {
+  double direction_deg = 0;
+  double position_mm = 0;  ///< 5 cm above the platform
+  double height_mm = 0;
+};
+
+inline AxisError axis_error(const Eigen::Isometry3d& platform_from_sensor) {
+  const Eigen::Isometry3d error = platform_from_sensor * true_platform_from_sensor().inverse();
+  const Eigen::Vector3d axis = error.linear() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d above = 0.05 * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d off = error * above - above;
+  return {.direction_deg = degrees_from_radians(std::atan2(axis.head<2>().norm(), axis.z())),
+          .position_mm = mm_from_metres(off.head<2>().norm()),
+          .height_mm = mm_from_metres(std::abs(off.z()))};
+}
+
+}  // namespace octurn

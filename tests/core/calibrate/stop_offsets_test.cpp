@@ -1,0 +1,92 @@
+#include "calibrate/stop_offsets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/calibrate/views_of.hpp"
+
+namespace octurn {
+namespace {
+
+TEST(StopOffsets, AreTheAnglesThatThePlatformStoodFurtherOn) {
+  std::vector<double> offsets(12, 0.0);
+  offsets[3] = radians_from_degrees(-0.7);
+  for (std::size_t stop = 7; stop < offsets.size(); ++stop) {
+    offsets[stop] = radians_from_degrees(1.8);
+  }
+  const TurnViews views = views_of(rendered_turn(figure(), 12, offsets));
+
+  const auto solved = solve_stop_offsets(views, true_platform_from_sensor(), 1);
+
+  ASSERT_TRUE(solved);
+  for (std::size_t stop = 0; stop < offsets.size(); ++stop) {
+    // 0.4 mm of noise over some hundred readings, 40 mm from the axis, is 0.05 degrees.
+    EXPECT_NEAR(degrees_from_radians(solved->offsets[stop]), degrees_from_radians(offsets[stop]),
+                0.15)
+        << stop;
+  }
+}
+
+TEST(StopOffsets, AreUnknownOfAnObjectThatLooksTheSameFromAllSides) {
+  const TurnViews views = views_of(rendered_turn(ball({0, 0, 0.06}, 0.055), 12));
+  EXPECT_FALSE(solve_stop_offsets(views, true_platform_from_sensor(), 1));
+}
+
+/// Offsets with a standard deviation of 0.1 degrees, as if solved.
+StopOffsets noisy_offsets(std::size_t stops) {
+  std::mt19937 random(3);
+  StopOffsets solved;
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    const double unit = static_cast<double>(random()) / 4294967295.0 - 0.5;
+    solved.offsets.push_back(stop == 0 ? 0 : radians_from_degrees(0.35 * unit));
+  }
+  const double sigma = radians_from_degrees(0.1);
+  const auto size = static_cast<Eigen::Index>(stops) - 1;
+  solved.covariance = Eigen::MatrixXd::Identity(size, size) * sigma * sigma;
+  return solved;
+}
+
+std::vector<double> even_angles(std::size_t stops) {
+  std::vector<double> angles;
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    angles.push_back(2 * std::numbers::pi * static_cast<double>(stop) / static_cast<double>(stops));
+  }
+  return angles;
+}
+
+TEST(FindSlips, NamesTheStopOfAStepAndItsSize) {
+  StopOffsets solved = noisy_offsets(24);
+  for (std::size_t stop = 9; stop < 24; ++stop) {
+    solved.offsets[stop] += radians_from_degrees(-1.8);
+  }
+  const auto findings = find_slips(even_angles(24), solved);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].code, "slip");
+  EXPECT_EQ(findings[0].stop, 9);
+  ASSERT_TRUE(findings[0].angle);
+  EXPECT_NEAR(degrees_from_radians(*findings[0].angle), -1.8, 0.4);
+  EXPECT_NE(findings[0].detail.find("stop 9"), std::string::npos) << findings[0].detail;
+}
+
+TEST(FindSlips, SaysWhatATurnCameOutAs) {
+  StopOffsets solved = noisy_offsets(24);
+  const auto angles = even_angles(24);
+  for (std::size_t stop = 0; stop < 24; ++stop) {
+    solved.offsets[stop] = -0.25 * angles[stop];  // a gear of 3 to 4
+  }
+  const auto findings = find_slips(angles, solved);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].code, "turn-not-whole");
+  EXPECT_NE(findings[0].detail.find("270"), std::string::npos) << findings[0].detail;
+  EXPECT_NE(findings[0].hint.find("1.33"), std::string::npos) << findings[0].hint;
+}
+
+TEST(FindSlips, FindsNothingInNoise) {
+  EXPECT_TRUE(find_slips(even_angles(24), noisy_offsets(24)).empty());
+}
+
+}  // namespace
+}  // namespace octurn

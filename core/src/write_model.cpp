@@ -9,7 +9,7 @@ namespace octurn {
 
 void expect_facets(const SurfaceCount& count) {
   if (count.facets == 0) {
-    throw Error("model-empty", "no surface in the clip box: there is nothing to write",
+    throw Error(ErrorCode::model_empty, "no surface in the clip box: there is nothing to write",
                 "Check that the object stands on the platform, and the clip box and calibration.");
   }
 }

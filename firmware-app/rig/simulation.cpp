@@ -14,7 +14,7 @@ constexpr double max_noise = 100;
 constexpr double max_speed = 1000;
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw Error("bad-simulation", "simulator: " + what,
+  throw Error(ErrorCode::bad_simulation, "simulator: " + what,
               "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&speed=X"
               "&silent-after=N&lost-after=N].");
 }
@@ -113,7 +113,7 @@ std::string simulation_uri(const Simulation& simulation) {
   }
   std::string uri = std::string(simulator_scheme) + encoded(simulation.mesh_file) + query;
   if (uri.size() > longest_uri) {
-    throw Error("bad-simulation",
+    throw Error(ErrorCode::bad_simulation,
                 "simulator: the path of the mesh is too long: " + simulation.mesh_file,
                 "Copy the mesh to a folder with a shorter path, at most about 180 letters.");
   }

@@ -23,7 +23,7 @@ Config defaults() {
 }
 
 Config config_from(const json& object) {
-  JsonObject keys(object, "bad-config", "");
+  JsonObject keys(object, ErrorCode::bad_config, "");
   Config config = defaults();
   read_fields(keys, fields(config));
   keys.refuse_unread();
@@ -90,13 +90,13 @@ Config read_config(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) {
-    throw Error("bad-config", file.string() + ": cannot be read",
+    throw Error(ErrorCode::bad_config, file.string() + ": cannot be read",
                 "Check that it exists and that this program may read it.");
   }
   try {
-    return config_from(parse_json(text, "bad-config", "it"));
+    return config_from(parse_json(text, ErrorCode::bad_config, "it"));
   } catch (const Error& error) {
-    throw Error("bad-config", file.string() + ": " + error.what(), error.hint());
+    throw Error(ErrorCode::bad_config, file.string() + ": " + error.what(), error.hint());
   }
 }
 

@@ -9,25 +9,25 @@ namespace octurn {
 namespace {
 
 struct DeviceCode {
-  std::string_view code;
+  ErrorCode code;
   Device device;
   bool is_absence = false;
 };
 
 constexpr std::array<DeviceCode, 10> device_codes{{
-    {"sensor-missing", Device::sensor, true},
-    {"sensor-failed", Device::sensor},
-    {"sensor-silent", Device::sensor},
-    {"sensor-lost", Device::sensor},
-    {"sensor-blind", Device::sensor},
-    {"sensor-other", Device::sensor},
-    {"recording-malformed", Device::sensor},
-    {"turntable-missing", Device::turntable, true},
-    {"turntable-failed", Device::turntable},
-    {"turntable-lost", Device::turntable},
+    {ErrorCode::sensor_missing, Device::sensor, true},
+    {ErrorCode::sensor_failed, Device::sensor},
+    {ErrorCode::sensor_silent, Device::sensor},
+    {ErrorCode::sensor_lost, Device::sensor},
+    {ErrorCode::sensor_blind, Device::sensor},
+    {ErrorCode::sensor_other, Device::sensor},
+    {ErrorCode::recording_malformed, Device::sensor},
+    {ErrorCode::turntable_missing, Device::turntable, true},
+    {ErrorCode::turntable_failed, Device::turntable},
+    {ErrorCode::turntable_lost, Device::turntable},
 }};
 
-DeviceCode find(std::string_view code) {
+DeviceCode find(ErrorCode code) {
   const auto* found = std::ranges::find(device_codes, code, &DeviceCode::code);
   return found == device_codes.end() ? DeviceCode{code, Device::none} : *found;
 }
@@ -49,9 +49,9 @@ Failure current_failure() {
   } catch (const Error& error) {
     return failure_of(error);
   } catch (const std::exception& error) {
-    return {.code = "internal", .detail = error.what(), .hint = hint};
+    return {.code = ErrorCode::internal, .detail = error.what(), .hint = hint};
   } catch (...) {
-    return {.code = "internal", .detail = "an unknown exception", .hint = hint};
+    return {.code = ErrorCode::internal, .detail = "an unknown exception", .hint = hint};
   }
 }
 

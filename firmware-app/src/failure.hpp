@@ -11,7 +11,7 @@ enum class Device { none, sensor, turntable };
 
 /// Why something did not work, as the API tells it.
 struct Failure {
-  std::string code = {};
+  ErrorCode code = ErrorCode::internal;
   std::string detail = {};
   std::string hint = {};
 

@@ -19,7 +19,8 @@ sigset_t ending_signals() {
 }  // namespace
 
 void throw_stopped(const std::string& outcome) {
-  throw Error("stopped", "stopped before the end" + (outcome.empty() ? "" : ": " + outcome));
+  throw Error(ErrorCode::stopped,
+              "stopped before the end" + (outcome.empty() ? "" : ": " + outcome));
 }
 
 void block_signals() {

@@ -13,7 +13,7 @@ void write_standard_output(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
     if (written < 0 && errno != EINTR) {
-      throw Error("write-failed",
+      throw Error(ErrorCode::write_failed,
                   "standard output: cannot write: " + std::generic_category().message(errno));
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written < 0 ? 0 : written));

@@ -109,14 +109,14 @@ TEST(SensorLook, SaysWhyThereIsNoSensor) {
   Rig rig({.sensor_uri = "kinect://7"});
   const SensorLook look = look_at_sensor(rig, {});
   ASSERT_TRUE(std::holds_alternative<Failure>(look));
-  EXPECT_EQ(std::get<Failure>(look).code, "sensor-missing");
+  EXPECT_EQ(std::get<Failure>(look).code, ErrorCode::sensor_missing);
 }
 
 TEST(SensorLook, IsBusyIfItIsStopped) {
   Rig rig({.sensor_uri = fast_sensor});
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_EQ(std::get<Failure>(look_at_sensor(rig, stop.get_token())).code, "busy");
+  EXPECT_EQ(std::get<Failure>(look_at_sensor(rig, stop.get_token())).code, ErrorCode::busy);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {
         R"({"host_names": [1]})", R"({"data": false})", R"({"data": ""})", R"({"threads": 0})",
         R"({"memory_limit_mb": 0})", R"({"ports": 80})"}) {
     const Error error = error_thrown_by([&] { config_of(text); });
-    EXPECT_EQ(error.code(), "bad-config") << text;
+    EXPECT_EQ(error.code(), ErrorCode::bad_config) << text;
     const std::string key(text + 1, std::string(text).find(':') - 1);
     EXPECT_NE(std::string(error.what()).find("octurn.json: " + key), std::string::npos)
         << error.what();

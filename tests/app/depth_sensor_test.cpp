@@ -30,7 +30,7 @@ TEST(DepthSensor, FindsNoSimulatedSensorUnlessAskedForIt) {
     const auto any = open_sensor("");
     EXPECT_EQ(any->name().find("simulated"), std::string::npos);
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), "sensor-missing");
+    EXPECT_EQ(error.code(), ErrorCode::sensor_missing);
     EXPECT_FALSE(error.hint().empty());
   }
 }
@@ -97,7 +97,7 @@ TEST(DepthSensor, SaysThatItIsSilent) {
     }
   });
 
-  EXPECT_EQ(error.code(), "sensor-silent");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_silent);
   EXPECT_STREQ(error.what(), "sensor: no frame for 2000 ms");
   EXPECT_GE(steady_clock::now() - begin,
             milliseconds(1900));  // from a clock that ticks 30 a second
@@ -125,7 +125,7 @@ TEST(DepthSensor, SaysThatItIsLostAndCanBeOpenedAgain) {
       while (sensor->read({})) {
       }
     });
-    EXPECT_EQ(error.code(), "sensor-lost");
+    EXPECT_EQ(error.code(), ErrorCode::sensor_lost);
     EXPECT_FALSE(error.hint().empty());
   }
   const auto again = open_sensor(uri);
@@ -135,7 +135,7 @@ TEST(DepthSensor, SaysThatItIsLostAndCanBeOpenedAgain) {
 TEST(DepthSensor, RefusesAnUnknownDevice) {
   const Error error = error_thrown_by([] { open_sensor("no-such-device://1"); });
 
-  EXPECT_EQ(error.code(), "sensor-missing");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_missing);
   EXPECT_NE(std::string(error.what()).find("no-such-device://1"), std::string::npos);
 }
 
@@ -151,7 +151,7 @@ TEST(DepthSensor, RefusesAPathThatCannotBeLookedAt) {
 TEST(DepthSensor, RefusesASettingThatTheSimulatorHasNot) {
   const Error error = error_thrown_by([] { open_sensor("octurn-simulator://?noize=2"); });
 
-  EXPECT_EQ(error.code(), "sensor-failed");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_failed);
   EXPECT_STREQ(error.what(), "sensor: simulator: unknown key \"noize\"");
 }
 
@@ -162,7 +162,7 @@ TEST(DepthSensor, RefusesABadMeshByItsName) {
 
   const Error error = error_thrown_by([&] { open_sensor("octurn-simulator://" + mesh); });
 
-  EXPECT_EQ(error.code(), "sensor-failed");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_failed);
   EXPECT_NE(std::string(error.what()).find(mesh), std::string::npos) << error.what();
   EXPECT_FALSE(error.hint().empty());
 }

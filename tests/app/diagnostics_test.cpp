@@ -94,7 +94,7 @@ TEST(Diagnostics, TellsDevicesScansAndLogOfADaemon) {
                                  .name = "Kinect v1",
                                  .failure = {.detail = "no frame for 2 s"}}};
   Job failed = job_of("20261121-081500-3f2a", "");
-  failed.failure = Failure{.code = "sensor-silent", .detail = "no frame for 2 s"};
+  failed.failure = Failure{.code = ErrorCode::sensor_silent, .detail = "no frame for 2 s"};
   const std::vector<Job> scans{failed};
   const std::vector<ArchivedFile> files = diagnostics_of_daemon(status, scans, "said\n");
   EXPECT_EQ(names_of(files), (std::vector<std::string>{"devices.json", "scans.json", "log.txt"}));

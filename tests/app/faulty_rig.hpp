@@ -43,7 +43,7 @@ class FaultyRig {
             .open_sensor =
                 [this](const std::string&) {
                   if (fails(Fault::unplugged)) {
-                    throw Error("sensor-missing", "none is plugged in", "Plug it in.");
+                    throw Error(ErrorCode::sensor_missing, "none is plugged in", "Plug it in.");
                   }
                   return std::make_unique<Sensor>(*this);
                 },
@@ -124,10 +124,10 @@ class FaultyRig {
 
   DepthFrame look() {
     if (fails(Fault::silent)) {
-      throw Error("sensor-silent", "no frame came", "Plug it in again.");
+      throw Error(ErrorCode::sensor_silent, "no frame came", "Plug it in again.");
     }
     if (fails(Fault::unplugged)) {
-      throw Error("sensor-lost", "it is gone", "Plug it in again.");
+      throw Error(ErrorCode::sensor_lost, "it is gone", "Plug it in again.");
     }
     const std::vector<std::int64_t> at = stop_positions(0, steps, stops_);
     const auto stop = std::ranges::find(at, position_ % steps) - at.begin();
@@ -144,13 +144,13 @@ class FaultyRig {
 
   Stepper::SetLine opened_lines() {
     if (fails(Fault::line_refused)) {
-      throw Error("turntable-failed", "line GPIO17 is used by another program", "End it.");
+      throw Error(ErrorCode::turntable_failed, "line GPIO17 is used by another program", "End it.");
     }
     // The motor's own pull-up switches it off when the lines are let go.
     auto lines = std::shared_ptr<void>(nullptr, [this](void*) { motor_on_ = false; });
     return [this, lines, forward = true](Stepper::Line line, bool high) mutable {
       if (fails(Fault::line_refused)) {
-        throw Error("turntable-failed", "line GPIO17 cannot be set", "Look at its wire.");
+        throw Error(ErrorCode::turntable_failed, "line GPIO17 cannot be set", "Look at its wire.");
       }
       if (line == Stepper::Line::enable) {
         motor_on_ = !high;

@@ -45,7 +45,7 @@ std::vector<Field> fields(Kinds& kinds) {
 }
 
 void read(Kinds& kinds, const json& given) {
-  JsonObject keys(given, "bad-text", "");
+  JsonObject keys(given, ErrorCode::bad_settings, "");
   read_fields(keys, fields(kinds));
   keys.refuse_unread();
 }

@@ -184,7 +184,7 @@ TEST(HttpServer, SaysThatThePortIsTaken) {
   const HttpServer first({.address = "127.0.0.1", .port = 0}, echo);
   const Error error =
       error_thrown_by([&] { HttpServer({.address = "127.0.0.1", .port = first.port()}, echo); });
-  EXPECT_EQ(error.code(), "listen-failed");
+  EXPECT_EQ(error.code(), ErrorCode::listen_failed);
   EXPECT_NE(std::string(error.what()).find(std::to_string(first.port())), std::string::npos);
   EXPECT_NE(error.hint().find("--port"), std::string::npos);
 }

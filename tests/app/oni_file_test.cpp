@@ -129,7 +129,7 @@ TEST(OniFile, ThatIsNoneIsRefused) {
   const std::filesystem::path file = folder.path() / "turn.oni";
   put(file, "no recording");
   const Error error = error_thrown_by([&] { open_sensor(file.string()); });
-  EXPECT_EQ(error.code(), "sensor-missing");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_missing);
   EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
 }
 

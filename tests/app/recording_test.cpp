@@ -112,7 +112,7 @@ TEST(Recording, NamesWhatIsWrong) {
     ASSERT_NE(at, std::string::npos) << fault.from;
     wrong.replace(at, fault.from.size(), fault.to);
     const Error error = error_thrown_by([&] { parse_recording(wrong); });
-    EXPECT_EQ(error.code(), "recording-malformed");
+    EXPECT_EQ(error.code(), ErrorCode::recording_malformed);
     EXPECT_NE(std::string(error.what()).find(fault.named), std::string::npos) << error.what();
   }
 }
@@ -143,14 +143,14 @@ TEST(RecordedSensor, SaysWhichAngleItHasNot) {
   const auto sensor = open_sensor(write_recording(folder.path() / "turn").string());
   sensor->show_angle(radians_from_degrees(90));
   const Error error = error_thrown_by([&] { sensor->read({}); });
-  EXPECT_EQ(error.code(), "sensor-failed");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_failed);
   EXPECT_NE(std::string(error.what()).find("90.0"), std::string::npos) << error.what();
 }
 
 TEST(RecordedSensor, RefusesAFolderThatIsNoRecording) {
   const TemporaryFolder folder;
   const Error error = error_thrown_by([&] { open_sensor(folder.path().string()); });
-  EXPECT_EQ(error.code(), "recording-malformed");
+  EXPECT_EQ(error.code(), ErrorCode::recording_malformed);
   EXPECT_FALSE(error.hint().empty());
 }
 

@@ -139,7 +139,7 @@ TEST(RunScan, FailsWhenTheSensorFallsSilentAndKeepsWhatWasStored) {
   Rig rig(rig_of("octurn-simulator://?speed=20&silent-after=60"));
   const Error error =
       error_thrown_by([&] { run_scan(few_snapshots(200), {}, folder.path(), rig, {}, {}); });
-  EXPECT_EQ(error.code(), "sensor-silent");
+  EXPECT_EQ(error.code(), ErrorCode::sensor_silent);
   EXPECT_FALSE(error.hint().empty());
   const Scan scan = read_scan(folder.path());
   EXPECT_GE(scan.shots.size(), 1U);
@@ -201,7 +201,7 @@ TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
     settings.method = Method::intersection;  // whose model is the larger one
     const Error error =
         error_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); });
-    EXPECT_EQ(error.code(), "disk-full") << bytes;
+    EXPECT_EQ(error.code(), ErrorCode::disk_full) << bytes;
     EXPECT_EQ(fs::exists(folder.path() / "Scan.stl"), false);
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder.path())) {
       EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();

@@ -9,7 +9,7 @@ const std::vector<std::string> ours{"scanner.example"};
 
 std::string code(const Request& request) {
   const auto refused = refusal(request, ours);
-  return refused ? refused->code : "";
+  return refused ? std::string(to_string(refused->code)) : "";
 }
 
 Request get(const char* host) { return {.headers = {{"Host", host}}}; }

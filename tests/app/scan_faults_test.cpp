@@ -79,7 +79,7 @@ TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
     scanner.start(settings());
     const Job paused = ended(scanner);
     ASSERT_EQ(paused.state, JobState::paused);
-    EXPECT_EQ(paused.failure->code, fault.code);
+    EXPECT_EQ(to_string(paused.failure->code), fault.code);
     EXPECT_NE(paused.failure->hint.find("resume"), std::string::npos) << paused.failure->hint;
     EXPECT_EQ(paused.snapshots_done, stop);
     EXPECT_EQ(stored_snapshots(store, paused), stop);
@@ -164,7 +164,7 @@ TEST_F(PausedScan, GoesOnWithItsOwnSensorOnly) {
   ASSERT_TRUE(scanner_.resume(job.id));
   const Job other = ended(scanner_);
   EXPECT_EQ(other.state, JobState::paused);
-  EXPECT_EQ(other.failure->code, "sensor-other");
+  EXPECT_EQ(other.failure->code, ErrorCode::sensor_other);
   rig_.set_lens({});
   ASSERT_TRUE(scanner_.resume(job.id));
   EXPECT_EQ(ended(scanner_).state, JobState::finished);
@@ -220,7 +220,7 @@ TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
     status = patient.status();
   }
   EXPECT_EQ(status.job->state, JobState::running);
-  EXPECT_EQ(status.job->failure->code, "sensor-silent");
+  EXPECT_EQ(status.job->failure->code, ErrorCode::sensor_silent);
   EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits for the next attempt
   EXPECT_EQ(ended(patient).state, JobState::cancelled);
   EXPECT_FALSE(rig.is_motor_on());

@@ -73,7 +73,7 @@ TEST(ScanSettings, RefuseWhatIsOutOfRangeAndNameIt) {
   for (const char* const text : wrong) {
     const Error error = error_thrown_by([&] { parsed(text); });
     const std::string key = json::parse(text).begin().key();
-    EXPECT_EQ(error.code(), "bad-settings") << text;
+    EXPECT_EQ(error.code(), ErrorCode::bad_settings) << text;
     EXPECT_NE(std::string(error.what()).find("\"" + key + "\""), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("must be"), std::string::npos) << error.what();
   }
@@ -89,7 +89,7 @@ TEST(ScanSettings, RefuseAClipBoxThinnerThanALeaf) {
        {R"({"clip_mm": [0, 0, 0, 1e-7, 1e-7, 1e-7]})", R"({"clip_mm": [0, 0, 0, 100, 0.999, 100]})",
         R"({"leaf_size_mm": 300})"}) {
     const Error error = error_thrown_by([&] { parsed(text); });
-    EXPECT_EQ(error.code(), "bad-settings");
+    EXPECT_EQ(error.code(), ErrorCode::bad_settings);
     EXPECT_NE(std::string(error.what()).find("\"clip_mm\""), std::string::npos) << error.what();
   }
   // As thick as a leaf, however it is rounded.
@@ -97,7 +97,7 @@ TEST(ScanSettings, RefuseAClipBoxThinnerThanALeaf) {
 }
 
 ScanSettings stored(const json& settings) {
-  return stored_settings_from(JsonValue(settings, "settings", "job-malformed"));
+  return stored_settings_from(JsonValue(settings, "settings", ErrorCode::job_malformed));
 }
 
 TEST(ScanSettings, AreReadFromAJobOfVersion01AsThatWroteThem) {

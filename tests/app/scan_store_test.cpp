@@ -134,7 +134,7 @@ TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots)
   ASSERT_TRUE(job);
   EXPECT_EQ(job->state, JobState::interrupted);
   EXPECT_EQ(job->snapshots_done, 2);
-  EXPECT_EQ(job->failure->code, "interrupted");
+  EXPECT_EQ(job->failure->code, ErrorCode::interrupted);
   EXPECT_TRUE(fs::exists(store.folder(id) / "snapshots" / "001.png"));
   EXPECT_FALSE(fs::exists(store.folder(id) / ".Scan.stl.abcdef"));
   EXPECT_FALSE(fs::exists(store.folder(id) / "snapshots" / ".002.png.abcdef"));
@@ -152,7 +152,7 @@ TEST(ScanStore, ListsAScanWhoseRecordIsDamagedAsFailed) {
     ASSERT_EQ(jobs.size(), 1U);
     EXPECT_EQ(jobs[0].id, job.id);
     EXPECT_EQ(jobs[0].state, JobState::failed);
-    EXPECT_EQ(jobs[0].failure->code, "job-malformed");
+    EXPECT_EQ(jobs[0].failure->code, ErrorCode::job_malformed);
   }
 }
 
@@ -160,7 +160,9 @@ TEST(ScanStore, ListsAScanWhoseRecordLacksAKeyAsFailed) {
   const TemporaryFolder folder;
   const Job job = ScanStore(folder.path()).create({});
   const fs::path file = folder.path() / "scans" / job.id / "job.json";
-  const auto code_of = [&] { return ScanStore(folder.path()).get(job.id).failure->code; };
+  const auto code_of = [&] {
+    return to_string(ScanStore(folder.path()).get(job.id).failure->code);
+  };
   for (const char* const key : {"id", "name", "state", "phase", "created", "snapshots_done",
                                 "seconds_elapsed", "settings"}) {
     nlohmann::json record = to_job_json(job);
@@ -256,7 +258,7 @@ TEST(ScanStore, ListsAScanWhoseRecordCannotBeReadAsFailedAndRemovesIt) {
     ASSERT_EQ(jobs.size(), 2U);
     EXPECT_EQ(jobs[0].id, bad);
     EXPECT_EQ(jobs[0].state, JobState::failed);
-    EXPECT_EQ(jobs[0].failure->code, "read-failed");
+    EXPECT_EQ(jobs[0].failure->code, ErrorCode::read_failed);
     EXPECT_EQ(jobs[1].id, good);
     EXPECT_EQ(jobs[1].state, JobState::interrupted);
     EXPECT_FALSE(store.newest_finished());
@@ -310,7 +312,7 @@ TEST(ScanStore, RecoversAndSavesTextThatIsNoUtf8) {
   Job job = store.list().at(0);
   EXPECT_EQ(job.state, JobState::interrupted);
   job.state = JobState::failed;
-  job.failure = Failure{.code = "sensor-failed", .detail = "no such sensor: rec\xff\xc3"};
+  job.failure = Failure{.code = ErrorCode::sensor_failed, .detail = "no such sensor: rec\xff\xc3"};
   store.save(job);
   EXPECT_EQ(store.find(job.id)->state, JobState::failed);
   EXPECT_TRUE(store.find(job.id)->failure->detail.starts_with("no such sensor: rec"));
@@ -324,7 +326,7 @@ TEST(ScanStore, ReadsADataFolderOfVersion01) {
   const Job paused = store.get("20261122-220500-0a1b");
   EXPECT_EQ(paused.state, JobState::paused);
   EXPECT_EQ(paused.snapshots_done, 2);
-  EXPECT_EQ(paused.failure->code, "sensor-missing");
+  EXPECT_EQ(paused.failure->code, ErrorCode::sensor_missing);
   const Job finished = store.get("20261122-215909-48de");
   EXPECT_EQ(finished.state, JobState::finished);
   EXPECT_EQ(finished.name, "Hase, groß");
@@ -381,7 +383,7 @@ TEST(ScanStore, TakesAScanAsInterruptedThatCouldNotBeSaved) {
   const Job job = store.create({});
   const Job interrupted = store.interrupt(job.id);
   EXPECT_EQ(interrupted.state, JobState::interrupted);
-  EXPECT_EQ(store.find(job.id)->failure->code, "interrupted");
+  EXPECT_EQ(store.find(job.id)->failure->code, ErrorCode::interrupted);
   EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa"); }), "no-such-scan");
 }
 
@@ -403,7 +405,7 @@ TEST(ScanStore, RefusesAScanThatMayNotFit) {
   ScanSettings settings;
   settings.snapshots = 2'000'000'000;  // more than any disk takes
   const Error error = error_thrown_by([&] { store.create(settings); });
-  EXPECT_EQ(error.code(), "disk-full");
+  EXPECT_EQ(error.code(), ErrorCode::disk_full);
   EXPECT_FALSE(error.hint().empty());
   EXPECT_TRUE(store.list().empty());
 }

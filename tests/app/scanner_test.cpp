@@ -255,7 +255,7 @@ TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
     return status.job->failure.has_value() || !status.busy();
   });
   EXPECT_TRUE(silent.busy());
-  EXPECT_EQ(silent.job->failure->code, "sensor-silent");
+  EXPECT_EQ(silent.job->failure->code, ErrorCode::sensor_silent);
   const Status status = scanner.wait_until_done(patience);
   EXPECT_EQ(status.job->state, JobState::finished);
   EXPECT_FALSE(status.job->failure);
@@ -271,7 +271,7 @@ TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
   EXPECT_EQ(code_thrown_by([&] { scanner.expect_ready(); }), "sensor-missing");
   const Job job = scan(scanner, few_snapshots());
   EXPECT_EQ(job.state, JobState::paused);
-  EXPECT_EQ(job.failure->code, "sensor-missing");
+  EXPECT_EQ(job.failure->code, ErrorCode::sensor_missing);
 }
 
 /// What a device's driver throws that is no Error.
@@ -293,7 +293,7 @@ TEST_F(ScannerTest, TakesWhateverASensorThrowsAsItsFailure) {
     Scanner scanner(options, {}, store_);
     const Status status = wait_until(
         scanner, [](const Status& s) { return s.sensor.state == DeviceStatus::State::failed; });
-    EXPECT_EQ(status.sensor.failure.code, "internal");
+    EXPECT_EQ(status.sensor.failure.code, ErrorCode::internal);
     const Job job = scan(scanner, few_snapshots());
     EXPECT_EQ(job.state, JobState::failed);
     EXPECT_EQ(store_.find(job.id)->state, JobState::failed);
@@ -309,14 +309,14 @@ TEST_F(ScannerTest, TakesWhateverATurntableThrowsAsItsFailure) {
   Scanner scanner(options, {}, store_);
   const Status status = wait_until(
       scanner, [](const Status& s) { return s.turntable.state == DeviceStatus::State::failed; });
-  EXPECT_EQ(status.turntable.failure.code, "internal");
+  EXPECT_EQ(status.turntable.failure.code, ErrorCode::internal);
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::failed);
 }
 
 TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {
   RigOptions options = rig();
   options.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
-    throw Error("recording-malformed", "recording.json: is missing");
+    throw Error(ErrorCode::recording_malformed, "recording.json: is missing");
   };
   Scanner scanner(options, {}, store_);
   EXPECT_EQ(code_thrown_by([&] { scanner.camera_frame(); }), "recording-malformed");
@@ -363,7 +363,7 @@ TEST_F(ScannerTest, CallsAScanInterruptedThatItsOwnEndCutsShort) {
     wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
   }
   EXPECT_EQ(store_.find(id)->state, JobState::interrupted);
-  EXPECT_EQ(store_.find(id)->failure->code, "interrupted");
+  EXPECT_EQ(store_.find(id)->failure->code, ErrorCode::interrupted);
   EXPECT_GE(read_scan(store_.folder(id)).shots.size(), 1U);
 }
 

@@ -191,7 +191,7 @@ TEST(TiltCheck, KnowsWhichSideIsTheLower) {
 }
 
 TEST(SensorChecks, AreFaultAndUnknownWithoutASensor) {
-  const SensorLook silent = Failure{.code = "sensor-silent",
+  const SensorLook silent = Failure{.code = ErrorCode::sensor_silent,
                                     .detail = "sensor: no frame for 2000 ms",
                                     .hint = "Unplug the sensor."};
   const auto findings = check_sensor(silent, clip, nominal_platform_from_sensor());
@@ -204,7 +204,7 @@ TEST(SensorChecks, AreFaultAndUnknownWithoutASensor) {
 
 TEST(SensorChecks, AreNoFaultWhileTheSensorIsBusy) {
   const SensorLook busy =
-      Failure{.code = "busy", .detail = "a scan is running", .hint = "Check again later."};
+      Failure{.code = ErrorCode::busy, .detail = "a scan is running", .hint = "Check again later."};
   const auto findings = check_sensor(busy, clip, nominal_platform_from_sensor());
   EXPECT_EQ(std::ranges::count(findings, State::unknown, &Finding::state), 6);
   EXPECT_EQ(findings[0].measured, "a scan is running");

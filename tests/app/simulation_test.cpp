@@ -45,7 +45,7 @@ TEST(Simulation, ComesBackFromItsUri) {
 TEST(Simulation, RefusesWhatItDoesNotKnowByName) {
   const Error error = error_thrown_by([] { parse_simulation("octurn-simulator://?noize=1"); });
 
-  EXPECT_EQ(error.code(), "bad-simulation");
+  EXPECT_EQ(error.code(), ErrorCode::bad_simulation);
   EXPECT_STREQ(error.what(), "simulator: unknown key \"noize\"");
   EXPECT_NE(error.hint().find("silent-after"), std::string::npos);
 }
@@ -77,7 +77,7 @@ TEST(Simulation, RefusesAPathThatOpenNi2CannotTake) {
 
   const Simulation too_long = {.mesh_file = std::string(256 - 19, 'a')};
   const Error error = error_thrown_by([&] { simulation_uri(too_long); });
-  EXPECT_EQ(error.code(), "bad-simulation");
+  EXPECT_EQ(error.code(), ErrorCode::bad_simulation);
   EXPECT_FALSE(error.hint().empty());
 }
 

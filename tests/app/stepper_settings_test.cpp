@@ -92,7 +92,7 @@ TEST(StepperSettings, NameTheKeyThatIsWrong) {
     const Error error = error_thrown_by([&, key = key, value = value] {
       stepper_settings_from({{key, value}});
     });
-    EXPECT_EQ(error.code(), "bad-config");
+    EXPECT_EQ(error.code(), ErrorCode::bad_config);
     EXPECT_NE(std::string(error.what()).find(std::string("\"turntable.") + key + "\""),
               std::string::npos)
         << error.what();

@@ -220,7 +220,7 @@ TEST_F(StepperTest, TellsOfALineThatFailsAndGoesOnAfterwards) {
   bool broken = true;
   Stepper stepper(fast, [&](Stepper::Line line, bool high) {
     if (broken && recording_.pulses() == 5) {
-      throw Error("turntable-failed", "line GPIO17 cannot be set");
+      throw Error(ErrorCode::turntable_failed, "line GPIO17 cannot be set");
     }
     recording_.set(line, high);
   });

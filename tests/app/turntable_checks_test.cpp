@@ -18,7 +18,7 @@ TEST(GpioChipCheck, NamesTheChip) {
 }
 
 TEST(GpioChipCheck, SaysWhyThereIsNone) {
-  const HeaderLook none = Failure{.code = "turntable-missing",
+  const HeaderLook none = Failure{.code = ErrorCode::turntable_missing,
                                   .detail = "this machine has no GPIO header",
                                   .hint = "Use a Raspberry Pi."};
   const Finding chip = check_gpio_chip(none);

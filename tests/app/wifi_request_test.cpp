@@ -55,7 +55,7 @@ TEST(WifiRequest, RefusesAPasswordThatIsNoneAndDoesNotRepeatIt) {
            "s3cret\ns3cret", " s3cret s3cret", "s3cret s3cret ", "********", 12345678, nullptr}) {
     const Error error =
         error_thrown_by([&] { wifi_request_from(home_with("password", password)); });
-    EXPECT_EQ(error.code(), "bad-wifi") << password;
+    EXPECT_EQ(error.code(), ErrorCode::bad_wifi) << password;
     EXPECT_EQ((error.what() + error.hint()).find("s3c"), std::string::npos) << error.what();
     EXPECT_EQ((error.what() + error.hint()).find("12345678"), std::string::npos) << error.what();
     EXPECT_FALSE(error.hint().empty());

@@ -9,7 +9,7 @@
 namespace octurn {
 
 /// The Error that `action` throws, whose message has to be one line. Without one the test fails,
-/// and the Error returned has no code.
+/// and the Error returned is of an unknown kind.
 template <typename Action>
 Error error_thrown_by(const Action& action) {
   try {
@@ -19,12 +19,12 @@ Error error_thrown_by(const Action& action) {
     return error;
   }
   ADD_FAILURE() << "nothing was thrown";
-  return Error("", "nothing was thrown");
+  return Error(ErrorCode::unknown, "nothing was thrown");
 }
 
 template <typename Action>
 std::string code_thrown_by(const Action& action) {
-  return error_thrown_by(action).code();
+  return std::string(to_string(error_thrown_by(action).code()));
 }
 
 }  // namespace octurn

@@ -1,25 +1,106 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace octurn {
 
+/// Every kind of error that the library and the program report. Other programs know them by the
+/// words that `to_string` gives, "disk-full" for `disk_full`: a word never changes its meaning.
+enum class ErrorCode {
+  // Settings, requests and their bodies
+  bad_config,
+  bad_json,
+  bad_name,
+  bad_password,
+  bad_password_file,
+  bad_range,
+  bad_request,
+  bad_settings,
+  bad_simulation,
+  bad_wifi,
+  changed,
+  cut_short,
+  length_required,
+  not_found,
+  too_large,
+  too_many,
+  too_slow,
+  wrong_content_type,
+  wrong_host,
+  wrong_method,
+  wrong_origin,
+  // Scans and models
+  busy,
+  interrupted,
+  memory_limit,
+  model_empty,
+  model_too_large,
+  no_model,
+  no_preview,
+  no_such_scan,
+  not_paused,
+  not_running,
+  stopped,
+  // Files and disks
+  data_failed,
+  data_in_use,
+  disk_full,
+  job_malformed,
+  mesh_malformed,
+  no_space,
+  page_missing,
+  platform_malformed,
+  read_failed,
+  recording_malformed,
+  scan_empty,
+  scan_malformed,
+  scan_missing,
+  snapshot_malformed,
+  write_failed,
+  // Devices
+  sensor_blind,
+  sensor_failed,
+  sensor_lost,
+  sensor_missing,
+  sensor_other,
+  sensor_silent,
+  turntable_failed,
+  turntable_lost,
+  turntable_missing,
+  // The machine and the program
+  internal,
+  listen_failed,
+  no_descriptors,
+  not_an_appliance,
+  not_root,
+  update_failed,
+  unknown,  ///< of a file that a newer version has written
+};
+
+/// The word for programs, such as "scan-malformed".
+std::string_view to_string(ErrorCode code);
+
+/// The code of a word; nothing if there is none.
+std::optional<ErrorCode> to_error_code(std::string_view word);
+
 /// What went wrong outside this program: a file, a device, a disk, a setting.
 ///
-/// `what()` is one line with the values in it; `code()` is a stable word for programs, such as
-/// "scan-malformed" or "disk-full"; `hint()` says what a person can do about it, or is empty.
+/// `what()` is one line with the values in it; `hint()` says what a person can do about it, or is
+/// empty.
 class Error : public std::runtime_error {
  public:
-  explicit Error(std::string code, const std::string& message, std::string hint = {})
-      : std::runtime_error(message), code_(std::move(code)), hint_(std::move(hint)) {}
+  explicit Error(ErrorCode code, const std::string& message, std::string hint = {})
+      : std::runtime_error(message), code_(code), hint_(std::move(hint)) {}
 
-  const std::string& code() const { return code_; }
+  ErrorCode code() const { return code_; }
   const std::string& hint() const { return hint_; }
 
  private:
-  std::string code_;
+  ErrorCode code_;
   std::string hint_;
 };
 

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "octurn/error.hpp"
+
 namespace octurn {
 
 /// A value of a JSON document from outside, and where it stands. Every message names that place,
@@ -17,11 +19,11 @@ class JsonValue {
   /// @param value  has to outlive this
   /// @param name   of its place, "sensor.width" or "snapshots[1]"; empty for the whole document
   /// @param code   of the errors that this value throws, such as "bad-settings"
-  JsonValue(const nlohmann::json& value, std::string name, std::string code);
+  JsonValue(const nlohmann::json& value, std::string name, ErrorCode code);
 
   const nlohmann::json& json() const { return value_; }
   const std::string& name() const { return name_; }
-  const std::string& code() const { return code_; }
+  ErrorCode code() const { return code_; }
 
   /// The value. @throws Error  if it is of another kind or out of its range
   double number() const;
@@ -41,7 +43,7 @@ class JsonValue {
  private:
   const nlohmann::json& value_;
   std::string name_;
-  std::string code_;
+  ErrorCode code_;
 };
 
 /// A JSON object from outside: its keys are read one by one, and those that nobody has read can be
@@ -50,7 +52,7 @@ class JsonObject {
  public:
   /// @throws Error  if it is no object
   explicit JsonObject(JsonValue object);
-  JsonObject(const nlohmann::json& object, std::string code, std::string name);
+  JsonObject(const nlohmann::json& object, ErrorCode code, std::string name);
 
   /// The value of a key that must be there. @throws Error  if it is missing
   JsonValue at(std::string_view key);
@@ -92,6 +94,6 @@ inline constexpr std::size_t max_json_bytes = std::size_t{16} << 20U;
 ///
 /// @param what  the text's name in messages: "the body"
 /// @throws Error  of that code, if the text is not JSON, too deep or too large
-nlohmann::json parse_json(std::string_view text, const std::string& code, const std::string& what);
+nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what);
 
 }  // namespace octurn

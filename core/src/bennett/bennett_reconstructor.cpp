@@ -31,7 +31,7 @@ constexpr std::size_t least_octree_bytes = 1 * mebibyte;
 /// @returns the options, if each is in its range
 const ReconstructOptions& checked(const ReconstructOptions& options) {
   const int levels = checked_levels(options);
-  const auto refuse = [](const std::string& what) { throw Error("bad-settings", what); };
+  const auto refuse = [](const std::string& what) { throw Error(ErrorCode::bad_settings, what); };
   if (!std::isfinite(options.threshold) || options.threshold <= 0) {
     refuse("threshold: must be above 0");
   }
@@ -132,7 +132,7 @@ void BennettReconstructor::shrink_slab(Octree& octree, BrickLayers& slab) const 
         static_cast<std::size_t>(max_bricks * 2 * sizeof(Brick));  // and their nodes
     const auto threads = static_cast<std::size_t>(wanted_threads_);
     const std::size_t enough = program_bytes + threads * thread_bytes + (threads + 1) * layers;
-    throw Error("memory-limit", "memory limit: one layer of the octree does not fit",
+    throw Error(ErrorCode::memory_limit, "memory limit: one layer of the octree does not fit",
                 "Allow " + mb_text(enough) + ", or choose a larger leaf size.");
   }
   std::size_t kept = bricks.front();

@@ -21,7 +21,7 @@ constexpr std::size_t page_bytes = 4096;  // direct writes need memory aligned t
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int number) {
   const std::string reason = std::generic_category().message(number);
   const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  throw Error(full ? "disk-full" : "write-failed",
+  throw Error(full ? ErrorCode::disk_full : ErrorCode::write_failed,
               file.string() + ": cannot " + doing + ": " + reason,
               full ? "Delete scans that are no longer needed, or use a larger disk."
                    : "Check that the folder exists and that this program may write to it.");
@@ -61,7 +61,7 @@ AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
   std::error_code unknown;  // opening the file says why
   const std::filesystem::file_status status = std::filesystem::status(target_, unknown);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw Error("write-failed", target_.string() + ": cannot write: not a regular file",
+    throw Error(ErrorCode::write_failed, target_.string() + ": cannot write: not a regular file",
                 "Name a file that does not exist yet, or one that may be replaced.");
   }
   for (int attempt = 0; descriptor_ < 0; ++attempt) {

@@ -24,7 +24,7 @@ struct FreeContext {
 using Context = std::unique_ptr<spng_ctx, FreeContext>;
 
 [[noreturn]] void malformed(std::string_view name, const std::string& what) {
-  throw Error("snapshot-malformed", std::string(name) + ": " + what,
+  throw Error(ErrorCode::snapshot_malformed, std::string(name) + ": " + what,
               "The file is damaged, or not written by a scan.");
 }
 

@@ -62,8 +62,8 @@ std::string quoted(const std::string& name) { return name.empty() ? "it" : ascii
 
 }  // namespace
 
-JsonValue::JsonValue(const nlohmann::json& value, std::string name, std::string code)
-    : value_(value), name_(std::move(name)), code_(std::move(code)) {}
+JsonValue::JsonValue(const nlohmann::json& value, std::string name, ErrorCode code)
+    : value_(value), name_(std::move(name)), code_(code) {}
 
 double JsonValue::number() const {
   if (!value_.is_number()) {
@@ -129,8 +129,8 @@ JsonObject::JsonObject(JsonValue object) : object_(std::move(object)) {
   }
 }
 
-JsonObject::JsonObject(const nlohmann::json& object, std::string code, std::string name)
-    : JsonObject(JsonValue(object, std::move(name), std::move(code))) {}
+JsonObject::JsonObject(const nlohmann::json& object, ErrorCode code, std::string name)
+    : JsonObject(JsonValue(object, std::move(name), code)) {}
 
 JsonValue JsonObject::at(std::string_view key) {
   std::optional<JsonValue> found = value(key);
@@ -194,7 +194,7 @@ std::string JsonObject::name_of(std::string_view key) const {
   return object_.name().empty() ? std::string(key) : object_.name() + "." + std::string(key);
 }
 
-json parse_json(std::string_view text, const std::string& code, const std::string& what) {
+json parse_json(std::string_view text, ErrorCode code, const std::string& what) {
   if (text.size() > max_json_bytes) {
     throw Error(code, what + " has " + std::to_string(text.size()) + " bytes: must have at most " +
                           std::to_string(max_json_bytes));

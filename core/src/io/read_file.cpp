@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t block_bytes = std::size_t{1} << 16U;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw Error("read-failed", file.string() + ": cannot be read: " + reason,
+  throw Error(ErrorCode::read_failed, file.string() + ": cannot be read: " + reason,
               "Check that this program may read it, and that the disk is sound.");
 }
 

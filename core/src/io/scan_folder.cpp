@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr int max_side = 8192;  // pixels; larger images than any depth sensor's are refused
 constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
 
-constexpr const char* malformed = "scan-malformed";
+constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
@@ -108,7 +108,7 @@ Scan scan_from(const json& document) {
     scan.shots.push_back(shot_from(shot));
   }
   if (scan.shots.empty()) {
-    throw Error("scan-empty", "\"snapshots\" is empty: there is nothing to reconstruct");
+    throw Error(ErrorCode::scan_empty, "\"snapshots\" is empty: there is nothing to reconstruct");
   }
   return scan;
 }
@@ -116,7 +116,7 @@ Scan scan_from(const json& document) {
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw Error("scan-missing",
+    throw Error(ErrorCode::scan_missing,
                 file.string() + ": " + (error ? error.message() : "not a regular file"),
                 "Name a folder that holds a whole scan.");
   }

@@ -12,7 +12,8 @@ namespace octurn {
 
 std::array<std::byte, 84> stl_header(std::uint64_t facets) {
   if (facets > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error("model-too-large", std::to_string(facets) + " triangles: an STL holds 4294967295",
+    throw Error(ErrorCode::model_too_large,
+                std::to_string(facets) + " triangles: an STL holds 4294967295",
                 "Choose a larger leaf size.");
   }
   constexpr std::string_view title = "Octurn, millimetres";  // must not begin with "solid"

@@ -54,10 +54,10 @@ std::size_t fixed_overhead(const ReconstructOptions& options) {
 ReconstructOptions checked(ReconstructOptions options) {
   checked_levels(options);
   if (options.level) {
-    throw Error("bad-settings", "level: the method solid has none");
+    throw Error(ErrorCode::bad_settings, "level: the method solid has none");
   }
   if (!std::isfinite(options.target_error) || options.target_error < 0) {
-    throw Error("bad-settings", "max error: must be 0 or above");
+    throw Error(ErrorCode::bad_settings, "max error: must be 0 or above");
   }
   const auto min_bytes = [&] { return fixed_overhead(options) + min_volume_bytes; };
   while (options.memory_limit != 0 && options.threads > 1 && min_bytes() > options.memory_limit) {
@@ -91,7 +91,7 @@ VoxelGrid make_grid(const ReconstructOptions& options) {
 }
 
 [[noreturn]] void throw_memory_limit(const ReconstructOptions& options) {
-  throw Error("memory-limit",
+  throw Error(ErrorCode::memory_limit,
               "memory limit: " + mb_text(options.memory_limit) + " do not hold what was seen",
               "Allow " + mb_text(2 * options.memory_limit) + ", or choose a larger leaf size.");
 }

@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what) { throw Error("bad-settings", what); }
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::bad_settings, what); }
 
 std::string mm_text(double metres) {
   std::string text = std::to_string(mm_from_metres(metres));

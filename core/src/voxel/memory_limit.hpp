@@ -17,7 +17,7 @@ inline std::string mb_text(std::size_t bytes) {
 /// @throws Error "memory-limit"  if the limit is below what a method needs at least
 inline void check_memory_limit(std::size_t limit, std::size_t min) {
   if (limit != 0 && limit < min) {
-    throw Error("memory-limit", "memory limit: " + mb_text(limit) + " is too little",
+    throw Error(ErrorCode::memory_limit, "memory limit: " + mb_text(limit) + " is too little",
                 "Allow at least " + mb_text(min) + ".");
   }
 }

@@ -20,7 +20,7 @@ int index_in(std::string_view uri) {
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
   if (!number.empty() &&
       (error != std::errc() || end != number.data() + number.size() || index < 0)) {
-    throw Error("sensor-missing",
+    throw Error(ErrorCode::sensor_missing,
                 "kinect: \"" + std::string(number) + "\" is no number of a Kinect");
   }
   return index;

@@ -52,7 +52,7 @@ std::optional<Tilt> tilt_of(const freenect_raw_tilt_state& state) {
 Kinect::Context Kinect::make_context(int subdevices) {
   freenect_context* context = nullptr;
   if (freenect_init(&context, nullptr) < 0) {
-    throw Error("sensor-missing", "kinect: this machine's USB cannot be used");
+    throw Error(ErrorCode::sensor_missing, "kinect: this machine's USB cannot be used");
   }
   freenect_set_log_callback(context, pass_over);
   freenect_select_subdevices(context, static_cast<freenect_device_flags>(subdevices));
@@ -65,9 +65,9 @@ int Kinect::count() { return freenect_num_devices(make_context(FREENECT_DEVICE_C
 Kinect::Kinect(int index) {
   has_accelerometer_ = open(index, FREENECT_DEVICE_CAMERA | FREENECT_DEVICE_MOTOR);
   if (!has_accelerometer_ && !open(index, FREENECT_DEVICE_CAMERA)) {
-    throw Error("sensor-missing", freenect_num_devices(context_.get()) > index
-                                      ? "kinect: it is plugged in but cannot be opened"
-                                      : "kinect: none is plugged in");
+    throw Error(ErrorCode::sensor_missing, freenect_num_devices(context_.get()) > index
+                                               ? "kinect: it is plugged in but cannot be opened"
+                                               : "kinect: none is plugged in");
   }
   freenect_set_user(device_, this);
   freenect_set_depth_callback(device_, [](freenect_device* device, void* readings, std::uint32_t) {
@@ -99,7 +99,7 @@ void Kinect::read_parameters() {
                  .shift = registration.const_shift};
   freenect_destroy_registration(&registration);
   if (!is_sound(parameters_)) {
-    throw Error("sensor-failed", "kinect: its factory parameters make no sense");
+    throw Error(ErrorCode::sensor_failed, "kinect: its factory parameters make no sense");
   }
 }
 

@@ -21,7 +21,7 @@ constexpr std::uintmax_t max_bytes = 512U << 20U;
 constexpr float max_coordinate = 10.0F;  // metres; a larger object stands on no platform
 
 [[noreturn]] void malformed(const std::string& name, const std::string& what) {
-  throw Error("mesh-malformed", name + ": " + what,
+  throw Error(ErrorCode::mesh_malformed, name + ": " + what,
               "Give an STL file, binary or text, in millimetres, Z up.");
 }
 

@@ -71,7 +71,7 @@ bool is_being_installed(const UpdateState& update) {
 }
 
 [[noreturn]] void throw_no_space() {
-  throw Error("no-space", "there is no room for the update in the scanner's memory",
+  throw Error(ErrorCode::no_space, "there is no room for the update in the scanner's memory",
               "Switch the scanner off and on, and try again.");
 }
 
@@ -81,7 +81,7 @@ void in_memory(const Action& action) {
   try {
     action();
   } catch (const Error& error) {
-    if (error.code() == "disk-full") {
+    if (error.code() == ErrorCode::disk_full) {
       throw_no_space();
     }
     throw;
@@ -167,7 +167,7 @@ void Appliance::ask_for_wifi(const WifiRequest& wifi) {
 
 Appliance::Upload::Turn::Turn(std::atomic<bool>& is_taken) : is_taken_(is_taken) {
   if (is_taken.exchange(true)) {
-    throw Error("busy", "another update is being received", "Wait for its end.");
+    throw Error(ErrorCode::busy, "another update is being received", "Wait for its end.");
   }
 }
 
@@ -184,15 +184,16 @@ void Appliance::Upload::commit() {
 
 fs::path Appliance::place_for_update(std::uint64_t bytes) const {
   if (bytes > Upload::most_bytes) {
-    throw Error("too-large", "an update has at most 160 MiB, and this file has more",
+    throw Error(ErrorCode::too_large, "an update has at most 160 MiB, and this file has more",
                 "Choose the file octurn.update.");
   }
   const UpdateState last = answered_update();
   if (is_being_installed(last)) {
-    throw Error("busy", "another update is being installed", "Wait for its end.");
+    throw Error(ErrorCode::busy, "another update is being installed", "Wait for its end.");
   }
   if (last.state == "trial") {
-    throw Error("busy", "the last update is still on trial", "Try again in a few minutes.");
+    throw Error(ErrorCode::busy, "the last update is still on trial",
+                "Try again in a few minutes.");
   }
   std::error_code unknown;  // then writing tells
   if (const fs::space_info memory = fs::space(request(""), unknown);

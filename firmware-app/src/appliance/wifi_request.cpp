@@ -30,7 +30,7 @@ bool has_blanks_around(std::string_view text) {
 std::string name_in(JsonObject& keys) {
   const auto name = keys.text("name");
   if (!name || !is_wifi_name(*name)) {
-    throw Error("bad-wifi",
+    throw Error(ErrorCode::bad_wifi,
                 "\"name\" must be text of 1 to 32 bytes on one line, without blanks around it",
                 "It is the name of the WiFi as others see it.");
   }
@@ -49,16 +49,17 @@ std::optional<std::string> password_in(JsonObject& keys) {
                              password.size() <= longest_password &&
                              std::ranges::all_of(password, is_printable_ascii);
   if (!is_key && !is_passphrase) {
-    throw Error("bad-wifi",
+    throw Error(ErrorCode::bad_wifi,
                 "\"password\" must be text of 8 to 63 letters, digits and signs without accents",
                 "Look for typing errors; leave it out if the WiFi is open.");
   }
   if (has_blanks_around(password)) {
-    throw Error("bad-wifi", "\"password\" has a blank at its begin or its end",
+    throw Error(ErrorCode::bad_wifi, "\"password\" has a blank at its begin or its end",
                 "Octurn cannot keep it so: give the WiFi another password.");
   }
   if (password == known_password) {
-    throw Error("bad-wifi", "\"password\" is eight stars, which stand for one that is not shown",
+    throw Error(ErrorCode::bad_wifi,
+                "\"password\" is eight stars, which stand for one that is not shown",
                 "Write the password itself.");
   }
   return password;
@@ -67,7 +68,7 @@ std::optional<std::string> password_in(JsonObject& keys) {
 std::string country_in(JsonObject& keys) {
   std::string country = keys.text("country").value_or("");
   if (country.size() != 2 || !std::ranges::all_of(country, is_letter)) {
-    throw Error("bad-wifi", "\"country\" must be two letters, such as DE",
+    throw Error(ErrorCode::bad_wifi, "\"country\" must be two letters, such as DE",
                 "It tells which channels are allowed where the scanner is.");
   }
   const auto capital = [](char c) { return c >= 'a' ? static_cast<char>(c - 32) : c; };
@@ -83,7 +84,7 @@ bool is_wifi_name(std::string_view name) {
 }
 
 WifiRequest wifi_request_from(const json& body) {
-  JsonObject keys(body, "bad-wifi", "");
+  JsonObject keys(body, ErrorCode::bad_wifi, "");
   WifiRequest request{
       .name = name_in(keys), .password = password_in(keys), .country = country_in(keys)};
   keys.refuse_unread();

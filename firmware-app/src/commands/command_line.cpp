@@ -191,7 +191,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   } catch (const Error& error) {
-    return fail(error.what(), error.hint(), error.code() == "bad-settings" ? 2 : 1);
+    return fail(error.what(), error.hint(), error.code() == ErrorCode::bad_settings ? 2 : 1);
   } catch (const std::exception& error) {
     return fail(error.what(), "", 1);
   }

@@ -67,7 +67,7 @@ std::string table_text(const std::vector<Finding>& findings) {
 /// The sensor's own look, unless a daemon that works here has the sensor.
 SensorLook look_from_shell(const Patient& patient, const std::stop_token& stop) {
   if (patient.lines == LineOwner::this_program && patient.rig.stepper) {
-    return Failure{.code = "busy",
+    return Failure{.code = ErrorCode::busy,
                    .detail = "not looked at: the Octurn that is running here uses it",
                    .hint = "Open its page and choose Check the scanner."};
   }

@@ -76,7 +76,7 @@ void add_options(CLI::App& command, const std::vector<Field>& fields, json& give
 
 Config make_config(const ConfigArguments& arguments) {
   Config config = chosen_config(arguments.file);
-  JsonObject keys(arguments.given, "bad-settings", "");
+  JsonObject keys(arguments.given, ErrorCode::bad_settings, "");
   read_fields(keys, network_fields(config));
   read_fields(keys, data_fields(config));
   return config;
@@ -84,7 +84,8 @@ Config make_config(const ConfigArguments& arguments) {
 
 void expect_writable(const std::filesystem::path& output) {
   if (output.empty()) {
-    throw Error("bad-settings", "--output is empty: must be a file, or - for standard output");
+    throw Error(ErrorCode::bad_settings,
+                "--output is empty: must be a file, or - for standard output");
   }
   if (output != "-") {
     const AtomicFile probe(output);  // which its end removes
@@ -95,7 +96,7 @@ void expect_options_of_method(const json& given, const std::vector<Field>& field
                               std::string_view method) {
   for (const Field& field : fields) {
     if (!field.method.empty() && field.method != method && given.contains(field.key)) {
-      throw Error("bad-settings",
+      throw Error(ErrorCode::bad_settings,
                   option_name(field.key) + ": the method " + std::string(method) + " has none");
     }
   }

@@ -46,7 +46,7 @@ std::uint64_t peak_memory_bytes() {
 }
 
 ModelSettings settings_from(const nlohmann::json& given) {
-  JsonObject keys(given, "bad-settings", "");
+  JsonObject keys(given, ErrorCode::bad_settings, "");
   ModelSettings settings;
   read_fields(keys, fields(settings));
   expect_options_of_method(given, fields(settings), name_of(settings.scan.method));

@@ -56,7 +56,7 @@ void read_parts(const std::filesystem::path& file, const Sink& sink) {
     sink(std::as_bytes(std::span(buffer.data(), static_cast<std::size_t>(source.gcount()))));
   }
   if (source.bad()) {
-    throw Error("read-failed", file.string() + ": cannot be read");
+    throw Error(ErrorCode::read_failed, file.string() + ": cannot be read");
   }
 }
 

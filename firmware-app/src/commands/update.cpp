@@ -14,11 +14,12 @@ namespace octurn {
 void install_update(const std::filesystem::path& file) {
   constexpr const char* program = "/usr/lib/octurn/update";  // of the image
   if (::access(program, F_OK) != 0) {
-    throw Error("not-an-appliance", "updates are for the appliance's image, and this is none",
+    throw Error(ErrorCode::not_an_appliance,
+                "updates are for the appliance's image, and this is none",
                 "A newer package updates this machine: apt install ./octurn_*.deb");
   }
   if (::geteuid() != 0) {
-    throw Error("not-root", "only root may install an update",
+    throw Error(ErrorCode::not_root, "only root may install an update",
                 "Use the page, which asks root for it.");
   }
   std::string name = program;
@@ -26,7 +27,7 @@ void install_update(const std::filesystem::path& file) {
   std::array<char*, 3> words{name.data(), argument.data(), nullptr};
   unblock_signals();
   ::execv(program, words.data());
-  throw Error("update-failed",
+  throw Error(ErrorCode::update_failed,
               std::string(program) + ": " + std::generic_category().message(errno));
 }
 

@@ -63,7 +63,7 @@ std::vector<Finding> examine(Patient patient, Scanner& scanner) {
   if (scanner.status().turntable.state == DeviceStatus::State::ready) {
     patient.lines = LineOwner::this_program;
   }
-  SensorLook look = Failure{.code = "busy",
+  SensorLook look = Failure{.code = ErrorCode::busy,
                             .detail = "not looked at: a scan is running",
                             .hint = "Check again when the scan has ended."};
   scanner.check_devices(

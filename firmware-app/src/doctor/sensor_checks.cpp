@@ -247,7 +247,7 @@ Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& pla
 std::vector<Finding> check_sensor(const SensorLook& look, const Box& clip,
                                   const Eigen::Isometry3d& platform_from_sensor) {
   if (const auto* failure = std::get_if<Failure>(&look)) {
-    const bool busy = failure->code == "busy";
+    const bool busy = failure->code == ErrorCode::busy;
     std::vector<Finding> findings{busy ? sensor.unknown(failure->detail, failure->hint)
                                        : sensor.fault(failure->detail, failure->hint)};
     for (const Check& check : {frame_rate, lost_frames, platform, depth_noise, tilt_check}) {

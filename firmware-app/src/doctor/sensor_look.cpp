@@ -41,7 +41,7 @@ SensorLook look_at_sensor(Rig& rig, const std::stop_token& stop) {
     if (auto seen = sample(rig.sensor(), stop)) {
       return *std::move(seen);
     }
-    return Failure{.code = "busy",
+    return Failure{.code = ErrorCode::busy,
                    .detail = "not looked at: something else began to use the sensor",
                    .hint = "Check again later."};
   } catch (const Error& error) {

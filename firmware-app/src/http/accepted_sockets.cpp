@@ -70,7 +70,7 @@ std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
 std::vector<AcceptedSocket> accepted_sockets(int local_port) {
   const std::unique_ptr<DIR, Closer> folder(::opendir("/proc/self/fd"));
   if (!folder) {
-    throw Error("no-descriptors", "/proc/self/fd cannot be read", "Is /proc mounted?");
+    throw Error(ErrorCode::no_descriptors, "/proc/self/fd cannot be read", "Is /proc mounted?");
   }
   std::vector<AcceptedSocket> sockets;
   while (const dirent* const entry = ::readdir(folder.get())) {

@@ -66,7 +66,8 @@ class Place {
   /// @throws Error "too-many"  if all are taken
   explicit Place(std::counting_semaphore<>& places) : places_(places) {
     if (!places_.try_acquire()) {
-      throw Error("too-many", "others are waiting for the devices already", "Try again soon.");
+      throw Error(ErrorCode::too_many, "others are waiting for the devices already",
+                  "Try again soon.");
     }
   }
   ~Place() { places_.release(); }
@@ -98,7 +99,8 @@ Response Api::answer(const Request& request) {
     return problem(failure_of(error));
   } catch (const std::exception& error) {
     log::error("http", request.method + " " + request.path + ": " + error.what());
-    return problem({.code = "internal", .detail = error.what(), .hint = "Please report this."});
+    return problem(
+        {.code = ErrorCode::internal, .detail = error.what(), .hint = "Please report this."});
   }
 }
 
@@ -140,9 +142,10 @@ Response Api::dispatch(const Request& request) {
     return app_.page.file(request);
   }
   if (allowed.empty()) {
-    throw Error("not-found", "there is no " + request.path, "web/API.md lists what there is.");
+    throw Error(ErrorCode::not_found, "there is no " + request.path,
+                "web/API.md lists what there is.");
   }
-  Response response = problem({.code = "wrong-method",
+  Response response = problem({.code = ErrorCode::wrong_method,
                                .detail = request.method + " is not for " + request.path,
                                .hint = "It takes " + allowed + "."});
   response.headers.emplace_back("Allow", allowed);

@@ -119,7 +119,7 @@ std::string Exchange::read_body() {
   const long long announced = mg_get_request_info(&connection_)->content_length;
   const auto expect_small = [](std::uint64_t bytes) {
     if (bytes > max_body) {
-      throw Error("too-large", "a body is at most " + std::to_string(max_body) + " bytes",
+      throw Error(ErrorCode::too_large, "a body is at most " + std::to_string(max_body) + " bytes",
                   "Send the settings only.");
     }
   };
@@ -133,14 +133,16 @@ std::string Exchange::read_body() {
     expect_small(body.size());
   }
   if (guard_.is_cut(key_)) {
-    throw Error("too-slow", std::to_string(body.size()) + " bytes of the body came in time",
+    throw Error(ErrorCode::too_slow,
+                std::to_string(body.size()) + " bytes of the body came in time",
                 "Send the request again.");
   }
   if (got < 0) {
-    throw Error("bad-request", "the body is cut off, or malformed", "Send the request again.");
+    throw Error(ErrorCode::bad_request, "the body is cut off, or malformed",
+                "Send the request again.");
   }
   if (announced >= 0 && body.size() != static_cast<std::size_t>(announced)) {
-    throw Error("cut-short",
+    throw Error(ErrorCode::cut_short,
                 std::to_string(body.size()) + " of " + std::to_string(announced) + " bytes came",
                 "Send the request again.");
   }

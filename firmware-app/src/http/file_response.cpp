@@ -99,14 +99,15 @@ Response file_response(const Request& request, const std::filesystem::path& file
   FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   struct ::stat info {};
   if (!descriptor.is_open() || ::fstat(descriptor.number(), &info) != 0 || !S_ISREG(info.st_mode)) {
-    throw Error("no-model", "the file of this model is missing",
+    throw Error(ErrorCode::no_model, "the file of this model is missing",
                 "Start a new scan, or rebuild it with octurn reconstruct.");
   }
   const auto size = static_cast<std::uint64_t>(info.st_size);
   const std::string tag = to_entity_tag(info);
   Headers headers{{"ETag", tag}, {"Accept-Ranges", "bytes"}, {"Cache-Control", "no-cache"}};
   if (const auto wanted = request.header("If-Match"); wanted && !matches_strongly(*wanted, tag)) {
-    throw Error("changed", "the model is not the one that was asked for", "Download it again.");
+    throw Error(ErrorCode::changed, "the model is not the one that was asked for",
+                "Download it again.");
   }
   if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, tag)) {
     return {.status = 304, .headers = std::move(headers)};
@@ -118,7 +119,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
     wanted = parse_range(*range, size);
   }
   if (wanted.extent == RangeRequest::Extent::outside) {
-    Response response = problem({.code = "bad-range",
+    Response response = problem({.code = ErrorCode::bad_range,
                                  .detail = "the model has " + std::to_string(size) + " bytes",
                                  .hint = "Ask for a part within them."});
     response.headers.emplace_back("Content-Range", "bytes */" + std::to_string(size));

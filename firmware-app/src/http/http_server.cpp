@@ -102,7 +102,7 @@ int answer_request(mg_connection* connection) noexcept try {
 /// Errors that civetweb finds itself: heads that are malformed, too large or too slow.
 int answer_error(mg_connection* connection, int /*status*/, const char* message) noexcept try {
   Exchange exchange(*connection, to_service(connection).wait_for_guard());
-  exchange.send("GET", problem({.code = "bad-request", .detail = message, .hint = ""}));
+  exchange.send("GET", problem({.code = ErrorCode::bad_request, .detail = message, .hint = ""}));
   return 0;
 } catch (const std::exception& error) {
   log::error("http", std::string("a refusal has failed: ") + error.what());
@@ -150,7 +150,7 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
   mg_context* const context = mg_start2(&init, &error);
   if (context == nullptr) {
     mg_exit_library();
-    throw Error("listen-failed", "cannot listen on " + listening + ": " + reason.data(),
+    throw Error(ErrorCode::listen_failed, "cannot listen on " + listening + ": " + reason.data(),
                 "Another program may use the port: choose one with --port, or 0 for any.");
   }
   return context;
@@ -167,7 +167,7 @@ struct HttpServer::Server {
 HttpServer::HttpServer(const HttpOptions& options, Answer answer)
     : server_(std::make_unique<Server>()) {
   if (!options.password_file.empty() && ::access(options.password_file.c_str(), R_OK) != 0) {
-    throw Error("bad-password-file", options.password_file.string() + ": cannot be read",
+    throw Error(ErrorCode::bad_password_file, options.password_file.string() + ": cannot be read",
                 "`octurn password` makes it; the user that this program runs as must own it.");
   }
   const bool v6 = options.address.find(':') != std::string::npos;

@@ -15,7 +15,8 @@ Response json_response(const json& body, int status) {
 }
 
 json parse_body(const Request& request) {
-  return request.body.empty() ? json::object() : parse_json(request.body, "bad-json", "the body");
+  return request.body.empty() ? json::object()
+                              : parse_json(request.body, ErrorCode::bad_json, "the body");
 }
 
 }  // namespace octurn

@@ -50,13 +50,13 @@ std::string read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) {
-    throw Error("page-missing", file.string() + ": cannot be read");
+    throw Error(ErrorCode::page_missing, file.string() + ": cannot be read");
   }
   return content;
 }
 
 [[noreturn]] void no_page(const std::string& where) {
-  throw Error("page-missing", "no page in " + where,
+  throw Error(ErrorCode::page_missing, "no page in " + where,
               "Build the target octurn_web, or name the folder with --web.");
 }
 
@@ -91,7 +91,7 @@ Page::Page(const fs::path& folder) {
 Response Page::file(const Request& request) const {
   const auto found = files_.find(request.path == "/" ? "/index.html" : request.path);
   if (found == files_.end()) {
-    throw Error("not-found", "there is no " + request.path, "The page is at /.");
+    throw Error(ErrorCode::not_found, "there is no " + request.path, "The page is at /.");
   }
   const File& file = found->second;
   Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};

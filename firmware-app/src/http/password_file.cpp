@@ -12,7 +12,8 @@ namespace octurn {
 void write_password_file(const std::filesystem::path& file, const std::string& password) {
   constexpr std::size_t most = 100;
   if (password.empty() || password.size() > most) {
-    throw Error("bad-password", "the password has " + std::to_string(password.size()) + " bytes",
+    throw Error(ErrorCode::bad_password,
+                "the password has " + std::to_string(password.size()) + " bytes",
                 "It needs one at least, and at most " + std::to_string(most) + ".");
   }
   std::array<char, 33> hash{};

@@ -51,7 +51,7 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                                std::string_view body_type) {
   const std::string_view host = request.header("Host").value_or("");
   if (!is_ours(to_host_name(host), host_names)) {
-    return Failure{.code = "wrong-host",
+    return Failure{.code = ErrorCode::wrong_host,
                    .detail = "\"" + std::string(host) + "\" is not a name of this scanner",
                    .hint =
                        "Open the page by the scanner's address, or add the name to host_names "
@@ -61,13 +61,13 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
     return std::nullopt;
   }
   if (const auto origin = request.header("Origin"); origin && !is_same_origin(*origin, host)) {
-    return Failure{.code = "wrong-origin",
+    return Failure{.code = ErrorCode::wrong_origin,
                    .detail = "the request comes from " + std::string(*origin),
                    .hint = "Use the scanner's own page."};
   }
   if (request.method != "DELETE" &&
       !is_of_type(request.header("Content-Type").value_or(""), body_type)) {
-    return Failure{.code = "wrong-content-type",
+    return Failure{.code = ErrorCode::wrong_content_type,
                    .detail = request.method + " needs Content-Type: " + std::string(body_type),
                    .hint = "Send that, and say so."};
   }

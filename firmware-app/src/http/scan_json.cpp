@@ -14,7 +14,7 @@ using nlohmann::json;
 double rounded(double value) { return std::round(value * 1000) / 1000; }
 
 json to_json(const Failure& failure) {
-  return {{"code", failure.code}, {"detail", failure.detail}, {"hint", failure.hint}};
+  return {{"code", to_string(failure.code)}, {"detail", failure.detail}, {"hint", failure.hint}};
 }
 
 json to_json(const Model& model, const std::string& id) {

@@ -41,7 +41,7 @@ FileDescriptor open_lock(const fs::path& data) {
 void throw_data_error(const fs::path& path, const std::string& doing, std::error_code reason) {
   const bool full = reason == std::errc::no_space_on_device;
   throw Error(
-      full ? "disk-full" : "data-failed",
+      full ? ErrorCode::disk_full : ErrorCode::data_failed,
       path.string() + ": cannot " + doing + ": " + reason.message(),
       full ? "Delete scans that are no longer needed."
            : "Check that this program may write there, or choose another folder with --data.");
@@ -76,7 +76,7 @@ bool is_in_use(const fs::path& data) {
 FileDescriptor lock_data_folder(const fs::path& data) {
   FileDescriptor lock = open_lock(data);
   if (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
-    throw Error("data-in-use", data.string() + ": another octurn works in this folder",
+    throw Error(ErrorCode::data_in_use, data.string() + ": another octurn works in this folder",
                 "End it first, or choose another folder with --data.");
   }
   return lock;

@@ -48,7 +48,7 @@ std::optional<JobState> job_state_named(std::string_view name) { return named(na
 std::optional<Phase> phase_named(std::string_view name) { return named(name, phases); }
 
 Failure interruption() {
-  return {.code = "interrupted",
+  return {.code = ErrorCode::interrupted,
           .detail = "the scanner was switched off during this scan",
           .hint = "Resume it if neither the object nor the platform was moved since."};
 }

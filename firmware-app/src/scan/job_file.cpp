@@ -61,7 +61,7 @@ std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
     return std::nullopt;
   }
   JsonObject keys(*object);
-  return Failure{.code = keys.at("code").text(),
+  return Failure{.code = to_error_code(keys.at("code").text()).value_or(ErrorCode::unknown),
                  .detail = keys.at("detail").text(),
                  .hint = keys.at("hint").text()};
 }
@@ -103,8 +103,9 @@ json to_job_json(const Job& job) {
               {"error", nullptr},
               {"model", nullptr}};
   if (job.failure) {
-    object["error"] = {
-        {"code", job.failure->code}, {"detail", job.failure->detail}, {"hint", job.failure->hint}};
+    object["error"] = {{"code", to_string(job.failure->code)},
+                       {"detail", job.failure->detail},
+                       {"hint", job.failure->hint}};
   }
   if (job.model) {
     object["model"] = to_json(*job.model);
@@ -113,7 +114,7 @@ json to_job_json(const Job& job) {
 }
 
 Job to_job(const json& object) {
-  JsonObject keys(object, "job-malformed", "");
+  JsonObject keys(object, ErrorCode::job_malformed, "");
   constexpr int most_int = std::numeric_limits<int>::max();
   return {.id = keys.at("id").text(),
           .name = keys.at("name").text(),

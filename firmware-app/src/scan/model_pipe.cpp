@@ -55,7 +55,7 @@ std::uint64_t ModelPipe::length() {
     std::rethrow_exception(failure_);
   }
   if (!length_ || stop_.stop_requested()) {
-    throw Error("busy", "a scan has started", "Wait for its end.");
+    throw Error(ErrorCode::busy, "a scan has started", "Wait for its end.");
   }
   return *length_;
 }

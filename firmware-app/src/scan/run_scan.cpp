@@ -39,7 +39,8 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
       observer.on_frame(timed->frame, sensor.intrinsics().depth_unit);
       frames.push_back(std::move(timed->frame));
     } else if (++stale > max_stale_frames) {
-      throw Error("sensor-failed", sensor.name() + ": its frames are older than they may be",
+      throw Error(ErrorCode::sensor_failed,
+                  sensor.name() + ": its frames are older than they may be",
                   "Unplug the sensor, and plug it in again.");
     }
   }
@@ -151,7 +152,8 @@ void Run::begin() {
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
 void Run::resume() {
   if (done() < settings_.snapshots && rig_.sensor().intrinsics() != scan_.intrinsics) {
-    throw Error("sensor-other", "this scan was begun with another sensor: " + scan_.sensor_name,
+    throw Error(ErrorCode::sensor_other,
+                "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
   }
   const SnapshotSource stored = readable_snapshots(folder_, scan_, stop_);
@@ -183,7 +185,7 @@ void Run::require_coverage(const DepthFrame& frame) {
   }
   if (readings == 0 ||
       static_cast<double>(readings) < min_coverage * static_cast<double>(first_readings_)) {
-    throw Error("sensor-blind",
+    throw Error(ErrorCode::sensor_blind,
                 scan_.sensor_name + ": has " + std::to_string(readings) +
                     " readings in its picture, and had " + std::to_string(first_readings_) +
                     " at the first stop",

@@ -235,7 +235,7 @@ json json_of(const ScanSettings& settings) {
 
 ScanSettings settings_from(const json& object, const ScanSettings& defaults,
                            const std::string& name) {
-  JsonObject keys(object, "bad-settings", name);
+  JsonObject keys(object, ErrorCode::bad_settings, name);
   ScanSettings settings = defaults;
   read_fields(keys, fields(settings));
   check_leaf(keys, settings);

@@ -49,7 +49,7 @@ std::string text_of(const Job& job) {
 /// @throws Error "job-malformed", "read-failed"
 Job read_job(const fs::path& folder) {
   return to_job(parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
-                           "job-malformed", "the file"));
+                           ErrorCode::job_malformed, "the file"));
 }
 
 /// What a person called a scan; empty if that cannot be read, as the scan itself can be.
@@ -71,7 +71,8 @@ Job load(const fs::path& folder) {
     job.state = JobState::failed;
     job.phase = Phase::done;
     job.failure =
-        Failure{.code = failure.code == "read-failed" ? "read-failed" : "job-malformed",
+        Failure{.code = failure.code == ErrorCode::read_failed ? ErrorCode::read_failed
+                                                               : ErrorCode::job_malformed,
                 .detail = "job.json: " + failure.detail,
                 .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
   }
@@ -81,7 +82,7 @@ Job load(const fs::path& folder) {
 }
 
 [[noreturn]] void throw_no_such_scan(std::string_view id) {
-  throw Error("no-such-scan", "there is no scan " + std::string(id),
+  throw Error(ErrorCode::no_such_scan, "there is no scan " + std::string(id),
               "GET /api/v1/scans lists them.");
 }
 
@@ -111,7 +112,7 @@ Job ScanStore::create(const ScanSettings& settings) {
     const auto mb = [](std::uint64_t bytes) {
       return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
     };
-    throw Error("disk-full",
+    throw Error(ErrorCode::disk_full,
                 mb(available) + " free in " + data_.string() + ", a scan of " +
                     std::to_string(settings.snapshots) + " snapshots needs " + mb(needed),
                 "Delete scans that are no longer needed.");
@@ -231,8 +232,8 @@ double ScanStore::platform_angle_deg() const {
   try {
     const json document =
         parse_json(read_regular_file(platform_, max_platform_bytes).value_or("{}"),
-                   "platform-malformed", platform_.string());
-    return JsonObject(document, "platform-malformed", "")
+                   ErrorCode::platform_malformed, platform_.string());
+    return JsonObject(document, ErrorCode::platform_malformed, "")
         .number("angle_deg", -most, most)
         .value_or(0);
   } catch (const Error& error) {

@@ -57,7 +57,7 @@ std::optional<Job> Scanner::resume(std::string_view id) {
   }
   Job job = store_.get(id);
   if (!is_resumable(job.state)) {
-    throw Error("not-paused", "this scan is " + std::string(name_of(job.state)),
+    throw Error(ErrorCode::not_paused, "this scan is " + std::string(name_of(job.state)),
                 "Only a scan that was paused or interrupted can be resumed.");
   }
   job.state = JobState::running;
@@ -102,7 +102,7 @@ bool Scanner::cancel(std::string_view id) {
 void Scanner::remove(std::string_view id) {
   const std::lock_guard lock(scans_);
   if (is_running(id)) {
-    throw Error("busy", "this scan is running", "Cancel it first.");
+    throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
   store_.remove(id);
 }
@@ -151,10 +151,11 @@ std::shared_ptr<const CameraFrame> Scanner::camera_frame() {
     throw to_error(*frame->failure);
   }
   if (rebuilding && frame->depth_unit == 0) {
-    throw Error("busy", "a model is being made", "Wait for its end.");
+    throw Error(ErrorCode::busy, "a model is being made", "Wait for its end.");
   }
   if (!scanning && !rebuilding && asked - frame->time >= fresh) {
-    throw Error("sensor-silent", "the sensor has sent no frame yet", "Try again in a moment.");
+    throw Error(ErrorCode::sensor_silent, "the sensor has sent no frame yet",
+                "Try again in a moment.");
   }
   return frame;
 }

@@ -48,7 +48,7 @@ std::string openni_error_text() {
 
 void expect_ok(openni::Status status, const char* doing) {
   if (status != openni::STATUS_OK) {
-    throw Error("sensor-failed",
+    throw Error(ErrorCode::sensor_failed,
                 std::string("sensor: cannot ") + doing + ": " + openni_error_text(),
                 "Unplug the sensor, plug it in again, and retry.");
   }
@@ -59,9 +59,9 @@ void open_device(openni::Device& device, const std::string& uri) {
     return;
   }
   if (is_simulated_sensor(uri)) {
-    throw Error("sensor-failed", "sensor: " + openni_error_text(), simulation_hint);
+    throw Error(ErrorCode::sensor_failed, "sensor: " + openni_error_text(), simulation_hint);
   }
-  throw Error("sensor-missing",
+  throw Error(ErrorCode::sensor_missing,
               (uri.empty() ? "sensor: none found: " : "sensor: ") + openni_error_text(),
               missing_sensor_hint);
 }

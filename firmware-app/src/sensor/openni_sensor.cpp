@@ -66,7 +66,8 @@ Intrinsics to_intrinsics(const openni::VideoStream& stream) {
   const auto* format =
       std::ranges::find(depth_formats, mode.getPixelFormat(), &DepthFormat::format);
   if (format == depth_formats.end()) {
-    throw Error("sensor-failed", "sensor: gives no depth in millimetres", "Use another sensor.");
+    throw Error(ErrorCode::sensor_failed, "sensor: gives no depth in millimetres",
+                "Use another sensor.");
   }
   const auto focal_length = [](int size, float field_of_view) {
     return size / (2 * std::tan(static_cast<double>(field_of_view) / 2));
@@ -175,10 +176,10 @@ void OpenNiSensor::prepare_file() {
   expect_ok(playback->setRepeatEnabled(false), "read it once");
   frames_left_ = playback->getNumberOfFrames(stream_);
   if (frames_left_ <= 0) {
-    throw Error("sensor-failed", uri_ + ": has no depth frame");
+    throw Error(ErrorCode::sensor_failed, uri_ + ": has no depth frame");
   }
   if (stream_.getMirroringEnabled()) {
-    throw Error("sensor-failed", uri_ + ": its frames are mirrored",
+    throw Error(ErrorCode::sensor_failed, uri_ + ": its frames are mirrored",
                 "Record it again without mirroring.");
   }
 }
@@ -237,10 +238,10 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
       return take_frame();
     }
     if (is_lost()) {
-      throw Error("sensor-lost", "sensor: " + name() + " is gone", missing_sensor_hint);
+      throw Error(ErrorCode::sensor_lost, "sensor: " + name() + " is gone", missing_sensor_hint);
     }
     if (silence > longest) {
-      throw Error("sensor-silent",
+      throw Error(ErrorCode::sensor_silent,
                   "sensor: no frame for " + std::to_string(longest.count()) + " ms",
                   "Unplug the sensor, plug it in again, and retry.");
     }

@@ -59,7 +59,7 @@ class RecordedSensor final : public DepthSensor {
         return frame;
       }
     }
-    throw Error("sensor-failed",
+    throw Error(ErrorCode::sensor_failed,
                 folder_.string() + ": has no frame at " +
                     std::to_string(degrees_from_radians(angle_)) + " degrees",
                 "Scan with as many snapshots as were recorded.");

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* format = "octurn-recording";
-constexpr const char* malformed = "recording-malformed";
+constexpr ErrorCode malformed = ErrorCode::recording_malformed;
 constexpr int version = 1;
 constexpr int largest_side = 10000;  // pixels
 constexpr double max_number = std::numeric_limits<double>::max();
@@ -38,7 +38,7 @@ std::string frame_file(std::size_t frame) {
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& what) {
-  throw Error("write-failed", file.string() + ": " + what,
+  throw Error(ErrorCode::write_failed, file.string() + ": " + what,
               "Name a folder that does not exist yet, where this program may write.");
 }
 

@@ -38,11 +38,11 @@ GpioChip header_chip() {
       }
       others += (others.empty() ? "" : ", ") + label;
     } catch (const std::system_error& error) {
-      throw Error("turntable-failed", device.string() + " cannot be used: " + error.what(),
+      throw Error(ErrorCode::turntable_failed, device.string() + " cannot be used: " + error.what(),
                   "Let this user use GPIO: sudo adduser $USER gpio, and log in again.");
     }
   }
-  throw Error("turntable-missing",
+  throw Error(ErrorCode::turntable_missing,
               "this machine has no GPIO header of a Raspberry Pi" +
                   (others.empty() ? "" : ", only " + others),
               "Run this on a Raspberry Pi whose kernel knows its GPIO chip, or add --simulate.");
@@ -51,11 +51,11 @@ GpioChip header_chip() {
 unsigned free_line(const GpioChip& chip, const std::string& name) {
   const std::optional<unsigned> offset = chip.offset_of(name);
   if (!offset) {
-    throw Error("turntable-failed", "the GPIO header has no line " + name,
+    throw Error(ErrorCode::turntable_failed, "the GPIO header has no line " + name,
                 "Correct the turntable's lines in octurn.json; they are called GPIO2 to GPIO27.");
   }
   if (const std::optional<std::string> other = chip.user_of(*offset)) {
-    throw Error("turntable-failed", "line " + name + " is in use by " + *other,
+    throw Error(ErrorCode::turntable_failed, "line " + name + " is in use by " + *other,
                 *other == gpio_user ? "End the other Octurn first."
                                     : "End what uses it, or choose another line in octurn.json.");
   }
@@ -76,7 +76,8 @@ HeaderUse look_at_header(const std::vector<NamedLine>& lines) {
     }
     return use;
   } catch (const std::system_error& error) {
-    throw Error("turntable-failed", std::string("the GPIO lines cannot be read: ") + error.what(),
+    throw Error(ErrorCode::turntable_failed,
+                std::string("the GPIO lines cannot be read: ") + error.what(),
                 "Start this machine again.");
   }
 }
@@ -90,7 +91,8 @@ GpioChip drive_header(const std::vector<NamedLine>& lines) {
     }
     chip.drive(outputs, gpio_user);
   } catch (const std::system_error& error) {
-    throw Error("turntable-failed", std::string("the GPIO lines cannot be driven: ") + error.what(),
+    throw Error(ErrorCode::turntable_failed,
+                std::string("the GPIO lines cannot be driven: ") + error.what(),
                 "End other programs that use GPIO, and retry.");
   }
   return chip;

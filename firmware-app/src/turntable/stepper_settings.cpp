@@ -155,7 +155,7 @@ void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
 }
 
 StepperSettings stepper_settings_from(const json& object) {
-  JsonObject keys(object, "bad-config", "turntable");
+  JsonObject keys(object, ErrorCode::bad_config, "turntable");
   StepperSettings settings;
   read_fields(keys, fields(settings));
   check_stepper_settings(keys, settings);

@@ -49,12 +49,13 @@ TEST(DepthPng, IsRefusedWhenCutShortAnywhere) {
   const std::string whole = golden("depth_4x3.png");
   ASSERT_FALSE(whole.empty());
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_EQ(error_of(whole.substr(0, size)).code(), "snapshot-malformed") << size << " bytes";
+    EXPECT_EQ(error_of(whole.substr(0, size)).code(), ErrorCode::snapshot_malformed)
+        << size << " bytes";
   }
 }
 
 TEST(DepthPng, IsRefusedWithBytesAfterItsEnd) {
-  EXPECT_EQ(error_of(golden("depth_4x3.png") + '\0').code(), "snapshot-malformed");
+  EXPECT_EQ(error_of(golden("depth_4x3.png") + '\0').code(), ErrorCode::snapshot_malformed);
 }
 
 TEST(DepthPng, IsRefusedWithAnyByteDamaged) {
@@ -63,14 +64,14 @@ TEST(DepthPng, IsRefusedWithAnyByteDamaged) {
   for (std::size_t i = 0; i < whole.size(); ++i) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
-    EXPECT_EQ(error_of(damaged).code(), "snapshot-malformed") << "byte " << i;
+    EXPECT_EQ(error_of(damaged).code(), ErrorCode::snapshot_malformed) << "byte " << i;
   }
 }
 
 TEST(DepthPng, IsRefusedWithOtherPixels) {
   for (const char* name : {"grey8_4x3.png", "rgb16_4x3.png"}) {
     const Error error = error_of(golden(name));
-    EXPECT_EQ(error.code(), "snapshot-malformed") << name;
+    EXPECT_EQ(error.code(), ErrorCode::snapshot_malformed) << name;
     EXPECT_STREQ(error.what(), "000.png: not a 16-bit greyscale PNG") << name;
   }
 }
@@ -78,7 +79,7 @@ TEST(DepthPng, IsRefusedWithOtherPixels) {
 TEST(DepthPng, IsRefusedWithAnotherSize) {
   EXPECT_STREQ(error_of(golden("depth_4x3.png"), 640, 480).what(),
                "000.png: 4 x 3 pixels, where scan.json says 640 x 480 pixels");
-  EXPECT_EQ(error_of(golden("depth_4x3.png"), 3, 4).code(), "snapshot-malformed");
+  EXPECT_EQ(error_of(golden("depth_4x3.png"), 3, 4).code(), ErrorCode::snapshot_malformed);
 }
 
 TEST(DepthPng, IsNotMadeOfAFrameThatIsNotWhole) {

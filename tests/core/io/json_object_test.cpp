@@ -15,7 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-json parsed_text(const std::string& text) { return parse_json(text, "bad-text", "the text"); }
+json parsed_text(const std::string& text) {
+  return parse_json(text, ErrorCode::bad_json, "the text");
+}
 
 TEST(ParseJson, TakesTheDeepestThatIsAllowed) {
   EXPECT_EQ(parsed_text(nested_arrays(32)).dump(), nested_arrays(32));
@@ -26,7 +28,7 @@ TEST(ParseJson, RefusesOneLevelMore) {
   for (const std::string& text :
        {nested_arrays(33), nested_objects(33), R"({"a": [1, {"b": )" + nested_arrays(30) + "}]}"}) {
     const Error error = error_thrown_by([&] { parsed_text(text); });
-    EXPECT_EQ(error.code(), "bad-text");
+    EXPECT_EQ(error.code(), ErrorCode::bad_json);
     EXPECT_STREQ(error.what(), "the text is nested more than 32 deep");
   }
 }
@@ -43,7 +45,7 @@ TEST(ParseJson, RefusesAnyDepthOnASmallStack) {
   run_on_small_stack([] {
     for (const std::string& text : {nested_arrays(600), nested_objects(600), nested_arrays(500'000),
                                     nested_objects(500'000), std::string(1'000'000, '[')}) {
-      EXPECT_EQ(code_thrown_by([&] { parsed_text(text); }), "bad-text");
+      EXPECT_EQ(code_thrown_by([&] { parsed_text(text); }), "bad-json");
     }
   });
 }
@@ -51,7 +53,7 @@ TEST(ParseJson, RefusesAnyDepthOnASmallStack) {
 TEST(ParseJson, RefusesWhatIsTooLarge) {
   const std::string whole = "[" + std::string(max_json_bytes - 2, ' ') + "]";
   EXPECT_EQ(parsed_text(whole), json::array());
-  EXPECT_EQ(code_thrown_by([&] { parsed_text(whole + " "); }), "bad-text");
+  EXPECT_EQ(code_thrown_by([&] { parsed_text(whole + " "); }), "bad-json");
 }
 
 TEST(ParseJson, RefusesWhatIsNoJson) {
@@ -65,7 +67,7 @@ TEST(ParseJson, RefusesWhatIsNoJson) {
 std::string refused_text(const json& value) {
   const Error error = error_thrown_by([&] {
     const json object{{"key", value}};
-    JsonObject(object, "bad-text", "").refuse("key", value, "right");
+    JsonObject(object, ErrorCode::bad_json, "").refuse("key", value, "right");
   });
   const std::string message = error.what();
   const std::string begin = "\"key\" is ";
@@ -91,8 +93,8 @@ TEST(JsonObject, QuotesADeepValueOnASmallStack) {
   }
   run_on_small_stack([&] {
     const json object = json::object();
-    const Error error =
-        error_thrown_by([&] { JsonObject(object, "bad-text", "").refuse("key", deep, "shallow"); });
+    const Error error = error_thrown_by(
+        [&] { JsonObject(object, ErrorCode::bad_json, "").refuse("key", deep, "shallow"); });
     EXPECT_STREQ(error.what(), R"("key" is [[...]]: must be shallow)");
   });
 }
@@ -102,7 +104,7 @@ template <typename Read>
 std::string refusal(const char* text, const Read& read) {
   const json document = parsed_text(text);
   return error_thrown_by([&] {
-           JsonObject keys(document, "bad-text", "");
+           JsonObject keys(document, ErrorCode::bad_json, "");
            read(keys);
          })
       .what();
@@ -111,7 +113,7 @@ std::string refusal(const char* text, const Read& read) {
 TEST(JsonObject, ReadsEachKindOfValue) {
   const json document =
       parsed_text(R"({"n": 2.5, "w": -3, "f": true, "t": "é", "a": [1, 2], "o": {"k": 7}})");
-  JsonObject keys(document, "bad-text", "");
+  JsonObject keys(document, ErrorCode::bad_json, "");
   EXPECT_EQ(keys.at("n").number(2.5, 2.5), 2.5);
   EXPECT_EQ(keys.at("w").whole_number(-3, -3), -3);
   EXPECT_EQ(keys.at("w").number(), -3.0);
@@ -161,13 +163,14 @@ TEST(JsonObject, SaysWhatAValueMustBe) {
 
 TEST(JsonObject, RefusesNumbersThatAreNone) {
   const json nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_STREQ(error_thrown_by([&] { JsonValue(nan, "k", "bad-text").number(0, 1); }).what(),
-               R"("k" is nan: must be a number from 0 to 1)");
+  EXPECT_STREQ(
+      error_thrown_by([&] { JsonValue(nan, "k", ErrorCode::bad_json).number(0, 1); }).what(),
+      R"("k" is nan: must be a number from 0 to 1)");
 }
 
 TEST(JsonObject, RefusesKeysThatNobodyHasRead) {
   const json document = parsed_text(R"({"port": 80, "prot": 81})");
-  JsonObject keys(document, "bad-text", "");
+  JsonObject keys(document, ErrorCode::bad_json, "");
   keys.at("port");
   keys.value("host");
   const Error error = error_thrown_by([&] { keys.refuse_unread(); });

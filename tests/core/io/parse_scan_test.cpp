@@ -63,7 +63,7 @@ std::string dotted(const std::string& pointer) {
 
 void expect_refused(const std::string& text, const std::string& named) {
   const Error error = error_thrown_by([&] { parse_scan(text); });
-  EXPECT_EQ(error.code(), "scan-malformed") << text;
+  EXPECT_EQ(error.code(), ErrorCode::scan_malformed) << text;
   EXPECT_NE(std::string(error.what()).find(named), std::string::npos)
       << error.what() << "\ndoes not name " << named << " of " << text;
 }
@@ -180,7 +180,7 @@ TEST(ParseScan, RefusesAClipBoxWithNothingInside) {
 TEST(ParseScan, RefusesAScanWithoutSnapshots) {
   const Error error = error_thrown_by([] { parse_scan(with("/snapshots", json::array())); });
 
-  EXPECT_EQ(error.code(), "scan-empty");
+  EXPECT_EQ(error.code(), ErrorCode::scan_empty);
 }
 
 TEST(ParseScan, RefusesEveryTruncatedTextAndTrailingBytes) {

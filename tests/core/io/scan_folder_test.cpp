@@ -22,7 +22,7 @@ TEST(ReadScan, SaysWhichFileIsMissing) {
 
   const Error error = error_thrown_by([&] { read_scan(folder.path()); });
 
-  EXPECT_EQ(error.code(), "scan-missing");
+  EXPECT_EQ(error.code(), ErrorCode::scan_missing);
   EXPECT_NE(std::string(error.what()).find("scan.json"), std::string::npos);
 }
 
@@ -62,7 +62,7 @@ TEST(ReadSnapshot, SaysWhichFileIsMissing) {
 
   const Error error = error_thrown_by([&] { read_snapshot(folder.path(), scan, scan.shots[1]); });
 
-  EXPECT_EQ(error.code(), "scan-missing");
+  EXPECT_EQ(error.code(), ErrorCode::scan_missing);
   EXPECT_NE(std::string(error.what()).find("snapshots/001.png"), std::string::npos);
 }
 
@@ -73,7 +73,7 @@ TEST(ReadSnapshot, SaysWhichFileIsDamaged) {
 
   const Error error = error_thrown_by([&] { read_snapshot(folder.path(), scan, scan.shots[1]); });
 
-  EXPECT_EQ(error.code(), "snapshot-malformed");
+  EXPECT_EQ(error.code(), ErrorCode::snapshot_malformed);
   EXPECT_NE(std::string(error.what()).find("snapshots/001.png"), std::string::npos);
 }
 

@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     octurn::turn(positions);
     return 0;
   } catch (const octurn::Error& error) {
-    std::cout << error.code() << ": " << error.what() << std::endl;
+    std::cout << to_string(error.code()) << ": " << error.what() << std::endl;
     return 1;
   }
 }

@@ -52,7 +52,7 @@ void copy(const ByteSource& source, Appliance::Upload& upload) {
     const std::size_t most = std::min<std::uint64_t>(buffer.size(), left);
     const std::size_t got = source.read(std::span(buffer).first(most));
     if (got == 0) {
-      throw Error("cut-short",
+      throw Error(ErrorCode::cut_short,
                   std::to_string(*source.length - left) + " of " + std::to_string(*source.length) +
                       " bytes of the update have arrived",
                   "Send the file again.");
@@ -66,7 +66,7 @@ void copy(const ByteSource& source, Appliance::Upload& upload) {
 Appliance& expect_appliance(const App& app) {
   if (app.appliance == nullptr) {
     throw Error(
-        "not-an-appliance", "updates and WiFi are not Octurn's business on this machine",
+        ErrorCode::not_an_appliance, "updates and WiFi are not Octurn's business on this machine",
         "It has them on a Raspberry Pi with the image of image-build; here the system does.");
   }
   return *app.appliance;
@@ -76,7 +76,7 @@ Appliance& expect_appliance(const App& app) {
 
 void expect_no_update(const App& app) {
   if (app.appliance != nullptr && app.appliance->is_updating()) {
-    throw Error("busy", "an update is being installed", "Wait for its end.");
+    throw Error(ErrorCode::busy, "an update is being installed", "Wait for its end.");
   }
 }
 
@@ -87,12 +87,12 @@ Response send_update_state(App& app) {
 Response take_update(App& app, const Request& request) {
   const auto expect_no_scan = [&app] {
     if (app.scanner.status().busy()) {
-      throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
+      throw Error(ErrorCode::busy, "a scan is running", "Wait for its end, or cancel it.");
     }
   };
   Appliance& machine = expect_appliance(app);
   if (!request.upload.length) {
-    throw Error("length-required", "the update comes without its length",
+    throw Error(ErrorCode::length_required, "the update comes without its length",
                 "Send it with Content-Length, not in chunks.");
   }
   expect_no_scan();

@@ -20,7 +20,7 @@ json to_numbers(const Headers& parameters) {
   for (const auto& [name, text] : parameters) {
     const json value = json::parse(text, nullptr, false);
     if (!value.is_number() || !numbers.emplace(name, value).second) {
-      throw Error("bad-settings", "the query must give each setting once, as a number",
+      throw Error(ErrorCode::bad_settings, "the query must give each setting once, as a number",
                   "Such as ?leaf_size_mm=0.5&level=7.");
     }
   }
@@ -34,12 +34,12 @@ Response make_model(App& app, const Request& request, const Job& job) {
   json numbers = to_numbers(request.parameters);
   std::optional<int> level;
   if (const auto given = numbers.find("level"); given != numbers.end()) {
-    level = JsonObject(numbers, "bad-settings", "").whole_number("level", 0, max_levels);
+    level = JsonObject(numbers, ErrorCode::bad_settings, "").whole_number("level", 0, max_levels);
     numbers.erase(given);
   }
   for (const auto& [name, value] : numbers.items()) {
     if (name != "leaf_size_mm") {
-      throw Error("bad-settings", "the query has \"" + name + "\"",
+      throw Error(ErrorCode::bad_settings, "the query has \"" + name + "\"",
                   "It takes leaf_size_mm and level.");
     }
   }
@@ -47,11 +47,12 @@ Response make_model(App& app, const Request& request, const Job& job) {
       reconstruct_options(settings_from(numbers, job.settings), app.patient.config.limits);
   options.level = level;
   if (job.state != JobState::running && job.snapshots_done == 0) {
-    throw Error("no-model", "this scan has no snapshots", "Start a new scan.");
+    throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
   auto model = app.scanner.stream_model(job.id, options);
   if (!model) {
-    throw Error("busy", "a scan is running, or another model is being made", "Wait for its end.");
+    throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
+                "Wait for its end.");
   }
   const std::uint64_t bytes = model->bytes();
   ByteStream stream{.length = bytes, .stop = model->stop()};
@@ -69,7 +70,8 @@ Response make_model(App& app, const Request& request, const Job& job) {
 Response send_newest_model(App& app, const Request& request) {
   const std::optional<Job> newest = app.store.newest_finished();
   if (!newest) {
-    throw Error("no-model", "no scan is finished yet", "Start a scan and wait for its end.");
+    throw Error(ErrorCode::no_model, "no scan is finished yet",
+                "Start a scan and wait for its end.");
   }
   return file_response(request, app.store.model_file(newest->id), "model/stl", "Scan.stl");
 }
@@ -80,7 +82,8 @@ Response send_model(App& app, const Request& request, std::string_view id) {
     return make_model(app, request, job);
   }
   if (job.state != JobState::finished) {
-    throw Error("no-model", "this scan is " + std::string(name_of(job.state)) + ": it has no model",
+    throw Error(ErrorCode::no_model,
+                "this scan is " + std::string(name_of(job.state)) + ": it has no model",
                 "Only a finished scan has one.");
   }
   return file_response(request, app.store.model_file(id), "model/stl", file_name(job));
@@ -90,7 +93,7 @@ Response send_preview(App& app, const Request& request, std::string_view id) {
   find_scan(app, id);  // or there is no such scan
   const auto preview = app.scanner.mesh_preview();
   if (preview->id != id || preview->snapshots == 0) {
-    throw Error("no-preview", "there is nothing of this scan to show",
+    throw Error(ErrorCode::no_preview, "there is nothing of this scan to show",
                 "Only the latest scan has a preview, from its first snapshot on.");
   }
   const std::string tag = '"' + preview->id + '-' + std::to_string(preview->snapshots) + '"';

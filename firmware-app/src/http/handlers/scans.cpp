@@ -17,7 +17,7 @@ using nlohmann::json;
 constexpr std::size_t max_name = 100;  // of a scan, bytes
 
 [[noreturn]] void throw_busy() {
-  throw Error("busy", "a scan is running", "Wait for its end, or cancel it.");
+  throw Error(ErrorCode::busy, "a scan is running", "Wait for its end, or cancel it.");
 }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
@@ -51,11 +51,11 @@ Response send_scan(App& app, std::string_view id) {
 
 Response rename_scan(App& app, const Request& request, std::string_view id) {
   const json body = parse_body(request);
-  JsonObject keys(body, "bad-name", "");
+  JsonObject keys(body, ErrorCode::bad_name, "");
   const auto name = keys.text("name");
   keys.refuse_unread();
   if (!name || name->size() > max_name || std::ranges::any_of(*name, is_control)) {
-    throw Error("bad-name", "\"name\" must be text of at most 100 bytes on one line");
+    throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 bytes on one line");
   }
   app.scanner.rename(id, *name);
   return send_scan(app, id);
@@ -69,7 +69,7 @@ Response remove_scan(App& app, std::string_view id) {
 Response cancel_scan(App& app, std::string_view id) {
   const Job job = find_scan(app, id);
   if (!app.scanner.cancel(id)) {
-    throw Error("not-running", "this scan is " + std::string(name_of(job.state)),
+    throw Error(ErrorCode::not_running, "this scan is " + std::string(name_of(job.state)),
                 "Only a scan that runs, or could be resumed, can be cancelled.");
   }
   return json_response(to_json(app, find_scan(app, id)), 202);

@@ -221,8 +221,8 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   return {};
 }
 
-CalibrationReport refused(CalibrationReport report, std::string reason) {
-  report.reason = std::move(reason);
+CalibrationReport refused(CalibrationReport report, const std::string& reason) {
+  report.reason = reason;
   return report;
 }
 
@@ -238,13 +238,13 @@ bool CalibrationReport::confirms_told() const {
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   CalibrationReport report;
   const auto plane = fit_platform_plane(platform_samples(turn, threads), turn.platform_from_sensor);
-  if (std::string reason = refuse_plane(plane); !reason.empty()) {
-    return refused(std::move(report), std::move(reason));
+  if (const std::string reason = refuse_plane(plane); !reason.empty()) {
+    return refused(std::move(report), reason);
   }
   const Eigen::Isometry3d levelled = level(turn.platform_from_sensor, *plane);
   const TurnViews views = object_views(turn, *plane, levelled, threads);
-  if (std::string reason = refuse_object(views); !reason.empty()) {
-    return refused(std::move(report), std::move(reason));
+  if (const std::string reason = refuse_object(views); !reason.empty()) {
+    return refused(std::move(report), reason);
   }
   const auto solution = solve(report, views, *plane, levelled, threads);
   if (!solution) {
@@ -257,9 +257,9 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   compare(report, turn.platform_from_sensor);
-  std::string reason = refuse_solution(report, solution->last_step);
+  const std::string reason = refuse_solution(report, solution->last_step);
   report.accepted = reason.empty();
-  return refused(std::move(report), std::move(reason));
+  return refused(std::move(report), reason);
 }
 
 }  // namespace octurn

@@ -48,8 +48,7 @@ std::vector<StopPair> pairs_at(const std::vector<double>& angles, std::span<cons
       }
     }
     std::ranges::sort(partners);
-    const auto repeated = std::ranges::unique(partners);
-    partners.erase(repeated.begin(), repeated.end());
+    partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
     for (const std::size_t to : partners) {
       pairs.push_back({.from = from, .to = to});
     }

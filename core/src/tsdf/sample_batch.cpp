@@ -89,14 +89,14 @@ void BlockSampler::project(SampleBatch& batch) const {
   const auto& [x, y, z] = batch.at;
   for (std::size_t i = 0; i < batch.count; i += 4) {
     const Eigen::Array4f inverse_depth = 1.0F / four(z, i).max(min_z);
-    four(batch.u, i) =
+    four(batch.seen_at[0], i) =
         (four(x, i) * inverse_depth * fx + cx).max(0.0F).min(last_u) + (pixel_bias + 0.5F);
-    four(batch.v, i) =
+    four(batch.seen_at[1], i) =
         (four(y, i) * inverse_depth * fy + cy).max(0.0F).min(last_v) + (pixel_bias + 0.5F);
   }
   for (std::size_t i = 0; i < batch.count; ++i) {
-    batch.pixel[i] = (static_cast<int>(batch.v[i]) - pixel_bias) * width +
-                     static_cast<int>(batch.u[i]) - pixel_bias;
+    batch.pixel[i] = (static_cast<int>(batch.seen_at[1][i]) - pixel_bias) * width +
+                     static_cast<int>(batch.seen_at[0][i]) - pixel_bias;
   }
 }
 

@@ -18,14 +18,13 @@ struct SampleBatch {
   std::size_t count = 0;                          // a multiple of four
   std::array<int, TsdfBrick::samples / 4> first;  // index in the brick, of the first of four
   std::array<Each<float>, 3> at;                  // sensor's frame, metres
-  Each<float> u;                                  // pixels, plus a bias
-  Each<float> v;
-  Each<int> pixel;               // row-major
-  Each<float> distance;          // to the tangent plane, metres
-  Each<float> weight;            // of the reading; 0: the pixel has no surface
-  Each<float> free_space_depth;  // metres
-  Each<int> near;                // 1: to be integrated
-  Each<int> free;                // 1: the ray passed through
+  std::array<Each<float>, 2> seen_at;             // u and v, pixels, plus a bias
+  Each<int> pixel;                                // row-major
+  Each<float> distance;                           // to the tangent plane, metres
+  Each<float> weight;                             // of the reading; 0: the pixel has no surface
+  Each<float> free_space_depth;                   // metres
+  Each<int> near;                                 // 1: to be integrated
+  Each<int> free;                                 // 1: the ray passed through
   int near_count;
   int free_count;
 };

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stop_token>
+#include <vector>
+
+#include "octurn/snapshot.hpp"
+#include "voxel/voxel_mask.hpp"
+
+namespace octurn {
+
+/// Neighbouring voxels of one row: the half-open range from `first` to `end`.
+struct Run {
+  int first = 0;
+  int end = 0;
+  std::uint32_t parent = 0;
+};
+
+/// The connected components of a mask or of its complement: runs of voxels joined by union-find.
+class ConnectedComponents {
+ public:
+  enum class Of { voxels, gaps };
+
+  /// Connects voxels across faces, gaps across faces and edges.
+  /// @param mask  must outlive this
+  /// @throws Stopped
+  ConnectedComponents(const VoxelMask& mask, Of of, const std::stop_token& stop);
+
+  /// The run that stands for the component of a run.
+  std::uint32_t root(std::uint32_t run);
+
+  /// The number of runs.
+  std::size_t count() const { return runs_.size(); }
+
+  /// Calls `visit(y, z, index, run)` for all of them.
+  template <typename Visit>
+  void for_each(Visit visit) const {
+    const Index3& size = mask_.size();
+    std::size_t row = 0;
+    for (int z = 0; z < size.z; ++z) {
+      throw_if_stopped(stop_);
+      for (int y = 0; y < size.y; ++y, ++row) {
+        for (std::uint32_t i = first_[row]; i < first_[row + 1]; ++i) {
+          visit(y, z, i, runs_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  void add_row(int y, int z);
+  void join_row(int y, int z);
+  void join(int y, int z, int reach);
+
+  const VoxelMask& mask_;
+  Of of_;
+  const std::stop_token& stop_;
+  std::vector<Run> runs_ = {};
+  std::vector<std::uint32_t> first_ = {};  // run of each row
+};
+
+}  // namespace octurn

@@ -85,14 +85,14 @@ TEST(Reconstruction, GivesTheSameBytesInSlabs) {
                                  return snapshots.read(i);
                                }};
   options.threads = 2;
-  options.memory_limit = std::size_t{17} << 20U;
+  options.memory_limit = std::size_t{7} << 20U;
   EXPECT_TRUE(same_bytes(surface_of(options, counted), whole));
   EXPECT_GT(reads, snapshots.count);  // it did not fit in one slab
 }
 
 TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
   ReconstructOptions options = ball_options(0.00025);
-  options.memory_limit = std::size_t{17} << 20U;
+  options.memory_limit = std::size_t{7} << 20U;
   const SnapshotSource snapshots = ball_scan(2);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   reconstruction->add(snapshots);

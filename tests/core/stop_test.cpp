@@ -113,7 +113,7 @@ TEST(StoppedSolid, EndsInTheSlabsThatAreReadAgain) {
   const auto reconstructor = make_reconstructor({.method = Method::solid,
                                                  .leaf_size = 0.0005,
                                                  .clip = clip_box,
-                                                 .memory_limit = std::size_t{44} << 20U});
+                                                 .memory_limit = std::size_t{32} << 20U});
   reconstructor->add(all);
   std::stop_source stop;
   std::size_t reads = 0;

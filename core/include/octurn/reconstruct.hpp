@@ -64,8 +64,12 @@ struct ReconstructOptions {
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;
 
-  /// Bytes that the whole process may take; 0 is no limit. The model's bytes do not depend on it.
+  /// Bytes that the reconstruction and the program around it may take; 0 is no limit. The model's
+  /// bytes do not depend on it.
   std::size_t memory_limit = 0;
+
+  /// Bytes of the limit that the program takes, with its libraries: the caller knows them.
+  std::size_t program_memory = 0;
 };
 
 /// The size of a surface.

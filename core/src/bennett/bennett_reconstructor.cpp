@@ -22,11 +22,10 @@
 namespace octurn {
 namespace {
 
-// What a process takes beside its octrees, measured with a sensor's 640 x 480 samples: the program
-// and its libraries, and for each thread a snapshot, its points, and facets on their way out.
-constexpr std::size_t program_bytes = 10 * mebibyte;
+// Memory beside the octrees, measured with frames of 640 x 480 samples: each thread's snapshot, its
+// points, and its facets on their way out.
 constexpr std::size_t thread_bytes = 6 * mebibyte;
-constexpr std::size_t least_octree_bytes = 1 * mebibyte;
+constexpr std::size_t min_octree_bytes = 1 * mebibyte;
 
 /// @returns the options, if each is in its range
 const ReconstructOptions& checked(const ReconstructOptions& options) {
@@ -38,7 +37,8 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
   if (options.level && (*options.level < 0 || *options.level > levels)) {
     refuse("level: must be from 0, the root, to " + std::to_string(levels) + ", the leaves");
   }
-  check_memory_limit(options.memory_limit, program_bytes + thread_bytes + least_octree_bytes);
+  check_memory_limit(options.memory_limit,
+                     options.program_memory + thread_bytes + min_octree_bytes);
   return options;
 }
 
@@ -47,7 +47,7 @@ int thread_count(const ReconstructOptions& options) {
   if (options.memory_limit == 0) {
     return options.threads;
   }
-  const std::size_t room = options.memory_limit - program_bytes - least_octree_bytes;
+  const std::size_t room = options.memory_limit - options.program_memory - min_octree_bytes;
   return std::min(options.threads, static_cast<int>(room / thread_bytes));
 }
 
@@ -58,7 +58,7 @@ std::size_t octree_bytes(const ReconstructOptions& options) {
     return std::numeric_limits<std::size_t>::max();
   }
   const auto threads = static_cast<std::size_t>(thread_count(options));
-  return (options.memory_limit - program_bytes - threads * thread_bytes) / (threads + 1);
+  return (options.memory_limit - options.program_memory - threads * thread_bytes) / (threads + 1);
 }
 
 Octree octree_for(const ReconstructOptions& options) {
@@ -131,7 +131,8 @@ void BennettReconstructor::shrink_slab(Octree& octree, BrickLayers& slab) const 
     const auto layers =
         static_cast<std::size_t>(max_bricks * 2 * sizeof(Brick));  // and their nodes
     const auto threads = static_cast<std::size_t>(wanted_threads_);
-    const std::size_t enough = program_bytes + threads * thread_bytes + (threads + 1) * layers;
+    const std::size_t enough =
+        options_.program_memory + threads * thread_bytes + (threads + 1) * layers;
     throw Error(ErrorCode::memory_limit, "memory limit: one layer of the octree does not fit",
                 "Allow " + mb_text(enough) + ", or choose a larger leaf size.");
   }

@@ -1,7 +1,5 @@
 #include "tsdf/solid_reconstructor.hpp"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,19 +32,17 @@ constexpr double min_truncation_voxels = 2.5;
 // one this far above the box's bottom.
 constexpr double base_margin = 0.001;  // metres
 
-// Memory of a process beside its volume, measured with frames of 640 x 480 samples: the program and
-// its libraries; each thread's snapshot and conditioned depth; the simplifier's window.
-constexpr std::size_t program_bytes = 12 * mebibyte;
+// Memory beside the volume, measured with frames of 640 x 480 samples: each thread's snapshot and
+// conditioned depth; the simplifier's window.
 constexpr std::size_t thread_bytes = 14 * mebibyte;
 constexpr std::size_t surface_bytes = 16 * mebibyte;
 constexpr std::size_t min_volume_bytes = 4 * mebibyte;
-constexpr int large_block_bytes = 1 << 20;  // are returned to the system when they are freed
 
 /// The simplifier's margin below the upper end of its window.
 constexpr double margin_voxels = 8;
 
 std::size_t fixed_overhead(const ReconstructOptions& options) {
-  return program_bytes +
+  return options.program_memory +
          std::max(static_cast<std::size_t>(options.threads) * thread_bytes, surface_bytes);
 }
 
@@ -145,12 +141,7 @@ int halvings_to(double leaf_size, const VoxelGrid& grid) {
 
 SolidReconstructor::SolidReconstructor(const ReconstructOptions& options)
     : options_(checked(options)),
-      volume_(make_grid(options_), slab_budget(options_, CompactTsdf(make_grid(options_)))) {
-  if (options_.memory_limit != 0) {
-    // Else the C library keeps what one thread frees for that thread alone: 24 MB with two threads.
-    ::mallopt(M_MMAP_THRESHOLD, large_block_bytes);
-  }
-}
+      volume_(make_grid(options_), slab_budget(options_, CompactTsdf(make_grid(options_)))) {}
 
 void SolidReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) try {
   throw_if_stopped(stop);
@@ -228,9 +219,6 @@ CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
   if (volume_.layers().low > 0) {
     volume_.reset_to_slab(top, 0);  // its bricks are of no more use
   }
-  if (options_.memory_limit != 0) {
-    ::malloc_trim(0);  // else the C library keeps the memory of slabs and conditioned depth
-  }
   return known;
 }
 
@@ -238,7 +226,7 @@ CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
 void SolidReconstructor::expect_room_for_masks(const CompactTsdf& known,
                                                const HoleFilledSdf& sdf) const {
   if (options_.memory_limit != 0 &&
-      program_bytes + known.bytes() + mask_bytes(sdf) > options_.memory_limit) {
+      options_.program_memory + known.bytes() + mask_bytes(sdf) > options_.memory_limit) {
     throw_memory_limit(options_);
   }
 }

@@ -12,6 +12,7 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
+#include "process_memory.hpp"
 #include "progress_bar.hpp"
 #include "settings/field.hpp"
 #include "signal_stop.hpp"
@@ -151,7 +152,11 @@ void reconstruct(const ReconstructArguments& arguments) try {
   if (!arguments.settings.contains("clip_mm")) {
     settings.scan.clip = scan.clip;
   }
-  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options_from(settings));
+  const ReconstructOptions options = options_from(settings);
+  if (options.memory_limit != 0) {
+    return_freed_memory();
+  }
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   MeshCheck check;
   std::optional<SurfaceCount> count;
   Times times;

@@ -7,6 +7,7 @@
 #include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "process_memory.hpp"
 #include "progress_bar.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
@@ -92,6 +93,7 @@ void scan(const ScanArguments& arguments) {
 
   const SignalStop signal;
   ScanStore store(config.data);
+  return_freed_memory();
   Scanner scanner(rig, config.limits, store);
 
   scanner.expect_ready();             // or there would be no more than an empty folder

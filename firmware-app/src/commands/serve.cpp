@@ -5,6 +5,7 @@
 #include "http/api.hpp"
 #include "http/http_server.hpp"
 #include "log.hpp"
+#include "process_memory.hpp"
 #include "scan/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "service_manager.hpp"
@@ -42,6 +43,7 @@ void wait(const Scanner& scanner) {
 }  // namespace
 
 void serve(const ServeArguments& arguments) {
+  return_freed_memory();
   const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks

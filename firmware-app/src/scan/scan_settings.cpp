@@ -26,6 +26,10 @@ constexpr double max_root_mm = 5000;
 constexpr double min_leaf_mm = 0.1;   // 16 levels of the largest root are 0.08
 constexpr double min_memory_mb = 17;  // of the intersection of one thread
 
+// What the program and its libraries take beside a reconstruction, as measured on x86-64.
+const auto solid_program_bytes = static_cast<std::size_t>(bytes_from_mb(12));
+const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(10));
+
 /// @return nothing if they are no rows of numbers in their range
 std::optional<Eigen::Matrix4d> matrix_from(const json& rows) {
   const auto in_range = [](const json& value) {
@@ -225,7 +229,9 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
           .clip = settings.clip,
           .target_error = settings.target_error,
           .threads = limits.threads,
-          .memory_limit = limits.memory_bytes};
+          .memory_limit = limits.memory_bytes,
+          .program_memory =
+              settings.method == Method::solid ? solid_program_bytes : intersection_program_bytes};
 }
 
 json json_of(const ScanSettings& settings) {

@@ -144,7 +144,7 @@ TEST(Solid, GivesTheSameBytesForAnyThreadsAndMemory) {
     ReconstructOptions with = options();
     with.threads = threads;
     EXPECT_TRUE(same_bytes(part_of(with, snapshots), alone)) << threads << " threads";
-    with.memory_limit = std::size_t{64} << 20U;
+    with.memory_limit = std::size_t{52} << 20U;
     EXPECT_TRUE(same_bytes(part_of(with, snapshots), alone)) << threads << " threads, limited";
   }
 }
@@ -158,7 +158,7 @@ TEST(Solid, GivesTheSameBytesInSlabs) {
                                  return all.read(i);
                                }};
   ReconstructOptions tight = options(0.0005);
-  tight.memory_limit = std::size_t{44} << 20U;
+  tight.memory_limit = std::size_t{32} << 20U;
   EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
   EXPECT_GT(reads, all.count);
 
@@ -244,7 +244,7 @@ TEST(Solid, SaysWhatIsWrongWithItsOptions) {
 
 TEST(Solid, SaysWhatMemoryItNeeds) {
   ReconstructOptions with = options(0.0005);
-  with.memory_limit = std::size_t{34} << 20U;
+  with.memory_limit = std::size_t{22} << 20U;
   EXPECT_EQ(code_thrown_by([&] {
               part_of(with, rendered(block({0.1, 0.1, 0.1}), 4));
             }),

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -19,14 +20,30 @@ struct Shot {
   double angle = 0.0;     ///< of the platform, radians, counter-clockwise seen from above
 };
 
+/// A pose that was solved from a scan's own snapshots, as `CalibrationReport` has it.
+struct SolvedPose {
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
+  double position_sigma = 0;                                               ///< metres
+  double direction_sigma = 0;                                              ///< radians
+  double before = 0;  ///< metres, that two stops disagree about the object with the told pose
+  double after = 0;   ///< the same with this one
+};
+
 /// What `scan.json` says (format "octurn-scan", version 1).
 struct Scan {
   std::string sensor_name = {};
   Intrinsics intrinsics = {};
-  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
+  /// As the rig was told when the scan was taken, metres.
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
+  std::optional<SolvedPose> solved = {};
   Box clip = {};  ///< metres, platform frame
   std::vector<Shot> shots = {};
 };
+
+/// The pose that models are made with: the solved one, else the one that the rig was told.
+inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
+  return scan.solved ? scan.solved->platform_from_sensor : scan.platform_from_sensor;
+}
 
 /// Reads and checks the text of a `scan.json`. Keys that are not of the contract are passed over.
 ///
@@ -39,7 +56,7 @@ Scan parse_scan(std::string_view text);
 /// The same from `folder/scan.json`. @throws Error "scan-missing"  also if there is no such file
 Scan read_scan(const std::filesystem::path& folder);
 
-/// Reads the depth image of one shot and its pose.
+/// Reads the depth image of one shot; its pose is `model_pose` at the shot's angle.
 ///
 /// @throws Error "scan-missing"        if there is no such file
 /// @throws Error "snapshot-malformed"  if it is no 16-bit greyscale PNG, is damaged or cut short,
@@ -56,6 +73,10 @@ SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan&
 /// Writes `folder/scan.json`, whole or not at all, and returns when it is on the disk.
 /// @throws Error "disk-full", "write-failed"
 void write_scan(const std::filesystem::path& folder, const Scan& scan);
+
+/// Writes a solved pose into `folder/scan.json`, whole or not at all. All its other keys stay.
+/// @throws Error  as `read_scan` and `write_scan`
+void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved);
 
 /// The file of the shot of that index: "snapshots/000.png".
 std::string shot_file(int index);

@@ -34,6 +34,7 @@ constexpr std::size_t min_plane_inliers = 500;
 constexpr double max_plane_rms = 0.0015;  // metres
 constexpr double min_plane_share = 0.3;
 constexpr double max_position_sigma = 0.0006;  // metres
+constexpr double worthwhile_sigma = 0.05;      // of how far the pose moves: a wrong one is worse
 constexpr double max_direction_sigma_deg = 0.1;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 constexpr double may_worsen = 1.02;   // of the median, which is not what is minimised
@@ -199,7 +200,8 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (last_step > max_last_step) {
     return "the axis did not settle";
   }
-  if (report.position_sigma > max_position_sigma) {
+  const double moved = std::hypot(report.shift, report.lift);
+  if (report.position_sigma > std::max(max_position_sigma, worthwhile_sigma * moved)) {
     return "the axis is uncertain by " + mm_text(report.position_sigma) +
            ": stand another object on the platform";
   }
@@ -213,10 +215,9 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (report.after > may_worsen * report.before) {
     return "the stops agree better as told";
   }
-  if (std::hypot(report.shift, report.lift) > max_shift ||
-      report.tilt > radians_from_degrees(max_tilt_deg)) {
-    return "the sensor stands " + mm_text(std::hypot(report.shift, report.lift)) + " and " +
-           deg_text(report.tilt) + " from where it was told: calibrate the rig";
+  if (moved > max_shift || report.tilt > radians_from_degrees(max_tilt_deg)) {
+    return "the sensor stands " + mm_text(moved) + " and " + deg_text(report.tilt) +
+           " from where it was told: calibrate the rig";
   }
   return {};
 }

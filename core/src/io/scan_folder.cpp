@@ -89,6 +89,16 @@ Shot shot_from(const JsonValue& shot) {
   return {.file = text, .angle = radians_from_degrees(keys.at("angle_deg").number())};
 }
 
+SolvedPose solved_from(const JsonValue& solved) {
+  JsonObject keys(solved);
+  const auto metres = [&](std::string_view key) { return metres_from_mm(keys.at(key).number()); };
+  return {.platform_from_sensor = pose_from(keys.at("platform_from_sensor")),
+          .position_sigma = metres("sigma_mm"),
+          .direction_sigma = radians_from_degrees(keys.at("sigma_deg").number()),
+          .before = metres("before_mm"),
+          .after = metres("after_mm")};
+}
+
 Scan scan_from(const json& document) {
   JsonObject root(document, malformed, "");
   if (const JsonValue format = root.at("format"); format.text() != "octurn-scan") {
@@ -104,6 +114,9 @@ Scan scan_from(const json& document) {
             .platform_from_sensor = pose_from(calibration.at("platform_from_sensor")),
             .clip = clip_from(root.at("clip_m")),
             .shots = {}};
+  if (const auto solved = calibration.value("solved")) {
+    scan.solved = solved_from(*solved);
+  }
   for (const JsonValue& shot : root.at("snapshots").elements()) {
     scan.shots.push_back(shot_from(shot));
   }
@@ -111,6 +124,28 @@ Scan scan_from(const json& document) {
     throw Error(ErrorCode::scan_empty, "\"snapshots\" is empty: there is nothing to reconstruct");
   }
   return scan;
+}
+
+json to_json(const Eigen::Isometry3d& pose) {
+  json matrix = json::array();
+  for (int row = 0; row < 4; ++row) {
+    matrix.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
+  }
+  return matrix;
+}
+
+json to_json(const SolvedPose& solved) {
+  return {{"platform_from_sensor", to_json(solved.platform_from_sensor)},
+          {"sigma_mm", mm_from_metres(solved.position_sigma)},
+          {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
+          {"before_mm", mm_from_metres(solved.before)},
+          {"after_mm", mm_from_metres(solved.after)}};
+}
+
+/// A device may call itself by bytes that are no UTF-8; they are replaced.
+void write_document(const std::filesystem::path& folder, const json& document) {
+  write_file(folder / "scan.json",
+             document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -148,7 +183,7 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
   return {.frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
                                     intrinsics.height),
           .intrinsics = intrinsics,
-          .object_from_sensor = object_from_sensor(scan.platform_from_sensor, shot.angle)};
+          .object_from_sensor = object_from_sensor(model_pose(scan), shot.angle)};
 }
 
 SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
@@ -163,10 +198,9 @@ SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan&
 
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
   const Intrinsics& intrinsics = scan.intrinsics;
-  const Eigen::Matrix4d& pose = scan.platform_from_sensor.matrix();
-  json matrix = json::array();
-  for (int row = 0; row < 4; ++row) {
-    matrix.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
+  json calibration{{"platform_from_sensor", to_json(scan.platform_from_sensor)}};
+  if (scan.solved) {
+    calibration["solved"] = to_json(*scan.solved);
   }
   json shots = json::array();
   for (const Shot& shot : scan.shots) {
@@ -185,13 +219,19 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
         {"cx", intrinsics.cx},
         {"cy", intrinsics.cy},
         {"depth_unit_m", intrinsics.depth_unit}}},
-      {"calibration", {{"platform_from_sensor", matrix}}},
+      {"calibration", calibration},
       {"clip_m", {{"min", point(scan.clip.min)}, {"max", point(scan.clip.max)}}},
       {"snapshots", shots},
   };
-  // A device may call itself by bytes that are no UTF-8; they are replaced.
-  write_file(folder / "scan.json",
-             document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  write_document(folder, document);
+}
+
+void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved) {
+  const std::string text = read_bytes(folder / "scan.json");
+  parse_scan(text);  // refuses what is no scan
+  json document = parse_json(text, malformed, "scan.json");
+  document["calibration"]["solved"] = to_json(solved);
+  write_document(folder, document);
 }
 
 std::string shot_file(int index) {

@@ -138,6 +138,17 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
   command.callback([&] { reconstruct(arguments); });
 }
 
+void add_calibrate(CLI::App& program, CalibrateArguments& arguments, int& status) {
+  CLI::App& command = *program.add_subcommand(
+      "calibrate", "where the sensor stands, as the snapshots of a scan tell");
+  command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
+  command.add_flag("--apply", arguments.apply,
+                   "write what is accepted into scan.json, for models to come");
+  command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
+  command.footer("It ends with 0 if the pose is accepted, with 1 if it is not.");
+  command.callback([&arguments, &status] { status = calibrate(arguments) ? 0 : 1; });
+}
+
 void add_password(CLI::App& program, std::filesystem::path& file) {
   CLI::App& command = *program.add_subcommand("password", "gives the page a password");
   command
@@ -173,6 +184,7 @@ int run(int argc, char** argv) {
   RecordArguments record_arguments;
   DoctorArguments doctor_arguments;
   ReconstructArguments reconstruct_arguments;
+  CalibrateArguments calibrate_arguments;
   std::filesystem::path password_file;
   std::filesystem::path update_file;
   int status = 0;
@@ -181,6 +193,7 @@ int run(int argc, char** argv) {
   add_record(program, record_arguments);
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
+  add_calibrate(program, calibrate_arguments, status);
   add_password(program, password_file);
   add_update(program, update_file);
 

@@ -88,6 +88,16 @@ struct ReconstructArguments {
 /// `octurn reconstruct`: a model from a scan folder.
 void reconstruct(const ReconstructArguments& arguments);
 
+struct CalibrateArguments {
+  std::filesystem::path folder = {};
+  bool apply = false;  ///< writes what is accepted into the folder's scan.json
+  bool json = false;   ///< one line of JSON in place of text
+};
+
+/// `octurn calibrate`: the sensor's pose, from a stored scan.
+/// @return false if what was solved is not to be trusted
+bool calibrate(const CalibrateArguments& arguments);
+
 /// `octurn password`: reads a password, a line, from standard input, and writes the file that
 /// `password_file` of the configuration names.
 void set_password(const std::filesystem::path& file);

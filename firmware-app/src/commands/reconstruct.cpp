@@ -14,6 +14,7 @@
 #include "octurn/units.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
+#include "scan/solve_pose.hpp"
 #include "settings/field.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
@@ -141,6 +142,21 @@ SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& sca
           }};
 }
 
+/// The scan with the pose that its model is made with. A solved pose that merely confirms the told
+/// one does not replace it: the model keeps its bytes.
+Scan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
+               const std::stop_token& stop) {
+  if (settings.pose == PoseSource::told) {
+    scan.solved.reset();
+  } else if (!scan.solved) {
+    const CalibrationReport report = solve_pose(folder, scan, settings.limits.threads, stop);
+    if (report.accepted && !report.confirms_told()) {
+      scan.solved = to_solved_pose(report);
+    }
+  }
+  return scan;
+}
+
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
@@ -148,7 +164,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   const std::stop_token stop = signal.token();
   ModelSettings settings = settings_from(arguments.settings);
   expect_writable(arguments.output);
-  const Scan scan = read_scan(arguments.folder);
+  const Scan scan = with_pose(read_scan(arguments.folder), arguments.folder, settings, stop);
   if (!arguments.settings.contains("clip_mm")) {
     settings.scan.clip = scan.clip;
   }

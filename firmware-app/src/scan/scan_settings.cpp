@@ -209,7 +209,15 @@ std::vector<Field> fields(ModelSettings& settings) {
                    .access = whole(settings.level, 0, max_levels),
                    .method = "intersection",
                    .default_text = "the leaves'"});
+  model.push_back({.key = "calibrate",
+                   .help = "pose of the sensor: auto solves it from the snapshots, told takes the "
+                           "one that the rig was told",
+                   .access = choice(settings.pose, {PoseSource::solved, PoseSource::told})});
   return joined(std::move(model), fields(settings.limits));
+}
+
+std::string_view name_of(PoseSource source) {
+  return source == PoseSource::solved ? "auto" : "told";
 }
 
 int available_threads() {

@@ -41,10 +41,20 @@ struct Limits {
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
+/// Which pose of the sensor a model is made with.
+enum class PoseSource {
+  solved,  ///< the scan's solved pose, else one solved from its snapshots, if that is better
+  told,    ///< what the rig was told
+};
+
+/// The source's name in settings: "auto", "told".
+std::string_view name_of(PoseSource source);
+
 /// What `octurn reconstruct` makes a model with.
 struct ModelSettings {
   ScanSettings scan = {.method = Method::intersection};
   std::optional<int> level = {};  ///< surface of this coarser level; intersection
+  PoseSource pose = PoseSource::solved;
   Limits limits = {.memory_bytes = 0};
 };
 

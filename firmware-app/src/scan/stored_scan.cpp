@@ -17,7 +17,7 @@ Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
                     .height = lens.height,
                     .depth = std::vector<std::uint16_t>(size)},
           .intrinsics = lens,
-          .object_from_sensor = object_from_sensor(scan.platform_from_sensor, shot.angle)};
+          .object_from_sensor = object_from_sensor(model_pose(scan), shot.angle)};
 }
 
 }  // namespace

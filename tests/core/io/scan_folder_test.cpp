@@ -103,6 +103,34 @@ TEST(WriteScan, WritesTheKeysOfTheContractAndNothingElse) {
   EXPECT_EQ(written, contract);
 }
 
+TEST(WriteSolvedPose, StandsBesideTheToldOneAndIsThatOfModels) {
+  const TemporaryFolder folder;
+  write_contract_scan(folder.path());
+  json before = contract;
+  before["filter"] = "average";  // a key that readers pass over
+  put(folder.path() / "scan.json", before.dump());
+  SolvedPose solved{.position_sigma = 0.00025, .direction_sigma = 0.001, .before = 0.002};
+  solved.after = 0.0005;
+  solved.platform_from_sensor.translation() = Eigen::Vector3d(0.25, -0.5, 0.125);
+
+  write_solved_pose(folder.path(), solved);
+
+  const json written = json::parse(content_of(folder.path() / "scan.json"));
+  EXPECT_EQ(written["calibration"]["platform_from_sensor"],
+            contract["calibration"]["platform_from_sensor"]);
+  EXPECT_EQ(written["calibration"]["solved"]["sigma_mm"], 0.25);
+  EXPECT_EQ(written["filter"], "average");
+  const Scan read = read_scan(folder.path());
+  ASSERT_TRUE(read.solved);
+  EXPECT_EQ(read.solved->platform_from_sensor.matrix(), solved.platform_from_sensor.matrix());
+  EXPECT_DOUBLE_EQ(read.solved->direction_sigma, 0.001);
+  EXPECT_DOUBLE_EQ(read.solved->after, 0.0005);
+  EXPECT_EQ(read_snapshot(folder.path(), read, read.shots[0]).object_from_sensor.translation(),
+            Eigen::Vector3d(0.25, -0.5, 0.125));
+  write_scan(folder.path(), read);
+  EXPECT_TRUE(read_scan(folder.path()).solved);
+}
+
 TEST(WriteScan, ReplacesWhatIsNoUtf8InASensorsName) {
   const TemporaryFolder folder;
   Scan scan = parse_scan(contract.dump());

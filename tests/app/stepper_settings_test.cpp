@@ -62,7 +62,8 @@ TEST(StepperSettings, SetMicrostepsAsTheDatasheetHasThem) {
                                                 {4, "a=L b=H c=L "},
                                                 {8, "a=H b=H c=L "},
                                                 {16, "a=H b=H c=H "}}) {
-    const StepperSettings settings{.microstep_lines = {"a", "b", "c"}, .microsteps = microsteps};
+    const StepperSettings settings{.lines = {.microsteps = {"a", "b", "c"}},
+                                   .microsteps = microsteps};
     EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H " + levels);
   }
 }

@@ -1,31 +1,12 @@
 #include "scan/rig.hpp"
 
-#include <system_error>
 #include <utility>
 
-#include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "scan/plan.hpp"
-#include "turntable/gpio_lines.hpp"
 #include "turntable/simulated_turntable.hpp"
 
 namespace octurn {
-
-Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
-  const std::vector<NamedLine> lines = lines_of(settings);
-  // Shared, as a std::function has to be copyable.
-  return [lines, chip = std::make_shared<GpioChip>(drive_header(lines))](Stepper::Line line,
-                                                                         bool high) {
-    const auto index = static_cast<std::size_t>(line);
-    try {
-      chip->set(index, high);
-    } catch (const std::system_error& error) {
-      throw Error(ErrorCode::turntable_failed,
-                  "line " + lines[index].name + " cannot be set: " + error.what(),
-                  "Start Octurn again.");
-    }
-  };
-}
 
 Rig::Rig(RigOptions options)
     : options_(std::move(options)), closed_angle_deg_(options_.platform_angle_deg) {}

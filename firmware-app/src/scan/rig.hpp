@@ -12,11 +12,6 @@
 
 namespace octurn {
 
-/// Drives the lines of the GPIO header that the settings name, as long as the returned function or
-/// a copy of it lives.
-/// @throws Error "turntable-missing" or "turntable-failed"
-Stepper::SetLine open_gpio_lines(const StepperSettings& settings);
-
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< for OpenNI2

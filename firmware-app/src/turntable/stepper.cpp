@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "rig/interruptible_sleep.hpp"
+#include "turntable/gpio_lines.hpp"
 #include "turntable/real_time.hpp"
 
 namespace octurn {
@@ -168,6 +170,22 @@ void Stepper::report(const LatePulses& late, std::int64_t pulses) {
   log::warning("turntable", std::to_string(late.count) + " of " + std::to_string(pulses) +
                                 " pulses late, by " + std::to_string(longest.count()) +
                                 " ms at most");
+}
+
+Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
+  const std::vector<NamedLine> lines = lines_of(settings);
+  // Shared, as a std::function has to be copyable.
+  return [lines, chip = std::make_shared<GpioChip>(drive_header(lines))](Stepper::Line line,
+                                                                         bool high) {
+    const auto index = static_cast<std::size_t>(line);
+    try {
+      chip->set(index, high);
+    } catch (const std::system_error& error) {
+      throw Error("turntable-failed",
+                  "line " + lines[index].name + " cannot be set: " + error.what(),
+                  "Start Octurn again.");
+    }
+  };
 }
 
 }  // namespace octurn

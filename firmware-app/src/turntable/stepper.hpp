@@ -86,4 +86,9 @@ class Stepper final : public Turntable {
   std::jthread worker_;  // the last member: it joins before the members that it uses are destroyed
 };
 
+/// Drives the lines of the GPIO header that the settings name, as long as the returned function or
+/// a copy of it lives.
+/// @throws Error "turntable-missing" or "turntable-failed"
+Stepper::SetLine open_gpio_lines(const StepperSettings& settings);
+
 }  // namespace octurn

@@ -42,8 +42,8 @@ constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_
                                                   "microstep_lines", "microstep_lines"};
 
 void check_lines(const JsonObject& keys, const StepperSettings& settings) {
-  if (!settings.microstep_lines.empty() && settings.microstep_lines.size() != 3) {
-    keys.refuse("microstep_lines", settings.microstep_lines,
+  if (!settings.lines.microsteps.empty() && settings.lines.microsteps.size() != 3) {
+    keys.refuse("microstep_lines", settings.lines.microsteps,
                 "the names of three lines, or of none");
   }
   const std::vector<NamedLine> lines = lines_of(settings);
@@ -55,23 +55,23 @@ void check_lines(const JsonObject& keys, const StepperSettings& settings) {
   }
 }
 
-std::vector<Field> line_fields(StepperSettings& s) {
+std::vector<Field> line_fields(StepperLines& lines) {
   return {
       {.key = "step_line",
        .unit = "line",
        .help = "to STEP of the A4988. Lines have the kernel's names, which are the Pi's own: "
                "`GPIO2` to `GPIO27`",
-       .access = text(s.step_line)},
-      {.key = "direction_line", .unit = "line", .help = "to DIR", .access = text(s.direction_line)},
+       .access = text(lines.step)},
+      {.key = "direction_line", .unit = "line", .help = "to DIR", .access = text(lines.direction)},
       {.key = "enable_line",
        .unit = "line",
        .help = "to ENABLE. Of `GPIO4` to `GPIO8`, which are pulled up while the Pi boots, so that "
                "the motor is off",
-       .access = text(s.enable_line)},
+       .access = text(lines.enable)},
       {.key = "microstep_lines",
        .unit = "lines",
        .help = "to MS1, MS2 and MS3; empty if these are wired to fixed levels",
-       .access = texts(s.microstep_lines)},
+       .access = texts(lines.microsteps)},
   };
 }
 
@@ -130,7 +130,7 @@ std::vector<Field> motion_fields(StepperSettings& s) {
 }  // namespace
 
 std::vector<Field> fields(StepperSettings& settings) {
-  std::vector<Field> all = line_fields(settings);
+  std::vector<Field> all = line_fields(settings.lines);
   for (const std::vector<Field>& more : {gear_fields(settings), motion_fields(settings)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
@@ -178,13 +178,13 @@ Motion motion_of(const StepperSettings& settings) {
 }
 
 std::vector<NamedLine> lines_of(const StepperSettings& settings) {
-  std::vector<NamedLine> lines = {{.name = settings.step_line, .high = false},
-                                  {.name = settings.direction_line, .high = false},
-                                  {.name = settings.enable_line, .high = true}};
+  std::vector<NamedLine> lines = {{.name = settings.lines.step, .high = false},
+                                  {.name = settings.lines.direction, .high = false},
+                                  {.name = settings.lines.enable, .high = true}};
   const auto* levels =
       std::ranges::find(microsteppings, settings.microsteps, &Microstepping::microsteps);
-  for (std::size_t line = 0; line < settings.microstep_lines.size(); ++line) {
-    lines.push_back({.name = settings.microstep_lines[line], .high = levels->levels[line]});
+  for (std::size_t line = 0; line < settings.lines.microsteps.size(); ++line) {
+    lines.push_back({.name = settings.lines.microsteps[line], .high = levels->levels[line]});
   }
   return lines;
 }

@@ -11,16 +11,21 @@
 
 namespace octurn {
 
+/// The GPIO lines to the inputs of an A4988, by the kernel's names.
+struct StepperLines {
+  std::string step = "GPIO17";
+  std::string direction = "GPIO27";
+  std::string enable = "GPIO5";              ///< pulled up while the Pi boots, as GPIO0 to 8 are
+  std::vector<std::string> microsteps = {};  ///< MS1, MS2 and MS3; none: they are wired
+};
+
 /// The stepper's wiring, gear and motion; `fields` explains each of them.
 struct StepperSettings {
-  std::string step_line = "GPIO17";
-  std::string direction_line = "GPIO27";
-  std::string enable_line = "GPIO5";  ///< pulled up while the Pi boots, as GPIO0 to 8 are
-  std::vector<std::string> microstep_lines = {};  ///< MS1, MS2 and MS3; none: they are wired
-  int microsteps = 4;                             ///< of a full step: 1, 2, 4, 8 or 16
-  int full_steps = 200;                           ///< of a turn of the motor
-  double gear_ratio = 1;                          ///< turns of the motor for one of the platform
-  bool reversed = false;                          ///< DIR high turns the platform clockwise
+  StepperLines lines = {};
+  int microsteps = 4;     ///< of a full step: 1, 2, 4, 8 or 16
+  int full_steps = 200;   ///< of a turn of the motor
+  double gear_ratio = 1;  ///< turns of the motor for one of the platform
+  bool reversed = false;  ///< DIR high turns the platform clockwise
   double speed_steps_per_second = 800;
   double start_speed_steps_per_second = 200;
   double ramp_steps_per_second2 = 2000;

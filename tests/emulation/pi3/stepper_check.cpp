@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "octurn/error.hpp"
-#include "scan/rig.hpp"
 #include "signal_stop.hpp"
+#include "turntable/stepper.hpp"
 
 namespace octurn {
 namespace {
@@ -20,7 +20,7 @@ void turn(const std::vector<int>& positions) {
   const SignalStop signal;
   const std::stop_callback tell(
       signal.token(), [] { std::ofstream("/sys/kernel/tracing/trace_marker") << "STOP\n"; });
-  const StepperSettings settings = {.microstep_lines = {"GPIO22", "GPIO23", "GPIO24"}};
+  const StepperSettings settings = {.lines = {.microsteps = {"GPIO22", "GPIO23", "GPIO24"}}};
   Stepper stepper(settings, open_gpio_lines(settings));
   bool arrived = true;
   for (const int position : positions) {

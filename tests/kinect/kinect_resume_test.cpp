@@ -8,6 +8,7 @@
 #include "kinect/kinect_on_desk.hpp"
 #include "kinect/kinect_view.hpp"
 #include "support/daemon.hpp"
+#include "support/patience.hpp"
 
 namespace octurn {
 namespace {
@@ -56,7 +57,7 @@ TEST_P(KinectFaults, PauseAScanThatIsResumedWhenTheyAreMended) {
   EXPECT_EQ(daemon.post(scan + "/resume", "").status, 503);
 
   fault().end(desk_);
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   Reply resumed;
   while (resumed.status != 202 && std::chrono::steady_clock::now() < deadline) {
     resumed = daemon.post(scan + "/resume", "");

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <sys/time.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include "file_descriptor.hpp"
 #include "http/message.hpp"
+#include "support/patience.hpp"
 
 namespace octurn {
 
@@ -46,8 +48,8 @@ inline FileDescriptor connected_from(std::uint32_t client, int port) {
   const sockaddr_in own = internet_address(client, 0);
   EXPECT_EQ(::bind(socket.number(), reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
   const sockaddr_in address = internet_address(INADDR_LOOPBACK, port);
-  const timeval patience{.tv_sec = 20, .tv_usec = 0};
-  ::setsockopt(socket.number(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  const timeval limit{.tv_sec = patience.count(), .tv_usec = 0};
+  ::setsockopt(socket.number(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
   EXPECT_EQ(::connect(socket.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address),
             0);
   return socket;
@@ -65,11 +67,14 @@ inline void send_text(const FileDescriptor& socket, std::string_view text) {
   }
 }
 
+/// What comes until the server closes the connection. A server that keeps it open and silent for
+/// `patience` fails the test.
 inline std::string receive_all(const FileDescriptor& socket) {
   std::string text;
   std::string part(65536, '\0');
   for (ssize_t got = 1; got > 0;) {
     got = ::recv(socket.number(), part.data(), part.size(), 0);
+    EXPECT_FALSE(got < 0 && errno == EAGAIN) << "the connection is still open";
     text.append(part, 0, static_cast<std::size_t>(got > 0 ? got : 0));
   }
   return text;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "file_descriptor.hpp"
+#include "support/patience.hpp"
 
 namespace octurn {
 
@@ -68,12 +69,13 @@ class Program {
 
   void send_signal(int signal) const { ::kill(process_, signal); }
 
-  /// The next line of its standard output; empty at the end, or if none comes for 20 s.
+  /// The next line of its standard output; empty at the end, or if none comes within `patience`.
   std::string read_line() {
     std::string line;
     char letter = 0;
     pollfd ready{.fd = out_.number(), .events = POLLIN, .revents = 0};
-    while (::poll(&ready, 1, 20'000) == 1 && ::read(out_.number(), &letter, 1) == 1) {
+    constexpr int limit_ms = std::chrono::milliseconds(patience).count();
+    while (::poll(&ready, 1, limit_ms) == 1 && ::read(out_.number(), &letter, 1) == 1) {
       if (letter == '\n') {
         break;
       }

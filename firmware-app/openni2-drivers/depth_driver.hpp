@@ -2,7 +2,7 @@
 
 #include <new>
 
-// OpenNI2's header for drivers takes these two from a library that is not packaged.
+// OpenNI2's header for drivers expects these two from a library that Debian does not package.
 #define XN_NEW(type, argument) new (std::nothrow) type(argument)
 #define XN_DELETE(pointer) delete (pointer)
 #include <Driver/OniDriverAPI.h>
@@ -30,15 +30,16 @@ class DepthDevice : public oni::driver::DeviceBase {
   OniSensorInfo sensor_ = {ONI_SENSOR_DEPTH, 1, &mode_};
 };
 
-/// A driver of devices whose URIs begin with a scheme. It starts no thread of its own that would
-/// tell of devices: OpenNI2's shutdown would wait for it for ever.
+/// A driver of the devices whose URIs begin with one scheme. It has no thread that watches for
+/// devices: OpenNI2's shutdown would wait for that thread for ever.
 class DepthDriver : public oni::driver::DriverBase {
  public:
-  /// @param device_name  of every device
+  /// @param device_name  the name of every device
   DepthDriver(OniDriverServices* services, std::string_view scheme, std::string_view device_name)
       : DriverBase(services), scheme_(scheme), device_name_(device_name) {}
 
-  /// Takes every URI of its scheme, also one that `open` will refuse: only its reasons are heard.
+  /// Accepts every URI of its scheme, even one that `open` will refuse: OpenNI2 passes on the
+  /// errors of `open` alone.
   OniStatus tryDevice(const char* uri) override;
 
   oni::driver::DeviceBase* deviceOpen(const char* uri, const char* mode) override;

@@ -91,7 +91,7 @@ OniStatus DepthStream::getProperty(int property, void* data, int* size) {
   }
 }
 
-/// The mode and the mirroring may be set to what they are.
+/// The mode and the mirroring can be set to their current values only.
 OniStatus DepthStream::setProperty(int property, const void* data, int size) {
   if (property == ONI_STREAM_PROPERTY_VIDEO_MODE) {
     OniVideoMode mode = {};
@@ -106,7 +106,7 @@ OniStatus DepthStream::setProperty(int property, const void* data, int size) {
   return ONI_STATUS_NOT_SUPPORTED;
 }
 
-/// What a recording keeps of this stream.
+/// The properties that a recording stores of this stream.
 void DepthStream::notifyAllProperties() {
   const float horizontal = field_of_view(width, focal_length_);
   const float vertical = field_of_view(height, focal_length_);

@@ -9,7 +9,7 @@
 namespace octurn {
 
 /// The depth stream of a Kinect v1, real or simulated: DEPTH_100_UM, 640 x 480, 30 frames a second.
-/// It answers what OpenNI2 asks and hands over frames; where those come from is its kind's affair.
+/// It answers OpenNI2's requests and hands over the frames that a derived class produces.
 class DepthStream : public oni::driver::StreamBase {
  public:
   /// @param focal_length  of the depth camera, pixels

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// Hands out the value of a property.
-/// @return ONI_STATUS_BAD_PARAMETER if the asker expects another size
+/// Copies the value of a property to OpenNI2.
+/// @return ONI_STATUS_BAD_PARAMETER if the caller expects another size
 template <typename Value>
 OniStatus give_property(const Value& value, void* data, int* size) {
   static_assert(std::is_trivially_copyable_v<Value>);

@@ -5,7 +5,7 @@
 namespace octurn {
 
 DepthTable depth_table(const KinectParameters& parameters) {
-  constexpr double farthest = 65534;  // recordings lose what is not below the largest value
+  constexpr double farthest = 65534;  // recordings lose the largest value, 65535
   const auto& [baseline, reference, pixel, shift] = parameters;
   DepthTable depths = {};
   for (int reading = 0; reading < no_kinect_reading; ++reading) {

@@ -5,10 +5,10 @@
 
 namespace octurn {
 
-/// How one Kinect v1 measures, as its factory has written into it. The defaults are typical.
+/// Calibration of one Kinect v1, written into it by the factory. The defaults are typical.
 struct KinectParameters {
   double baseline_cm = 7.5;            ///< from the projector to the depth camera
-  double reference_distance_cm = 120;  ///< of the plane whose pattern the sensor remembers
+  double reference_distance_cm = 120;  ///< of the plane of the stored reference pattern
   double reference_pixel_cm = 0.1042;  ///< of that plane, seen by one pixel of 1280 x 960
   double shift = 200;                  ///< of readings, so that they are positive
 
@@ -16,11 +16,11 @@ struct KinectParameters {
   double focal_length() const { return reference_distance_cm / (2 * reference_pixel_cm); }
 };
 
-/// The 11-bit reading that stands for none.
+/// The 11-bit reading of a pixel without depth.
 inline constexpr int no_kinect_reading = 2047;
 
-/// The depth of each of the 2048 readings in tenths of a millimetre, to the nearest; 0 for no
-/// reading, for those that stand for no depth, and for those farther than 16 bits can tell.
+/// The depth of each of the 2048 readings, rounded to tenths of a millimetre. It is 0 for
+/// `no_kinect_reading`, for readings beyond infinity, and for depths that 16 bits cannot hold.
 using DepthTable = std::array<std::uint16_t, no_kinect_reading + 1>;
 
 /// With the metric shift m = ((reading - 4 shift) / 4 - 3/8) p, the depth is

@@ -1,5 +1,5 @@
 // Octurn's driver for the Kinect v1 as OpenNI2 loads it: models 1414, 1473 and Kinect for Windows.
-// Kinects are looked for when OpenNI2 starts, and again whenever one is opened by its URI.
+// It looks for Kinects when OpenNI2 starts, and again whenever one is opened by its URI.
 
 #include <charconv>
 #include <string>

@@ -15,13 +15,14 @@ using std::chrono::steady_clock;
 
 constexpr std::size_t pixels = std::size_t{640} * 480;
 constexpr int frame_bytes = static_cast<int>(pixels) * 11 / 8;
-constexpr int packet_bytes = 1748;  // of a frame in each but the last, without the header's 12
+constexpr int packet_bytes = 1748;  // payload of every packet but the last; the header has 12 more
 constexpr int packets = (frame_bytes + packet_bytes - 1) / packet_bytes;
 
 constexpr auto tilt_interval = std::chrono::seconds(1);
-constexpr timeval patience = {.tv_sec = 0, .tv_usec = 20'000};  // a stop is answered within it
+constexpr timeval patience = {.tv_sec = 0, .tv_usec = 20'000};  // a stop request waits no longer
 
-/// What libfreenect says goes to standard error by itself: faults are told by errors here.
+/// Silences libfreenect, which writes its log to standard error. This driver reports faults as
+/// errors.
 void pass_over(freenect_context* /*context*/, freenect_loglevel /*level*/, const char* /*text*/) {}
 
 int bytes_of_packet(int number) {
@@ -34,8 +35,8 @@ bool is_sound(const KinectParameters& parameters) {
          is_positive(parameters.reference_pixel_cm) && is_positive(parameters.shift);
 }
 
-/// The accelerometer's axes: x to the left seen from behind, y up, z forward; at rest it points
-/// up. A model without firmware for it seems to float: it has no tilt.
+/// The accelerometer's axes are x to the left (seen from behind), y up and z forward. At rest its
+/// reading points up. A model without firmware for it reads 0 g on all axes: it has no tilt.
 std::optional<Tilt> tilt_of(const freenect_raw_tilt_state& state) {
   constexpr double counts_per_g = FREENECT_COUNTS_PER_G;
   const double left = state.accelerometer_x;
@@ -127,7 +128,7 @@ void Kinect::stream(const std::stop_token& stop,
                     const std::function<void(const RawFrame&)>& on_frame) {
   const std::lock_guard lock(usb_);
   on_frame_ = &on_frame;
-  packets_in_order_ = -1;
+  incoming_.packets_in_order = -1;
   if (freenect_start_depth(device_) < 0) {
     is_lost_ = true;
     return;
@@ -147,26 +148,26 @@ void Kinect::stream(const std::stop_token& stop,
   freenect_stop_depth(device_);
 }
 
-/// Puts a packet where libfreenect would, and sees whether one is missing. libfreenect hands over
-/// such frames too, with what earlier frames left in the gap, and says so only in its log and not
-/// always: not in the first two frames, nor of a frame whose beginning went with the end of the
-/// one before.
+/// Copies a packet to its place in the frame, as libfreenect does by default, and checks that none
+/// was lost before it. libfreenect itself hands over incomplete frames, whose gaps show an earlier
+/// frame. It reports losses only in its log, and misses two kinds: those in the first two frames,
+/// and those that reach from the end of one frame into the next.
 void Kinect::take_packet(std::byte* frame, const void* data, int number, int bytes) {
   std::memcpy(frame + static_cast<std::ptrdiff_t>(number) * packet_bytes, data,
               static_cast<std::size_t>(bytes));
   if (number == 0) {
-    packets_in_order_ = 0;
-    frame_begin_ = steady_clock::now();
+    incoming_.packets_in_order = 0;
+    incoming_.begin = steady_clock::now();
   }
-  const bool follows = number == packets_in_order_ && bytes == bytes_of_packet(number);
-  packets_in_order_ = follows ? number + 1 : -1;
+  const bool follows = number == incoming_.packets_in_order && bytes == bytes_of_packet(number);
+  incoming_.packets_in_order = follows ? number + 1 : -1;
 }
 
-/// If the end of a frame is missing, libfreenect takes the first packet of the next before it hands
-/// the frame over, so that the count is wrong here as well.
+/// A frame that lost its end is dropped here, too: libfreenect has then taken the first packet of
+/// the next frame already, which makes the count wrong.
 void Kinect::take_frame(const std::uint16_t* readings) {
-  if (packets_in_order_ == packets) {
-    (*on_frame_)({.readings = std::span(readings, pixels), .time = frame_begin_});
+  if (incoming_.packets_in_order == packets) {
+    (*on_frame_)({.readings = std::span(readings, pixels), .time = incoming_.begin});
   } else {
     ++damaged_frames_;
   }

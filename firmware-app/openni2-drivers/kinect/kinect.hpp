@@ -18,7 +18,8 @@
 
 namespace octurn {
 
-/// A frame of 640 x 480 raw readings, and when its first packet came: its exposure had ended then.
+/// A frame of 640 x 480 raw readings, and the arrival of its first packet. The exposure ended
+/// before that.
 struct RawFrame {
   std::span<const std::uint16_t> readings = {};
   std::chrono::steady_clock::time_point time = {};
@@ -35,13 +36,13 @@ class Kinect {
   Kinect(const Kinect&) = delete;
   Kinect& operator=(const Kinect&) = delete;
 
-  /// How many are plugged in.
+  /// The number of Kinects that are plugged in.
   static int count();
 
   const KinectParameters& parameters() const { return parameters_; }
 
-  /// By its accelerometer, as read within the last second of a stream; nothing if it has none that
-  /// can be read.
+  /// The tilt by its accelerometer, which is read once a second while the stream runs. Nothing if
+  /// the model has no accelerometer that can be read.
   std::optional<Tilt> tilt() const;
 
   bool has_near_mode() const { return has_near_mode_; }
@@ -50,10 +51,10 @@ class Kinect {
   bool set_near_mode(bool on);
 
   /// Runs the depth stream until a stop is requested or the device is gone.
-  /// @param on_frame  given each frame of which every packet has come; the others are dropped
+  /// @param on_frame  receives each complete frame; a frame with a lost packet is dropped
   void stream(const std::stop_token& stop, const std::function<void(const RawFrame&)>& on_frame);
 
-  /// How many frames were dropped because packets of them were missing.
+  /// The number of frames that were dropped because they had lost packets.
   int damaged_frames() const { return damaged_frames_; }
 
   /// Whether it was unplugged.
@@ -65,6 +66,12 @@ class Kinect {
   };
   using Context = std::unique_ptr<freenect_context, End>;
 
+  /// The frame that is coming, packet by packet.
+  struct Incoming {
+    int packets_in_order = 0;  // -1 once one was missing
+    std::chrono::steady_clock::time_point begin = {};
+  };
+
   static Context make_context(int subdevices);
   bool open(int index, int subdevices);
   void read_parameters();
@@ -72,7 +79,7 @@ class Kinect {
   void take_packet(std::byte* frame, const void* data, int number, int bytes);
   void take_frame(const std::uint16_t* readings);
 
-  std::mutex usb_;   // guards what libfreenect does: a stream holds it as long as it runs
+  std::mutex usb_;   // guards libfreenect's device; held while a stream runs
   Context context_;  // closes the device when it ends
   freenect_device* device_ = nullptr;
   KinectParameters parameters_ = {};
@@ -83,8 +90,7 @@ class Kinect {
   std::atomic<bool> is_lost_ = false;
   std::atomic<int> damaged_frames_ = 0;
   const std::function<void(const RawFrame&)>* on_frame_ = nullptr;  // while a stream runs
-  int packets_in_order_ = 0;  // of the frame that is coming; -1 once one was missing
-  std::chrono::steady_clock::time_point frame_begin_ = {};
+  Incoming incoming_ = {};
 };
 
 }  // namespace octurn

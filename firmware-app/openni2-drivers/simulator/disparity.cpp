@@ -6,7 +6,7 @@ namespace octurn {
 
 std::vector<std::uint16_t> depth_of_readings() {
   constexpr double nearest = 4500;    // tenths of a millimetre; real frames begin at 464 mm
-  constexpr double farthest = 65534;  // recordings lose what is not below the largest value
+  constexpr double farthest = 65534;  // recordings lose the largest value, 65535
   std::vector<std::uint16_t> depths(no_reading + 1, 0);
   for (int reading = 0; reading < no_reading; ++reading) {
     const double depth = 1e4 * static_cast<double>(readings_times_metres) /

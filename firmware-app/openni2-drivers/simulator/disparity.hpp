@@ -5,13 +5,13 @@
 
 namespace octurn {
 
-/// How a Kinect v1 tells depth: an 11-bit reading that is affine in the inverse of depth,
+/// The depth scale of a Kinect v1: an 11-bit reading that is affine in inverse depth,
 /// z = 345489 / (1089.40 - reading) mm. The constants fit 510 of the 512 distinct depths in 110
 /// frames of real sensors. 345489 mm is 8 f b: eighths of a pixel, f = 575.8 pixels, b = 75 mm.
 inline constexpr float reading_at_infinity = 1089.40F;
 inline constexpr float readings_times_metres = 345.489F;
 
-/// The reading that stands for none.
+/// The reading of a pixel without depth.
 inline constexpr int no_reading = 2047;
 
 /// @param inverse_depth  1/m  @return the reading before it is rounded

@@ -12,7 +12,7 @@ constexpr int window_height = 3;  // and there along a column
 constexpr int picture_width = 640;
 constexpr int picture_height = 480;
 
-/// Share of the variance that a pixel does not share with its neighbours.
+/// Share of the variance that is independent of the neighbours.
 constexpr double own_share = 0.15;
 
 }  // namespace
@@ -25,8 +25,8 @@ std::uint32_t mixed(std::uint32_t seed, std::uint32_t number) {
 }
 
 NoiseField::NoiseField(std::uint32_t seed) {
-  // Sums over a window of evenly distributed numbers are close to normally distributed, and related
-  // as far as windows overlap.
+  // Sums of uniform numbers over a window are close to normally distributed, and correlated as far
+  // as windows overlap.
   constexpr std::size_t count = std::size_t{width} * height;
   std::vector<float> even(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -6,9 +6,9 @@
 
 namespace octurn {
 
-/// Random numbers laid out over the picture, close to normally distributed with mean 0 and variance
-/// 1, related to their neighbours as a Kinect's errors are: it compares windows of 9 x 3 pixels or
-/// so, and neighbours share most of their window.
+/// Random numbers over the picture, close to normally distributed with mean 0 and variance 1. They
+/// are correlated as a Kinect's errors are: it correlates windows of about 9 x 3 pixels, and
+/// neighbours share most of their windows.
 ///
 /// The field is larger than the picture, so that every frame can look at another part of it.
 class NoiseField {
@@ -27,9 +27,9 @@ class NoiseField {
   std::vector<std::int8_t> values_;
 };
 
-/// What calibration leaves of a lens's distortion: a few long waves over a picture of 640 x 480,
-/// 0.3 readings in all, which is by how much planes of 100 x 100 pixels fit worse in real frames
-/// than those of 40 x 40.
+/// The lens distortion that calibration leaves: a few long waves over a picture of 640 x 480, 0.3
+/// readings in all. In real frames, planes of 100 x 100 pixels fit worse by that much than planes
+/// of 40 x 40.
 std::vector<float> leftover_distortion(std::uint32_t seed);
 
 /// A well mixed number for each pair, to draw parts by (the finaliser of Murmur3).

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double baseline = 0.075;  // metres from the camera to the projector, along +X
 
-/// The projector's picture has the camera's rows, and columns enough for all that the camera sees
-/// from 0.37 m on.
+/// The projector's picture has the camera's rows, and more columns: enough to cover everything that
+/// the camera sees beyond 0.37 m.
 constexpr int wider = 116;  // pixels; f b / 0.37 m
 constexpr Intrinsics projector = {.width = camera.width + wider, .cx = camera.cx + wider};
 
@@ -33,7 +33,7 @@ void add_rectangle(Mesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vecto
 void add_platform(Mesh& mesh) {
   constexpr double radius = 0.150;
   constexpr float thickness = 0.0127F;
-  constexpr std::uint32_t corners = 128;  // so many that they differ from a circle by 0.05 mm
+  constexpr std::uint32_t corners = 128;  // the polygon is within 0.05 mm of the circle
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (std::uint32_t i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * i / corners;
@@ -61,13 +61,14 @@ Mesh surroundings() {
   return mesh;
 }
 
-/// True where the projector's light falls, its picture being what it reaches first.
+/// True where the projector's light falls. Its picture holds the surface that the light meets
+/// first.
 bool is_lit(const float* projector_row, int u, float inverse_depth) {
   constexpr auto shift = static_cast<float>(camera.fx * baseline);
   constexpr float slack = 0.0025F;  // 1/m, 1 mm at 0.65 m: surfaces must not shade themselves
   const float column = static_cast<float>(u + wider) - shift * inverse_depth;
   if (!(column >= 0)) {
-    return true;  // nearer than the projector's picture reaches, and than the sensor reads
+    return true;  // nearer than the projector's picture and the sensor's range reach
   }
   const auto left = static_cast<int>(column);
   const float blocking = std::min(projector_row[left], projector_row[left + 1]);

@@ -9,15 +9,15 @@
 namespace octurn {
 
 /// A turning platform (a disc of 150 mm radius, 12.7 mm thick) with an object on it, on a table
-/// before a wall, and the two eyes of a Kinect v1 that looks at it: a camera, and 75 mm to its
-/// right a projector. What the projector does not reach has no depth, so objects throw a shadow to
-/// the left.
+/// before a wall, and the two eyes of a Kinect v1 that looks at it: a camera, and a projector
+/// 75 mm to its right. Where the projector's light does not reach there is no depth, so objects
+/// throw a shadow to the left.
 class Scene {
  public:
   /// @param object  in the platform's frame at angle 0, metres
   explicit Scene(Mesh object);
 
-  /// What the camera sees and the projector reaches, 640 x 480; 0 where that is nothing.
+  /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   InverseDepth lit_at(double angle) const;
 

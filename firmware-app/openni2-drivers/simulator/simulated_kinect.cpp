@@ -11,12 +11,14 @@
 namespace octurn {
 namespace {
 
-constexpr int blind_columns = 8;  // at the right, where the window for comparing leaves the picture
+constexpr int blind_columns =
+    8;  // at the right edge, where the correlation window leaves the picture
 
-// Parts of the noise field, apart from those that frames draw.
+// Parts of the noise field that no frame draws from.
 enum Part : std::uint32_t { pattern_part, edge_u_part, edge_v_part, loss_part, parts };
 
-constexpr float fixed_share = 0.2F;  // of the noise's variance stays while the scene does
+constexpr float fixed_share =
+    0.2F;  // of the noise's variance is fixed while the scene stands still
 constexpr float never_lost = 1e9F;
 
 /// Noise moves edges by this many pixels (standard deviation), and by `longest_move` at most.
@@ -34,7 +36,7 @@ float spread_of(const Surface& surface) {
   return at_depth * (1 + 0.02F * tangent_squared);
 }
 
-/// How many standard deviations of noise a pixel bears before it is lost.
+/// The noise at which a pixel is lost, standard deviations.
 float patience_of(const Surface& surface) {
   constexpr float usual = 4.5F;
   constexpr float at_edge = 1.4F;       // a twelfth of the pixels there is lost
@@ -86,7 +88,7 @@ void SimulatedKinect::turn_to(double angle) {
   hold_still(changed_from(before));
 }
 
-/// The smallest rectangle that holds all pixels which may differ from those before.
+/// The smallest rectangle around all pixels that may have changed.
 SimulatedKinect::Rectangle SimulatedKinect::changed_from(const InverseDepth& before) const {
   Rectangle changed = {.left = camera.width, .top = camera.height, .right = 0, .bottom = 0};
   for (int v = 0; v < camera.height; ++v) {
@@ -123,7 +125,8 @@ void SimulatedKinect::hold_still(const Rectangle& part) {
   }
 }
 
-/// Looks up what lies at an edge a pixel or two aside, as windows do that straddle it.
+/// At an edge, takes the surface a pixel or two aside, as a correlation window that straddles the
+/// edge does.
 InverseDepth SimulatedKinect::with_ragged_edges(const Rectangle& part) const {
   InverseDepth ragged = lit_;
   const float scale = edge_move * std::min(noise_, 1.0F) / NoiseField::one;
@@ -149,7 +152,7 @@ InverseDepth SimulatedKinect::with_ragged_edges(const Rectangle& part) const {
 SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int v) const {
   const float ideal = reading_of(surface.inverse_depth);
   const float spread = noise_ * spread_of(surface);
-  // A reading is, in eighths of a pixel, how far to the left of it the pattern is found.
+  // A reading is the pattern's shift to the left, in eighths of a pixel.
   const auto found = static_cast<std::size_t>(u + static_cast<int>(ideal) / 8) % 512;
   const auto pattern = static_cast<float>(field_.row(mixed(seed_, pattern_part), v)[found]);
   const auto loss =

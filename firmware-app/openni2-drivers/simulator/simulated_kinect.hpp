@@ -42,11 +42,11 @@ class SimulatedKinect {
   void expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth);
 
  private:
-  /// What a pixel sees as long as the platform stands still.
+  /// A pixel's view while the platform stands still.
   struct Pixel {
     float reading = 0;   // before it is rounded
     float spread = 0;    // standard deviation from frame to frame, over NoiseField::one
-    float patience = 0;  // lost in frames whose noise is greater, times NoiseField::one
+    float patience = 0;  // the pixel is lost where noise exceeds it, times NoiseField::one
   };
 
   struct Rectangle {

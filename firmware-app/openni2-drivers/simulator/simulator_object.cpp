@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Signed distances of solids and of what can be made of them, after Quilez, "Distance functions",
+// Signed distances of solids and of their combinations, after Quilez, "Distance functions",
 // https://iquilezles.org/articles/distfunctions. Everything below is in millimetres.
 
 double sphere(const Vector3d& p, const Vector3d& centre, double radius) {
@@ -40,14 +40,14 @@ double disc(const Vector3d& p, const Vector3d& centre, double half_width, double
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - radius;
 }
 
-/// The union of two solids, their seam filled with a fillet about `width` wide. It is 1-Lipschitz
-/// as they are, being their minimum or a blend of both less a constant.
+/// The union of two solids, with a fillet about `width` wide along their seam. It is 1-Lipschitz as
+/// the two are, because it is their minimum, or a blend of both less a constant.
 double blend(double a, double b, double width) {
   const double h = std::max(width - std::abs(a - b), 0.0) / width;
   return std::min(a, b) - h * h * width / 4;
 }
 
-/// What is left of a solid when another is taken out of it.
+/// The difference of two solids.
 double carve(double solid, double hole) { return std::max(solid, -hole); }
 
 double legs(const Vector3d& p) {

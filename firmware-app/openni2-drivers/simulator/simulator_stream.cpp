@@ -26,8 +26,8 @@ OniStatus SimulatorStream::start() {
 
 void SimulatorStream::stop() { thread_ = {}; }
 
-/// The sensor's clock advances after the frame: who sees its time has been sent every frame until
-/// then.
+/// The sensor's clock advances after the frame is sent: a reader of the clock has been sent every
+/// frame up to that time.
 void SimulatorStream::run(const std::stop_token& stop) {
   const auto period = frame_period(simulation_);
   auto due = steady_clock::now() + period;
@@ -36,7 +36,7 @@ void SimulatorStream::run(const std::stop_token& stop) {
       deliver_frame();
     }
     ++device_.periods;
-    due = std::max(due + period, steady_clock::now());  // late frames are not made up for
+    due = std::max(due + period, steady_clock::now());  // no burst of frames after a delay
   }
 }
 

@@ -8,8 +8,8 @@
 namespace octurn {
 namespace {
 
-/// The slope of a surface between a pixel and its neighbours along one axis, 1/m for each pixel,
-/// without those of them that belong to another surface.
+/// The slope of inverse depth between a pixel and its neighbours along one axis, 1/m for each
+/// pixel. A neighbour that belongs to another surface does not count.
 float slope(float before, float here, float after) {
   const bool starts_here = is_edge(before, here);
   const bool ends_here = is_edge(here, after);

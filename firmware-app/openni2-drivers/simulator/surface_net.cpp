@@ -9,13 +9,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// The distance at the corners of a lattice of cells. Where the surface is farther than a block of
-/// cells reaches, all of its corners hold the distance at the block's middle: its sign is right.
+/// The distance at the corners of a lattice of cells. In a block of cells that the surface cannot
+/// reach, all corners hold the distance at the block's middle: the sign is right.
 class Lattice {
  public:
   Lattice(const SignedDistance& distance, const Eigen::AlignedBox3d& bounds, double cell)
       : distance_(distance), origin_(bounds.min() - Vector3d::Constant(cell)), cell_(cell) {
-    size_ = (bounds.sizes() / cell).array().ceil().cast<int>() + 3;  // a cell beyond on each side
+    size_ =
+        (bounds.sizes() / cell).array().ceil().cast<int>() + 3;  // one cell of margin on each side
     values_.resize(static_cast<std::size_t>(size_.prod()));
     fill(Vector3i::Zero(), size_);
   }

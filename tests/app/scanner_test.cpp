@@ -327,7 +327,7 @@ TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {
   RigOptions options = rig();
   options.stepper = StepperSettings{};
   options.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
-    throw Error("turntable-missing", "this machine has no GPIO header");
+    throw Error(ErrorCode::turntable_missing, "this machine has no GPIO header");
   };
   Scanner scanner(options, {}, store_);
   const Status status = wait_until(scanner, [](const Status& now) {

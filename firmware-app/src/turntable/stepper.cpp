@@ -181,7 +181,7 @@ Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
     try {
       chip->set(index, high);
     } catch (const std::system_error& error) {
-      throw Error("turntable-failed",
+      throw Error(ErrorCode::turntable_failed,
                   "line " + lines[index].name + " cannot be set: " + error.what(),
                   "Start Octurn again.");
     }

@@ -2,128 +2,27 @@
 // emulated Kinect, or nothing. A program that finds it first (by LD_LIBRARY_PATH) has that bus in
 // place of the machine's; everything above is as it would be with a real one.
 
+//
+// Here are its devices and what is said to them by control transfers.
+
 #include <libusb.h>
-#include <sys/time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <deque>
 #include <filesystem>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string_view>
-#include <thread>
+#include <vector>
 
-#include "kinect/emulated/camera.hpp"
-#include "kinect/emulated/mapped_file.hpp"
+#include "kinect/emulated/libusb_context.hpp"
 
-using octurn::Camera;
 using octurn::EmulatedKinect;
 using octurn::KinectModel;
-using octurn::MappedFile;
-using std::chrono::steady_clock;
-
-struct libusb_device {
-  enum class Part { camera, motor, audio };
-  libusb_context* context = nullptr;
-  Part part = Part::camera;
-};
-
-struct libusb_device_handle {
-  libusb_device* device = nullptr;
-  int plugged_times = 0;  // when it was opened
-};
-
-/// A program's view of the bus. libfreenect uses each from one thread at a time.
-struct libusb_context {
-  /// The Kinect that the environment names.
-  struct Bus {
-    explicit Bus(const std::filesystem::path& folder)
-        : control(folder / "kinect"), frames(folder / "frames") {}
-    MappedFile control;
-    MappedFile frames;
-    EmulatedKinect& kinect = control.as<EmulatedKinect>();
-    Camera camera = Camera(kinect, frames.values<Camera::Reading>());
-  };
-
-  std::optional<Bus> bus = {};
-  std::array<libusb_device, 3> devices = {};
-  std::deque<libusb_transfer*> waiting = {};
-  std::deque<libusb_transfer*> cancelled = {};
-  steady_clock::time_point begin = {};  // of the microframes that transfers wait for
-  std::int64_t microframes = 0;         // since then
-};
 
 namespace {
 
 constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to a request that a device has not
-constexpr auto microframe = std::chrono::microseconds(125);
-
-bool is_dead(const libusb_device_handle& handle) {
-  const auto& bus = handle.device->context->bus;
-  return !bus->kinect.plugged || bus->kinect.plugged_times != handle.plugged_times;
-}
-
-steady_clock::time_point due(const libusb_context& context) {
-  const double real =
-      static_cast<double>(context.microframes + context.waiting.front()->num_iso_packets) /
-      context.bus->kinect.speed;
-  return context.begin + std::chrono::duration_cast<steady_clock::duration>(
-                             real * std::chrono::duration<double>(microframe));
-}
-
-/// Gives a transfer back with what came on its endpoint: depth on 0x82, nothing on others.
-void complete(libusb_context& context) {
-  libusb_transfer* transfer = context.waiting.front();
-  context.waiting.pop_front();
-  context.microframes += transfer->num_iso_packets;
-  transfer->status = LIBUSB_TRANSFER_COMPLETED;
-  std::uint8_t* buffer = transfer->buffer;
-  for (int i = 0; i < transfer->num_iso_packets; ++i) {
-    libusb_iso_packet_descriptor& packet = transfer->iso_packet_desc[i];
-    packet.status = LIBUSB_TRANSFER_COMPLETED;
-    packet.actual_length = transfer->endpoint == 0x82
-                               ? static_cast<unsigned>(context.bus->camera.next_packet(
-                                     std::span(buffer, packet.length)))
-                               : 0;
-    buffer += packet.length;
-  }
-  transfer->callback(transfer);
-}
-
-/// @return whether there were any
-bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status status) {
-  const bool any = !transfers.empty();
-  while (!transfers.empty()) {
-    libusb_transfer* transfer = transfers.front();
-    transfers.pop_front();
-    transfer->status = status;
-    transfer->callback(transfer);
-  }
-  return any;
-}
-
-/// Gives back what is over. A program that a busy machine keeps waiting gets all that it missed, as
-/// no real device would give it: only tests decide what is lost.
-/// @return whether there was any
-bool handle_events(libusb_context& context) {
-  if (give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
-    return true;
-  }
-  if (context.waiting.empty()) {
-    return false;
-  }
-  if (is_dead(*context.waiting.front()->dev_handle)) {
-    return give_back(context.waiting, LIBUSB_TRANSFER_NO_DEVICE);
-  }
-  if (due(context) > steady_clock::now()) {
-    return false;
-  }
-  complete(context);
-  return true;
-}
 
 int reply_of_motor(const EmulatedKinect& kinect, std::span<std::uint8_t> reply) {
   std::ranges::fill(reply, std::uint8_t{0});
@@ -290,54 +189,6 @@ int libusb_bulk_transfer(libusb_device_handle* /*handle*/, unsigned char /*endpo
 int libusb_interrupt_transfer(libusb_device_handle* handle, unsigned char endpoint,
                               unsigned char* data, int length, int* transferred, unsigned timeout) {
   return libusb_bulk_transfer(handle, endpoint, data, length, transferred, timeout);
-}
-
-libusb_transfer* libusb_alloc_transfer(int packets) {
-  return static_cast<libusb_transfer*>(
-      std::calloc(1, sizeof(libusb_transfer) +
-                         static_cast<std::size_t>(packets) * sizeof(libusb_iso_packet_descriptor)));
-}
-
-void libusb_free_transfer(libusb_transfer* transfer) { std::free(transfer); }
-
-int libusb_submit_transfer(libusb_transfer* transfer) {
-  if (is_dead(*transfer->dev_handle)) {
-    return LIBUSB_ERROR_NO_DEVICE;
-  }
-  libusb_context& context = *transfer->dev_handle->device->context;
-  if (context.waiting.empty()) {
-    context.begin = steady_clock::now();
-    context.microframes = 0;
-  }
-  context.waiting.push_back(transfer);
-  return 0;
-}
-
-int libusb_cancel_transfer(libusb_transfer* transfer) {
-  libusb_context& context = *transfer->dev_handle->device->context;
-  const auto found = std::ranges::find(context.waiting, transfer);
-  if (found == context.waiting.end()) {
-    return LIBUSB_ERROR_NOT_FOUND;
-  }
-  context.waiting.erase(found);
-  context.cancelled.push_back(transfer);
-  return 0;
-}
-
-int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
-  constexpr auto tick = std::chrono::milliseconds(5);
-  const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +
-                        std::chrono::microseconds(timeout->tv_usec);
-  while (!handle_events(*context) && steady_clock::now() < deadline) {
-    const auto next = context->waiting.empty() ? steady_clock::now() + tick : due(*context);
-    std::this_thread::sleep_until(std::min(next, deadline));
-  }
-  return 0;
-}
-
-int libusb_handle_events(libusb_context* context) {
-  timeval minute{.tv_sec = 60, .tv_usec = 0};
-  return libusb_handle_events_timeout(context, &minute);
 }
 
 }  // extern "C"

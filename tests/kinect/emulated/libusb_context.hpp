@@ -1,0 +1,52 @@
+#pragma once
+
+#include <libusb.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <optional>
+
+#include "kinect/emulated/camera.hpp"
+#include "kinect/emulated/mapped_file.hpp"
+
+// What libusb's headers leave open: its stand-in's devices, and its view of the bus.
+
+struct libusb_device {
+  enum class Part { camera, motor, audio };
+  libusb_context* context = nullptr;
+  Part part = Part::camera;
+};
+
+struct libusb_device_handle {
+  libusb_device* device = nullptr;
+  int plugged_times = 0;  // when it was opened
+};
+
+/// A program's view of the bus. libfreenect uses each from one thread at a time.
+struct libusb_context {
+  /// The Kinect that the environment names.
+  struct Bus {
+    explicit Bus(const std::filesystem::path& folder)
+        : control(folder / "kinect"), frames(folder / "frames") {}
+    octurn::MappedFile control;
+    octurn::MappedFile frames;
+    octurn::EmulatedKinect& kinect = control.as<octurn::EmulatedKinect>();
+    octurn::Camera camera = octurn::Camera(kinect, frames.values<octurn::Camera::Reading>());
+  };
+
+  std::optional<Bus> bus = {};
+  std::array<libusb_device, 3> devices = {};
+  std::deque<libusb_transfer*> waiting = {};
+  std::deque<libusb_transfer*> cancelled = {};
+  std::chrono::steady_clock::time_point begin = {};  // of the microframes that transfers wait for
+  std::int64_t microframes = 0;                      // since then
+};
+
+/// Whether the device was unplugged since it was opened.
+inline bool is_dead(const libusb_device_handle& handle) {
+  const auto& bus = handle.device->context->bus;
+  return !bus->kinect.plugged || bus->kinect.plugged_times != handle.plugged_times;
+}

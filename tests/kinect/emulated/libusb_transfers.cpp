@@ -1,0 +1,132 @@
+// The transfers of libusb's stand-in, in which depth comes as time goes by.
+
+#include <libusb.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <deque>
+#include <span>
+#include <thread>
+
+#include "kinect/emulated/libusb_context.hpp"
+
+using std::chrono::steady_clock;
+
+namespace {
+
+constexpr auto microframe = std::chrono::microseconds(125);
+
+steady_clock::time_point due(const libusb_context& context) {
+  const double real =
+      static_cast<double>(context.microframes + context.waiting.front()->num_iso_packets) /
+      context.bus->kinect.speed;
+  return context.begin + std::chrono::duration_cast<steady_clock::duration>(
+                             real * std::chrono::duration<double>(microframe));
+}
+
+/// Gives a transfer back with what came on its endpoint: depth on 0x82, nothing on others.
+void complete(libusb_context& context) {
+  libusb_transfer* transfer = context.waiting.front();
+  context.waiting.pop_front();
+  context.microframes += transfer->num_iso_packets;
+  transfer->status = LIBUSB_TRANSFER_COMPLETED;
+  std::uint8_t* buffer = transfer->buffer;
+  for (int i = 0; i < transfer->num_iso_packets; ++i) {
+    libusb_iso_packet_descriptor& packet = transfer->iso_packet_desc[i];
+    packet.status = LIBUSB_TRANSFER_COMPLETED;
+    packet.actual_length = transfer->endpoint == 0x82
+                               ? static_cast<unsigned>(context.bus->camera.next_packet(
+                                     std::span(buffer, packet.length)))
+                               : 0;
+    buffer += packet.length;
+  }
+  transfer->callback(transfer);
+}
+
+/// @return whether there were any
+bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status status) {
+  const bool any = !transfers.empty();
+  while (!transfers.empty()) {
+    libusb_transfer* transfer = transfers.front();
+    transfers.pop_front();
+    transfer->status = status;
+    transfer->callback(transfer);
+  }
+  return any;
+}
+
+/// Gives back what is over. A program that a busy machine keeps waiting gets all that it missed, as
+/// no real device would give it: only tests decide what is lost.
+/// @return whether there was any
+bool handle_events(libusb_context& context) {
+  if (give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
+    return true;
+  }
+  if (context.waiting.empty()) {
+    return false;
+  }
+  if (is_dead(*context.waiting.front()->dev_handle)) {
+    return give_back(context.waiting, LIBUSB_TRANSFER_NO_DEVICE);
+  }
+  if (due(context) > steady_clock::now()) {
+    return false;
+  }
+  complete(context);
+  return true;
+}
+
+}  // namespace
+
+extern "C" {
+
+libusb_transfer* libusb_alloc_transfer(int packets) {
+  return static_cast<libusb_transfer*>(
+      std::calloc(1, sizeof(libusb_transfer) +
+                         static_cast<std::size_t>(packets) * sizeof(libusb_iso_packet_descriptor)));
+}
+
+void libusb_free_transfer(libusb_transfer* transfer) { std::free(transfer); }
+
+int libusb_submit_transfer(libusb_transfer* transfer) {
+  if (is_dead(*transfer->dev_handle)) {
+    return LIBUSB_ERROR_NO_DEVICE;
+  }
+  libusb_context& context = *transfer->dev_handle->device->context;
+  if (context.waiting.empty()) {
+    context.begin = steady_clock::now();
+    context.microframes = 0;
+  }
+  context.waiting.push_back(transfer);
+  return 0;
+}
+
+int libusb_cancel_transfer(libusb_transfer* transfer) {
+  libusb_context& context = *transfer->dev_handle->device->context;
+  const auto found = std::ranges::find(context.waiting, transfer);
+  if (found == context.waiting.end()) {
+    return LIBUSB_ERROR_NOT_FOUND;
+  }
+  context.waiting.erase(found);
+  context.cancelled.push_back(transfer);
+  return 0;
+}
+
+int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
+  constexpr auto tick = std::chrono::milliseconds(5);
+  const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +
+                        std::chrono::microseconds(timeout->tv_usec);
+  while (!handle_events(*context) && steady_clock::now() < deadline) {
+    const auto next = context->waiting.empty() ? steady_clock::now() + tick : due(*context);
+    std::this_thread::sleep_until(std::min(next, deadline));
+  }
+  return 0;
+}
+
+int libusb_handle_events(libusb_context* context) {
+  timeval minute{.tv_sec = 60, .tv_usec = 0};
+  return libusb_handle_events_timeout(context, &minute);
+}
+
+}  // extern "C"

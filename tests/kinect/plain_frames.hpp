@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kinect/kinect_on_desk.hpp"
+#include "sensor/depth_sensor.hpp"
+
+namespace octurn {
+
+inline constexpr std::size_t pixels = std::size_t{640} * 480;
+
+inline Readings frame_of(std::uint16_t reading) { return Readings(pixels, reading); }
+
+/// Frames that tell themselves apart: all of one reading each.
+inline std::vector<Readings> plain_frames(int count) {
+  std::vector<Readings> frames;
+  for (int i = 0; i < count; ++i) {
+    frames.push_back(frame_of(static_cast<std::uint16_t>(600 + i)));
+  }
+  return frames;
+}
+
+/// z = 345489 / (1089.40 - reading) mm, in tenths.
+inline double depth_of(int reading) { return 3454890 / (1089.40 - reading); }
+
+inline DepthFrame next_frame(DepthSensor& sensor) { return sensor.read({}).value().frame; }
+
+}  // namespace octurn

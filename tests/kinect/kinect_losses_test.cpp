@@ -83,7 +83,7 @@ TEST(KinectLosses, IsLostWhenUnpluggedAndFoundWhenPluggedInAgain) {
           next_frame(*sensor);  // there may be one that came before
         }
       });
-      EXPECT_EQ(error.code(), "sensor-lost");
+      EXPECT_EQ(error.code(), ErrorCode::sensor_lost);
     }
     EXPECT_EQ(code_thrown_by([&] { open_sensor(uri); }), "sensor-missing");
     desk.plug_in();

@@ -26,7 +26,7 @@ constexpr std::array schedule = {
 
 constexpr double max_sigma_deg = 1.0;  // of a stop's angle: a vase leaves 1.5 degrees open
 constexpr double min_slip_deg = 0.6;
-constexpr double slip_sigmas = 5;
+constexpr double slip_sigmas = 3;
 constexpr double slip_to_noise = 5;  // times the median step: the sensor's fixed pattern is in all
 
 // A sensor's fixed pattern alone looks like a turn of 356 degrees.

@@ -71,6 +71,18 @@ TEST(FindSlips, NamesTheStopOfAStepAndItsSize) {
   EXPECT_NE(findings[0].detail.find("stop 9"), std::string::npos) << findings[0].detail;
 }
 
+TEST(FindSlips, NamesAStepOfThreeSigmaThatStandsOutOfTheOthers) {
+  StopOffsets solved = noisy_offsets(8);
+  const double sigma = radians_from_degrees(0.25);  // as eight stops leave it
+  solved.covariance = Eigen::MatrixXd::Identity(7, 7) * sigma * sigma;
+  for (std::size_t stop = 5; stop < 8; ++stop) {
+    solved.offsets[stop] += radians_from_degrees(1.4);
+  }
+  const auto findings = find_slips(even_angles(8), solved);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].stop, 5);
+}
+
 TEST(FindSlips, SaysWhatATurnCameOutAs) {
   StopOffsets solved = noisy_offsets(24);
   const auto angles = even_angles(24);

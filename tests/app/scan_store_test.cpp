@@ -228,6 +228,7 @@ TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {
 struct Unreadable {
   const char* what;
   std::function<void(const fs::path& file)> put;
+  ErrorCode code = ErrorCode::read_failed;
 };
 
 const std::vector<Unreadable>& unreadable_files() {
@@ -237,7 +238,8 @@ const std::vector<Unreadable>& unreadable_files() {
       {"a folder", [](const fs::path& file) { fs::create_directory(file); }},
       {"a FIFO", [](const fs::path& file) { ASSERT_EQ(::mkfifo(file.c_str(), 0644), 0); }},
       {"a loop of links", [](const fs::path& file) { fs::create_symlink(file, file); }},
-      {"a huge file", [](const fs::path& file) { put(file, std::string(2U << 20U, ' ')); }}};
+      {"a huge file", [](const fs::path& file) { put(file, std::string(2U << 20U, ' ')); },
+       ErrorCode::job_malformed}};
   return all;
 }
 
@@ -258,7 +260,7 @@ TEST(ScanStore, ListsAScanWhoseRecordCannotBeReadAsFailedAndRemovesIt) {
     ASSERT_EQ(jobs.size(), 2U);
     EXPECT_EQ(jobs[0].id, bad);
     EXPECT_EQ(jobs[0].state, JobState::failed);
-    EXPECT_EQ(jobs[0].failure->code, ErrorCode::read_failed);
+    EXPECT_EQ(jobs[0].failure->code, unreadable.code);
     EXPECT_EQ(jobs[1].id, good);
     EXPECT_EQ(jobs[1].state, JobState::interrupted);
     EXPECT_FALSE(store.newest_finished());

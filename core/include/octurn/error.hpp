@@ -49,6 +49,7 @@ enum class ErrorCode {
   data_failed,
   data_in_use,
   disk_full,
+  file_too_large,
   job_malformed,
   mesh_malformed,
   no_space,

@@ -15,7 +15,8 @@ namespace octurn {
 /// `max_bytes`.
 ///
 /// @return nothing if there is no such file
-/// @throws Error "read-failed"  if it is no regular file, is larger, or the disk does not give it
+/// @throws Error "file-too-large"  if it has more
+/// @throws Error "read-failed"     if it is no regular file, or the disk does not give it
 std::optional<std::string> read_regular_file(const std::filesystem::path& file,
                                              std::size_t max_bytes);
 

@@ -11,7 +11,7 @@ struct Word {
   std::string_view text;
 };
 
-constexpr std::array<Word, 63> words{{
+constexpr std::array<Word, 64> words{{
     {ErrorCode::bad_config, "bad-config"},
     {ErrorCode::bad_json, "bad-json"},
     {ErrorCode::bad_name, "bad-name"},
@@ -47,6 +47,7 @@ constexpr std::array<Word, 63> words{{
     {ErrorCode::data_failed, "data-failed"},
     {ErrorCode::data_in_use, "data-in-use"},
     {ErrorCode::disk_full, "disk-full"},
+    {ErrorCode::file_too_large, "file-too-large"},
     {ErrorCode::job_malformed, "job-malformed"},
     {ErrorCode::mesh_malformed, "mesh-malformed"},
     {ErrorCode::no_space, "no-space"},

@@ -69,7 +69,9 @@ std::optional<std::string> read_regular_file(const std::filesystem::path& file,
       return content;
     }
     if (content.size() > max_bytes) {
-      fail(file, "larger than " + std::to_string(max_bytes) + " bytes");
+      throw Error(ErrorCode::file_too_large,
+                  file.string() + ": larger than " + std::to_string(max_bytes) + " bytes",
+                  "Look for what has written it: such a file is far smaller.");
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "http/http_server.hpp"
+#include "http_options.hpp"
 #include "scan/scan_settings.hpp"
 #include "turntable/stepper_settings.hpp"
 

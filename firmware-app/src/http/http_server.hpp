@@ -1,22 +1,12 @@
 #pragma once
 
-#include <chrono>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "http/message.hpp"
+#include "http_options.hpp"
 
 namespace octurn {
-
-/// Where the page is served.
-struct HttpOptions {
-  std::string address = "0.0.0.0";  ///< to listen on; the default is every one of this machine
-  int port = 8080;                  ///< 0: any free one
-  std::filesystem::path password_file = {};  ///< who may open it; empty: everybody
-  std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< with a client that stalls
-};
 
 /// Serves HTTP on civetweb, with a pool of threads of its own: receives requests within limits of
 /// size and time, hands each to `answer`, and sends what it returns. A body of upload_type is for

@@ -5,13 +5,13 @@
 
 namespace octurn {
 
-std::string_view name_of(Method method) {
+std::string_view to_string(Method method) {
   return method == Method::solid ? "solid" : "intersection";
 }
 
 std::optional<Method> method_named(std::string_view name) {
   for (const Method method : {Method::intersection, Method::solid}) {
-    if (name_of(method) == name) {
+    if (to_string(method) == name) {
       return method;
     }
   }

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// With the folder that systemd gives a service (StateDirectory=), if it runs as one.
+/// The defaults; as a service of systemd, `data` is the folder of its StateDirectory=.
 Config defaults() {
   Config config;
   if (const char* state = std::getenv("STATE_DIRECTORY"); state != nullptr && *state != '\0') {
@@ -100,7 +100,7 @@ Config read_config(const std::filesystem::path& file) {
   }
 }
 
-json json_of(const Config& config) {
+json to_json(const Config& config) {
   Config copy = config;
   return to_json(fields(copy));
 }

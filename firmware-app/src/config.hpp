@@ -12,42 +12,40 @@
 
 namespace octurn {
 
-/// What `octurn.json` says; what it leaves out is as here. The command line has the last word.
+/// The configuration from `octurn.json`, with the defaults for keys that it leaves out. Options of
+/// the command line override it.
 struct Config {
   HttpOptions http = {};
-  std::vector<std::string> host_names = {};  ///< that the page may be opened by, besides local ones
+  std::vector<std::string> host_names = {};  ///< names of this host, besides the local ones
   std::filesystem::path data = "/var/lib/octurn";
   Limits limits = {};      ///< of reconstruction
-  ScanSettings scan = {};  ///< what a scan uses for settings that its start does not give
+  ScanSettings scan = {};  ///< defaults of a scan
   StepperSettings turntable = {};
 };
 
-/// The file that is read unless another is named; it need not exist.
+/// The default configuration file. It need not exist.
 inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 
-/// Reads a configuration:
-/// `{"listen": "0.0.0.0", "port": 8080, "host_names": [], "data": "/var/lib/octurn", "scan":
-/// {...}, "turntable": {...}}`. docs/settings.md has them all.
+/// Reads a configuration file, such as `{"port": 80, "scan": {"snapshots": 60}}`. docs/settings.md
+/// lists the keys.
 ///
-/// @throws Error "bad-config" that names file and key, its value and what is allowed; also for a
-/// key
-///                            that is none
+/// @throws Error "bad-config"  that names file and key, the value and what is allowed; also for an
+///                             unknown key
 Config read_config(const std::filesystem::path& file);
 
 struct Field;
 
-/// Every setting of the file.
+/// All settings of the file.
 std::vector<Field> fields(Config& config);
 /// Where the page is served.
 std::vector<Field> network_fields(Config& config);
 /// Where scans are kept.
 std::vector<Field> data_fields(Config& config);
 
-/// The configuration as `read_config` reads it, every key. No secret is one of them.
-nlohmann::json json_of(const Config& config);
+/// The configuration in the form of the file, with every key. It contains no secret.
+nlohmann::json to_json(const Config& config);
 
-/// The configuration in the file that the command line names, or in the default one if that is
-/// there, or the defaults.
+/// Reads the named file, or else the default file if it exists. Without either: the defaults.
 Config chosen_config(const std::optional<std::filesystem::path>& file);
 
 }  // namespace octurn

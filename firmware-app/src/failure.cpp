@@ -38,7 +38,7 @@ Device Failure::device() const { return find(code).device; }
 
 bool Failure::is_absence() const { return find(code).is_absence; }
 
-Failure failure_of(const Error& error) {
+Failure to_failure(const Error& error) {
   return {.code = error.code(), .detail = error.what(), .hint = error.hint()};
 }
 
@@ -47,7 +47,7 @@ Failure current_failure() {
   try {
     throw;
   } catch (const Error& error) {
-    return failure_of(error);
+    return to_failure(error);
   } catch (const std::exception& error) {
     return {.code = ErrorCode::internal, .detail = error.what(), .hint = hint};
   } catch (...) {

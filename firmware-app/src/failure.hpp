@@ -6,27 +6,29 @@
 
 namespace octurn {
 
-/// What an error concerns.
+/// The device that an error concerns.
 enum class Device { none, sensor, turntable };
 
-/// Why something did not work, as the API tells it.
+/// An error as a value, as the API reports it.
 struct Failure {
   ErrorCode code = ErrorCode::internal;
   std::string detail = {};
   std::string hint = {};
 
-  /// The device that it concerns: a person can mend that while a scan waits.
+  /// The device that failed. A scan waits while a person mends it.
   Device device() const;
-  /// Whether the device is not there, rather than broken.
+  /// Whether the device is missing, rather than broken.
   bool is_absence() const;
 };
 
-Failure failure_of(const Error& error);
+/// An error as a value.
+Failure to_failure(const Error& error);
 
-/// The exception that is being handled; one that is no Error becomes "internal". Only in a `catch`.
+/// The exception that is being handled; other types than Error become "internal". Call it only in a
+/// `catch`.
 Failure current_failure();
 
-/// The exception that a failure came from, or an equal one.
+/// The Error with a failure's code, detail and hint.
 Error to_error(const Failure& failure);
 
 }  // namespace octurn

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "recent_lines.hpp"
+#include "log_ring.hpp"
 #include "utc.hpp"
 
 namespace octurn::log {
@@ -14,7 +14,7 @@ namespace {
 
 struct Kept {
   std::mutex mutex;  // guards lines
-  RecentLines lines{2000, 512};
+  LogRing lines{2000, 512};
 };
 
 Kept& kept() {
@@ -22,7 +22,7 @@ Kept& kept() {
   return all;
 }
 
-/// Writes the line in one call, so that lines of different threads do not mix.
+/// Writes the line in one system call, so that lines of different threads do not mix.
 void write_line(char priority, std::string_view component, std::string_view message) {
   std::string line = "<";
   line.append(1, priority).append(">").append(component).append(": ").append(message).append("\n");
@@ -36,7 +36,7 @@ void write_line(char priority, std::string_view component, std::string_view mess
 
 }  // namespace
 
-// The digits are those of syslog(3), which sd-daemon(3) takes at the start of a line.
+// Priorities of syslog(3); sd-daemon(3) reads them as a prefix of the line.
 void error(std::string_view component, std::string_view message) {
   write_line('3', component, message);
 }

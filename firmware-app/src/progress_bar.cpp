@@ -31,7 +31,7 @@ void ProgressBar::show(int done, int total, std::string_view doing) {
   line += '[' + std::string(full, '#') + std::string(width - full, '.') + "] ";
   line += std::to_string(done) + '/' + std::to_string(total) + ' ';
   line += doing;
-  std::cerr << line << std::flush;  // at once, so that threads do not mix their lines
+  std::cerr << line << std::flush;  // one write, so that threads do not mix their lines
 }
 
 }  // namespace octurn

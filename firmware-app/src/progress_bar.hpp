@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-/// A bar on standard error, if that is a terminal; nothing otherwise. Several threads may show.
+/// Progress bar on standard error; silent if that is no terminal. Thread-safe.
 class ProgressBar {
  public:
   ProgressBar();
@@ -12,6 +12,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
+  /// Redraws the bar. @param doing  what is going on, behind the numbers
   void show(int done, int total, std::string_view doing);
 
  private:

@@ -6,18 +6,18 @@
 
 namespace octurn {
 
-// What systemd is told of the daemon, as sd_notify(3) has it. Started by hand, nobody listens, and
-// all of this does nothing.
+// Notifications to systemd (sd_notify(3)). Without systemd they do nothing.
 
-/// The daemon serves from now on. @param status  a line for `systemctl status`
+/// Says that the daemon is ready. @param status  a line for `systemctl status`
 void notify_ready(const std::string& status);
 
+/// Says that the daemon is ending.
 void notify_stopping();
 
-/// How long systemd waits for a sign of life before it restarts the daemon; nothing if it does not.
+/// Timeout of systemd's watchdog; nothing if it is off.
 std::optional<std::chrono::microseconds> watchdog_interval();
 
-/// A sign of life.
+/// Resets the watchdog's timeout.
 void notify_alive();
 
 }  // namespace octurn

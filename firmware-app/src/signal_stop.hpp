@@ -7,25 +7,25 @@
 
 namespace octurn {
 
-/// Blocks SIGINT and SIGTERM in this thread and those that it starts, and ignores SIGPIPE and
-/// SIGXFSZ, so that a reader that has gone and a file that may not grow are errors of `write`. To
-/// be called before the first thread.
+/// Blocks SIGINT and SIGTERM in this thread and its future children, and ignores SIGPIPE and
+/// SIGXFSZ: a reader that has gone and a file over its limit are then errors of `write`. Call it
+/// before the first thread starts.
 void block_signals();
 
-/// Undoes that, for a program that this process becomes.
+/// Undoes `block_signals`, before this process executes another program.
 void unblock_signals();
 
 /// Waits for SIGINT or SIGTERM, which are blocked.
 void wait_for_signal();
 
-/// The same, but no longer than `limit`. @return whether one came
+/// Waits for at most `limit`. @return whether a signal came
 bool wait_for_signal(std::chrono::microseconds limit);
 
-/// @throws Error "stopped", always: a signal ended the command, which leaves behind what `outcome`
-/// says
+/// Throws the Error "stopped" of a command that a signal has ended.
+/// @param outcome  what the command leaves behind; may be empty
 [[noreturn]] void throw_stopped(const std::string& outcome = {});
 
-/// Turns SIGINT and SIGTERM, which are blocked, into a stop request as long as it lives.
+/// Turns SIGINT and SIGTERM into a stop request during its lifetime. They have to be blocked.
 class SignalStop {
  public:
   SignalStop();

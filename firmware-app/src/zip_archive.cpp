@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::system_clock;
 
-/// A stream of the C library that writes into memory, which its end makes valid.
+/// Memory of an open_memstream(3); valid once that stream is closed.
 struct MemoryStream {
   MemoryStream() = default;
   ~MemoryStream() { std::free(bytes); }
@@ -25,13 +25,13 @@ struct MemoryStream {
   std::size_t size = 0;
 };
 
-/// What minizip calls to open its file; the rest it does with streams of the C library already.
+/// minizip's callback that opens the archive. Its other callbacks work on any stdio stream.
 void* open_in_memory(void* stream, const char* /*name*/, int /*mode*/) noexcept {
   auto& memory = *static_cast<MemoryStream*>(stream);
   return ::open_memstream(&memory.bytes, &memory.size);
 }
 
-tm_zip date_of(system_clock::time_point time) {
+tm_zip to_zip_date(system_clock::time_point time) {
   using namespace std::chrono;
   const auto seconds =
       std::max(floor<std::chrono::seconds>(time), sys_seconds(sys_days(year(1980) / January / 1)));
@@ -56,14 +56,14 @@ bool add(zipFile zip, const ArchivedFile& file, const zip_fileinfo& info) {
          zipCloseFileInZip(zip) == ZIP_OK;
 }
 
-std::string archive_of(std::span<const ArchivedFile> files, system_clock::time_point time) {
+std::string write_archive(std::span<const ArchivedFile> files, system_clock::time_point time) {
   MemoryStream memory;
   zlib_filefunc_def functions{};
   fill_fopen_filefunc(&functions);
   functions.zopen_file = open_in_memory;
   functions.opaque = &memory;
   const zip_fileinfo info{
-      .tmz_date = date_of(time), .dosDate = 0, .internal_fa = 0, .external_fa = 0};
+      .tmz_date = to_zip_date(time), .dosDate = 0, .internal_fa = 0, .external_fa = 0};
 
   const zipFile zip = zipOpen2("", APPEND_STATUS_CREATE, nullptr, &functions);
   if (zip == nullptr) {
@@ -71,7 +71,7 @@ std::string archive_of(std::span<const ArchivedFile> files, system_clock::time_p
   }
   const bool added =
       std::ranges::all_of(files, [&](const ArchivedFile& file) { return add(zip, file, info); });
-  if (zipClose(zip, nullptr) != ZIP_OK || !added) {  // in memory, only the lack of it can fail
+  if (zipClose(zip, nullptr) != ZIP_OK || !added) {  // writing to memory fails only for lack of it
     throw std::bad_alloc();
   }
   return {memory.bytes, memory.size};
@@ -79,9 +79,9 @@ std::string archive_of(std::span<const ArchivedFile> files, system_clock::time_p
 
 }  // namespace
 
-// minizip takes 70 KB of stack, and the HTTP server's threads have 100 KB.
-std::string zip_of(std::span<const ArchivedFile> files, system_clock::time_point time) {
-  return std::async(std::launch::async, archive_of, files, time).get();
+// On a thread of its own: minizip takes 70 KB of stack, and the HTTP server's threads have 100 KB.
+std::string make_zip(std::span<const ArchivedFile> files, system_clock::time_point time) {
+  return std::async(std::launch::async, write_archive, files, time).get();
 }
 
 }  // namespace octurn

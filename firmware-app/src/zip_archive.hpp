@@ -12,8 +12,10 @@ struct ArchivedFile {
   std::string content = {};
 };
 
-/// A zip archive of small files, in their order. The same files and time give the same bytes.
-/// @param time  of each of them, kept to two seconds, in UTC; not before 1980, as zip has it
-std::string zip_of(std::span<const ArchivedFile> files, std::chrono::system_clock::time_point time);
+/// Makes a zip archive of small files, in the given order. Deterministic: the same files and time
+/// give the same bytes.
+/// @param time  modification time of every file; zip stores it in UTC, to two seconds, from 1980 on
+std::string make_zip(std::span<const ArchivedFile> files,
+                     std::chrono::system_clock::time_point time);
 
 }  // namespace octurn

@@ -149,7 +149,7 @@ TEST(Appliance, TakesOneUpdateAtATime) {
 TEST(Appliance, RefusesAnUpdateThatHasNoRoom) {
   const Folder folder;
   Appliance appliance(folder.path());
-  const std::uint64_t most = Appliance::Upload::most_bytes;
+  const std::uint64_t most = Appliance::Upload::max_bytes;
   EXPECT_EQ(code_thrown_by([&] { Appliance::Upload(appliance, most + 1); }), "too-large");
   const Appliance::Upload largest(appliance, most);
 }

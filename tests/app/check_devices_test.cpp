@@ -89,14 +89,14 @@ TEST_F(CheckDevices, EndsWithTheScanner) {
 }
 
 TEST_F(CheckDevices, LetsTheDoctorLookAtTheSensor) {
-  const auto findings = examine({.rig = rig(), .config = {.data = folder_.path()}}, scanner_);
+  const auto findings = run_checks({.rig = rig(), .config = {.data = folder_.path()}}, scanner_);
   EXPECT_EQ(findings[0].check, "sensor");
   EXPECT_EQ(findings[0].state, Finding::State::ok);
 }
 
-TEST(SensorLook, IsASampleOfWhatTheSensorSees) {
+TEST(SensorReading, IsASampleOfWhatTheSensorSees) {
   Rig rig({.sensor_uri = fast_sensor});
-  const SensorLook look = look_at_sensor(rig, {});
+  const SensorReading look = read_sensor(rig, {});
   ASSERT_TRUE(std::holds_alternative<SensorSample>(look));
   const auto& sample = std::get<SensorSample>(look);
   EXPECT_EQ(sample.times.size(), 60);
@@ -105,18 +105,18 @@ TEST(SensorLook, IsASampleOfWhatTheSensorSees) {
   EXPECT_NE(sample.frames[0].depth, sample.frames[9].depth);  // its noise is new in each
 }
 
-TEST(SensorLook, SaysWhyThereIsNoSensor) {
+TEST(SensorReading, SaysWhyThereIsNoSensor) {
   Rig rig({.sensor_uri = "kinect://7"});
-  const SensorLook look = look_at_sensor(rig, {});
+  const SensorReading look = read_sensor(rig, {});
   ASSERT_TRUE(std::holds_alternative<Failure>(look));
   EXPECT_EQ(std::get<Failure>(look).code, ErrorCode::sensor_missing);
 }
 
-TEST(SensorLook, IsBusyIfItIsStopped) {
+TEST(SensorReading, IsBusyIfItIsStopped) {
   Rig rig({.sensor_uri = fast_sensor});
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_EQ(std::get<Failure>(look_at_sensor(rig, stop.get_token())).code, ErrorCode::busy);
+  EXPECT_EQ(std::get<Failure>(read_sensor(rig, stop.get_token())).code, ErrorCode::busy);
 }
 
 }  // namespace

@@ -46,15 +46,15 @@ TEST(Config, IsWrittenAsItIsRead) {
                     "speed_steps_per_s": 900.0, "start_speed_steps_per_s": 100.0,
                     "ramp_steps_per_s2": 3000.0, "settle_ms": 20, "idle_release_s": 30,
                     "take_up_steps": 5}})");
-  json written = json_of(config_of(every.dump().c_str()));
-  EXPECT_EQ(written["scan"], json_of(ScanSettings{}));
+  json written = to_json(config_of(every.dump().c_str()));
+  EXPECT_EQ(written["scan"], to_json(ScanSettings{}));
   written["scan"] = json::object();
   EXPECT_EQ(written, every);
 }
 
 TEST(Config, ReadsAFileOfVersion01AsThatDid) {
   const std::filesystem::path golden = std::filesystem::path(OCTURN_GOLDEN) / "version-0.1";
-  EXPECT_EQ(json_of(read_config(golden / "octurn.json")),
+  EXPECT_EQ(to_json(read_config(golden / "octurn.json")),
             json::parse(content_of(golden / "settings.json")));
 }
 

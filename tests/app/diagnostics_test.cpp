@@ -28,12 +28,12 @@ std::vector<std::string> names_of(const std::vector<ArchivedFile>& files) {
 TEST(Diagnostics, HasTheMachinesFilesInOneOrder) {
   const TemporaryFolder root;
   EXPECT_EQ(
-      names_of(diagnostics_of_machine({}, {}, root.path())),
+      names_of(machine_diagnostics({}, {}, root.path())),
       (std::vector<std::string>{"versions.json", "settings.json", "doctor.json", "system.txt"}));
 }
 
 TEST(Diagnostics, TellsVersions) {
-  const json versions = json_in(diagnostics_of_machine({}, {}), "versions.json");
+  const json versions = json_in(machine_diagnostics({}, {}), "versions.json");
   EXPECT_EQ(versions["octurn"], version());
   EXPECT_TRUE(versions["openni2"].get<std::string>().starts_with("2.")) << versions;
   EXPECT_GE(versions["libgpiod"].get<std::string>().size(), 3U) << versions;
@@ -47,8 +47,7 @@ TEST(Diagnostics, TellsSettingsAsTheirFileHasThem) {
   config.http.port = 8123;
   config.turntable.gear_ratio = 4;
   const TemporaryFolder folder;
-  put(folder.path() / "octurn.json",
-      content_in(diagnostics_of_machine(config, {}), "settings.json"));
+  put(folder.path() / "octurn.json", content_in(machine_diagnostics(config, {}), "settings.json"));
   const Config again = read_config(folder.path() / "octurn.json");
   EXPECT_EQ(again.http.port, 8123);
   EXPECT_EQ(again.turntable.gear_ratio, 4);
@@ -57,7 +56,7 @@ TEST(Diagnostics, TellsSettingsAsTheirFileHasThem) {
 TEST(Diagnostics, TellsWhatTheDoctorFound) {
   const std::vector<Finding> findings{
       {.check = "disk", .state = Finding::State::fault, .measured = "nothing free"}};
-  const json report = json_in(diagnostics_of_machine({}, findings), "doctor.json");
+  const json report = json_in(machine_diagnostics({}, findings), "doctor.json");
   EXPECT_EQ(report["state"], "fault");
   EXPECT_EQ(report["findings"][0]["measured"], "nothing free");
 }
@@ -69,7 +68,7 @@ TEST(Diagnostics, ShowsTheSystemsFilesAsTheyAre) {
   put(root.path() / "sys/devices/platform/soc/soc:firmware/get_throttled", "50005\n");
   put(root.path() / "sys/class/thermal/thermal_zone0/temp", "61234\n");
   put(root.path() / "sys/bus/usb/devices/1-1.2/idProduct", "02ae\n");
-  EXPECT_EQ(content_in(diagnostics_of_machine({}, {}, root.path()), "system.txt"),
+  EXPECT_EQ(content_in(machine_diagnostics({}, {}, root.path()), "system.txt"),
             "==> /etc/os-release <==\nID=debian\n\n"
             "==> /proc/device-tree/model <==\nRaspberry Pi 4\n\n"
             "==> /sys/devices/platform/soc/soc:firmware/get_throttled <==\n50005\n\n"
@@ -84,7 +83,7 @@ TEST(Diagnostics, LeavesOutWhatTellsOneMachineFromOthers) {
         "proc/device-tree/serial-number", "sys/bus/usb/devices/1-1/serial"}) {
     put(root.path() / file, "private\n");
   }
-  for (const ArchivedFile& file : diagnostics_of_machine({}, {}, root.path())) {
+  for (const ArchivedFile& file : machine_diagnostics({}, {}, root.path())) {
     EXPECT_EQ(file.content.find("private"), std::string::npos) << file.name;
   }
 }
@@ -96,7 +95,7 @@ TEST(Diagnostics, TellsDevicesScansAndLogOfADaemon) {
   Job failed = job_of("20261121-081500-3f2a", "");
   failed.failure = Failure{.code = ErrorCode::sensor_silent, .detail = "no frame for 2 s"};
   const std::vector<Job> scans{failed};
-  const std::vector<ArchivedFile> files = diagnostics_of_daemon(status, scans, "said\n");
+  const std::vector<ArchivedFile> files = daemon_diagnostics(status, scans, "said\n");
   EXPECT_EQ(names_of(files), (std::vector<std::string>{"devices.json", "scans.json", "log.txt"}));
   EXPECT_EQ(json_in(files, "devices.json")["sensor"]["message"], "no frame for 2 s");
   const json scan = json_in(files, "scans.json")["scans"][0];
@@ -109,7 +108,7 @@ TEST(Diagnostics, TellsDevicesScansAndLogOfADaemon) {
 
 TEST(Diagnostics, LeavesOutWhatAPersonCalledAScan) {
   const std::vector<Job> scans{job_of("20261121-081500-3f2a", "private")};
-  for (const ArchivedFile& file : diagnostics_of_daemon({}, scans, "")) {
+  for (const ArchivedFile& file : daemon_diagnostics({}, scans, "")) {
     EXPECT_EQ(file.content.find("private"), std::string::npos) << file.name;
   }
 }
@@ -121,8 +120,8 @@ TEST(Diagnostics, IsBoundedHoweverMuchThereIs) {
   }
   std::vector<Job> scans(5000, job_of("20261121-081500-3f2a", ""));
   scans.front().id = "20261121-090000-0000";
-  std::vector<ArchivedFile> files = diagnostics_of_machine({}, {}, root.path());
-  for (ArchivedFile& file : diagnostics_of_daemon({}, scans, "")) {
+  std::vector<ArchivedFile> files = machine_diagnostics({}, {}, root.path());
+  for (ArchivedFile& file : daemon_diagnostics({}, scans, "")) {
     files.push_back(std::move(file));
   }
   std::size_t bytes = 0;

@@ -14,15 +14,15 @@ namespace {
 constexpr Check speed{"speed", "Speed"};
 
 TEST(Finding, OfAWholeIsItsWorst) {
-  EXPECT_EQ(worst(std::vector{speed.ok("1"), speed.unknown("?")}), Finding::State::ok);
-  EXPECT_EQ(worst(std::vector{speed.warning("2", "Wait."), speed.ok("1")}),
+  EXPECT_EQ(overall_state(std::vector{speed.ok("1"), speed.unknown("?")}), Finding::State::ok);
+  EXPECT_EQ(overall_state(std::vector{speed.warning("2", "Wait."), speed.ok("1")}),
             Finding::State::warning);
-  EXPECT_EQ(worst(std::vector{speed.warning("2", "Wait."), speed.fault("3", "Run.")}),
+  EXPECT_EQ(overall_state(std::vector{speed.warning("2", "Wait."), speed.fault("3", "Run.")}),
             Finding::State::fault);
 }
 
 TEST(Finding, IsJsonThatStandsAlone) {
-  const auto json = json_of(std::vector{speed.fault("3 km/h", "Run."), speed.unknown("?")});
+  const auto json = to_json(std::vector{speed.fault("3 km/h", "Run."), speed.unknown("?")});
   EXPECT_EQ(json["version"], version());
   EXPECT_EQ(json["state"], "fault");
   EXPECT_TRUE(std::regex_match(json["time"].get<std::string>(),

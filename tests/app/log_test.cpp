@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "recent_lines.hpp"
+#include "log_ring.hpp"
 
 namespace octurn {
 namespace {
 
-TEST(RecentLines, AreTheLastOnes) {
-  RecentLines lines(3, 100);
+TEST(LogRing, AreTheLastOnes) {
+  LogRing lines(3, 100);
   EXPECT_EQ(lines.text(), "");
   for (const char* const line : {"one", "two", "three", "four", "five"}) {
     lines.add(line);
@@ -16,8 +16,8 @@ TEST(RecentLines, AreTheLastOnes) {
   EXPECT_EQ(lines.text(), "three\nfour\nfive\n");
 }
 
-TEST(RecentLines, AreCutWhereTheyAreTooLong) {
-  RecentLines lines(2, 4);
+TEST(LogRing, AreCutWhereTheyAreTooLong) {
+  LogRing lines(2, 4);
   lines.add("1234");
   lines.add("12345");
   EXPECT_EQ(lines.text(), "1234\n1234\n");

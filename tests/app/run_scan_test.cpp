@@ -125,12 +125,13 @@ TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
     };
     EXPECT_FALSE(run_scan(few_snapshots(), {}, folder.path(), rig, stop.get_token(),
                           {.on_progress = stop_in_phase}))
-        << name_of(moment.first);
-    EXPECT_EQ(snapshots_in(folder.path()), moment.second) << name_of(moment.first);
+        << to_string(moment.first);
+    EXPECT_EQ(snapshots_in(folder.path()), moment.second) << to_string(moment.first);
     EXPECT_EQ(read_scan(folder.path()).shots.size(), static_cast<std::size_t>(moment.second));
     EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
     // Nothing but the contract's files: no part of a model is left.
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << name_of(moment.first);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2)
+        << to_string(moment.first);
   }
 }
 

@@ -32,9 +32,9 @@ TEST(ScanSettings, KeepsTheDefaultOfAKeyThatIsNotGiven) {
 }
 
 TEST(ScanSettings, ComeBackAsTheyWereWritten) {
-  const json written = json_of(ScanSettings{});
+  const json written = to_json(ScanSettings{});
   EXPECT_EQ(
-      json_of(settings_from(written, parsed(R"({"snapshots": 3, "clip_mm": [0,0,0,1,1,1]})"))),
+      to_json(settings_from(written, parsed(R"({"snapshots": 3, "clip_mm": [0,0,0,1,1,1]})"))),
       written);
   EXPECT_EQ(written["leaf_size_mm"], 1.0);
   EXPECT_EQ(written["clip_mm"], json::parse("[-140.0, -140.0, 5.0, 140.0, 140.0, 400.0]"));
@@ -103,9 +103,9 @@ ScanSettings stored(const json& settings) {
 TEST(ScanSettings, AreReadFromAJobOfVersion01AsThatWroteThem) {
   json settings = json::parse(
       content_of(std::filesystem::path(OCTURN_GOLDEN) / "version-0.1" / "job.json"))["settings"];
-  EXPECT_EQ(json_of(stored(settings)), settings);
+  EXPECT_EQ(to_json(stored(settings)), settings);
   settings["clip_mm"] = {0.0, 0.0, 0.0, 0.5, 0.5, 0.5};  // thinner than its leaves of 4 mm
-  EXPECT_EQ(json_of(stored(settings)), settings);
+  EXPECT_EQ(to_json(stored(settings)), settings);
 }
 
 TEST(ScanSettings, RefuseAKeyThatIsNone) {

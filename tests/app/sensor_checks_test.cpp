@@ -59,7 +59,7 @@ SensorSample sample_of_plane(double height, double noise) {
 }
 
 PlatformView view_of_plane(double height, double noise = 0) {
-  return view_of_platform(sample_of_plane(height, noise), clip, nominal_platform_from_sensor());
+  return measure_platform(sample_of_plane(height, noise), clip, nominal_platform_from_sensor());
 }
 
 TEST(FrameRateCheck, MeasuresIt) {
@@ -135,12 +135,12 @@ TEST(PlatformCheck, FindsThatHalfOfItIsNotSeen) {
       std::fill_n(frame.depth.begin() + static_cast<std::ptrdiff_t>(row), 330, std::uint16_t{0});
     }
   }
-  const PlatformView half = view_of_platform(sample, clip, nominal_platform_from_sensor());
+  const PlatformView half = measure_platform(sample, clip, nominal_platform_from_sensor());
   EXPECT_EQ(check_platform(half).state, State::warning);
   for (DepthFrame& frame : sample.frames) {
     std::ranges::fill(frame.depth, std::uint16_t{0});
   }
-  const PlatformView none = view_of_platform(sample, clip, nominal_platform_from_sensor());
+  const PlatformView none = measure_platform(sample, clip, nominal_platform_from_sensor());
   EXPECT_EQ(none.readings, 0);
   EXPECT_EQ(check_platform(none).state, State::fault);
   EXPECT_EQ(check_depth_noise(none).state, State::unknown);
@@ -149,7 +149,7 @@ TEST(PlatformCheck, FindsThatHalfOfItIsNotSeen) {
 TEST(PlatformCheck, FindsThatTheCalibrationLooksElsewhere) {
   Eigen::Isometry3d away = nominal_platform_from_sensor();
   away.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitY()));
-  const PlatformView view = view_of_platform(sample_of_plane(0, 0), clip, away);
+  const PlatformView view = measure_platform(sample_of_plane(0, 0), clip, away);
   EXPECT_EQ(view.rays, 0);
   EXPECT_EQ(check_platform(view).state, State::fault);
 }
@@ -191,9 +191,9 @@ TEST(TiltCheck, KnowsWhichSideIsTheLower) {
 }
 
 TEST(SensorChecks, AreFaultAndUnknownWithoutASensor) {
-  const SensorLook silent = Failure{.code = ErrorCode::sensor_silent,
-                                    .detail = "sensor: no frame for 2000 ms",
-                                    .hint = "Unplug the sensor."};
+  const SensorReading silent = Failure{.code = ErrorCode::sensor_silent,
+                                       .detail = "sensor: no frame for 2000 ms",
+                                       .hint = "Unplug the sensor."};
   const auto findings = check_sensor(silent, clip, nominal_platform_from_sensor());
   ASSERT_EQ(findings.size(), 6);
   EXPECT_EQ(findings[0].state, State::fault);
@@ -203,7 +203,7 @@ TEST(SensorChecks, AreFaultAndUnknownWithoutASensor) {
 }
 
 TEST(SensorChecks, AreNoFaultWhileTheSensorIsBusy) {
-  const SensorLook busy =
+  const SensorReading busy =
       Failure{.code = ErrorCode::busy, .detail = "a scan is running", .hint = "Check again later."};
   const auto findings = check_sensor(busy, clip, nominal_platform_from_sensor());
   EXPECT_EQ(std::ranges::count(findings, State::unknown, &Finding::state), 6);

@@ -18,9 +18,9 @@ TEST(GpioChipCheck, NamesTheChip) {
 }
 
 TEST(GpioChipCheck, SaysWhyThereIsNone) {
-  const HeaderLook none = Failure{.code = ErrorCode::turntable_missing,
-                                  .detail = "this machine has no GPIO header",
-                                  .hint = "Use a Raspberry Pi."};
+  const HeaderState none = Failure{.code = ErrorCode::turntable_missing,
+                                   .detail = "this machine has no GPIO header",
+                                   .hint = "Use a Raspberry Pi."};
   const Finding chip = check_gpio_chip(none);
   EXPECT_EQ(chip.state, State::fault);
   EXPECT_EQ(chip.measured, "this machine has no GPIO header");

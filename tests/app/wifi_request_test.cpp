@@ -20,9 +20,9 @@ json home_with(const char* key, const json& value) {
 }
 
 TEST(WifiRequest, IsWrittenAsOcturnTxtHasIt) {
-  EXPECT_EQ(text_of(wifi_request_from(home())),
+  EXPECT_EQ(to_text(wifi_request_from(home())),
             "wifi_name = Home\nwifi_password = open sesame\nwifi_country = DE\n");
-  EXPECT_EQ(text_of(wifi_request_from({{"name", "Caf\xc3\xa9 # = 1"}, {"country", "gb"}})),
+  EXPECT_EQ(to_text(wifi_request_from({{"name", "Caf\xc3\xa9 # = 1"}, {"country", "gb"}})),
             "wifi_name = Caf\xc3\xa9 # = 1\nwifi_country = GB\n");
 }
 

@@ -31,7 +31,7 @@ TEST(ZipArchive, GivesBackItsFilesInTheirOrder) {
                                         {"empty", ""},
                                         {"large", large},
                                         {"a", std::string("\0\xff\n", 3)}};
-  const std::string archive = zip_of(files, some_time);
+  const std::string archive = make_zip(files, some_time);
   EXPECT_LT(archive.size(), large.size());
   const std::vector<ArchivedFile> back = unzipped(archive);
   ASSERT_EQ(back.size(), files.size());
@@ -43,19 +43,19 @@ TEST(ZipArchive, GivesBackItsFilesInTheirOrder) {
 
 TEST(ZipArchive, IsTheSameForTheSameFilesAndTime) {
   const std::vector<ArchivedFile> files{{"a", "1"}, {"b", "2"}};
-  EXPECT_EQ(zip_of(files, some_time), zip_of(files, some_time));
-  EXPECT_NE(zip_of(files, some_time), zip_of(files, some_time + std::chrono::seconds(2)));
+  EXPECT_EQ(make_zip(files, some_time), make_zip(files, some_time));
+  EXPECT_NE(make_zip(files, some_time), make_zip(files, some_time + std::chrono::seconds(2)));
 }
 
 TEST(ZipArchive, HasTheTimeInUtc) {
   const std::vector<ArchivedFile> files{{"a", "1"}};
   const unsigned date = (2026U - 1980U) << 9U | 11U << 5U | 21U;  // APPNOTE.TXT, section 4.4.6
-  EXPECT_EQ(dos_time(zip_of(files, some_time)), date << 16U | 23U << 11U | 59U << 5U);
+  EXPECT_EQ(dos_time(make_zip(files, some_time)), date << 16U | 23U << 11U | 59U << 5U);
 }
 
 TEST(ZipArchive, BeginsIn1980) {
   const std::vector<ArchivedFile> files{{"a", "1"}};
-  EXPECT_EQ(dos_time(zip_of(files, system_clock::time_point())), (1U << 5U | 1U) << 16U);
+  EXPECT_EQ(dos_time(make_zip(files, system_clock::time_point())), (1U << 5U | 1U) << 16U);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ ReconstructOptions solid(double leaf_size,
 
 std::string name_of_golden(const testing::TestParamInfo<Golden>& named) {
   const ReconstructOptions& options = named.param.options;
-  std::string name = named.param.scan + "_" + std::string(name_of(options.method)) + "_" +
+  std::string name = named.param.scan + "_" + std::string(to_string(options.method)) + "_" +
                      std::to_string(static_cast<int>(options.leaf_size * 1e6)) + "um";
   if (options.level) {
     name += "_level_" + std::to_string(*options.level);

@@ -12,12 +12,12 @@
 
 namespace octurn {
 
-/// A value of a JSON document from outside, and where it stands. Every message names that place,
-/// the value and what it must be: `"sensor.width" is 0: must be a whole number from 2 to 8192`.
+/// A value of an untrusted JSON document, with its path. Every message names the path, the value
+/// and what it must be: `"sensor.width" is 0: must be a whole number from 2 to 8192`.
 class JsonValue {
  public:
   /// @param value  has to outlive this
-  /// @param name   of its place, "sensor.width" or "snapshots[1]"; empty for the whole document
+  /// @param name   its path, "sensor.width" or "snapshots[1]"; empty for the whole document
   /// @param code   of the errors that this value throws, such as "bad-settings"
   JsonValue(const nlohmann::json& value, std::string name, ErrorCode code);
 
@@ -25,7 +25,7 @@ class JsonValue {
   const std::string& name() const { return name_; }
   ErrorCode code() const { return code_; }
 
-  /// The value. @throws Error  if it is of another kind or out of its range
+  /// The value as a C++ type. @throws Error  if it is of another kind or out of its range
   double number() const;
   double number(double min, double max) const;
   int whole_number(int min, int max) const;
@@ -34,10 +34,10 @@ class JsonValue {
 
   /// An array's elements, named "name[0]" and so on. @throws Error  if it is no array
   std::vector<JsonValue> elements() const;
-  /// The same, if there are so many of them.
+  /// An array's elements. @throws Error  if it is no array of `count`
   std::vector<JsonValue> elements(std::size_t count) const;
 
-  /// @param must  completes "... is VALUE: must be"
+  /// Throws the Error of a value that is not allowed. @param must  completes "... must be"
   [[noreturn]] void refuse(const std::string& must) const;
 
  private:
@@ -46,52 +46,54 @@ class JsonValue {
   ErrorCode code_;
 };
 
-/// A JSON object from outside: its keys are read one by one, and those that nobody has read can be
-/// refused at the end.
+/// An untrusted JSON object, read key by key. It remembers the keys that were read, so that a
+/// misspelt one can be refused at the end.
 class JsonObject {
  public:
   /// @throws Error  if it is no object
   explicit JsonObject(JsonValue object);
   JsonObject(const nlohmann::json& object, ErrorCode code, std::string name);
 
-  /// The value of a key that must be there. @throws Error  if it is missing
+  /// The value of a required key. @throws Error  if it is missing
   JsonValue at(std::string_view key);
 
-  /// The value of a key, or nothing if it is not there.
+  /// The value of an optional key.
   std::optional<JsonValue> value(std::string_view key);
 
-  /// The same, read. @throws Error  if it is of another kind or out of its range
+  /// An optional key's value as a C++ type. @throws Error  if it is of another kind or out of range
   std::optional<double> number(std::string_view key, double min, double max);
   std::optional<int> whole_number(std::string_view key, int min, int max);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
 
-  /// The JSON of a key, or null if it is not there.
+  /// The JSON of an optional key; null if it is not there.
   const nlohmann::json* find(std::string_view key);
 
-  /// @throws Error  if there is a key that nobody has asked for
+  /// @throws Error  if the object has a key that was not read
   void refuse_unread() const;
 
-  /// @param must  completes "... is VALUE: must be"
+  /// Throws the Error of a key's value. @param must  completes "... must be"
   [[noreturn]] void refuse(std::string_view key, const nlohmann::json& value,
                            const std::string& must) const;
 
  private:
-  std::string name_of(std::string_view key) const;
+  std::string path_to(std::string_view key) const;
 
   JsonValue object_;
   std::set<std::string, std::less<>> read_ = {};
 };
 
-/// Arrays and objects inside one another that a document may have. Copying, comparing and writing
-/// a value recurse by its depth, on stacks as small as 100 KB.
+/// Maximum nesting of arrays and objects. Copying, comparing and writing a value recurse by its
+/// depth, on stacks as small as 100 KB.
 inline constexpr int max_json_depth = 32;
 
-/// Bytes of a document: 40,000 snapshots with a pose each. As values they take up to 16 times that.
+/// Maximum size of a document, bytes: room for 40,000 snapshots with poses. The parsed values take
+/// up to 16 times as much.
 inline constexpr std::size_t max_json_bytes = std::size_t{16} << 20U;
 
-/// Parses a JSON text from outside. Every reader of JSON in the program goes through here.
+/// Parses an untrusted JSON text. Every reader of JSON in the program uses it.
 ///
+/// @param code  of the errors
 /// @param what  the text's name in messages: "the body"
 /// @throws Error  of that code, if the text is not JSON, too deep or too large
 nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what);

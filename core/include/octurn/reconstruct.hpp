@@ -29,7 +29,7 @@ enum class Method {
 };
 
 /// The method's name in settings and files: "intersection", "solid".
-std::string_view name_of(Method method);
+std::string_view to_string(Method method);
 
 /// The method of that name, if there is one.
 std::optional<Method> method_named(std::string_view name);

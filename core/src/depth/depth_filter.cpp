@@ -17,7 +17,7 @@ constexpr std::array<std::pair<DepthFilter, std::string_view>, 3> names{{
 
 }  // namespace
 
-std::string_view name_of(DepthFilter filter) {
+std::string_view to_string(DepthFilter filter) {
   return std::ranges::find(names, filter, &std::pair<DepthFilter, std::string_view>::first)->second;
 }
 

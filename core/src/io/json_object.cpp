@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t max_quote = 60;  // of a value in a message, characters
+constexpr std::size_t max_quote = 60;  // characters of a value in a message
 
 std::string plain(double number) {
   std::ostringstream text;
@@ -22,12 +22,12 @@ std::string plain(double number) {
 
 std::string ascii(const json& value) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) {
-    return plain(value.get<double>());  // of the command line: JSON has none
+    return plain(value.get<double>());  // from the command line: JSON has no NaN or infinity
   }
   return value.dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
-/// A scalar as it is, an array or object by its brackets: never recurses.
+/// A scalar in full, an array or object as its brackets. Does not recurse: the value may be deep.
 std::string outlined(const json& value) {
   if (!value.is_structured() || value.empty()) {
     return ascii(value);
@@ -135,7 +135,7 @@ JsonObject::JsonObject(const nlohmann::json& object, ErrorCode code, std::string
 JsonValue JsonObject::at(std::string_view key) {
   std::optional<JsonValue> found = value(key);
   if (!found) {
-    throw Error(object_.code(), quoted(name_of(key)) + " is missing");
+    throw Error(object_.code(), quoted(path_to(key)) + " is missing");
   }
   return *std::move(found);
 }
@@ -143,7 +143,7 @@ JsonValue JsonObject::at(std::string_view key) {
 std::optional<JsonValue> JsonObject::value(std::string_view key) {
   const nlohmann::json* found = find(key);
   return found == nullptr ? std::nullopt
-                          : std::optional(JsonValue(*found, name_of(key), object_.code()));
+                          : std::optional(JsonValue(*found, path_to(key), object_.code()));
 }
 
 std::optional<double> JsonObject::number(std::string_view key, double min, double max) {
@@ -179,7 +179,7 @@ void JsonObject::refuse_unread() const {
       for (const std::string& name : read_) {
         known += (known.empty() ? "" : ", ") + name;
       }
-      throw Error(object_.code(), quoted(name_of(key)) + ": unknown key",
+      throw Error(object_.code(), quoted(path_to(key)) + ": unknown key",
                   "The keys are: " + known + ".");
     }
   }
@@ -187,10 +187,10 @@ void JsonObject::refuse_unread() const {
 
 void JsonObject::refuse(std::string_view key, const nlohmann::json& value,
                         const std::string& must) const {
-  JsonValue(value, name_of(key), object_.code()).refuse(must);
+  JsonValue(value, path_to(key), object_.code()).refuse(must);
 }
 
-std::string JsonObject::name_of(std::string_view key) const {
+std::string JsonObject::path_to(std::string_view key) const {
   return object_.name().empty() ? std::string(key) : object_.name() + "." + std::string(key);
 }
 

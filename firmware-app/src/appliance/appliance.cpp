@@ -14,16 +14,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_of_an_answer = std::size_t{256} << 10U;  // bytes; root's are far smaller
+constexpr std::size_t max_answer_bytes = std::size_t{256} << 10U;  // bytes; root's are far smaller
 constexpr unsigned for_root_alone = 0600;
 constexpr auto patience_with_root = std::chrono::seconds(30);
 
-/// The end of a file, which may not be there.
-std::string end_of(const fs::path& file) {
+/// The last bytes of a file; empty if there is none.
+std::string read_end(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const auto bytes = static_cast<std::streamoff>(stream.tellg());
   std::string text(
-      std::min<std::size_t>(bytes > 0 ? static_cast<std::size_t>(bytes) : 0, most_of_an_answer),
+      std::min<std::size_t>(bytes > 0 ? static_cast<std::size_t>(bytes) : 0, max_answer_bytes),
       '\0');
   stream.seekg(bytes - static_cast<std::streamoff>(text.size()));
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -39,11 +39,11 @@ std::string_view trimmed(std::string_view text) {
 
 using Settings = std::map<std::string, std::string, std::less<>>;
 
-/// An answer's lines `key = value`.
+/// Parses an answer's lines `key = value`.
 Settings settings_in(const fs::path& file) {
   Settings settings;
   std::ifstream stream(file, std::ios::binary);
-  for (std::string line; std::getline(stream, line) && line.size() < most_of_an_answer;) {
+  for (std::string line; std::getline(stream, line) && line.size() < max_answer_bytes;) {
     if (const std::size_t equals = line.find('='); equals != std::string::npos) {
       const std::string_view whole = line;
       settings.insert_or_assign(std::string(trimmed(whole.substr(0, equals))),
@@ -58,14 +58,15 @@ std::string value_in(const Settings& settings, std::string_view key) {
   return found == settings.end() ? "" : found->second;
 }
 
-/// The state of an answer, if it is one of these.
+/// The answer's state; "none" if it is not one of `known`.
 template <std::size_t count>
-std::string state_of(const Settings& settings, const std::array<std::string_view, count>& known) {
+std::string known_state(const Settings& settings,
+                        const std::array<std::string_view, count>& known) {
   const std::string state = value_in(settings, "state");
   return std::ranges::find(known, state) == known.end() ? "none" : state;
 }
 
-/// Whether root is at an update, and the machine may start again at any moment.
+/// Whether root is installing an update: the machine may restart at any moment.
 bool is_being_installed(const UpdateState& update) {
   return update.state == "installing" || update.state == "restarting";
 }
@@ -75,7 +76,7 @@ bool is_being_installed(const UpdateState& update) {
               "Switch the scanner off and on, and try again.");
 }
 
-/// Does something with a file in memory, where a full disk is something else.
+/// Writes to the requests, which are in memory: "disk-full" there means too little memory.
 template <typename Action>
 void in_memory(const Action& action) {
   try {
@@ -106,15 +107,15 @@ UpdateState Appliance::update() const {
   return is_receiving_ ? UpdateState{.slot = update.slot, .state = "receiving"} : update;
 }
 
-/// As root tells it; what it has yet to take counts as taken.
+/// The update's state by root's answer. A request that root has not taken yet counts as installing.
 UpdateState Appliance::answered_update() const {
   constexpr std::array<std::string_view, 6> states{"installing", "restarting", "failed",
                                                    "trial",      "kept",       "returned"};
   std::error_code ignored;
-  const bool is_waiting = fs::exists(request("update"), ignored);  // asked before it is answered
+  const bool is_waiting = fs::exists(request("update"), ignored);  // before the answer is read
   const Settings answer = settings_in(folder_ / "update");
   UpdateState update{.slot = value_in(answer, "slot"),
-                     .state = state_of(answer, states),
+                     .state = known_state(answer, states),
                      .version = value_in(answer, "version"),
                      .error = value_in(answer, "error")};
   return is_waiting && !is_being_installed(update)
@@ -126,7 +127,8 @@ bool Appliance::is_updating() const {
   return is_receiving_ || is_being_installed(answered_update());
 }
 
-/// The WiFi that was asked for, until root has answered: it takes the request away long before.
+/// The WiFi that was asked for, until root has answered. The request file is no sign of it: root
+/// removes that long before it answers.
 std::optional<WifiRequest> Appliance::unanswered_wifi() const {
   const std::scoped_lock lock(mutex_);
   std::error_code ignored;  // no answer is older than any request
@@ -137,14 +139,14 @@ std::optional<WifiRequest> Appliance::unanswered_wifi() const {
 
 WifiState Appliance::wifi() const {
   constexpr std::array<std::string_view, 4> states{"joining", "joined", "failed", "hotspot"};
-  const auto asked = unanswered_wifi();  // looked at before the answer
+  const auto asked = unanswered_wifi();  // before the answer is read
   const Settings answer = settings_in(folder_ / "wifi");
-  WifiState wifi{.state = state_of(answer, states),
+  WifiState wifi{.state = known_state(answer, states),
                  .name = value_in(answer, "name"),
                  .country = value_in(answer, "country"),
                  .hotspot = value_in(answer, "hotspot"),
                  .error = value_in(answer, "error"),
-                 .networks = wifi_networks(end_of(folder_ / "networks"))};
+                 .networks = wifi_networks(read_end(folder_ / "networks"))};
   if (asked) {
     wifi.state = "joining";
     wifi.name = asked->name;
@@ -154,14 +156,14 @@ WifiState Appliance::wifi() const {
   return wifi;
 }
 
-std::string Appliance::errors() const { return end_of(folder_ / "errors"); }
+std::string Appliance::errors() const { return read_end(folder_ / "errors"); }
 
 void Appliance::ask_for_wifi(const WifiRequest& wifi) {
   const std::scoped_lock lock(mutex_);
   const Asked asked{.wifi = {.name = wifi.name, .country = wifi.country},
                     .time = fs::file_time_type::clock::now(),
                     .until = std::chrono::steady_clock::now() + patience_with_root};
-  write_file(request("wifi"), text_of(wifi), for_root_alone);
+  write_file(request("wifi"), to_text(wifi), for_root_alone);
   asked_ = asked;
 }
 
@@ -183,7 +185,7 @@ void Appliance::Upload::commit() {
 }
 
 fs::path Appliance::place_for_update(std::uint64_t bytes) const {
-  if (bytes > Upload::most_bytes) {
+  if (bytes > Upload::max_bytes) {
     throw Error(ErrorCode::too_large, "an update has at most 160 MiB, and this file has more",
                 "Choose the file octurn.update.");
   }

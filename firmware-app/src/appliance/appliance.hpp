@@ -18,13 +18,13 @@
 
 namespace octurn {
 
-/// What has become of an update.
+/// State of an update of the image.
 struct UpdateState {
-  std::string slot = {};  ///< the system that runs, "a" or "b"; empty: not known yet
+  std::string slot = {};  ///< the running system, "a" or "b"; empty: not known yet
   /// "none", "receiving" by this program, "installing", "restarting", "failed", "trial", "kept" or
   /// "returned"
   std::string state = "none";
-  std::string version = {};  ///< of the update, as far as it is known
+  std::string version = {};  ///< of the update; empty: not known
   std::string error = {};    ///< what is wrong and what to do, or empty
 };
 
@@ -37,11 +37,12 @@ struct WifiState {
   std::vector<WifiNetwork> networks = {};
 };
 
-/// The machine that Octurn's image makes, as far as this program has to do with it: root's answers
-/// in a folder, which are read, and requests below it, which root takes. Any thread may call it.
+/// Interface to the root services of Octurn's image. This program is not root: it writes requests
+/// into a folder, root carries them out and writes answers beside them. Thread-safe.
 class Appliance {
  public:
-  /// Removes what an earlier process left unfinished. @param folder  of the answers
+  /// Removes unfinished requests of an earlier process.
+  /// @param folder  with the answers; the requests are in its subfolder `requests`
   explicit Appliance(std::filesystem::path folder);
   ~Appliance() = default;
   Appliance(const Appliance&) = delete;
@@ -50,19 +51,20 @@ class Appliance {
   UpdateState update() const;
   WifiState wifi() const;
 
-  /// Errors of this start and of earlier ones, the newest last; the end of it, if it is long.
+  /// Errors that root has logged, of this start and earlier ones, the newest last. Only the end of
+  /// a long log.
   std::string errors() const;
 
-  /// Whether an update is on its way, and the machine may start again at any moment.
+  /// Whether an update is being received or installed: the machine may restart at any moment.
   bool is_updating() const;
 
   /// Asks root to join a WiFi. @throws Error  if the request cannot be written
   void ask_for_wifi(const WifiRequest& request);
 
-  /// An update on its way to root, which gets it whole or not at all. There is one at a time.
+  /// An update that is being received. Root gets it whole or not at all. One at a time.
   class Upload {
    public:
-    static constexpr std::uint64_t most_bytes = std::uint64_t{160} << 20U;
+    static constexpr std::uint64_t max_bytes = std::uint64_t{160} << 20U;
 
     /// @throws Error "busy", "too-large", "no-space"
     Upload(Appliance& appliance, std::uint64_t bytes);
@@ -72,7 +74,7 @@ class Appliance {
     void commit();
 
    private:
-    /// Sets a flag as long as it lives.
+    /// Holds the flag `is_receiving_` during its lifetime.
     class Turn {
      public:
       explicit Turn(std::atomic<bool>& is_taken);
@@ -101,7 +103,7 @@ class Appliance {
   std::filesystem::path place_for_update(std::uint64_t bytes) const;
 
   std::filesystem::path folder_;
-  std::atomic<bool> is_receiving_ = false;  // true as long as there is an Upload
+  std::atomic<bool> is_receiving_ = false;  // true while an Upload exists
   mutable std::mutex mutex_;                // guards asked_
   std::optional<Asked> asked_ = {};         // the last request for a WiFi
 };

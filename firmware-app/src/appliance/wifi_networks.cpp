@@ -14,7 +14,8 @@
 namespace octurn {
 namespace {
 
-/// Takes what comes before the first `separator`, and the separator, off the begin of a text.
+/// Removes the front of a text up to and with the first `separator`.
+/// @return the removed text, without the separator
 std::string_view take_until(char separator, std::string_view& text) {
   const std::string_view taken = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(taken.size() + 1, text.size()));
@@ -22,20 +23,20 @@ std::string_view take_until(char separator, std::string_view& text) {
 }
 
 template <typename Number>
-std::optional<Number> number_of(std::string_view text, int base) {
+std::optional<Number> parse_number(std::string_view text, int base) {
   Number number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number)
                                                                   : std::nullopt;
 }
 
-/// The byte that an escape stands for, which is taken off: `\xc3`, `\"`, `\\`, `\e`, `\n`, `\r`,
-/// `\t` (wpa_supplicant, printf_encode in src/utils/common.c).
+/// Removes an escape from the front of a text: `\xc3`, `\"`, `\\`, `\e`, `\n`, `\r` or `\t`
+/// (wpa_supplicant, printf_encode in src/utils/common.c). @return its byte; nothing: no escape
 std::optional<char> take_escape(std::string_view& text) {
   constexpr std::string_view letters = R"("\enrt)";
   constexpr std::array bytes{'"', '\\', '\x1b', '\n', '\r', '\t'};
   if (text.starts_with('x') && text.size() >= 3) {
-    const auto byte = number_of<unsigned char>(text.substr(1, 2), 16);
+    const auto byte = parse_number<unsigned char>(text.substr(1, 2), 16);
     text.remove_prefix(3);
     return byte ? std::optional(static_cast<char>(*byte)) : std::nullopt;
   }
@@ -61,7 +62,7 @@ std::optional<std::string> unescaped(std::string_view text) {
   return bytes;
 }
 
-/// Whether the library of the page's JSON would take it.
+/// Whether the JSON library can write the text: it refuses what is no UTF-8.
 bool is_utf8(const std::string& text) {
   try {
     nlohmann::json(text).dump();
@@ -71,11 +72,11 @@ bool is_utf8(const std::string& text) {
   }
 }
 
-/// A line: bssid, frequency, signal, flags, name, with tabs between.
+/// Parses a line: bssid, frequency, signal, flags and name, separated by tabs.
 std::optional<WifiNetwork> network_in(std::string_view line) {
   take_until('\t', line);
   take_until('\t', line);
-  const auto signal_dbm = number_of<int>(take_until('\t', line), 10);
+  const auto signal_dbm = parse_number<int>(take_until('\t', line), 10);
   const std::string_view flags = take_until('\t', line);
   const std::optional<std::string> name = unescaped(line);
   if (!signal_dbm || !name || !is_wifi_name(*name) || !is_utf8(*name)) {

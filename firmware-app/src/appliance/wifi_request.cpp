@@ -11,9 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t longest_wifi_name = 32;            // bytes: IEEE 802.11-2020, 9.4.2.2
-constexpr std::size_t shortest_password = 8;             // characters: IEEE 802.11-2020, annex J.4
-constexpr std::size_t longest_password = 63;             // as above
+constexpr std::size_t max_wifi_name = 32;                // bytes: IEEE 802.11-2020, 9.4.2.2
+constexpr std::size_t min_password = 8;                  // characters: IEEE 802.11-2020, annex J.4
+constexpr std::size_t max_password = 63;                 // as above
 constexpr std::size_t digits_of_key = 64;                // of the 256 bits that are made of it
 constexpr std::string_view known_password = "********";  // octurn.txt: the password that is known
 
@@ -45,8 +45,7 @@ std::optional<std::string> password_in(JsonObject& keys) {
   const std::string password = value->is_string() ? value->get<std::string>() : "";
   const bool is_key =
       password.size() == digits_of_key && std::ranges::all_of(password, is_hexadecimal);
-  const bool is_passphrase = password.size() >= shortest_password &&
-                             password.size() <= longest_password &&
+  const bool is_passphrase = password.size() >= min_password && password.size() <= max_password &&
                              std::ranges::all_of(password, is_printable_ascii);
   if (!is_key && !is_passphrase) {
     throw Error(ErrorCode::bad_wifi,
@@ -79,8 +78,8 @@ std::string country_in(JsonObject& keys) {
 }  // namespace
 
 bool is_wifi_name(std::string_view name) {
-  return !name.empty() && name.size() <= longest_wifi_name &&
-         !std::ranges::any_of(name, is_control) && !has_blanks_around(name);
+  return !name.empty() && name.size() <= max_wifi_name && !std::ranges::any_of(name, is_control) &&
+         !has_blanks_around(name);
 }
 
 WifiRequest wifi_request_from(const json& body) {
@@ -91,7 +90,7 @@ WifiRequest wifi_request_from(const json& body) {
   return request;
 }
 
-std::string text_of(const WifiRequest& request) {
+std::string to_text(const WifiRequest& request) {
   std::string text = "wifi_name = " + request.name + "\n";
   if (request.password) {
     text += "wifi_password = " + *request.password + "\n";

@@ -22,6 +22,6 @@ bool is_wifi_name(std::string_view name);
 WifiRequest wifi_request_from(const nlohmann::json& body);
 
 /// The request as octurn.txt has it.
-std::string text_of(const WifiRequest& request);
+std::string to_text(const WifiRequest& request);
 
 }  // namespace octurn

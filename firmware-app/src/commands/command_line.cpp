@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// @return the option --simulate, whose presence alone says something
+/// @return the option --simulate, whose value is optional
 CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
   CLI::Option* simulate =
       command

@@ -10,29 +10,30 @@
 
 namespace octurn {
 
-/// What a command line says about sensor and turntable.
+/// Options of the sensor and the turntable.
 struct RigArguments {
   bool simulate = false;
   std::string mesh_file = {};   ///< on the simulated platform; empty: the simulator's own object
   double speed = 1.0;           ///< of the simulated rig, relative to life
-  std::string sensor_uri = {};  ///< of a DepthSensor, in place of the simulated one
+  std::string sensor_uri = {};  ///< of a DepthSensor; empty: the default one
 };
 
-/// @param stepper  of the real turntable, which is used without --simulate
+/// The rig that the options select.
+/// @param stepper  settings of the real turntable, used without --simulate
 RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
 
-/// What a command line says about the configuration.
+/// Options of the configuration.
 struct ConfigArguments {
   std::optional<std::filesystem::path> file = {};
   nlohmann::json given = nlohmann::json::object();  ///< by their keys in octurn.json
 };
 
-/// The file's configuration, over it what the command line says.
-/// @throws Error  that names the key which is wrong
+/// Reads the configuration file and applies the options of the command line.
+/// @throws Error  that names the wrong key
 Config make_config(const ConfigArguments& arguments);
 
-/// Finds out before the work whether a model can be written. @param output  "-" is standard output
-/// @throws Error  that says why not
+/// Checks before minutes of work that the model can be written. @param output  "-": standard output
+/// @throws Error  that says why it cannot
 void expect_writable(const std::filesystem::path& output);
 
 struct ServeArguments {
@@ -48,12 +49,12 @@ void serve(const ServeArguments& arguments);
 struct ScanArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
-  nlohmann::json settings = nlohmann::json::object();  ///< as the body of a start has them
-  std::optional<std::string> resume = {};     ///< the scan to go on with, by its own settings
+  nlohmann::json settings = nlohmann::json::object();  ///< of ScanSettings, by their keys
+  std::optional<std::string> resume = {};     ///< id of a scan to resume, with its own settings
   std::filesystem::path output = "Scan.stl";  ///< "-" is standard output
 };
 
-/// `octurn scan`: one scan from the shell. The model goes to `output`, the scan stays in `data`.
+/// `octurn scan`: makes one scan. Writes the model to `output` and keeps the scan in `data`.
 void scan(const ScanArguments& arguments);
 
 struct RecordArguments {
@@ -64,14 +65,14 @@ struct RecordArguments {
   int frames = 10;     ///< at each stop
 };
 
-/// `octurn record`: what the sensor sees in a turn of the platform, to be replayed as the sensor.
+/// `octurn record`: records the sensor during one turn of the platform, for `--sensor` to replay.
 void record(const RecordArguments& arguments);
 
 struct DoctorArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
   bool json = false;                              ///< one line of JSON in place of the table
-  std::optional<std::filesystem::path> zip = {};  ///< also an archive for who helps from afar
+  std::optional<std::filesystem::path> zip = {};  ///< also writes an archive for remote support
 };
 
 /// `octurn doctor`: checks the scanner and says what to do about each fault. Never moves the motor.
@@ -85,7 +86,7 @@ struct ReconstructArguments {
   bool json = false;                                   ///< one line of JSON on standard output
 };
 
-/// `octurn reconstruct`: a model from a scan folder.
+/// `octurn reconstruct`: makes a model from a scan folder.
 void reconstruct(const ReconstructArguments& arguments);
 
 struct CalibrateArguments {
@@ -98,17 +99,17 @@ struct CalibrateArguments {
 /// @return false if what was solved is not to be trusted
 bool calibrate(const CalibrateArguments& arguments);
 
-/// `octurn password`: reads a password, a line, from standard input, and writes the file that
-/// `password_file` of the configuration names.
+/// `octurn password`: reads a line from standard input, and writes it as a password file for
+/// `password_file` of the configuration.
 void set_password(const std::filesystem::path& file);
 
-/// `octurn update`: becomes the appliance's own program that installs an update.
+/// `octurn update`: executes the appliance's program that installs an update, in this process.
 /// @throws Error  if this is no appliance, or not root
 [[noreturn]] void install_update(const std::filesystem::path& file);
 
-/// Reads the command line and does what it says.
-/// @return the exit status: 0, 1 if it failed, which one line on standard error explains, 2 for bad
-///         usage
+/// Parses the command line and runs the command.
+/// @return the exit status: 0 for success, 1 for a failure, 2 for bad usage. One line on standard
+///         error explains a failure.
 int run(int argc, char** argv);
 
 }  // namespace octurn

@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t state_width = std::string_view("warning").size();
 
-/// How a terminal shows a state: green, yellow, red, dim.
-std::string_view colour_of(Finding::State state) {
+/// ANSI escape of a state's colour: green, yellow, red, dim.
+std::string_view terminal_colour(Finding::State state) {
   constexpr std::array<std::string_view, 4> colours{"\033[32m", "\033[33m", "\033[31m", "\033[2m"};
   return colours[static_cast<std::size_t>(state)];
 }
@@ -31,8 +31,8 @@ std::string padded(std::string_view text, std::size_t width) {
 }
 
 std::string state_text(Finding::State state, bool in_colour) {
-  const std::string text = padded(name_of(state), state_width);
-  return in_colour ? std::string(colour_of(state)) + text + "\033[0m" : text;
+  const std::string text = padded(to_string(state), state_width);
+  return in_colour ? std::string(terminal_colour(state)) + text + "\033[0m" : text;
 }
 
 std::string counted(std::ptrdiff_t count, const std::string& what) {
@@ -64,38 +64,38 @@ std::string table_text(const std::vector<Finding>& findings) {
   return text.str();
 }
 
-/// The sensor's own look, unless a daemon that works here has the sensor.
-SensorLook look_from_shell(const Patient& patient, const std::stop_token& stop) {
-  if (patient.lines == LineOwner::this_program && patient.rig.stepper) {
+/// Opens and reads the sensor, unless a daemon on this data folder is using it.
+SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_token& stop) {
+  if (input.lines == LineOwner::this_program && input.rig.stepper) {
     return Failure{.code = ErrorCode::busy,
                    .detail = "not looked at: the Octurn that is running here uses it",
                    .hint = "Open its page and choose Check the scanner."};
   }
-  Rig rig(patient.rig);
-  return look_at_sensor(rig, stop);
+  Rig rig(input.rig);
+  return read_sensor(rig, stop);
 }
 
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
   const Config config = make_config(arguments.config);
-  const Patient patient{
+  const DoctorInput input{
       .rig = rig_options(arguments.rig, config.turntable),
       .config = config,
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // before the first thread, as it asks
   const SignalStop signal;
-  const SensorLook look = look_from_shell(patient, signal.token());
+  const SensorReading reading = read_sensor_from_shell(input, signal.token());
   if (signal.token().stop_requested()) {
     throw_stopped();
   }
-  const std::vector<Finding> findings = examine(patient, look);
+  const std::vector<Finding> findings = run_checks(input, reading);
   if (arguments.zip) {
     write_file(*arguments.zip,
-               zip_of(diagnostics_of_machine(config, findings), std::chrono::system_clock::now()));
+               make_zip(machine_diagnostics(config, findings), std::chrono::system_clock::now()));
   }
-  write_standard_output(arguments.json ? json_of(findings).dump() + "\n" : table_text(findings));
-  return worst(findings) != Finding::State::fault;
+  write_standard_output(arguments.json ? to_json(findings).dump() + "\n" : table_text(findings));
+  return overall_state(findings) != Finding::State::fault;
 }
 
 }  // namespace octurn

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What stands for the value in the help.
+/// The value's placeholder in the help.
 std::string placeholder(const Field& field) {
   const json& schema = field.access.schema;
   if (schema["type"] == "array") {
@@ -26,7 +26,7 @@ std::string placeholder(const Field& field) {
   return schema["type"] == "string" ? "NAME" : "N";
 }
 
-/// "solid: what it is (its default)".
+/// The help of an option: "METHOD: text (default)".
 std::string help_text(const Field& field) {
   const json value = field.access.write();
   std::string usual = !field.default_text.empty() ? std::string(field.default_text)

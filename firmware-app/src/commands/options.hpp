@@ -10,17 +10,17 @@
 
 namespace octurn {
 
-/// The option of a setting: "--leaf-size-mm" of "leaf_size_mm".
+/// The option's name: "--leaf-size-mm" for "leaf_size_mm".
 std::string option_name(std::string_view key);
 
-/// Adds an option for each of these settings. What the command line gives is in `given` afterwards,
-/// by its key, still to be checked.
+/// Adds an option for each setting. Parsing stores the given values in `given` by their keys,
+/// unchecked.
 ///
-/// @param fields  of the defaults, which the help tells; needed by this call only
-/// @param given   an object; has to outlive the parsing
+/// @param fields  with the defaults, for the help; used by this call only
+/// @param given   a JSON object that outlives the parsing
 void add_options(CLI::App& command, const std::vector<Field>& fields, nlohmann::json& given);
 
-/// @throws Error "bad-settings"  that names an option which the method does not have
+/// Refuses options of the other method. @throws Error "bad-settings"  that names the option
 void expect_options_of_method(const nlohmann::json& given, const std::vector<Field>& fields,
                               std::string_view method);
 

@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// Hides what is typed, as long as it lives.
+/// Switches the terminal's echo off during its lifetime.
 class HiddenTyping {
  public:
   HiddenTyping() {

@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-/// Time by stage.
+/// Duration of each stage.
 struct Times {
   Clock::duration snapshots = {};  ///< reading and intersecting them
   Clock::duration surface = {};    ///< making and writing it
@@ -33,8 +33,8 @@ struct Times {
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
-/// The most memory that this program has had resident, bytes. (ru_maxrss would count what its
-/// parent had before exec.)
+/// Peak resident memory of this process, bytes. VmHWM, because ru_maxrss includes the parent's
+/// memory from before exec.
 std::uint64_t peak_memory_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string key; status >> key;) {
@@ -51,7 +51,7 @@ ModelSettings settings_from(const nlohmann::json& given) {
   JsonObject keys(given, ErrorCode::bad_settings, "");
   ModelSettings settings;
   read_fields(keys, fields(settings));
-  expect_options_of_method(given, fields(settings), name_of(settings.scan.method));
+  expect_options_of_method(given, fields(settings), to_string(settings.scan.method));
   check_leaf(keys, settings.scan);
   if (keys.value("clip_mm")) {
     check_clip(keys, settings.scan);
@@ -65,18 +65,18 @@ ReconstructOptions options_from(const ModelSettings& settings) {
   return options;
 }
 
-/// The settings that the method has.
-Json json_of(ModelSettings settings) {
+/// The settings that the method uses.
+Json to_json(ModelSettings settings) {
   Json json;
   for (const Field& field : fields(settings)) {
-    if (field.method.empty() || field.method == name_of(settings.scan.method)) {
+    if (field.method.empty() || field.method == to_string(settings.scan.method)) {
       json[std::string(field.key)] = field.access.write();
     }
   }
   return json;
 }
 
-Json json_of(const ModelReport& report, const ModelSettings& settings, const Times& times) {
+Json to_json(const ModelReport& report, const ModelSettings& settings, const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
@@ -96,14 +96,14 @@ Json json_of(const ModelReport& report, const ModelSettings& settings, const Tim
   json["seconds"] = {{"snapshots", seconds(times.snapshots)},
                      {"surface", seconds(times.surface)},
                      {"total", seconds(times.snapshots + times.surface)}};
-  json["settings"] = json_of(settings);
+  json["settings"] = to_json(settings);
   return json;
 }
 
-/// Where the model goes: a file that appears whole or not at all, or standard output.
+/// Destination of the model: standard output, or a file that appears whole or not at all.
 class ModelOutput {
  public:
-  /// @param facets  counts them, which standard output needs to know before the first
+  /// @param facets  counts the facets; called for standard output, whose header needs the number
   template <typename CountFacets>
   ModelOutput(const std::filesystem::path& output, CountFacets facets) {
     if (output != "-") {
@@ -131,10 +131,10 @@ class ModelOutput {
   std::optional<StlFile> file_ = {};
 };
 
-/// The scan's snapshots; reading one shows how far it got. @throws Stopped  once `stop` is
-/// requested
-SnapshotSource snapshots_of(const std::filesystem::path& folder, const Scan& scan, ProgressBar& bar,
-                            const std::stop_token& stop) {
+/// The scan's snapshots. Reading one updates the progress bar, and throws Stopped once `stop` is
+/// requested.
+SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& scan,
+                               ProgressBar& bar, const std::stop_token& stop) {
   return {.count = scan.shots.size(),
           .read = [&bar, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
             bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
@@ -178,7 +178,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   Times times;
   {
     ProgressBar bar;
-    const SnapshotSource snapshots = snapshots_of(arguments.folder, scan, bar, stop);
+    const SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, stop);
     const Clock::time_point start = Clock::now();
     reconstruction->add(snapshots, stop);
     const Clock::time_point seen = Clock::now();
@@ -199,7 +199,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
   if (arguments.json) {
-    const std::string line = json_of(report_of(*count, check), settings, times).dump() + "\n";
+    const std::string line = to_json(report_of(*count, check), settings, times).dump() + "\n";
     if (arguments.output == "-") {
       std::cerr << line;  // a line of text does not belong into the model
     } else {

@@ -25,7 +25,7 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
   Status status = scanner.status();
   while (status.busy()) {
     bar.show(status.job->snapshots_done, job.settings.snapshots,
-             status.job->failure ? "trying again" : name_of(status.job->phase));
+             status.job->failure ? "trying again" : to_string(status.job->phase));
     if (stop.stop_requested()) {
       scanner.cancel(job.id);
     }
@@ -34,7 +34,7 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
   return *status.job;
 }
 
-/// Says why there is no model, where the snapshots are, and how to go on.
+/// Throws the Error of a scan without a model: why, where its snapshots are, and how to resume it.
 [[noreturn]] void explain(const Job& job, const std::filesystem::path& folder) {
   const std::string kept = std::to_string(job.snapshots_done) + " of " +
                            std::to_string(job.settings.snapshots) + " snapshots are in " +
@@ -47,7 +47,7 @@ Job follow(Scanner& scanner, const Job& job, const std::stop_token& stop) {
   throw Error(job.failure->code, job.failure->detail + ": " + kept, job.failure->hint + resume);
 }
 
-/// Hands over the bytes of a file in parts.
+/// Reads a file in blocks of 1 MiB.
 template <typename Sink>
 void read_parts(const std::filesystem::path& file, const Sink& sink) {
   std::ifstream source(file, std::ios::binary);
@@ -71,7 +71,7 @@ void copy_model(const std::filesystem::path& from, const std::filesystem::path& 
   target.commit();
 }
 
-/// The same; a failure tells where the model is all the same.
+/// Copies the model; the Error of a failure says where the model is kept.
 void hand_over_model(const std::filesystem::path& from, const std::filesystem::path& to) {
   try {
     copy_model(from, to);
@@ -86,7 +86,7 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
 void scan(const ScanArguments& arguments) {
   const Config config = make_config(arguments.config);
   ScanSettings settings = settings_from(arguments.settings, config.scan);
-  expect_options_of_method(arguments.settings, fields(settings), name_of(settings.method));
+  expect_options_of_method(arguments.settings, fields(settings), to_string(settings.method));
   expect_writable(arguments.output);  // before minutes of scanning
   const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks

@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-/// Where a browser on this machine finds the page.
+/// URL of the page for a browser on this machine.
 std::string page_address(const HttpOptions& options, int port) {
   const bool any = options.address == "0.0.0.0" || options.address == "::";
   const bool v6 = options.address.find(':') != std::string::npos;
@@ -23,8 +23,8 @@ std::string page_address(const HttpOptions& options, int port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-/// Until SIGINT or SIGTERM. As long as the worker's heart beats, systemd is told that the daemon
-/// lives.
+/// Waits for SIGINT or SIGTERM. Meanwhile it notifies systemd's watchdog as long as the scanner's
+/// worker is alive.
 void wait(const Scanner& scanner) {
   const auto interval = watchdog_interval();
   if (!interval) {
@@ -58,7 +58,7 @@ void serve(const ServeArguments& arguments) {
   Api api({.scanner = scanner,
            .store = store,
            .page = page,
-           .patient = {.rig = rig, .config = config},
+           .doctor_input = {.rig = rig, .config = config},
            .appliance = appliance ? &*appliance : nullptr});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 

@@ -22,10 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t most_of_a_file = std::size_t{16} << 10U;  // of the system, bytes
-constexpr std::size_t most_of_scans = std::size_t{1} << 20U;    // bytes
+constexpr std::size_t max_file_bytes = std::size_t{16} << 10U;  // of the system, bytes
+constexpr std::size_t max_scans_bytes = std::size_t{1} << 20U;  // bytes
 
-// Nothing that tells one machine from others of its kind: no serial number, address or host name.
+// None of these identifies a machine: no serial number, address or host name.
 constexpr std::array system_files{
     "etc/os-release",
     "proc/device-tree/model",
@@ -59,8 +59,8 @@ ArchivedFile json_file(std::string name, const json& content) {
           .content = content.dump(1, ' ', false, json::error_handler_t::replace) + "\n"};
 }
 
-/// The real files of the shared libraries that this program has loaded: most of their names end
-/// with a version.
+/// Paths of the shared libraries that this process has loaded, links resolved: most of these names
+/// end with a version.
 std::set<std::string> loaded_libraries(const fs::path& root) {
   std::set<std::string> libraries;
   std::ifstream maps(root / "proc/self/maps");
@@ -84,13 +84,13 @@ json versions(const fs::path& root) {
           {"machine", kernel.machine}};
 }
 
-/// As `head` shows several files.
+/// Appends the beginning of a file under a headline, as `head` does for several files.
 void append(std::string& text, const fs::path& root, const fs::path& file) {
-  std::string content(most_of_a_file, '\0');
+  std::string content(max_file_bytes, '\0');
   std::ifstream stream(root / file, std::ios::binary);
   stream.read(content.data(), static_cast<std::streamsize>(content.size()));
   content.resize(static_cast<std::size_t>(stream.gcount()));
-  std::erase(content, '\0');  // which ends what the device tree says
+  std::erase(content, '\0');  // strings of the device tree end with it
   if (!content.empty()) {
     text.append("==> /").append(file.string()).append(" <==\n").append(content);
     text.append(content.ends_with('\n') ? "\n" : "\n\n");
@@ -110,7 +110,7 @@ std::string system_text(const fs::path& root) {
   return text;
 }
 
-/// As many of the newest as may be.
+/// The newest scans that fit into `max_scans_bytes`.
 json scans_without_names(std::span<const Job> scans) {
   json all = json::array();
   std::size_t bytes = 0;
@@ -118,7 +118,7 @@ json scans_without_names(std::span<const Job> scans) {
     json scan = to_job_json(job);
     scan.erase("name");
     bytes += scan.dump(1, ' ', false, json::error_handler_t::replace).size();
-    if (bytes > most_of_scans) {
+    if (bytes > max_scans_bytes) {
       break;
     }
     all.push_back(std::move(scan));
@@ -129,24 +129,24 @@ json scans_without_names(std::span<const Job> scans) {
 
 }  // namespace
 
-std::vector<ArchivedFile> diagnostics_of_machine(const Config& config,
-                                                 std::span<const Finding> findings,
-                                                 const fs::path& root) {
+std::vector<ArchivedFile> machine_diagnostics(const Config& config,
+                                              std::span<const Finding> findings,
+                                              const fs::path& root) {
   return {json_file("versions.json", versions(root)),
-          json_file("settings.json", json_of(config)),
-          json_file("doctor.json", json_of(findings)),
+          json_file("settings.json", to_json(config)),
+          json_file("doctor.json", to_json(findings)),
           {.name = "system.txt", .content = system_text(root)}};
 }
 
-std::vector<ArchivedFile> diagnostics_of_daemon(const Status& status, std::span<const Job> scans,
-                                                std::string log) {
+std::vector<ArchivedFile> daemon_diagnostics(const Status& status, std::span<const Job> scans,
+                                             std::string log) {
   return {json_file("devices.json",
-                    {{"sensor", json_of(status.sensor)}, {"turntable", json_of(status.turntable)}}),
+                    {{"sensor", to_json(status.sensor)}, {"turntable", to_json(status.turntable)}}),
           json_file("scans.json", scans_without_names(scans)),
           {.name = "log.txt", .content = std::move(log)}};
 }
 
-std::vector<ArchivedFile> diagnostics_of_appliance(const Appliance& appliance) {
+std::vector<ArchivedFile> appliance_diagnostics(const Appliance& appliance) {
   std::string errors = appliance.errors();
   return errors.empty() ? std::vector<ArchivedFile>{}
                         : std::vector{ArchivedFile{.name = "errors.txt", .content = errors}};

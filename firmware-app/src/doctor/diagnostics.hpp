@@ -14,23 +14,23 @@
 
 namespace octurn {
 
-// What somebody needs who helps from afar, as files: no secret, no name that a person gave a scan,
-// nothing that a sensor saw, and at most 4 MiB.
+// Files for remote support, of at most 4 MiB. They contain no secrets, no names of scans and no
+// sensor data.
 
 /// `versions.json`, `settings.json`, `doctor.json` and `system.txt`.
 /// @param config  in force
-/// @param root    that /etc, /proc and /sys are in: "/" outside of tests
-std::vector<ArchivedFile> diagnostics_of_machine(const Config& config,
-                                                 std::span<const Finding> findings,
-                                                 const std::filesystem::path& root = "/");
+/// @param root    folder with /etc, /proc and /sys: "/" except in tests
+std::vector<ArchivedFile> machine_diagnostics(const Config& config,
+                                              std::span<const Finding> findings,
+                                              const std::filesystem::path& root = "/");
 
 /// `devices.json`, `scans.json` and `log.txt` of a daemon.
 /// @param scans  the newest first
-/// @param log    its last lines
-std::vector<ArchivedFile> diagnostics_of_daemon(const Status& status, std::span<const Job> scans,
-                                                std::string log);
+/// @param log    the newest lines of the log
+std::vector<ArchivedFile> daemon_diagnostics(const Status& status, std::span<const Job> scans,
+                                             std::string log);
 
-/// `errors.txt`, if there are any.
-std::vector<ArchivedFile> diagnostics_of_appliance(const Appliance& appliance);
+/// `errors.txt`, if the appliance has logged errors.
+std::vector<ArchivedFile> appliance_diagnostics(const Appliance& appliance);
 
 }  // namespace octurn

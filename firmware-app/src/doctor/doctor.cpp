@@ -11,13 +11,13 @@
 namespace octurn {
 namespace {
 
-/// Whether the sensor is to be found on USB, and is no file.
+/// Whether the URI names a USB device, and neither a simulated sensor nor a file.
 bool is_on_usb(const std::string& uri) {
   return !is_simulated_sensor(uri) && !std::filesystem::exists(uri);
 }
 
-/// @return why the system does not allow it; empty if it does
-std::string refusal_of_real_time() {
+/// Asks for real-time priority for a moment. @return why it was refused; empty if it was granted
+std::string real_time_refusal() {
   if (const int failure = ask_for_real_time_priority(); failure != 0) {
     return std::generic_category().message(failure);
   }
@@ -25,20 +25,20 @@ std::string refusal_of_real_time() {
   return "";
 }
 
-std::vector<Finding> check_turntable(const Patient& patient) {
-  if (!patient.rig.stepper) {
+std::vector<Finding> check_turntable(const DoctorInput& input) {
+  if (!input.rig.stepper) {
     return {check_simulated_turntable()};
   }
-  const HeaderLook header = look_at_gpio(lines_of(*patient.rig.stepper));
-  return {check_gpio_chip(header), check_gpio_lines(header, patient.lines),
-          check_gpio_permission(patient.root), check_real_time(refusal_of_real_time())};
+  const HeaderState header = read_gpio_header(lines_of(*input.rig.stepper));
+  return {check_gpio_chip(header), check_gpio_lines(header, input.lines),
+          check_gpio_permission(input.root), check_real_time(real_time_refusal())};
 }
 
-std::vector<Finding> check_machine(const Patient& patient) {
-  const auto& root = patient.root;
-  return {check_data_folder(patient.config.data),
-          check_disk(free_bytes_in(patient.config.data), most_bytes_of(patient.config.scan)),
-          check_memory(root, patient.config.limits.memory_bytes),
+std::vector<Finding> check_machine(const DoctorInput& input) {
+  const auto& root = input.root;
+  return {check_data_folder(input.config.data),
+          check_disk(free_bytes_in(input.config.data), most_bytes_of(input.config.scan)),
+          check_memory(root, input.config.limits.memory_bytes),
           check_temperature(root),
           check_supply(root),
           check_throttling(root),
@@ -47,28 +47,28 @@ std::vector<Finding> check_machine(const Patient& patient) {
 
 }  // namespace
 
-std::vector<Finding> examine(const Patient& patient, const SensorLook& look) {
+std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =
-      check_sensor(look, patient.config.scan.clip, patient.config.scan.platform_from_sensor);
-  if (is_on_usb(patient.rig.sensor_uri)) {
-    findings.push_back(check_usb(patient.root));
+      check_sensor(reading, input.config.scan.clip, input.config.scan.platform_from_sensor);
+  if (is_on_usb(input.rig.sensor_uri)) {
+    findings.push_back(check_usb(input.root));
   }
-  for (const std::vector<Finding>& more : {check_turntable(patient), check_machine(patient)}) {
+  for (const std::vector<Finding>& more : {check_turntable(input), check_machine(input)}) {
     findings.insert(findings.end(), more.begin(), more.end());
   }
   return findings;
 }
 
-std::vector<Finding> examine(Patient patient, Scanner& scanner) {
+std::vector<Finding> run_checks(DoctorInput input, Scanner& scanner) {
   if (scanner.status().turntable.state == DeviceStatus::State::ready) {
-    patient.lines = LineOwner::this_program;
+    input.lines = LineOwner::this_program;
   }
-  SensorLook look = Failure{.code = ErrorCode::busy,
-                            .detail = "not looked at: a scan is running",
-                            .hint = "Check again when the scan has ended."};
+  SensorReading reading = Failure{.code = ErrorCode::busy,
+                                  .detail = "not looked at: a scan is running",
+                                  .hint = "Check again when the scan has ended."};
   scanner.check_devices(
-      [&](Rig& rig, const std::stop_token& stop) { look = look_at_sensor(rig, stop); });
-  return examine(patient, look);
+      [&](Rig& rig, const std::stop_token& stop) { reading = read_sensor(rig, stop); });
+  return run_checks(input, reading);
 }
 
 }  // namespace octurn

@@ -5,26 +5,25 @@
 
 #include "config.hpp"
 #include "doctor/finding.hpp"
-#include "doctor/sensor_look.hpp"
+#include "doctor/sensor_reading.hpp"
 #include "doctor/turntable_checks.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
 
-/// A scanner to be checked.
-struct Patient {
+/// The scanner that the doctor checks.
+struct DoctorInput {
   RigOptions rig = {};
   Config config = {};  ///< in force
   LineOwner lines = LineOwner::another;
-  std::filesystem::path root = "/";  ///< that /dev, /proc, /run and /sys are in
+  std::filesystem::path root = "/";  ///< folder with /dev, /proc, /run and /sys
 };
 
-/// Every check of a scanner, the sensor's first. Never moves the motor.
-/// @param look  what its sensor gave
-std::vector<Finding> examine(const Patient& patient, const SensorLook& look);
+/// Runs all checks, the sensor's first. Never moves the motor.
+std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading);
 
-/// The same for a daemon's own scanner: its sensor is looked at between scans. While one runs, what
-/// would disturb it is not measured.
-std::vector<Finding> examine(Patient patient, Scanner& scanner);
+/// Runs all checks in a daemon, on its own scanner. The sensor is read between scans only: during a
+/// scan its findings are "unknown".
+std::vector<Finding> run_checks(DoctorInput input, Scanner& scanner);
 
 }  // namespace octurn

@@ -42,12 +42,12 @@ Finding Check::unknown(std::string measured, std::string advice) const {
   return finding(*this, Finding::State::unknown, std::move(measured), std::move(advice));
 }
 
-std::string_view name_of(Finding::State state) {
+std::string_view to_string(Finding::State state) {
   constexpr std::array<std::string_view, 4> names{"ok", "warning", "fault", "unknown"};
   return names[static_cast<std::size_t>(state)];
 }
 
-Finding::State worst(std::span<const Finding> findings) {
+Finding::State overall_state(std::span<const Finding> findings) {
   for (const auto state : {Finding::State::fault, Finding::State::warning}) {
     if (std::ranges::find(findings, state, &Finding::state) != findings.end()) {
       return state;
@@ -70,18 +70,18 @@ std::string readable_bytes(double bytes) {
   return gb < 1 ? rounded(decimal_mb_from_bytes(bytes), 0) + " MB" : rounded(gb, 1) + " GB";
 }
 
-json json_of(std::span<const Finding> findings) {
+json to_json(std::span<const Finding> findings) {
   json all = json::array();
   for (const Finding& finding : findings) {
     all.push_back({{"check", finding.check},
                    {"name", finding.name},
-                   {"state", name_of(finding.state)},
+                   {"state", to_string(finding.state)},
                    {"measured", finding.measured},
                    {"advice", finding.advice}});
   }
   return {{"version", version()},
           {"time", utc_text(std::chrono::system_clock::now(), rfc3339)},
-          {"state", name_of(worst(findings))},
+          {"state", to_string(overall_state(findings))},
           {"findings", std::move(all)}};
 }
 

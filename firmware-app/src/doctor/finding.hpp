@@ -7,22 +7,22 @@
 
 namespace octurn {
 
-/// What one check of the doctor has found.
+/// Result of one check of the doctor.
 struct Finding {
   enum class State {
     ok,
     warning,  ///< scans work, but not as well as they could
     fault,    ///< scans do not work, or will soon not
-    unknown,  ///< not measured, which is no fault
+    unknown,  ///< not measured; no fault
   };
   std::string check = {};  ///< for programs: "frame-rate"
   std::string name = {};   ///< for people: "Frame rate"
   State state = State::unknown;
-  std::string measured = {};  ///< with its units
-  std::string advice = {};    ///< what to do, in one sentence; empty if nothing is
+  std::string measured = {};  ///< with units
+  std::string advice = {};    ///< what to do, in one sentence; empty: nothing
 };
 
-/// What is checked. Makes the findings of it.
+/// One check of the doctor, and the maker of its findings.
 struct Check {
   std::string_view id;
   std::string_view name;
@@ -33,19 +33,19 @@ struct Check {
   Finding unknown(std::string measured, std::string advice = {}) const;
 };
 
-std::string_view name_of(Finding::State state);
+std::string_view to_string(Finding::State state);
 
-/// The state of the whole: fault or warning if there is one, otherwise ok.
-Finding::State worst(std::span<const Finding> findings);
+/// The worst state: fault or warning if any finding has it, otherwise ok.
+Finding::State overall_state(std::span<const Finding> findings);
 
-/// A number with so many digits after the point.
+/// A number with `digits` digits after the point. Zero has no sign.
 std::string rounded(double value, int digits);
 
-/// A size as people read it and disks are sold, in powers of 1000: "512 MB", "12.3 GB".
+/// A size for people, in powers of 1000 as disks are sold: "512 MB", "12.3 GB".
 std::string readable_bytes(double bytes);
 
-/// The findings as `octurn doctor --json` and the API have them, with version and time, so that
-/// they can stand alone.
-nlohmann::json json_of(std::span<const Finding> findings);
+/// The report of `octurn doctor --json` and of the API. Version and time are part of it, so that a
+/// saved report can be read on its own.
+nlohmann::json to_json(std::span<const Finding> findings);
 
 }  // namespace octurn

@@ -30,15 +30,15 @@ constexpr const char* not_known = "not known on this machine";
 
 constexpr std::uint64_t few_scans = 5;
 
-// A model of leaves of 1 mm takes less; below this the kernel itself gets into trouble.
-constexpr double least_memory = bytes_from_mb(64);
+// A model with leaves of 1 mm takes less. Below this the kernel itself runs short.
+constexpr double min_memory = bytes_from_mb(64);
 
-// A Raspberry Pi lowers its clock at 80 degrees, some models a little at 60; at 85 it stops turbo.
+// A Raspberry Pi lowers its clock at 80 degrees; some models lower it a little at 60.
 constexpr double warm = 70;
 constexpr double hot = 80;
 
-/// What the firmware of a Raspberry Pi says in `get_throttled`: bits for now, and the same 16
-/// higher for some time before (Raspberry Pi documentation, vcgencmd).
+/// `get_throttled` of a Raspberry Pi's firmware: flags of the present, and the same flags 16 bits
+/// higher for any time since it started (Raspberry Pi documentation, vcgencmd).
 struct Throttled {
   unsigned bits = 0;
 
@@ -60,7 +60,7 @@ std::optional<Throttled> throttled(const fs::path& root) {
   return end.ec == std::errc() ? std::optional(flags) : std::nullopt;
 }
 
-/// The alarm of the kernel's driver raspberrypi-hwmon; nothing where there is no such driver.
+/// The under-voltage alarm of the kernel's driver raspberrypi-hwmon; nothing without that driver.
 std::optional<bool> voltage_alarm(const fs::path& root) {
   for (const fs::path& device : entries(root / "sys/class/hwmon")) {
     if (first_line(device / "name") == "rpi_volt") {
@@ -71,7 +71,7 @@ std::optional<bool> voltage_alarm(const fs::path& root) {
   return std::nullopt;
 }
 
-/// A line of /proc/meminfo, bytes.
+/// One value of /proc/meminfo, bytes.
 std::optional<double> meminfo(const fs::path& root, const std::string& key) {
   std::ifstream lines(root / "proc/meminfo");
   for (std::string name; lines >> name;) {
@@ -106,7 +106,7 @@ Finding check_memory(const fs::path& root, std::size_t limit) {
   const std::string measured =
       readable_bytes(*available) + " available" +
       (limit == 0 ? "" : ", " + readable_bytes(wanted) + " allowed for a model");
-  if (*available < least_memory) {
+  if (*available < min_memory) {
     return memory.fault(measured, "End other programs on this machine, or start it again.");
   }
   return *available < wanted
@@ -179,7 +179,7 @@ Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point 
 
 bool is_clock_synchronised() {
   timex state{};
-  const int answer = ::adjtimex(&state);  // -1 where a service may not even ask
+  const int answer = ::adjtimex(&state);  // -1: the service's sandbox forbids the call
   return answer >= 0 && answer != TIME_ERROR;
 }
 

@@ -8,31 +8,32 @@
 
 namespace octurn {
 
-// Checks of the machine. A `root` is the folder that /proc, /sys and /run are in: "/" outside of
-// tests.
+// Checks of the machine. `root` is the folder with /proc, /sys and /run: "/" except in tests.
 
-/// @param free        bytes that this program may still write into the folder of the scans
-/// @param bytes_each  what a scan takes at most
+/// Whether the disk has room for several scans.
+/// @param free        bytes that this program may still write into the data folder
+/// @param bytes_each  maximum size of a scan
 Finding check_disk(std::uint64_t free, std::uint64_t bytes_each);
 
-/// Whether there is as much memory as a reconstruction may use.
+/// Whether the memory that a reconstruction may use is available.
 /// @param limit  bytes, for the whole process; 0 is no limit
 Finding check_memory(const std::filesystem::path& root, std::size_t limit);
 
+/// Whether the processor is cool enough to keep its clock.
 Finding check_temperature(const std::filesystem::path& root);
 
-/// Whether a Raspberry Pi's supply holds its voltage.
+/// Whether a Raspberry Pi's supply voltage has stayed above 4.63 V.
 Finding check_supply(const std::filesystem::path& root);
 
-/// Whether a Raspberry Pi runs slower than it could.
+/// Whether a Raspberry Pi's firmware has lowered the clock of the processor.
 Finding check_throttling(const std::filesystem::path& root);
 
-/// Whether somebody has set the clock: a Raspberry Pi has none that runs without power.
-/// @param synchronised  what the kernel says of it
+/// Whether the clock is right. A Raspberry Pi has no clock that runs without power.
+/// @param synchronised  as `is_clock_synchronised` says
 Finding check_clock(const std::filesystem::path& root, std::chrono::system_clock::time_point now,
                     bool synchronised);
 
-/// Whether the kernel has been told the time by a time server, and lately.
+/// Whether a time server has set the kernel's clock lately (adjtimex(2)).
 bool is_clock_synchronised();
 
 }  // namespace octurn

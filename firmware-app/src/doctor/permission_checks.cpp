@@ -22,15 +22,16 @@ constexpr Check gpio_permission{"gpio-permission", "GPIO permission"};
 constexpr Check data_folder{"data-folder", "Folder of the scans"};
 constexpr Check real_time{"real-time", "Real-time priority"};
 
-/// USB devices that are, or belong to, sensors of which Octurn has drivers.
+/// A USB device that is a supported sensor or part of one.
 struct UsbKind {
   std::string_view vendor;
-  std::string_view product;  // empty: every one of the vendor
+  std::string_view product;  // empty: every product of the vendor
   std::string_view name;
   bool is_camera;
 };
 
-// A Kinect without its power supply shows its hub and motor, which USB powers, and no camera.
+// Without its own power supply a Kinect shows its hub and motor, but no camera: USB powers only
+// those.
 constexpr std::array usb_kinds{
     UsbKind{"045e", "02ae", "Kinect", true},
     UsbKind{"045e", "02bf", "Kinect for Windows", true},
@@ -41,7 +42,7 @@ constexpr std::array usb_kinds{
     UsbKind{"045e", "02c2", "Kinect's hub", false},
 };
 
-const UsbKind* kind_of(const fs::path& device) {
+const UsbKind* find_usb_kind(const fs::path& device) {
   const std::string vendor = first_line(device / "idVendor").value_or("");
   const std::string product = first_line(device / "idProduct").value_or("");
   const auto* kind = std::ranges::find_if(usb_kinds, [&](const UsbKind& known) {
@@ -55,8 +56,8 @@ std::string three_digits(const fs::path& file) {
   return std::string(number.size() < 3 ? 3 - number.size() : 0, '0') + number;
 }
 
-/// What libusb opens: /dev/bus/usb/001/005.
-fs::path node_of(const fs::path& device) {
+/// The device file that libusb opens, such as dev/bus/usb/001/005.
+fs::path usb_node(const fs::path& device) {
   return fs::path("dev/bus/usb") / three_digits(device / "busnum") /
          three_digits(device / "devnum");
 }
@@ -66,7 +67,7 @@ fs::path node_of(const fs::path& device) {
 Finding check_usb(const fs::path& root) {
   bool is_without_camera = false;
   for (const fs::path& device : entries(root / "sys/bus/usb/devices")) {
-    const UsbKind* kind = kind_of(device);
+    const UsbKind* kind = find_usb_kind(device);
     if (kind == nullptr) {
       continue;
     }
@@ -74,7 +75,7 @@ Finding check_usb(const fs::path& root) {
       is_without_camera = true;
       continue;
     }
-    const fs::path node = node_of(device);
+    const fs::path node = usb_node(device);
     const std::string measured = std::string(kind->name) + " at /" + node.string();
     return may_use(root / node)
                ? usb.ok(measured)

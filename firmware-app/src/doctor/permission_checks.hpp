@@ -7,19 +7,20 @@
 
 namespace octurn {
 
-// Checks of what this program may use. A `root` is the folder that /dev and /sys are in: "/"
-// outside of tests.
+// Checks of this program's permissions. `root` is the folder with /dev and /sys: "/" except in
+// tests.
 
-/// Whether the kernel sees a sensor on USB that Octurn knows, and whether it may be used.
+/// Whether a supported sensor is on USB, and this user may open it.
 Finding check_usb(const std::filesystem::path& root);
 
-/// Whether the GPIO chips may be used.
+/// Whether this user may open the GPIO chips.
 Finding check_gpio_permission(const std::filesystem::path& root);
 
-/// Whether scans can be kept in a folder, which need not exist yet.
+/// Whether this user may write into the data folder, or create it.
 Finding check_data_folder(const std::filesystem::path& data);
 
-/// @param refusal  of the kernel to give a thread real-time priority; empty if it does
+/// Whether the stepper's thread gets real-time priority.
+/// @param refusal  the kernel's reason against it; empty if it allows it
 Finding check_real_time(const std::string& refusal);
 
 }  // namespace octurn

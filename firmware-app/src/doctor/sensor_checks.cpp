@@ -20,13 +20,13 @@ constexpr Check tilt_check{"tilt", "Tilt of the sensor"};
 constexpr const char* stand_it_right =
     "Set the sensor up as docs/wiring.md says, or correct platform_from_sensor in octurn.json.";
 
-// Of every sensor that Octurn has a driver of, in the mode that it chooses.
+// Every supported sensor delivers 30 Hz in the mode that Octurn chooses.
 constexpr double nominal_rate_hz = 30;
 constexpr double low_rate_hz = 27;
 
 constexpr int few_rays = 500;  // a platform of 28 cm, 2 m away, has ten times as many
 
-// A platform that is this high reaches into a clip box that begins at 5 mm, with its noise.
+// With its noise, a platform this high reaches into a clip box that begins at 5 mm.
 constexpr double much_too_high = 0.004;
 
 // Steps of a Kinect's depth are 1 mm at 0.6 m and 3 mm at 1 m (reference: 345489 / (1089.4 - raw)),
@@ -34,7 +34,7 @@ constexpr double much_too_high = 0.004;
 constexpr double much_noise = 0.003;
 constexpr double too_much_noise = 0.01;
 
-// One degree moves what is seen at 0.7 m by 12 mm.
+// One degree moves a point at 0.7 m by 12 mm.
 constexpr double small_turn = radians_from_degrees(1.5);
 constexpr double large_turn = radians_from_degrees(5);
 
@@ -58,7 +58,7 @@ double quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// What one pixel looks at the platform along: from the sensor, and what a metre of depth adds.
+/// A pixel's ray in the platform frame: `direction` is the way of one metre of depth.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -67,13 +67,13 @@ struct Ray {
   double depth_of_surface() const { return -origin.z() / direction.z(); }
 };
 
-Ray ray_of(int u, int v, const Intrinsics& lens, const Eigen::Isometry3d& platform_from_sensor) {
+Ray make_ray(int u, int v, const Intrinsics& lens, const Eigen::Isometry3d& platform_from_sensor) {
   const Eigen::Vector3d in_sensor((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
   return {.origin = platform_from_sensor.translation(),
           .direction = platform_from_sensor.linear() * in_sensor};
 }
 
-/// The largest circle about the platform's axis that is inside of the box.
+/// Radius of the largest circle about the platform's axis inside the box.
 double radius_within(const Box& clip) {
   return std::min(std::min(-clip.min.x(), clip.max.x()), std::min(-clip.min.y(), clip.max.y()));
 }
@@ -82,7 +82,7 @@ bool meets_platform(const Ray& ray, double radius) {
   return ray.direction.z() < 0 && ray.at(ray.depth_of_surface()).head<2>().norm() <= radius;
 }
 
-/// The readings of one pixel, metres.
+/// Depths of one pixel in all frames, metres, without missing readings.
 std::vector<double> readings_at(const SensorSample& sample, std::size_t pixel) {
   std::vector<double> depths;
   for (const DepthFrame& frame : sample.frames) {
@@ -101,7 +101,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Heights of the surface and deviations of its readings, as they are collected.
+/// Heights of pixels on the surface, and deviations of their depths from each pixel's mean.
 struct Surface {
   std::vector<double> heights = {};
   std::vector<double> deviations = {};
@@ -152,7 +152,7 @@ Finding check_lost_frames(const SensorSample& sample) {
              : lost_frames.ok(measured);
 }
 
-PlatformView view_of_platform(const SensorSample& sample, const Box& clip,
+PlatformView measure_platform(const SensorSample& sample, const Box& clip,
                               const Eigen::Isometry3d& platform_from_sensor) {
   PlatformView view;
   Surface surface;
@@ -161,7 +161,7 @@ PlatformView view_of_platform(const SensorSample& sample, const Box& clip,
   std::size_t pixel = 0;
   for (int v = 0; v < lens.height; ++v) {
     for (int u = 0; u < lens.width; ++u, ++pixel) {
-      const Ray ray = ray_of(u, v, lens, platform_from_sensor);
+      const Ray ray = make_ray(u, v, lens, platform_from_sensor);
       if (!meets_platform(ray, radius)) {
         continue;
       }
@@ -244,9 +244,9 @@ Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& pla
                             : tilt_check.ok(measured);
 }
 
-std::vector<Finding> check_sensor(const SensorLook& look, const Box& clip,
+std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
                                   const Eigen::Isometry3d& platform_from_sensor) {
-  if (const auto* failure = std::get_if<Failure>(&look)) {
+  if (const auto* failure = std::get_if<Failure>(&reading)) {
     const bool busy = failure->code == ErrorCode::busy;
     std::vector<Finding> findings{busy ? sensor.unknown(failure->detail, failure->hint)
                                        : sensor.fault(failure->detail, failure->hint)};
@@ -255,8 +255,8 @@ std::vector<Finding> check_sensor(const SensorLook& look, const Box& clip,
     }
     return findings;
   }
-  const auto& sample = std::get<SensorSample>(look);
-  const PlatformView view = view_of_platform(sample, clip, platform_from_sensor);
+  const auto& sample = std::get<SensorSample>(reading);
+  const PlatformView view = measure_platform(sample, clip, platform_from_sensor);
   return {sensor.ok(sample.name + ", " + std::to_string(sample.intrinsics.width) + " x " +
                     std::to_string(sample.intrinsics.height)),
           check_frame_rate(sample),

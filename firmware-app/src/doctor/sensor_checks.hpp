@@ -4,43 +4,47 @@
 #include <vector>
 
 #include "doctor/finding.hpp"
-#include "doctor/sensor_look.hpp"
+#include "doctor/sensor_reading.hpp"
 #include "octurn/box.hpp"
 
 namespace octurn {
 
+/// Whether frames come as fast as the sensor's mode says.
 Finding check_frame_rate(const SensorSample& sample);
 
-/// Whether frames are missing between those that came.
+/// Whether frames were lost or damaged on the way.
 Finding check_lost_frames(const SensorSample& sample);
 
-/// What a sensor sees of the platform: of those pixels whose rays meet its surface, inside the clip
-/// box, by the calibration.
+/// What the sensor sees of the platform. Counts pixels whose rays, by the calibration, meet the
+/// platform's surface inside the clip box.
 struct PlatformView {
-  int rays = 0;        ///< pixels that look at it
-  int readings = 0;    ///< those of them with a depth in at least half of the frames
-  int on_surface = 0;  ///< those of them that see it within `surface_tolerance`
-  double height = 0;   ///< of what they see above where the calibration has it, metres, median
-  double noise = 0;    ///< two thirds of their depths are this near to their mean, metres
+  int rays = 0;        ///< pixels whose rays meet the platform
+  int readings = 0;    ///< of `rays`: with a depth in at least half of the frames
+  int on_surface = 0;  ///< of `readings`: within `surface_tolerance` of the platform
+  double height = 0;   ///< median height of `on_surface` above the calibrated platform, metres
+  double noise = 0;    ///< standard deviation of a pixel's depths, metres (68.3 % quantile)
 };
 
-/// How far from the surface a reading still counts as one of it, metres.
+/// Maximum height of a reading above or below the platform that still counts as its surface,
+/// metres.
 inline constexpr double surface_tolerance = 0.015;
 
+/// Measures the platform in the frames of a sample.
 /// @param platform_from_sensor  the calibration
-PlatformView view_of_platform(const SensorSample& sample, const Box& clip,
+PlatformView measure_platform(const SensorSample& sample, const Box& clip,
                               const Eigen::Isometry3d& platform_from_sensor);
 
-/// Whether the platform is where the calibration has it.
+/// Whether the platform is where the calibration says.
 Finding check_platform(const PlatformView& view);
 
+/// Whether the depth noise on the platform is as low as a Kinect's.
 Finding check_depth_noise(const PlatformView& view);
 
-/// Whether the sensor stands as it did when it was calibrated.
+/// Whether the sensor's tilt agrees with the calibration.
 Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& platform_from_sensor);
 
-/// All of them, and whether there is a sensor at all.
-std::vector<Finding> check_sensor(const SensorLook& look, const Box& clip,
+/// All checks of the sensor. Without a sample the first says why, and the others are "unknown".
+std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
                                   const Eigen::Isometry3d& platform_from_sensor);
 
 }  // namespace octurn

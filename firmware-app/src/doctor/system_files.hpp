@@ -7,14 +7,15 @@
 
 namespace octurn {
 
-// The small files of /sys and /proc. What is not there is nothing, and no error.
+// Small files of /sys and /proc. A missing file or folder is no error.
 
-/// What is in a folder, by name.
+/// Paths of a folder's entries, sorted by name.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
 
+/// The first line of a file, without line feed.
 std::optional<std::string> first_line(const std::filesystem::path& file);
 
-/// The number that a file begins with.
+/// The number at the beginning of a file.
 std::optional<double> number_in(const std::filesystem::path& file);
 
 /// Whether this process may read and write a file or device.

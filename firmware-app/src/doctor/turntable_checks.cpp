@@ -15,22 +15,22 @@ void append(std::string& list, const std::string& item) {
 
 }  // namespace
 
-HeaderLook look_at_gpio(const std::vector<NamedLine>& lines) {
+HeaderState read_gpio_header(const std::vector<NamedLine>& lines) {
   try {
-    return look_at_header(lines);
+    return read_header_use(lines);
   } catch (const Error& error) {
-    return failure_of(error);
+    return to_failure(error);
   }
 }
 
-Finding check_gpio_chip(const HeaderLook& header) {
+Finding check_gpio_chip(const HeaderState& header) {
   if (const auto* failure = std::get_if<Failure>(&header)) {
     return gpio_chip.fault(failure->detail, failure->hint);
   }
   return gpio_chip.ok(std::get<HeaderUse>(header).label);
 }
 
-Finding check_gpio_lines(const HeaderLook& header, LineOwner owner) {
+Finding check_gpio_lines(const HeaderState& header, LineOwner owner) {
   const auto* use = std::get_if<HeaderUse>(&header);
   if (use == nullptr) {
     return gpio_lines.unknown("there is no GPIO chip to look at");

@@ -8,22 +8,22 @@
 
 namespace octurn {
 
-/// What the GPIO header is, or why it cannot be looked at.
-using HeaderLook = std::variant<HeaderUse, Failure>;
+/// State of the GPIO lines, or why it cannot be read.
+using HeaderState = std::variant<HeaderUse, Failure>;
 
-/// Whose the lines are that go by Octurn's name.
+/// Who holds the GPIO lines whose consumer is called "octurn".
 enum class LineOwner {
   this_program,  ///< or a daemon of it, whose turntable they drive
   another,
 };
 
-/// Looks at the lines of a turntable. Moves nothing, and takes hold of nothing.
-HeaderLook look_at_gpio(const std::vector<NamedLine>& lines);
+/// Reads the state of a turntable's lines. Neither requests nor changes a line.
+HeaderState read_gpio_header(const std::vector<NamedLine>& lines);
 
-Finding check_gpio_chip(const HeaderLook& header);
-Finding check_gpio_lines(const HeaderLook& header, LineOwner owner);
+Finding check_gpio_chip(const HeaderState& header);
+Finding check_gpio_lines(const HeaderState& header, LineOwner owner);
 
-/// The two for a turntable that is simulated.
+/// The finding in place of both for a simulated turntable.
 Finding check_simulated_turntable();
 
 }  // namespace octurn

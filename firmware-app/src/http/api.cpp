@@ -93,10 +93,10 @@ Response Api::answer(const Request& request) {
   try {
     const std::string_view body_type =
         request.path == update_path ? upload_type : "application/json";
-    const auto refused = refusal(request, app_.patient.config.host_names, body_type);
+    const auto refused = refusal(request, app_.doctor_input.config.host_names, body_type);
     return refused ? problem(*refused) : dispatch(request);
   } catch (const Error& error) {
-    return problem(failure_of(error));
+    return problem(to_failure(error));
   } catch (const std::exception& error) {
     log::error("http", request.method + " " + request.path + ": " + error.what());
     return problem(

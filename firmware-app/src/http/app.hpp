@@ -12,7 +12,7 @@ struct App {
   Scanner& scanner;
   const ScanStore& store;
   const Page& page;
-  Patient patient;                 ///< this scanner, with the configuration in force
+  DoctorInput doctor_input;        ///< this scanner, with the configuration in force
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
 };
 

@@ -41,15 +41,15 @@ json to_json(const Model& model, const std::string& id) {
 json to_json(const Job& job) {
   return {{"id", job.id},
           {"name", job.name},
-          {"state", name_of(job.state)},
-          {"phase", name_of(job.phase)},
+          {"state", to_string(job.state)},
+          {"phase", to_string(job.phase)},
           {"created", job.created},
           {"snapshots_done", job.snapshots_done},
           {"snapshots_total", job.settings.snapshots},
           {"seconds_elapsed", rounded(job.elapsed.count())},
           {"seconds_left", job.left ? json(rounded(job.left->count())) : json()},
           {"late_pulses", job.late_pulses},
-          {"settings", json_of(job.settings)},
+          {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},
           {"model", job.model ? to_json(*job.model, job.id) : json()}};
 }

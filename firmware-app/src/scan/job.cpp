@@ -35,11 +35,11 @@ bool is_resumable(JobState state) {
   return state == JobState::paused || state == JobState::interrupted;
 }
 
-std::string_view name_of(JobState state) {
+std::string_view to_string(JobState state) {
   return std::ranges::find(states, state, &Names<JobState>::first)->second;
 }
 
-std::string_view name_of(Phase phase) {
+std::string_view to_string(Phase phase) {
   return std::ranges::find(phases, phase, &Names<Phase>::first)->second;
 }
 

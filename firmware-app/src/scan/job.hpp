@@ -26,8 +26,8 @@ enum class Phase { starting, turning, capturing, building, done };
 /// Whether a scan in that state can go on where it stopped.
 bool is_resumable(JobState state);
 
-std::string_view name_of(JobState state);
-std::string_view name_of(Phase phase);
+std::string_view to_string(JobState state);
+std::string_view to_string(Phase phase);
 
 /// The state or phase of that name, if there is one.
 std::optional<JobState> job_state_named(std::string_view name);

@@ -92,14 +92,14 @@ std::optional<Model> model_from(const std::optional<JsonValue>& object) {
 json to_job_json(const Job& job) {
   json object{{"id", job.id},
               {"name", job.name},
-              {"state", name_of(job.state)},
-              {"phase", name_of(job.phase)},
+              {"state", to_string(job.state)},
+              {"phase", to_string(job.phase)},
               {"created", job.created},
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
               {"seconds_elapsed", rounded(job.elapsed.count())},
               {"late_pulses", job.late_pulses},
-              {"settings", json_of(job.settings)},
+              {"settings", to_json(job.settings)},
               {"error", nullptr},
               {"model", nullptr}};
   if (job.failure) {

@@ -242,7 +242,7 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
               settings.method == Method::solid ? solid_program_bytes : intersection_program_bytes};
 }
 
-json json_of(const ScanSettings& settings) {
+json to_json(const ScanSettings& settings) {
   ScanSettings copy = settings;
   return to_json(fields(copy));
 }

@@ -71,7 +71,7 @@ std::vector<Field> fields(ModelSettings& settings);
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
 
 /// As the API and the files have them: lengths in millimetres, each key with its unit.
-nlohmann::json json_of(const ScanSettings& settings);
+nlohmann::json to_json(const ScanSettings& settings);
 
 /// Reads the settings of a scan to come; a key that is not given is as in `defaults`.
 ///

@@ -57,7 +57,7 @@ std::optional<Job> Scanner::resume(std::string_view id) {
   }
   Job job = store_.get(id);
   if (!is_resumable(job.state)) {
-    throw Error(ErrorCode::not_paused, "this scan is " + std::string(name_of(job.state)),
+    throw Error(ErrorCode::not_paused, "this scan is " + std::string(to_string(job.state)),
                 "Only a scan that was paused or interrupted can be resumed.");
   }
   job.state = JobState::running;

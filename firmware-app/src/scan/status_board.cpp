@@ -22,7 +22,7 @@ void set_failed(DeviceStatus& device, const Failure& failure) {
 
 }  // namespace
 
-nlohmann::json json_of(const DeviceStatus& device) {
+nlohmann::json to_json(const DeviceStatus& device) {
   constexpr std::array<std::string_view, 4> states{"unknown", "ready", "missing", "failed"};
   return {{"state", states[static_cast<std::size_t>(device.state)]},
           {"name", device.name},

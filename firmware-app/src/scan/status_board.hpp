@@ -23,7 +23,7 @@ struct DeviceStatus {
 };
 
 /// A device as the API has it.
-nlohmann::json json_of(const DeviceStatus& device);
+nlohmann::json to_json(const DeviceStatus& device);
 
 /// A scan on its way, or the one that was started or resumed last.
 struct Status {

@@ -176,7 +176,7 @@ void Worker::save_platform_angle(double angle_deg) {
 void Worker::finish() {
   job_.phase = Phase::done;
   job_.elapsed = Clock::now() - job_started_;
-  const std::string outcome = "scan " + job_.id + " " + std::string(name_of(job_.state));
+  const std::string outcome = "scan " + job_.id + " " + std::string(to_string(job_.state));
   if (job_.failure) {
     log::error("scanner", outcome + ": " + job_.failure->detail);
   } else {

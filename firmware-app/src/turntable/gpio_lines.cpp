@@ -64,7 +64,7 @@ unsigned free_line(const GpioChip& chip, const std::string& name) {
 
 }  // namespace
 
-HeaderUse look_at_header(const std::vector<NamedLine>& lines) {
+HeaderUse read_header_use(const std::vector<NamedLine>& lines) {
   const GpioChip chip = header_chip();
   try {
     HeaderUse use{.label = chip.label()};

@@ -30,7 +30,7 @@ struct HeaderUse {
 /// Reads the use of lines of the header without requesting any.
 /// @throws Error "turntable-missing"  if this machine has no such header
 /// @throws Error "turntable-failed"   if its chip may not be used
-HeaderUse look_at_header(const std::vector<NamedLine>& lines);
+HeaderUse read_header_use(const std::vector<NamedLine>& lines);
 
 /// This program's name as the consumer of a line.
 inline constexpr const char* gpio_user = "octurn";

@@ -104,9 +104,9 @@ TEST(DepthFilter, IsFoundByTheNamesOfTheContract) {
 }
 
 TEST(DepthFilter, SaysItsName) {
-  EXPECT_EQ(name_of(DepthFilter::basic), "basic");
-  EXPECT_EQ(name_of(DepthFilter::average), "average");
-  EXPECT_EQ(name_of(DepthFilter::average_discard), "average-discard");
+  EXPECT_EQ(to_string(DepthFilter::basic), "basic");
+  EXPECT_EQ(to_string(DepthFilter::average), "average");
+  EXPECT_EQ(to_string(DepthFilter::average_discard), "average-discard");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ Response make_model(App& app, const Request& request, const Job& job) {
     }
   }
   ReconstructOptions options =
-      reconstruct_options(settings_from(numbers, job.settings), app.patient.config.limits);
+      reconstruct_options(settings_from(numbers, job.settings), app.doctor_input.config.limits);
   options.level = level;
   if (job.state != JobState::running && job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
@@ -83,7 +83,7 @@ Response send_model(App& app, const Request& request, std::string_view id) {
   }
   if (job.state != JobState::finished) {
     throw Error(ErrorCode::no_model,
-                "this scan is " + std::string(name_of(job.state)) + ": it has no model",
+                "this scan is " + std::string(to_string(job.state)) + ": it has no model",
                 "Only a finished scan has one.");
   }
   return file_response(request, app.store.model_file(id), "model/stl", file_name(job));

@@ -33,7 +33,7 @@ Response list_scans(App& app) {
 }
 
 Response start_scan(App& app, const Request& request) {
-  const ScanSettings settings = settings_from(parse_body(request), app.patient.config.scan);
+  const ScanSettings settings = settings_from(parse_body(request), app.doctor_input.config.scan);
   expect_no_update(app);
   app.scanner.expect_ready();
   const std::optional<Job> job = app.scanner.start(settings);
@@ -69,7 +69,7 @@ Response remove_scan(App& app, std::string_view id) {
 Response cancel_scan(App& app, std::string_view id) {
   const Job job = find_scan(app, id);
   if (!app.scanner.cancel(id)) {
-    throw Error(ErrorCode::not_running, "this scan is " + std::string(name_of(job.state)),
+    throw Error(ErrorCode::not_running, "this scan is " + std::string(to_string(job.state)),
                 "Only a scan that runs, or could be resumed, can be cancelled.");
   }
   return json_response(to_json(app, find_scan(app, id)), 202);

@@ -1,5 +1,3 @@
-#include "http/handlers/system.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <iterator>
@@ -7,6 +5,7 @@
 
 #include "doctor/diagnostics.hpp"
 #include "http/file_response.hpp"
+#include "http/handlers/system.hpp"
 #include "http/json_body.hpp"
 #include "http/preview_image.hpp"
 #include "http/scan_view.hpp"
@@ -24,8 +23,8 @@ Response send_status(App& app) {
   const std::optional<Job> running = running_scan(app);
   const Status now = app.scanner.status();
   json body{{"version", version()},
-            {"sensor", json_of(now.sensor)},
-            {"turntable", json_of(now.turntable)},
+            {"sensor", to_json(now.sensor)},
+            {"turntable", to_json(now.turntable)},
             {"disk_free_bytes", app.store.free_bytes()},
             {"appliance", app.appliance != nullptr},
             {"scan", nullptr},
@@ -40,21 +39,21 @@ Response send_status(App& app) {
 }
 
 Response send_settings(App& app) {
-  return json_response({{"defaults", json_of(app.patient.config.scan)}});
+  return json_response({{"defaults", to_json(app.doctor_input.config.scan)}});
 }
 
 Response send_findings(App& app) {
-  return json_response(json_of(examine(app.patient, app.scanner)));
+  return json_response(to_json(run_checks(app.doctor_input, app.scanner)));
 }
 
 Response send_diagnostics(App& app) {
-  const std::vector<Finding> findings = examine(app.patient, app.scanner);
+  const std::vector<Finding> findings = run_checks(app.doctor_input, app.scanner);
   const std::vector<Job> scans = all_scans(app);
-  std::vector<ArchivedFile> files = diagnostics_of_machine(app.patient.config, findings);
-  std::ranges::move(diagnostics_of_daemon(app.scanner.status(), scans, log::recent()),
+  std::vector<ArchivedFile> files = machine_diagnostics(app.doctor_input.config, findings);
+  std::ranges::move(daemon_diagnostics(app.scanner.status(), scans, log::recent()),
                     std::back_inserter(files));
   if (app.appliance != nullptr) {
-    std::ranges::move(diagnostics_of_appliance(*app.appliance), std::back_inserter(files));
+    std::ranges::move(appliance_diagnostics(*app.appliance), std::back_inserter(files));
   }
 
   const auto time = std::chrono::system_clock::now();
@@ -62,7 +61,7 @@ Response send_diagnostics(App& app) {
   return {.headers = {{"Content-Type", "application/zip"},
                       {"Content-Disposition", attachment(name)},
                       {"Cache-Control", "no-store"}},
-          .body = zip_of(files, time)};
+          .body = make_zip(files, time)};
 }
 
 Response send_depth_picture(App& app) {

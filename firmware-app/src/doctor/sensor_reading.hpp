@@ -14,20 +14,21 @@
 
 namespace octurn {
 
-/// What a sensor gave in about two seconds.
+/// Frames and properties of a sensor, taken for about two seconds.
 struct SensorSample {
   std::string name = {};
   Intrinsics intrinsics = {};
   std::vector<std::chrono::steady_clock::time_point> times = {};  ///< of each frame
-  std::optional<int> damaged = {};      ///< frames that came damaged; nothing if it does not count
+  std::optional<int> damaged = {};  ///< damaged frames; nothing if the sensor does not count them
   std::vector<DepthFrame> frames = {};  ///< the last ones, of a scene that stands still
   std::optional<Tilt> tilt = {};
 };
 
-/// That, or why there is none. Its code is "busy" where the sensor may not be looked at now.
-using SensorLook = std::variant<SensorSample, Failure>;
+/// A sample, or why there is none. The code "busy" says that the sensor is in use.
+using SensorReading = std::variant<SensorSample, Failure>;
 
-/// Reads frames for about two seconds; "busy" if stopped before.
-SensorLook look_at_sensor(Rig& rig, const std::stop_token& stop);
+/// Reads frames for about two seconds; "busy" if `stop` is requested before. Closes a sensor that
+/// fails.
+SensorReading read_sensor(Rig& rig, const std::stop_token& stop);
 
 }  // namespace octurn

@@ -1,15 +1,15 @@
-#include "doctor/sensor_look.hpp"
+#include "doctor/sensor_reading.hpp"
 
 #include <utility>
 
 namespace octurn {
 namespace {
 
-constexpr int first_frames = 10;  // passed over: a sensor that has just been opened finds its pace
+constexpr int first_frames = 10;  // skipped: a sensor that was just opened is still irregular
 constexpr int timed_frames = 60;  // two seconds
 constexpr std::size_t kept_frames = 10;  // as a scan takes at each stop
 
-/// @return nothing if stopped first
+/// @return nothing if `stop` is requested first
 std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& stop) {
   SensorSample sample{.name = sensor.name(), .intrinsics = sensor.intrinsics()};
   std::optional<int> damaged_before;
@@ -36,7 +36,7 @@ std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& s
 
 }  // namespace
 
-SensorLook look_at_sensor(Rig& rig, const std::stop_token& stop) {
+SensorReading read_sensor(Rig& rig, const std::stop_token& stop) {
   try {
     if (auto seen = sample(rig.sensor(), stop)) {
       return *std::move(seen);
@@ -46,7 +46,7 @@ SensorLook look_at_sensor(Rig& rig, const std::stop_token& stop) {
                    .hint = "Check again later."};
   } catch (const Error& error) {
     rig.close_sensor();
-    return failure_of(error);
+    return to_failure(error);
   }
 }
 

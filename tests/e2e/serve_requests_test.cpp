@@ -91,7 +91,10 @@ TEST(ServeRequests, SaysWhatAPathTakes) {
   EXPECT_EQ(request(daemon.port(), "DELETE", "/api/v1/status").status, 405);
   EXPECT_EQ(request(daemon.port(), "POST", "/").status, 404);
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans/20261121-081500-3f2a"))["code"], "no-such-scan");
-  EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["snapshots"], 36);
+  const json settings = parsed(daemon.get("/api/v1/settings"));
+  EXPECT_EQ(settings["defaults"]["snapshots"], 36);
+  EXPECT_EQ(settings["schema"]["properties"]["snapshots"]["maximum"], 200);
+  EXPECT_EQ(settings["schema"]["properties"].size(), settings["defaults"].size());
 }
 
 TEST(ServeRequests, UsesItsConfiguration) {

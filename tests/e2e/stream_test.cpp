@@ -69,6 +69,7 @@ TEST(ModelStream, IsMadeWhileItIsDownloaded) {
       {"leaf_size_mm=2", {"--leaf-size-mm", "2"}},
       {"level=7", {"--leaf-size-mm", "4", "--level", "7"}},
       {"leaf_size_mm=1&level=9", {"--leaf-size-mm", "1", "--level", "9"}},
+      {"leaf_size_mm=%32", {"--leaf-size-mm", "2"}},  // RFC 3986, 6.2.2.2: the same as 2
   };
   for (const auto& [query, options] : ways) {
     std::vector<std::string> command{OCTURN_PROGRAM, "reconstruct", stored, "-o", expected};
@@ -95,8 +96,9 @@ TEST(ModelStream, RefusesParametersThatAreWrong) {
   ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   for (const char* const query :
        {"leaf_size_mm", "leaf_size_mm=", "leaf_size_mm=fine", "leaf_size_mm=0", "leaf_size_mm=-1",
-        "leaf_size_mm=1&leaf_size_mm=2", "leaf_size_mm=1e999", "leaf_size_mm=1%30", "level=99",
-        "level=1.5", "level=-1", "snapshots=3", "leaf=1", "&"}) {
+        "leaf_size_mm=1&leaf_size_mm=2", "leaf_size_mm=1e999", "leaf_size_mm=inf",
+        "leaf_size_mm=[1]", "leaf_size_mm=1%20", "level=99", "level=1.5", "level=-1", "snapshots=3",
+        "leaf=1", "&"}) {
     const Reply reply = daemon.get(scan + "/Scan.stl?" + query);
     EXPECT_EQ(reply.status, 400) << query;
     EXPECT_EQ(parsed(reply)["code"], "bad-settings") << query;

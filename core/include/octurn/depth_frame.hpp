@@ -41,7 +41,7 @@ enum class DepthFilter {
 };
 
 /// The filter's name in settings and files: "basic", "average", "average-discard".
-std::string_view name_of(DepthFilter filter);
+std::string_view to_string(DepthFilter filter);
 
 /// The filter of that name, if there is one.
 std::optional<DepthFilter> depth_filter_named(std::string_view name);

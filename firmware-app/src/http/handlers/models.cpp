@@ -1,6 +1,12 @@
 #include "http/handlers/models.hpp"
 
+#include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "http/entity_tags.hpp"
@@ -14,12 +20,26 @@ namespace {
 
 using nlohmann::json;
 
+/// A decimal number; nothing if the text is anything else, or beyond the range of a double.
+std::optional<json> to_number(std::string_view text) {
+  const char* const end = text.data() + text.size();
+  std::int64_t whole = 0;
+  if (const auto read = std::from_chars(text.data(), end, whole);
+      read.ec == std::errc() && read.ptr == end) {
+    return whole;
+  }
+  double number = 0;
+  const auto read = std::from_chars(text.data(), end, number);
+  const bool is_number = read.ec == std::errc() && read.ptr == end && std::isfinite(number);
+  return is_number ? std::optional<json>(number) : std::nullopt;
+}
+
 /// Numbers by name.
 json to_numbers(const Headers& parameters) {
   json numbers = json::object();
   for (const auto& [name, text] : parameters) {
-    const json value = json::parse(text, nullptr, false);
-    if (!value.is_number() || !numbers.emplace(name, value).second) {
+    const std::optional<json> value = to_number(text);
+    if (!value || !numbers.emplace(name, *value).second) {
       throw Error(ErrorCode::bad_settings, "the query must give each setting once, as a number",
                   "Such as ?leaf_size_mm=0.5&level=7.");
     }

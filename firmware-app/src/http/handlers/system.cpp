@@ -1,3 +1,5 @@
+#include "http/handlers/system.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <iterator>
@@ -5,11 +7,11 @@
 
 #include "doctor/diagnostics.hpp"
 #include "http/file_response.hpp"
-#include "http/handlers/system.hpp"
 #include "http/json_body.hpp"
 #include "http/preview_image.hpp"
 #include "http/scan_view.hpp"
 #include "log.hpp"
+#include "settings/field.hpp"
 #include "utc.hpp"
 #include "version.hpp"
 #include "zip_archive.hpp"
@@ -39,7 +41,9 @@ Response send_status(App& app) {
 }
 
 Response send_settings(App& app) {
-  return json_response({{"defaults", to_json(app.doctor_input.config.scan)}});
+  ScanSettings defaults = app.doctor_input.config.scan;
+  const std::vector<Field> all = fields(defaults);
+  return json_response({{"defaults", to_json(all)}, {"schema", to_schema(all)}});
 }
 
 Response send_findings(App& app) {

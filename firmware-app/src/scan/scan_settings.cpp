@@ -216,7 +216,7 @@ std::vector<Field> fields(ModelSettings& settings) {
   return joined(std::move(model), fields(settings.limits));
 }
 
-std::string_view name_of(PoseSource source) {
+std::string_view to_string(PoseSource source) {
   return source == PoseSource::solved ? "auto" : "told";
 }
 

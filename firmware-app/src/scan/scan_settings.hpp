@@ -48,7 +48,7 @@ enum class PoseSource {
 };
 
 /// The source's name in settings: "auto", "told".
-std::string_view name_of(PoseSource source);
+std::string_view to_string(PoseSource source);
 
 /// What `octurn reconstruct` makes a model with.
 struct ModelSettings {

@@ -2,16 +2,19 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
 namespace octurn {
 
 /// Runs `action`, which must not throw, on a thread with the stack that civetweb gives its own.
-/// More recursion than that ends the test program.
+/// More recursion than that ends the test program. Other processors need more for any thread.
 inline void run_on_small_stack(std::function<void()> action) {
-  constexpr std::size_t stack_bytes = 102'400;
+  const auto stack_bytes =
+      std::max(std::size_t{102'400}, static_cast<std::size_t>(::sysconf(_SC_THREAD_STACK_MIN)));
   pthread_attr_t attributes;
   ASSERT_EQ(::pthread_attr_init(&attributes), 0);
   ASSERT_EQ(::pthread_attr_setstacksize(&attributes, stack_bytes), 0);

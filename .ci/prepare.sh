@@ -64,7 +64,7 @@ build() {
   if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER-ccache}"
   fi
-  if ! cmake --preset "$1" -DOCTURN_PRECOMPILE=ON >"build/$1.log" 2>&1; then
+  if ! cmake --preset "$1" >"build/$1.log" 2>&1; then
     cat "build/$1.log" >&2
     return 1
   fi

@@ -148,7 +148,7 @@ CalibrationFinding to_finding(double wobble) {
 std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
                                   const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
                                   int threads) {
-  const auto loose =
+  auto loose =
       solve_axis(views, plane, levelled, radians_from_degrees(loose_direction_deg), threads);
   if (!loose) {
     return std::nullopt;

@@ -118,7 +118,7 @@ std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   if (!(u > 0 && v > 0 && u < width_ && v < height_)) {
     return std::nullopt;
   }
-  return read(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
+  return read(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)));
 }
 
 std::vector<SurfaceReading> ObjectView::readings(int step) const {

@@ -70,7 +70,7 @@ Eigen::Vector3d point_from(const JsonValue& array) {
 
 Box clip_from(const JsonValue& clip) {
   JsonObject keys(clip);
-  const Box box{.min = point_from(keys.at("min")), .max = point_from(keys.at("max"))};
+  Box box{.min = point_from(keys.at("min")), .max = point_from(keys.at("max"))};
   if ((box.min.array() >= box.max.array()).any()) {
     clip.refuse("a box: \"min\" below \"max\" on each axis");
   }

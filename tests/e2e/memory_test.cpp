@@ -99,13 +99,18 @@ TEST(Memory, IsSharedByTheThreads) {
 
 TEST(Memory, SaysHowMuchItNeedsAtLeast) {
   const TemporaryFolder folder;
-  write_small_scan(folder.path(), 2);
-  const Outcome refused = limited(folder.path(), "4", 12);
+  write_ball_scan(folder.path(), 6);
+  const auto solid = [&](std::size_t limit_mb) {
+    return outcome_of(command(
+        folder.path(), "2",
+        {"--method", "solid", "--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}));
+  };
+  const Outcome refused = solid(17);
   EXPECT_EQ(refused.status, 1);
   EXPECT_EQ(refused.model.bytes(), 0U);
   const std::size_t enough = allowed_mb(refused.errors);
-  ASSERT_GT(enough, 12U) << refused.errors;
-  const Outcome allowed = limited(folder.path(), "4", enough);
+  ASSERT_GT(enough, 17U) << refused.errors;
+  const Outcome allowed = solid(enough);
   EXPECT_EQ(allowed.status, 0) << allowed.errors;
   EXPECT_LT(allowed.peak_bytes, enough * mb);
 }

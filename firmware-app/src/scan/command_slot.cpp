@@ -114,7 +114,7 @@ std::optional<CommandSlot::Taken> CommandSlot::take(Clock::duration patience) {
   changed_.wait_for(lock, patience, [&] { return waiting_ || ended_ || camera_is_wanted(); });
   std::optional<Taken> taken = std::exchange(waiting_, std::nullopt);
   if (!taken && !ended_ && camera_is_wanted()) {
-    taken.emplace();
+    taken = Taken{};
   }
   if (taken) {
     rank_ = to_rank(taken->command);

@@ -140,7 +140,7 @@ Access object(std::vector<Field> fields, std::function<void(JsonObject&)> check)
                 check(keys);
                 keys.refuse_unread();
               },
-          .write = [fields] { return to_json(fields); },
+          .write = [fields = std::move(fields)] { return to_json(fields); },
           .schema = schema};
 }
 

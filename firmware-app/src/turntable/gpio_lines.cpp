@@ -86,6 +86,7 @@ GpioChip drive_header(const std::vector<NamedLine>& lines) {
   GpioChip chip = header_chip();
   try {
     std::vector<OutputLine> outputs;
+    outputs.reserve(lines.size());
     for (const NamedLine& line : lines) {
       outputs.push_back({.offset = free_line(chip, line.name), .high = line.high});
     }

@@ -70,7 +70,7 @@ TEST_P(SlowClients, LeaveThePageToOthers) {
   for (const bool one_address : {true, false}) {
     const HttpServer server = server_with(1h);
     std::vector<FileDescriptor> slow;
-    for (int i = 0; i < 200; ++i) {
+    for (std::uint32_t i = 0; i < 200; ++i) {
       const std::uint32_t address = INADDR_LOOPBACK + (one_address ? 1 : 1 + i);
       slow.push_back(connected_from(address, server.port()));
       send_text(slow.back(), GetParam().says);

@@ -73,7 +73,7 @@ void expect_exact_on_lattice(std::uint32_t shared, int pairs) {
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
       b[corner] = corner < shared ? corner : corner + 3 - shared;
     }
-    std::ranges::rotate(b, b.begin() + random() % 3);
+    std::rotate(b.begin(), b.begin() + random() % 3, b.end());
     if (triangle_of(vertices, a).is_degenerate() || triangle_of(vertices, b).is_degenerate()) {
       continue;
     }

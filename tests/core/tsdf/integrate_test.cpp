@@ -33,8 +33,8 @@ void observe(PlainSample& sample, const Eigen::Vector3d& point, const Conditione
              const VoxelGrid& grid) {
   constexpr double doubt = 1e-3;  // pixels, and parts of the truncation
   const double truncation = grid.truncation();
-  const double free_margin_m = double{free_margin} * truncation;
-  const double max_behind_m = double{max_behind} * truncation;
+  const double free_margin_m = static_cast<double>(free_margin) * truncation;
+  const double max_behind_m = static_cast<double>(max_behind) * truncation;
   const Eigen::Vector3d p = depth.sensor_from_object() * point;
   const Intrinsics& intrinsics = depth.intrinsics();
   const double u = p.x() / p.z() * intrinsics.fx + intrinsics.cx;

@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "app/scanner_fixture.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
+  RigOptions options = rig();
+  options.open_sensor = [falls_silent = true](const std::string& uri) mutable {
+    return open_sensor(std::exchange(falls_silent, false) ? uri + "&silent-after=10" : uri);
+  };
+  Scanner scanner(options, {}, store_);
+  scanner.start(few_snapshots(20));
+  const Status silent = wait_until(scanner, [](const Status& status) {
+    return status.job->failure.has_value() || !status.busy();
+  });
+  EXPECT_TRUE(silent.busy());
+  EXPECT_EQ(silent.job->failure->code, ErrorCode::sensor_silent);
+  const Status status = scanner.wait_until_done(patience);
+  EXPECT_EQ(status.job->state, JobState::finished);
+  EXPECT_FALSE(status.job->failure);
+  EXPECT_EQ(status.sensor.state, DeviceStatus::State::ready);
+}
+
+TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
+  Scanner scanner({.sensor_uri = "/nowhere.oni", .speed = 20}, {}, store_);
+  const Status status = wait_until(
+      scanner, [](const Status& s) { return s.sensor.state != DeviceStatus::State::unknown; });
+  EXPECT_EQ(status.sensor.state, DeviceStatus::State::missing);
+  EXPECT_EQ(code_thrown_by([&] { scanner.camera_frame(); }), "sensor-missing");
+  EXPECT_EQ(code_thrown_by([&] { scanner.expect_ready(); }), "sensor-missing");
+  const Job job = scan(scanner, few_snapshots());
+  EXPECT_EQ(job.state, JobState::paused);
+  EXPECT_EQ(job.failure->code, ErrorCode::sensor_missing);
+}
+
+/// What a device's driver throws that is no Error.
+enum class Thrown { exception, number };
+
+[[noreturn]] void throw_one(Thrown thrown) {
+  if (thrown == Thrown::number) {
+    throw 5;  // NOLINT: what a library of others may do
+  }
+  throw std::runtime_error("no such thing: \xff");
+}
+
+TEST_F(ScannerTest, TakesWhateverASensorThrowsAsItsFailure) {
+  for (const Thrown thrown : {Thrown::exception, Thrown::number}) {
+    RigOptions options = rig();
+    options.open_sensor = [=](const std::string&) -> std::unique_ptr<DepthSensor> {
+      throw_one(thrown);
+    };
+    Scanner scanner(options, {}, store_);
+    const Status status = wait_until(
+        scanner, [](const Status& s) { return s.sensor.state == DeviceStatus::State::failed; });
+    EXPECT_EQ(status.sensor.failure.code, ErrorCode::internal);
+    const Job job = scan(scanner, few_snapshots());
+    EXPECT_EQ(job.state, JobState::failed);
+    EXPECT_EQ(store_.find(job.id)->state, JobState::failed);
+  }
+}
+
+TEST_F(ScannerTest, TakesWhateverATurntableThrowsAsItsFailure) {
+  RigOptions options = rig();
+  options.stepper = StepperSettings{};
+  options.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
+    throw_one(Thrown::exception);
+  };
+  Scanner scanner(options, {}, store_);
+  const Status status = wait_until(
+      scanner, [](const Status& s) { return s.turntable.state == DeviceStatus::State::failed; });
+  EXPECT_EQ(status.turntable.failure.code, ErrorCode::internal);
+  EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::failed);
+}
+
+TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {
+  RigOptions options = rig();
+  options.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
+    throw Error(ErrorCode::recording_malformed, "recording.json: is missing");
+  };
+  Scanner scanner(options, {}, store_);
+  EXPECT_EQ(code_thrown_by([&] { scanner.camera_frame(); }), "recording-malformed");
+  EXPECT_EQ(scanner.status().sensor.failure.detail, "recording.json: is missing");
+}
+
+TEST_F(ScannerTest, SaysThatThereIsNoTurntable) {
+  RigOptions options = rig();
+  options.stepper = StepperSettings{};
+  options.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
+    throw Error(ErrorCode::turntable_missing, "this machine has no GPIO header");
+  };
+  Scanner scanner(options, {}, store_);
+  const Status status = wait_until(scanner, [](const Status& now) {
+    return now.turntable.state != DeviceStatus::State::unknown;
+  });
+  EXPECT_EQ(status.turntable.state, DeviceStatus::State::missing);
+  EXPECT_FALSE(status.turntable.simulated);
+  EXPECT_NE(status.turntable.failure.detail.find("GPIO"), std::string::npos)
+      << status.turntable.failure.detail;
+  EXPECT_EQ(code_thrown_by([&] { scanner.expect_ready(); }), "turntable-missing");
+}
+
+TEST_F(ScannerTest, ShowsWhatTheSensorSeesNow) {
+  Scanner scanner(rig(), {}, store_);
+  const auto first = scanner.camera_frame();
+  EXPECT_EQ(first->frame.width, 640);
+  EXPECT_GT(std::ranges::count_if(first->frame.depth, [](auto depth) { return depth > 0; }),
+            100'000);
+  EXPECT_GT(scanner.camera_frame()->time, first->time - 1ms);
+}
+
+TEST_F(ScannerTest, ShowsWhatItSawLastDuringAScan) {
+  Scanner scanner(rig(), {}, store_);
+  ASSERT_TRUE(scanner.start(few_snapshots(50)));
+  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
+  EXPECT_EQ(scanner.camera_frame()->frame.height, 480);
+  EXPECT_TRUE(scanner.status().busy());
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "app/few_snapshots.hpp"
+#include "scan/scanner.hpp"
+#include "support/patience.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+
+/// Waits until the status is as wanted; what it is then, wanted or not after `patience`.
+inline Status wait_until(const Scanner& scanner, const std::function<bool(const Status&)>& wanted) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  Status status = scanner.status();
+  while (!wanted(status) && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    status = scanner.status();
+  }
+  return status;
+}
+
+inline bool is_ready(const Status& status) {
+  return status.sensor.state == DeviceStatus::State::ready;
+}
+
+class ScannerTest : public ::testing::Test {
+ protected:
+  static RigOptions rig() { return {.sensor_uri = "octurn-simulator://?speed=20", .speed = 20}; }
+
+  /// Scans to the end.
+  static Job scan(Scanner& scanner, const ScanSettings& settings) {
+    const auto started = scanner.start(settings);
+    EXPECT_TRUE(started);
+    const Status status = scanner.wait_until_done(patience);
+    EXPECT_FALSE(status.busy());
+    return *status.job;
+  }
+
+  TemporaryFolder folder_;
+  ScanStore store_{folder_.path()};
+};
+
+}  // namespace octurn

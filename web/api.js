@@ -146,7 +146,7 @@ async function request(path, options = {}, timeout = patience) {
  * @param {RequestInit} [options]
  * @param {number} [timeout]  milliseconds
  */
-async function json(path, options, timeout) {
+export async function json(path, options, timeout) {
   const response = await request(path, options, timeout);
   return response.json().catch(() => {
     throw unreachable();  // cut short, or something else than the scanner answers at this address
@@ -158,7 +158,7 @@ async function json(path, options, timeout) {
  * @param {Object} [body]
  * @returns {RequestInit}
  */
-const sending = (method, body = {}) => ({
+export const sending = (method, body = {}) => ({
   method,
   headers: {'Content-Type': 'application/json'},
   body: JSON.stringify(body),

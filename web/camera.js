@@ -8,7 +8,7 @@ import {sentence} from './format.js';
 const betweenPictures = 250;   // milliseconds; the scanner may be busy with a scan
 const betweenAttempts = 2000;  // while there is no picture
 
-const isWatched = () => !document.hidden && !element('camera').hidden && element('stage').dataset.reachable === 'yes';
+const isWatched = () => !document.hidden && !element('main').hidden && !element('camera').hidden && element('stage').dataset.reachable === 'yes';
 
 async function showPicture() {
   try {

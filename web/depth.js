@@ -28,7 +28,23 @@ export function colour(pixels) {
   }
 }
 
-/** @param {HTMLCanvasElement} canvas @param {Blob} png */
+/** Where the picture's brightness ends, metres (API.md): it is even in inverse depth between the two. */
+const range = {near: 0.45, far: 2};
+
+/**
+ * @param {number} brightness  0 to 255
+ * @returns {number | null} metres, no farther than the picture tells; null where nothing was read
+ */
+export function distanceOf(brightness) {
+  const share = (brightness - faintest) / (255 - faintest);
+  return brightness === 0 ? null : 1 / (share * (1 / range.near - 1 / range.far) + 1 / range.far);
+}
+
+/** @param {number | null} distance  metres @returns {string} for people */
+export const distanceText = (distance) => distance === null ? 'No reading' :
+  distance >= range.far - 0.01 ? '2 m or more' : `${(100 * distance).toFixed(distance < 1 ? 1 : 0)} cm`;
+
+/** @param {HTMLCanvasElement} canvas @param {Blob} png @returns {Promise<Uint8Array>} brightness of each pixel */
 export async function drawDepth(canvas, png) {
   const bitmap = await createImageBitmap(png);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d', {willReadFrequently: true}));
@@ -36,8 +52,10 @@ export async function drawDepth(canvas, png) {
   context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
   bitmap.close();
   const picture = context.getImageData(0, 0, canvas.width, canvas.height);
+  const brightness = Uint8Array.from({length: canvas.width * canvas.height}, (_, index) => picture.data[4 * index]);
   colour(picture.data);
   context.putImageData(picture, 0, 0);
+  return brightness;
 }
 
 /** Draws the scale of colours. @param {HTMLCanvasElement} canvas  as wide as there are shades */

@@ -6,6 +6,7 @@ import {watchCamera} from './camera.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import {chosenSettings, prepareForm} from './form.js';
+import {here, preparePlaces, showPlace, titleAt} from './places.js';
 import {nameOf, screenOf} from './screen.js';
 import {prepareStage, renderStage} from './stage.js';
 import * as states from './state.js';
@@ -18,11 +19,11 @@ let actions = 0;  // asked of the scanner so far: a status from before one is ol
 function change(next) {
   const wasSelected = state.selected;
   state = next;
-  if (wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
+  if (here() === 'scan' && wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
     location.hash = state.selected ?? '';
   }
   const screen = screenOf(state);
-  render(screen);
+  render({...screen, title: titleAt(here(), screen.title)});
   renderStage(screen.stage);
 }
 
@@ -129,6 +130,13 @@ async function watch() {
   }
 }
 
+/** Shows what the address names: a part of the page, or a scan. */
+function follow() {
+  const isScan = here() === 'scan';
+  change(isScan ? states.withSelected(state, location.hash.slice(1) || null) : state);
+  showPlace();
+}
+
 function listen() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
   element('form').addEventListener('submit', (/** @type {Event} */ event) => {
@@ -152,12 +160,13 @@ function listen() {
       remove(id);
     }
   });
-  addEventListener('hashchange', () => change(states.withSelected(state, location.hash.slice(1) || null)));
+  addEventListener('hashchange', follow);
   document.addEventListener('visibilitychange', () => document.hidden || wake());
 }
 
-change(states.withSelected(state, location.hash.slice(1) || null));
+follow();
 listen();
+preparePlaces();
 prepareStage();
 prepareDoctor();
 watch();

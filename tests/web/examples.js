@@ -21,3 +21,14 @@ export const finished = {
     size_mm: [120.12, 94.9, 151], seconds: 0.08, parts: 1, filled_share: 0.21,
   },
 };
+
+export const calibration = {
+  platform_from_sensor: [[1, 0, 0, 0], [0, -0.4226, 0.9063, -0.62], [0, -0.9063, -0.4226, 0.36], [0, 0, 0, 1]],
+  source: 'default', at: null, shift_mm: null, tilt_deg: null, sigma_mm: null, sigma_deg: null, before_mm: null, after_mm: null,
+  scale: 1, sensor_map: null, history: [], run: null,
+};
+
+export const turnReport = {
+  accepted: true, reason: '', platform_from_sensor: calibration.platform_from_sensor, shift_mm: 18.42, tilt_deg: 2.013,
+  sigma_mm: 0.031, sigma_deg: 0.012, before_mm: 6.84, after_mm: 0.52, stops: [], findings: [],
+};

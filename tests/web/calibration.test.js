@@ -1,0 +1,105 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import * as texts from '../../web/calibration.js';
+import {distanceOf, distanceText} from '../../web/depth.js';
+import {calibration, turnReport} from './examples.js';
+
+const run = {kind: 'turn', state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};
+const after = (changes) => texts.outcomeOf({...calibration, run: {...run, ...changes}}, 'turn');
+
+test('a rig that nobody measured is not called calibrated', () => {
+  const summary = texts.summaryOf(calibration);
+  assert.deepEqual([summary.tone, summary.title], ['warn', 'Not calibrated yet']);
+});
+
+test('a measured rig says when, and how exactly', () => {
+  const summary = texts.summaryOf({...calibration, source: 'turn', at: '2026-11-21T08:15:00Z', sigma_mm: 0.031, sigma_deg: 0.012});
+  assert.equal(summary.tone, 'good');
+  assert.match(summary.title, /^Measured with a turn, .*21/);
+  assert.equal(summary.text, 'The axis is known to ±0.03 mm and ±0.01°.');
+});
+
+test('a pose set by hand has no figures', () => {
+  const summary = texts.summaryOf({...calibration, source: 'page', at: '2026-11-21T08:15:00Z'});
+  assert.equal(summary.tone, 'idle');
+  assert.match(summary.text, /only a turn/);
+});
+
+test('progress is of the kind that runs, grows, and never ends before the end', () => {
+  const shares = [0, 3, 24].map((stop) => texts.progressOf({...calibration, run: {...run, stop}}, 'turn').share);
+  assert.ok(shares[0] < shares[1] && shares[1] < shares[2] && shares[2] < 0.95);
+  assert.equal(texts.progressOf({...calibration, run}, 'turn').text, 'Stop 4 of 24');
+  assert.equal(texts.progressOf({...calibration, run}, 'wall'), null);
+  assert.equal(texts.progressOf({...calibration, run: {...run, state: 'done'}}, 'turn'), null);
+  assert.equal(texts.progressOf({...calibration, run: {...run, kind: 'wall', phase: 'looking'}}, 'wall').text, 'Looking at the wall, 3 of 24');
+});
+
+test('an accepted turn says what was wrong and how well it is now', () => {
+  const outcome = after({state: 'done', report: turnReport});
+  assert.equal(outcome.title, 'The axis was 18.4 mm and 2.01° off');
+  assert.match(outcome.detail, /agree to 0\.52 mm, before they were 6\.84 mm apart/);
+});
+
+test('a turn that confirms the pose says that nothing was changed', () => {
+  const outcome = after({state: 'done', report: {...turnReport, shift_mm: 0.04, tilt_deg: 0.01}});
+  assert.match(outcome.title, /stands where it was thought/);
+  assert.match(outcome.detail, /Nothing was changed/);
+});
+
+test('a refused turn says why and what to do', () => {
+  const report = {...turnReport, accepted: false, reason: 'too little of an object was seen'};
+  const outcome = after({state: 'refused', report});
+  assert.deepEqual([outcome.tone, outcome.title, outcome.detail], ['warn', 'Nothing was changed', 'Too little of an object was seen.']);
+  assert.match(outcome.hint, /object of 4 cm/);
+  assert.equal(after({state: 'refused', report, error: {code: 'x', detail: '', hint: 'use a larger one'}}).hint, 'Use a larger one.');
+});
+
+test('a cancelled turn is no fault, a failed one is', () => {
+  assert.equal(after({state: 'cancelled'}).tone, 'idle');
+  const failed = after({state: 'failed', error: {code: 'sensor-lost', detail: 'the Kinect is gone', hint: 'plug it in'}});
+  assert.deepEqual([failed.tone, failed.detail, failed.hint], ['bad', 'The Kinect is gone.', 'Plug it in.']);
+  assert.equal(after({state: 'running'}), null);
+});
+
+test('figures are rounded to what they can mean', () => {
+  const figures = Object.fromEntries(texts.figuresOf(turnReport).map(({label, text}) => [label, text]));
+  assert.deepEqual(figures, {
+    'Axis moved': '18.4 mm', 'Axis tilted': '2.01°', 'Known to': '±0.03 mm, ±0.01°', 'Looks disagree': '6.84 mm → 0.52 mm'});
+});
+
+test('each stop has a bar, and one that a finding names is marked', () => {
+  const stops = [0, 0.1, -0.2, 1.84].map((off_deg, index) => ({angle_deg: 90 * index, off_deg}));
+  const bars = texts.barsOf({...turnReport, stops, findings: [{code: 'slip', detail: '', hint: '', stop: 3}]});
+  assert.equal(bars.usual.match(/M/g).length, 3);
+  assert.equal(bars.marked, 'M79.50 50V4.00h16.00V50Z');  // the fourth quarter, up to the largest
+  assert.equal(bars.label, '4 stops, the largest 1.84° off');
+});
+
+test('one known length gives the scale, on top of the one in force', () => {
+  assert.deepEqual(texts.scaleOf(100, 101, 1), {scale: 1.01, problem: ''});
+  assert.deepEqual(texts.scaleOf(101, 100, 1.01), {scale: 1, problem: ''});
+  assert.match(texts.scaleOf(100, 104, 1).problem, /4\.0 %, more than/);
+  assert.match(texts.scaleOf(Number.NaN, 104, 1).problem, /Both/);
+});
+
+test('a scale is told as what it does', () => {
+  assert.match(texts.scaleText(1), /size that the sensor tells/);
+  assert.match(texts.scaleText(1.012), /1\.20 % larger/);
+  assert.match(texts.scaleText(0.99), /1\.00 % smaller/);
+});
+
+test('earlier poses are told by their origin and what they cured', () => {
+  const [first, second] = texts.historyOf({...calibration, history: [
+    {...calibration, source: 'turn', at: '2026-11-21T08:15:00Z', before_mm: 6.84, after_mm: 0.52}, {...calibration, scale: 1.01}]});
+  assert.match(first.title, /^Measured with a turn/);
+  assert.equal(first.text, '6.84 mm → 0.52 mm');
+  assert.deepEqual([second.title, second.text], ['Taken from the drawing', 'scale 1.0100']);
+});
+
+test('brightness tells the distance, within what the picture can show', () => {
+  assert.equal(distanceOf(0), null);
+  assert.ok(Math.abs(distanceOf(255) - 0.45) < 1e-9);
+  assert.ok(Math.abs(distanceOf(24) - 2) < 1e-9);
+  assert.deepEqual([null, 0.4502, 0.655, 1.234, 2].map(distanceText), ['No reading', '45.0 cm', '65.5 cm', '123 cm', '2 m or more']);
+});

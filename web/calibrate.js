@@ -1,0 +1,141 @@
+// The page Calibrate: asks for the calibration, the picture and the points for as long as it is looked at, and does what
+// its buttons say.
+
+import * as api from './api.js';
+import * as requests from './api_calibration.js';
+import {showCalibration, showNotice} from './calibrate_view.js';
+import {scaleOf} from './calibration.js';
+import {element, setText} from './dom.js';
+import {sentence} from './format.js';
+import {here} from './places.js';
+import {chosenPose, discard, preparePlacement, showPlacement} from './placement_form.js';
+import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPose} from './pose_picture.js';
+
+/** @typedef {import('./api_calibration.js').Calibration} Calibration */
+
+const turnStops = 24;
+const wallFrames = 25;
+
+/** @type {Calibration | null} */
+let calibration = null;
+let actions = 0;  // asked of the scanner so far: an answer from before one is old news after it
+let isPending = false;
+
+const isWatched = () => here() === 'calibrate' && !document.hidden;
+
+/** @param {unknown} error */
+const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
+
+/** @param {Calibration} news */
+function see(news) {
+  calibration = news;
+  showCalibration(news);
+  showPlacement(news.platform_from_sensor);
+}
+
+/** @param {string} failure  what did not happen then @param {() => Promise<unknown>} action */
+async function act(failure, action) {
+  if (isPending) {
+    return;
+  }
+  isPending = true;
+  showNotice('pose-problem', null);
+  try {
+    await action();
+    see(await requests.calibration());
+  } catch (error) {
+    const {title, detail, hint} = problemOf(error);
+    showNotice('pose-problem', {title: failure, detail: [detail || title, hint].map(sentence).join(' ')});
+  }
+  ++actions;
+  isPending = false;
+}
+
+async function keep() {
+  const pose = chosenPose();
+  if (pose) {
+    await act('The pose was not kept', async () => {
+      await requests.change({platform_from_sensor: pose});
+      discard();
+    });
+  }
+}
+
+/** @param {Event} event */
+function scale(event) {
+  event.preventDefault();
+  const wanted = scaleOf(element('known-model').valueAsNumber, element('known-caliper').valueAsNumber, calibration?.scale ?? 1);
+  setText(element('known-problem'), wanted.problem);
+  if (!wanted.problem) {
+    act('The scale was not set', async () => {
+      await requests.change({scale: wanted.scale});
+      element('known').reset();
+    });
+  }
+}
+
+const isWallReady = () => [...element('wall-ready').querySelectorAll('input')].every((box) => box.checked);
+
+function measureWall() {
+  if (isWallReady()) {
+    act('The look at the wall did not start', () => requests.measure({kind: 'wall', frames: wallFrames}));
+  }
+}
+
+async function lookAtCalibration() {
+  const before = actions;
+  try {
+    const news = await requests.calibration();
+    if (before === actions && !isPending) {
+      see(news);
+    }
+  } catch {
+    return 2000;
+  }
+  return calibration?.run?.state === 'running' ? 300 : 1500;
+}
+
+async function lookAtPicture() {
+  try {
+    const [png, seen] = await Promise.all([api.preview(), requests.points()]);
+    await showPicture(png);
+    showPoints(seen);
+    return 250;
+  } catch (error) {
+    const {detail, title, hint} = problemOf(error);
+    showNoPicture([detail || title, hint].map(sentence).join(' '));
+    return 2000;
+  }
+}
+
+/** Looks again and again, while somebody does. @param {() => Promise<number>} look  tells for how long to rest then, milliseconds */
+async function watch(look) {
+  for (;;) {
+    const pause = isWatched() ? await look() : 250;
+    await new Promise((done) => {
+      setTimeout(done, pause);
+    });
+  }
+}
+
+function listen() {
+  const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
+  click('measure-turn', () => act('The turn did not start', () => requests.measure({kind: 'turn', stops: turnStops})));
+  click('turn-cancel', () => act('The turn was not cancelled', requests.cancel));
+  click('measure-wall', measureWall);
+  click('wall-cancel', () => act('The look was not cancelled', requests.cancel));
+  click('undo', () => act('Nothing was undone', requests.undo));
+  click('unscale', () => act('The scale was not changed', () => requests.change({scale: 1})));
+  element('known').addEventListener('submit', scale);
+  element('wall-ready').addEventListener('change', () => element('measure-wall').setAttribute('aria-disabled', String(!isWallReady())));
+}
+
+/** Called once, when the page is there. */
+export function prepare() {
+  preparePicture();
+  preparePlacement({onChange: showPose, onKeep: keep});
+  listen();
+  api.defaults().then(({clip_mm}) => showClip(clip_mm), () => {});
+  watch(lookAtCalibration);
+  watch(lookAtPicture);
+}

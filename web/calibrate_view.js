@@ -1,0 +1,112 @@
+// Puts a calibration into the page Calibrate, except the picture and the five numbers.
+
+import * as texts from './calibration.js';
+import {element, list, part, setText, show} from './dom.js';
+import {sentence} from './format.js';
+import {drawSlice} from './plans.js';
+
+/** @typedef {import('./api_calibration.js').Calibration} Calibration */
+
+/** @param {string} id @param {{tone?: string, title: string, detail: string, hint?: string} | null} notice */
+export function showNotice(id, notice) {
+  show(element(id), notice !== null);
+  if (notice) {
+    element(id).dataset.tone = notice.tone ?? 'bad';
+    setText(part(element(id), 'strong'), notice.title);
+    setText(part(element(id), 'p'), notice.detail);
+    const hint = part(element(id), '.hint');
+    hint && setText(hint, notice.hint ?? '');
+  }
+}
+
+/** Hides one of two parts and shows the other; focus that would vanish goes along. @param {string} id @param {string} other */
+function swap(id, other) {
+  const hadFocus = element(id).contains(document.activeElement);
+  show(element(id), false);
+  show(element(other), true);
+  if (hadFocus) {
+    part(element(other), 'button').focus({preventScroll: true});
+  }
+}
+
+/** @param {Calibration} calibration @param {'turn' | 'wall'} kind */
+function showRun(calibration, kind) {
+  const progress = texts.progressOf(calibration, kind);
+  const idle = kind === 'turn' ? 'turn-idle' : 'wall-ready';
+  progress ? swap(idle, `${kind}-going`) : swap(`${kind}-going`, idle);
+  if (progress) {
+    setText(element(`${kind}-text`), progress.text);
+    element(`${kind}-progress`).value = progress.share;
+  }
+  showNotice(`${kind}-outcome`, texts.outcomeOf(calibration, kind));
+}
+
+/** @type {object | null} the report that is drawn */
+let drawn = null;
+
+/** @param {import('./api_calibration.js').TurnReport} report */
+function drawReport(report) {
+  const {slice_mm: slice} = report;
+  show(element('slices'), slice !== undefined);
+  if (slice) {
+    const all = [...slice.before, ...slice.after];
+    drawSlice(element('slice-before'), slice.before, all, '#f4c95d');
+    drawSlice(element('slice-after'), slice.after, all, '#74d3cb');
+  }
+  show(element('offsets'), report.stops.length > 0);
+  const bars = texts.barsOf(report);
+  for (const which of /** @type {const} */ (['usual', 'marked'])) {
+    part(element('bars'), `[data-bars=${which}]`).setAttribute('d', bars[which]);
+  }
+  element('bars').setAttribute('aria-label', bars.label);
+  setText(element('bars-up'), `+${texts.barRange(report.stops).toFixed(1)}°`);
+  setText(element('bars-down'), `−${texts.barRange(report.stops).toFixed(1)}°`);
+}
+
+/** @param {Calibration} calibration */
+function showReport({run}) {
+  const report = run?.state !== 'running' ? run?.report ?? null : null;
+  show(element('found'), report !== null);
+  if (!report) {
+    drawn = null;
+    return;
+  }
+  list(element('figures'), texts.figuresOf(report), ({label}) => label, 'fact', (item, {label, text}) => {
+    setText(part(item, 'dt'), label);
+    setText(part(item, 'dd'), text);
+  });
+  list(element('turn-findings'), report.findings, ({code, detail}) => `${code} ${detail}`, 'turn-finding', (item, {detail, hint}) => {
+    setText(part(item, '.finding-name'), sentence(detail));
+    setText(part(item, '.finding-advice'), sentence(hint));
+  });
+  const mark = JSON.stringify(report);
+  if (drawn !== mark) {
+    drawn = mark;
+    drawReport(report);
+  }
+}
+
+/** @param {Calibration} calibration */
+function showHistory(calibration) {
+  const poses = texts.historyOf(calibration);
+  show(element('no-poses'), poses.length === 0);
+  show(element('undo'), poses.length > 0);
+  list(element('poses'), poses, ({key}) => key, 'earlier-pose', (item, {title, text}) => {
+    setText(part(item, '.pose-title'), title);
+    setText(part(item, '.muted'), text);
+  });
+}
+
+/** @param {Calibration} calibration */
+export function showCalibration(calibration) {
+  const summary = texts.summaryOf(calibration);
+  showNotice('pose-summary', {...summary, detail: summary.text});
+  showRun(calibration, 'turn');
+  showRun(calibration, 'wall');
+  showReport(calibration);
+  showHistory(calibration);
+  const map = texts.mapText(calibration);
+  setText(element('wall-map'), map.text);
+  setText(element('scale-text'), texts.scaleText(calibration.scale));
+  show(element('unscale'), calibration.scale !== 1);
+}

@@ -1,0 +1,74 @@
+// The parts of the page. Each but the first has an address, '#' and its name, and a file NAME.html, which is fetched
+// together with its module when somebody first goes there.
+
+import {element, setText, show} from './dom.js';
+
+const first = 'scan';
+
+/** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>}>} */
+const others = {
+  calibrate: {title: 'Calibrate', load: () => import('./calibrate.js')},
+};
+
+const betweenAttempts = 2000;  // milliseconds, while a part does not arrive
+
+/** @param {string} hash  of an address, without '#' @returns {string} the part that it names; every other names a scan */
+export const placeOf = (hash) => Object.hasOwn(others, hash) ? hash : first;
+
+/** @param {string} place @param {string} title  of the first part @returns {string} the document's */
+export const titleAt = (place, title) => place === first ? title : `${others[place].title} · Octurn`;
+
+/** @returns {string} the part that is shown */
+export const here = () => placeOf(location.hash.slice(1));
+
+const mainOf = (/** @type {string} */ place) => /** @type {HTMLElement} */ (document.querySelector(`main[data-place=${place}]`));
+
+/** @type {Set<string>} of parts that have arrived, or are on their way */
+const begun = new Set([first]);
+
+/** @param {string} place */
+async function fetchPart(place) {
+  const [response, module] = await Promise.all([fetch(`${place}.html`, {cache: 'no-cache'}), others[place].load()]);
+  if (!response.ok) {
+    throw new Error(`${response.status}`);
+  }
+  const parsed = new DOMParser().parseFromString(await response.text(), 'text/html');
+  mainOf(place).replaceChildren(...parsed.body.childNodes);
+  module.prepare();
+}
+
+/** @param {string} place */
+async function arrive(place) {
+  if (begun.has(place)) {
+    return;
+  }
+  begun.add(place);
+  try {
+    await fetchPart(place);
+  } catch {
+    begun.delete(place);
+    setText(mainOf(place), 'This part of the page has not arrived yet. Trying again.');
+    setTimeout(() => here() === place && arrive(place), betweenAttempts);
+  }
+}
+
+/** Shows the part that the address names. */
+export function showPlace() {
+  const place = here();
+  for (const main of document.querySelectorAll('main')) {
+    show(main, main.dataset.place === place);
+  }
+  for (const link of document.querySelectorAll('.places a')) {
+    const isCurrent = /** @type {HTMLElement} */ (link).dataset.to === place;
+    isCurrent ? link.setAttribute('aria-current', 'page') : link.removeAttribute('aria-current');
+  }
+  arrive(place);
+}
+
+/** Makes the link work that skips what every part has. */
+export function preparePlaces() {
+  element('skip').addEventListener('click', (/** @type {Event} */ event) => {
+    event.preventDefault();  // the address is the part's
+    /** @type {HTMLElement | null} */ (mainOf(here()).querySelector('[tabindex="-1"]'))?.focus();
+  });
+}

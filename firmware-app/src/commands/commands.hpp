@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config.hpp"
+#include "config/config_store.hpp"
 #include "scan/rig.hpp"
 
 namespace octurn {
@@ -28,8 +29,12 @@ struct ConfigArguments {
   nlohmann::json given = nlohmann::json::object();  ///< by their keys in octurn.json
 };
 
-/// Reads the configuration file and applies the options of the command line.
-/// @throws Error  that names the wrong key
+/// The configuration file, the page's settings over it, and the options of the command line over
+/// both. Warns of page's settings that cannot be used.
+/// @throws Error  that names the wrong key of the file or the options
+ConfigStore open_config(const ConfigArguments& arguments);
+
+/// What is in force with these.
 Config make_config(const ConfigArguments& arguments);
 
 /// Checks before minutes of work that the model can be written. @param output  "-": standard output

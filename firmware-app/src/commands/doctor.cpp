@@ -78,10 +78,12 @@ SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_t
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
-  const Config config = make_config(arguments.config);
+  const ConfigStore settings = open_config(arguments.config);
+  const Config config = settings.config();
   const DoctorInput input{
       .rig = rig_options(arguments.rig, config.turntable),
       .config = config,
+      .settings_trouble = settings.trouble(),
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // before the first thread, as it asks
   const SignalStop signal;

@@ -74,12 +74,10 @@ void add_options(CLI::App& command, const std::vector<Field>& fields, json& give
   }
 }
 
-Config make_config(const ConfigArguments& arguments) {
-  Config config = chosen_config(arguments.file);
-  JsonObject keys(arguments.given, ErrorCode::bad_settings, "");
-  read_fields(keys, network_fields(config));
-  read_fields(keys, data_fields(config));
-  return config;
+Config make_config(const ConfigArguments& arguments) { return open_config(arguments).config(); }
+
+ConfigStore open_config(const ConfigArguments& arguments) {
+  return ConfigStore({.file = chosen_config(arguments.file), .given = arguments.given});
 }
 
 void expect_writable(const std::filesystem::path& output) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "appliance/appliance.hpp"
 #include "commands/commands.hpp"
@@ -15,6 +17,8 @@
 namespace octurn {
 namespace {
 
+using namespace std::chrono_literals;
+
 /// URL of the page for a browser on this machine.
 std::string page_address(const HttpOptions& options, int port) {
   const bool any = options.address == "0.0.0.0" || options.address == "::";
@@ -23,20 +27,104 @@ std::string page_address(const HttpOptions& options, int port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-/// Waits for SIGINT or SIGTERM. Meanwhile it notifies systemd's watchdog as long as the scanner's
-/// worker is alive.
-void wait(const Scanner& scanner) {
-  const auto interval = watchdog_interval();
-  if (!interval) {
-    wait_for_signal();
-    return;
-  }
-  while (!wait_for_signal(*interval / 3)) {
+/// Why the daemon ends what it does.
+enum class Outcome { end, restart };
+
+/// Settings are taken up by a restart this long after they were stored at the earliest, so that the
+/// answer that tells of it is sent.
+constexpr auto look_interval = 500ms;
+
+/// What a daemon is made of, once for all of its restarts.
+struct Machine {
+  const ServeArguments& arguments;
+  const Page& page;
+  std::optional<Appliance>& appliance;
+  int port = 0;  ///< of the first start; 0: it has not come yet
+};
+
+/// Whether settings wait for a restart, and it disturbs nobody.
+bool is_restart_due(const Machine& machine, const ConfigStore& settings, const Scanner& scanner) {
+  return !settings.restart_needed().empty() && !scanner.status().busy() &&
+         !(machine.appliance && machine.appliance->is_updating());
+}
+
+/// Waits for SIGINT or SIGTERM, or for settings that need a restart. Meanwhile it notifies
+/// systemd's watchdog as long as the scanner's worker is alive.
+Outcome wait(const Machine& machine, const ConfigStore& settings, const Scanner& scanner) {
+  const auto watchdog = watchdog_interval();
+  const std::chrono::microseconds interval =
+      watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, look_interval) : look_interval;
+  bool was_due = false;
+  while (!wait_for_signal(interval)) {
+    const bool is_due = is_restart_due(machine, settings, scanner);
+    if (is_due && was_due) {
+      return Outcome::restart;
+    }
+    was_due = is_due;
+    if (!watchdog) {
+      continue;
+    }
     if (scanner.is_alive()) {
       notify_alive();
     } else {
       log::error("octurn", "the scanner's worker has stopped working");
     }
+  }
+  return Outcome::end;
+}
+
+/// Tells where the page is: on standard output once, for who started the program.
+void announce(Machine& machine, const HttpOptions& options, int port) {
+  if (machine.port == 0) {
+    std::cout << "Octurn is at " << page_address(options, port) << std::endl;
+  }
+  machine.port = port;
+  log::info("octurn", "version " + std::string(version()) + " ready");
+  notify_ready("serving the page at port " + std::to_string(port));
+}
+
+/// Serves with the settings as they are now, until a signal or until they need a restart.
+Outcome serve_once(Machine& machine, ConfigStore& settings) {
+  Config config = settings.config();
+  if (config.http.port == 0) {
+    config.http.port = machine.port;
+  }
+  const RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
+  ScanStore store(config.data);
+  Scanner scanner(rig, config.limits, store);
+  Api api({.scanner = scanner,
+           .store = store,
+           .page = machine.page,
+           .settings = settings,
+           .rig = rig,
+           .appliance = machine.appliance ? &*machine.appliance : nullptr});
+  const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
+
+  settings.keep_as_good();
+  announce(machine, config.http, server.port());
+  const Outcome outcome = wait(machine, settings, scanner);
+  log::info("octurn", outcome == Outcome::end ? "ending" : "starting again with other settings");
+  if (outcome == Outcome::end) {
+    notify_stopping();
+  }
+  scanner.request_stop();  // so that no request waits for it while the server ends
+  return outcome;
+}
+
+/// The same; with the settings that it served with last, where it cannot serve with these.
+Outcome serve_with_good_settings(Machine& machine) {
+  ConfigStore settings = open_config(machine.arguments.config);
+  if (const std::string trouble = settings.trouble(); !trouble.empty()) {
+    log::warning("settings", trouble);
+  }
+  try {
+    return serve_once(machine, settings);
+  } catch (const Error& error) {
+    if (!settings.return_to_last_good()) {
+      throw;
+    }
+    log::error("settings", std::string("the page's last settings are undone: ") + error.what());
+    return Outcome::restart;
   }
 }
 
@@ -44,31 +132,15 @@ void wait(const Scanner& scanner) {
 
 void serve(const ServeArguments& arguments) {
   return_freed_memory();
-  const Config config = make_config(arguments.config);
-  const RigOptions rig = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
-
   const Page page(arguments.web ? *arguments.web : page_folder());
-  ScanStore store(config.data);
-  Scanner scanner(rig, config.limits, store);
   std::optional<Appliance> appliance;
   if (arguments.appliance) {
     appliance.emplace(*arguments.appliance);
   }
-  Api api({.scanner = scanner,
-           .store = store,
-           .page = page,
-           .doctor_input = {.rig = rig, .config = config},
-           .appliance = appliance ? &*appliance : nullptr});
-  const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
-
-  std::cout << "Octurn is at " << page_address(config.http, server.port()) << std::endl;
-  log::info("octurn", "version " + std::string(version()) + " ready");
-  notify_ready("serving the page at port " + std::to_string(server.port()));
-  wait(scanner);
-  log::info("octurn", "ending");
-  notify_stopping();
-  scanner.request_stop();  // so that no request waits for it while the server ends
+  Machine machine{.arguments = arguments, .page = page, .appliance = appliance};
+  while (serve_with_good_settings(machine) == Outcome::restart) {
+  }
 }
 
 }  // namespace octurn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "config.hpp"
@@ -14,7 +15,8 @@ namespace octurn {
 /// The scanner that the doctor checks.
 struct DoctorInput {
   RigOptions rig = {};
-  Config config = {};  ///< in force
+  Config config = {};                 ///< in force
+  std::string settings_trouble = {};  ///< of the page's settings; empty: none
   LineOwner lines = LineOwner::another;
   std::filesystem::path root = "/";  ///< folder with /dev, /proc, /run and /sys
 };

@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr Check settings{"settings", "Settings"};
 constexpr Check disk{"disk", "Disk space"};
 constexpr Check memory{"memory", "Memory"};
 constexpr Check temperature{"temperature", "CPU temperature"};
@@ -86,6 +87,13 @@ std::optional<double> meminfo(const fs::path& root, const std::string& key) {
 }
 
 }  // namespace
+
+Finding check_settings(const std::string& trouble) {
+  return trouble.empty()
+             ? settings.ok("as they were stored")
+             : settings.warning(trouble + "; the last ones that can be used are in force",
+                                "Look through the page's settings and save them again.");
+}
 
 Finding check_disk(std::uint64_t free, std::uint64_t bytes_each) {
   constexpr const char* advice = "Delete scans that are no longer needed.";

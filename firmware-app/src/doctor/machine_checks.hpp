@@ -3,12 +3,17 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "doctor/finding.hpp"
 
 namespace octurn {
 
 // Checks of the machine. `root` is the folder with /proc, /sys and /run: "/" except in tests.
+
+/// Whether the page's settings are as they were stored.
+/// @param trouble  of ConfigStore
+Finding check_settings(const std::string& trouble);
 
 /// Whether the disk has room for several scans.
 /// @param free        bytes that this program may still write into the data folder

@@ -8,6 +8,7 @@
 #include "http/handlers/appliance.hpp"
 #include "http/handlers/models.hpp"
 #include "http/handlers/scans.hpp"
+#include "http/handlers/settings.hpp"
 #include "http/handlers/system.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
@@ -93,7 +94,7 @@ Response Api::answer(const Request& request) {
   try {
     const std::string_view body_type =
         request.path == update_path ? upload_type : "application/json";
-    const auto refused = refusal(request, app_.doctor_input.config.host_names, body_type);
+    const auto refused = refusal(request, app_.settings.config().host_names, body_type);
     return refused ? problem(*refused) : dispatch(request);
   } catch (const Error& error) {
     return problem(to_failure(error));
@@ -109,6 +110,10 @@ Response Api::dispatch(const Request& request) {
       Route{"GET", "/Scan.stl", send_newest_model},
       Route{"GET", "/api/v1/status", send_status},
       Route{"GET", "/api/v1/settings", send_settings},
+      Route{"PATCH", "/api/v1/settings", change_settings},
+      Route{"GET", "/api/v1/settings/backup", send_backup},
+      Route{"POST", "/api/v1/settings/backup", restore_backup},
+      Route{"PUT", "/api/v1/settings/password", set_page_password},
       Route{"GET", "/api/v1/doctor", send_findings, WaitsFor::look},
       Route{"GET", "/api/v1/diagnostics.zip", send_diagnostics, WaitsFor::look},
       Route{"GET", "/api/v1/preview/depth.png", send_depth_picture, WaitsFor::look},

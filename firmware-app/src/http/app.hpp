@@ -1,6 +1,7 @@
 #pragma once
 
 #include "appliance/appliance.hpp"
+#include "config/config_store.hpp"
 #include "doctor/doctor.hpp"
 #include "http/page.hpp"
 #include "scan/scanner.hpp"
@@ -12,8 +13,14 @@ struct App {
   Scanner& scanner;
   const ScanStore& store;
   const Page& page;
-  DoctorInput doctor_input;        ///< this scanner, with the configuration in force
+  ConfigStore& settings;
+  RigOptions rig;                  ///< that the scanner works with
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
+
+  /// This scanner, with the configuration in force.
+  DoctorInput doctor_input() const {
+    return {.rig = rig, .config = settings.config(), .settings_trouble = settings.trouble()};
+  }
 };
 
 }  // namespace octurn

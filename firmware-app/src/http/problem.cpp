@@ -18,6 +18,7 @@ constexpr std::array problem_types{
     ProblemType{ErrorCode::bad_request, 400, "The request is malformed"},
     ProblemType{ErrorCode::bad_json, 400, "The body is not what is expected here"},
     ProblemType{ErrorCode::bad_name, 400, "The name cannot be used"},
+    ProblemType{ErrorCode::bad_password, 400, "The password cannot be used"},
     ProblemType{ErrorCode::bad_settings, 400, "A setting is wrong"},
     ProblemType{ErrorCode::bad_wifi, 400, "The WiFi cannot be joined like this"},
     ProblemType{ErrorCode::cut_short, 400, "The request did not come whole"},

@@ -64,7 +64,7 @@ Response make_model(App& app, const Request& request, const Job& job) {
     }
   }
   ReconstructOptions options =
-      reconstruct_options(settings_from(numbers, job.settings), app.doctor_input.config.limits);
+      reconstruct_options(settings_from(numbers, job.settings), app.settings.config().limits);
   options.level = level;
   if (job.state != JobState::running && job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");

@@ -33,7 +33,7 @@ Response list_scans(App& app) {
 }
 
 Response start_scan(App& app, const Request& request) {
-  const ScanSettings settings = settings_from(parse_body(request), app.doctor_input.config.scan);
+  const ScanSettings settings = settings_from(parse_body(request), app.settings.config().scan);
   expect_no_update(app);
   app.scanner.expect_ready();
   const std::optional<Job> job = app.scanner.start(settings);

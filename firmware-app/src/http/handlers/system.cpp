@@ -11,7 +11,6 @@
 #include "http/preview_image.hpp"
 #include "http/scan_view.hpp"
 #include "log.hpp"
-#include "settings/field.hpp"
 #include "utc.hpp"
 #include "version.hpp"
 #include "zip_archive.hpp"
@@ -40,20 +39,14 @@ Response send_status(App& app) {
   return json_response(body);
 }
 
-Response send_settings(App& app) {
-  ScanSettings defaults = app.doctor_input.config.scan;
-  const std::vector<Field> all = fields(defaults);
-  return json_response({{"defaults", to_json(all)}, {"schema", to_schema(all)}});
-}
-
 Response send_findings(App& app) {
-  return json_response(to_json(run_checks(app.doctor_input, app.scanner)));
+  return json_response(to_json(run_checks(app.doctor_input(), app.scanner)));
 }
 
 Response send_diagnostics(App& app) {
-  const std::vector<Finding> findings = run_checks(app.doctor_input, app.scanner);
+  const std::vector<Finding> findings = run_checks(app.doctor_input(), app.scanner);
   const std::vector<Job> scans = all_scans(app);
-  std::vector<ArchivedFile> files = machine_diagnostics(app.doctor_input.config, findings);
+  std::vector<ArchivedFile> files = machine_diagnostics(app.settings.config(), findings);
   std::ranges::move(daemon_diagnostics(app.scanner.status(), scans, log::recent()),
                     std::back_inserter(files));
   if (app.appliance != nullptr) {

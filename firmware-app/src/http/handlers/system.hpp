@@ -10,9 +10,6 @@ namespace octurn {
 /// The devices, the disk, the scan that runs and the newest that is finished.
 Response send_status(App& app);
 
-/// What a scan has where a request does not say otherwise.
-Response send_settings(App& app);
-
 /// What `octurn doctor` finds.
 Response send_findings(App& app);
 

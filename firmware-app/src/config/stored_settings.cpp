@@ -1,0 +1,160 @@
+#include "config/stored_settings.hpp"
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "octurn/json_object.hpp"
+#include "settings/field.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* settings_file = "settings.json";
+constexpr const char* last_good_file = "settings.json.last";
+constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a body has 64 KiB at most
+
+// Where settings are kept, and who may change them, is not for those who may change them.
+constexpr std::array<std::string_view, 2> fixed_keys{"data", "password_file"};
+
+void refuse_fixed(const json& values) {
+  for (const std::string_view key : fixed_keys) {
+    if (values.is_object() && values.contains(key)) {
+      throw Error(ErrorCode::bad_settings,
+                  "\"" + std::string(key) + "\": cannot be set from the page",
+                  "It is a key of octurn.json.");
+    }
+  }
+}
+
+/// What a file holds, and what is wrong with it.
+struct FileContent {
+  std::optional<json> values = {};
+  std::string trouble = {};  ///< empty: nothing, or there is no file
+};
+
+FileContent read_object(const fs::path& file) {
+  FileContent content;
+  try {
+    const std::optional<std::string> text = read_regular_file(file, max_file_bytes);
+    if (!text) {
+      return content;
+    }
+    json values = parse_json(*text, ErrorCode::bad_settings, "it");
+    if (!values.is_object()) {
+      throw Error(ErrorCode::bad_settings, "it is no JSON object");
+    }
+    content.values = std::move(values);
+  } catch (const Error& error) {
+    content.trouble = file.string() + ": " + error.what();
+  }
+  return content;
+}
+
+/// @return why the settings are refused; empty: they are not
+std::string refusal(const Config& base, const json& values) {
+  try {
+    with_settings(base, values);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// A change for each setting, however deep it stands.
+std::vector<json> single_settings(const json& values) {
+  std::vector<json> singles;
+  for (const auto& [key, value] : values.items()) {
+    if (!value.is_object()) {
+      singles.push_back({{key, value}});
+      continue;
+    }
+    for (const auto& [inner, setting] : value.items()) {
+      singles.push_back({{key, {{inner, setting}}}});
+    }
+  }
+  return singles;
+}
+
+/// Settings without those that are refused: of a later version, or no longer in agreement with
+/// octurn.json.
+json usable_part(const Config& base, const json& values) {
+  json usable = json::object();
+  for (const json& single : single_settings(values)) {
+    json tried = merged(usable, single);
+    if (refusal(base, tried).empty()) {
+      usable = std::move(tried);
+    }
+  }
+  return usable;
+}
+
+void remove_empty_objects(json& values) {
+  for (auto item = values.begin(); item != values.end();) {
+    item = item->is_object() && item->empty() ? values.erase(item) : std::next(item);
+  }
+}
+
+}  // namespace
+
+Config with_settings(const Config& base, const json& values) {
+  JsonObject keys(values, ErrorCode::bad_settings, "");
+  refuse_fixed(values);
+  Config config = base;
+  read_fields(keys, fields(config));
+  keys.refuse_unread();
+  if (const json* scan = keys.find("scan")) {
+    check_clip(JsonObject(*scan, ErrorCode::bad_settings, "scan"), config.scan);
+  }
+  return config;
+}
+
+StoredSettings read_stored_settings(const fs::path& data, const Config& base) {
+  FileContent content = read_object(data / settings_file);
+  if (content.values) {
+    const std::string reason = refusal(base, *content.values);
+    if (reason.empty()) {
+      return {.values = *std::move(content.values)};
+    }
+    content.trouble = (data / settings_file).string() + ": " + reason;
+  } else if (content.trouble.empty()) {
+    return {};
+  }
+  const FileContent last = read_object(data / last_good_file);
+  if (last.values && refusal(base, *last.values).empty()) {
+    return {.values = *last.values, .trouble = content.trouble};
+  }
+  return {.values = usable_part(base, content.values.value_or(json::object())),
+          .trouble = content.trouble};
+}
+
+void write_stored_settings(const fs::path& data, const json& values) {
+  write_file(data / settings_file, values.dump(2) + "\n");
+}
+
+void write_last_good_settings(const fs::path& data, const json& values) {
+  const FileContent last = read_object(data / last_good_file);
+  if (last.values != values) {
+    write_file(data / last_good_file, values.dump(2) + "\n");
+  }
+}
+
+json read_last_good_settings(const fs::path& data, const Config& base) {
+  const FileContent last = read_object(data / last_good_file);
+  return last.values && refusal(base, *last.values).empty() ? *last.values : json::object();
+}
+
+json merged(json values, const json& change) {
+  values.merge_patch(change);
+  if (values.is_object()) {
+    remove_empty_objects(values);
+  }
+  return values;
+}
+
+}  // namespace octurn

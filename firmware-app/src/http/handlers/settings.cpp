@@ -1,0 +1,105 @@
+#include "http/handlers/settings.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "http/file_response.hpp"
+#include "http/json_body.hpp"
+#include "http/password_file.hpp"
+#include "log.hpp"
+#include "octurn/json_object.hpp"
+#include "settings/field.hpp"
+#include "utc.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* backup_format = "octurn-settings";
+constexpr int backup_version = 1;
+
+/// Who may open the page: "everybody", or who knows the password that the page, or octurn.json, has
+/// set.
+std::string_view password_state(const App& app) {
+  const Config config = app.settings.config();
+  return std::filesystem::exists(own_password_file(config)) ? "page"
+         : config.http.password_file.empty()                ? "everybody"
+                                                            : "octurn.json";
+}
+
+/// The settings of a backup. @throws Error "bad-settings"
+json settings_in(const json& backup) {
+  JsonObject keys(backup, ErrorCode::bad_settings, "");
+  const auto format = keys.text("format");
+  if (format != backup_format) {
+    throw Error(ErrorCode::bad_settings, "this is no backup of Octurn's settings",
+                "Choose a file octurn-settings-....json that this page has given.");
+  }
+  keys.whole_number("version", backup_version, backup_version);
+  keys.text("program");
+  json settings = keys.at("settings").json();
+  keys.refuse_unread();
+  return settings;
+}
+
+}  // namespace
+
+Response send_settings(App& app) {
+  const Config config = app.settings.config();
+  ScanSettings defaults = config.scan;
+  const std::vector<Field> scan = fields(defaults);
+  return json_response({{"defaults", to_json(scan)},
+                        {"schema", to_schema(scan)},
+                        {"settings", to_json(config)},
+                        {"preset", to_json(app.settings.preset())},
+                        {"stored", app.settings.stored()},
+                        {"settings_schema", config_schema()},
+                        {"restart_needed", app.settings.restart_needed()},
+                        {"trouble", app.settings.trouble()},
+                        {"password", password_state(app)}});
+}
+
+Response change_settings(App& app, const Request& request) {
+  app.settings.change(parse_body(request));
+  log::info("settings", "changed by the page");
+  return send_settings(app);
+}
+
+Response send_backup(App& app) {
+  const auto time = std::chrono::system_clock::now();
+  const json backup{{"format", backup_format},
+                    {"version", backup_version},
+                    {"program", version()},
+                    {"settings", app.settings.stored()}};
+  const std::string name = "octurn-settings-" + utc_text(time, "%Y%m%d-%H%M%S") + ".json";
+  return {.headers = {{"Content-Type", "application/json"},
+                      {"Content-Disposition", attachment(name)},
+                      {"Cache-Control", "no-store"}},
+          .body = backup.dump(2) + "\n"};
+}
+
+Response restore_backup(App& app, const Request& request) {
+  app.settings.replace(settings_in(parse_body(request)));
+  log::info("settings", "restored from a backup");
+  return send_settings(app);
+}
+
+Response set_page_password(App& app, const Request& request) {
+  const json body = parse_body(request);
+  JsonObject keys(body, ErrorCode::bad_settings, "");
+  const JsonValue password = keys.at("password");
+  keys.refuse_unread();
+  const std::filesystem::path file = own_password_file(app.settings.config());
+  if (password.json().is_null()) {
+    std::filesystem::remove(file);
+  } else {
+    write_password_file(file, password.text());
+  }
+  log::info("settings", "the page's password was changed");
+  return send_settings(app);
+}
+
+}  // namespace octurn

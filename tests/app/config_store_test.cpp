@@ -1,0 +1,157 @@
+#include "config/config_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// The stores that are opened one after the other on one data folder.
+class ConfigStores : public ::testing::Test {
+ protected:
+  ConfigStore open(const json& given = json::object()) const {
+    ConfigLayers layers{.given = given};
+    layers.file.data = folder_.path();
+    layers.file.turntable.gear_ratio = 4;  // octurn.json's
+    return ConfigStore(std::move(layers));
+  }
+  std::filesystem::path file(const char* name) const { return folder_.path() / name; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(ConfigStores, KeepWhatThePageSets) {
+  open().change({{"turntable", {{"full_steps", 400}}}, {"scan", {{"snapshots", 12}}}});
+  const ConfigStore next = open();
+  EXPECT_EQ(next.config().turntable.full_steps, 400);
+  EXPECT_EQ(next.config().turntable.gear_ratio, 4);
+  EXPECT_EQ(next.config().scan.snapshots, 12);
+  EXPECT_EQ(next.trouble(), "");
+}
+
+TEST_F(ConfigStores, GoBackToOcturnJsonWhereAKeyBecomesNull) {
+  open().change({{"turntable", {{"gear_ratio", 2}, {"full_steps", 400}}}});
+  open().change({{"turntable", {{"gear_ratio", nullptr}}}});
+  EXPECT_EQ(open().config().turntable.gear_ratio, 4);
+  EXPECT_EQ(open().config().turntable.full_steps, 400);
+  open().change({{"turntable", {{"full_steps", nullptr}}}});
+  EXPECT_EQ(open().stored(), json::object());
+}
+
+TEST_F(ConfigStores, AreOverruledByTheCommandLine) {
+  open().change({{"port", 8123}});
+  EXPECT_EQ(open().config().http.port, 8123);
+  EXPECT_EQ(open({{"port", 8124}}).config().http.port, 8124);
+}
+
+TEST_F(ConfigStores, RefuseWhatIsWrongByItsKeyAndChangeNothing) {
+  open().change({{"port", 8123}});
+  const std::vector<std::pair<const char*, json>> wrong{
+      {"port", {{"port", 70000}}},
+      {"ports", {{"ports", 80}}},
+      {"data", {{"data", "/tmp"}}},
+      {"password_file", {{"password_file", ""}}},
+      {"turntable.gear_ratio", {{"turntable", {{"gear_ratio", 0}}}}},
+      {"turntable.gear", {{"turntable", {{"gear", 1}}}}},
+      {"turntable.take_up_steps", {{"turntable", {{"take_up_steps", 3201}}}}},
+      {"scan.leaf_size_mm", {{"scan", {{"leaf_size_mm", 2000}}}}},
+      {"scan.clip_mm", {{"scan", {{"clip_mm", {0, 0, 0, 0.5, 100, 100}}}}}},
+      {"scan", {{"scan", 5}}}};
+  for (const auto& [key, change] : wrong) {
+    ConfigStore store = open();
+    const Error error = error_thrown_by([&, change = change] { store.change(change); });
+    EXPECT_EQ(error.code(), ErrorCode::bad_settings) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("\"" + std::string(key) + "\""), 0U) << error.what();
+    EXPECT_EQ(store.stored(), json({{"port", 8123}}));
+    EXPECT_EQ(open().config().http.port, 8123);
+  }
+  for (const json& change : {json(nullptr), json(5), json::array()}) {
+    ConfigStore store = open();
+    EXPECT_EQ(code_thrown_by([&] { store.change(change); }), "bad-settings");
+  }
+}
+
+TEST_F(ConfigStores, PutAScansSettingsInForceAtOnceAndTellOfTheRest) {
+  ConfigStore store = open();
+  store.change({{"scan", {{"snapshots", 12}}},
+                {"host_names", {"scanner.example"}},
+                {"threads", 3},
+                {"turntable", {{"gear_ratio", 2}}}});
+  EXPECT_EQ(store.config().scan.snapshots, 12);
+  EXPECT_EQ(store.config().host_names, std::vector<std::string>{"scanner.example"});
+  EXPECT_EQ(store.config().turntable.gear_ratio, 4);
+  EXPECT_EQ(store.restart_needed(), (std::vector<std::string>{"threads", "turntable.gear_ratio"}));
+  EXPECT_EQ(open().restart_needed(), std::vector<std::string>{});
+}
+
+TEST_F(ConfigStores, NeedARestartForAPasswordOfThePage) {
+  const ConfigStore store = open();
+  put(file("page-password"), "octurn:Octurn:0123\n");
+  EXPECT_EQ(store.restart_needed(), std::vector<std::string>{"password_file"});
+  EXPECT_EQ(open().config().http.password_file, file("page-password"));
+}
+
+TEST_F(ConfigStores, UseTheLastGoodSettingsWhereTheFileIsDamaged) {
+  ConfigStore store = open();
+  store.change({{"scan", {{"snapshots", 12}}}});
+  store.keep_as_good();
+  const std::string whole = content_of(file("settings.json"));
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
+    put(file("settings.json"), whole.substr(0, length));
+    const ConfigStore next = open();
+    EXPECT_EQ(next.config().scan.snapshots, 12) << length;
+    EXPECT_NE(next.trouble().find("settings.json"), std::string::npos) << length;
+  }
+}
+
+TEST_F(ConfigStores, StartWithNothingWhereNoFileIsGood) {
+  put(file("settings.json"), "[]");
+  put(file("settings.json.last"), std::string(3, '\0'));
+  const ConfigStore store = open();
+  EXPECT_EQ(store.stored(), json::object());
+  EXPECT_NE(store.trouble(), "");
+}
+
+TEST_F(ConfigStores, LeaveOutOnlyWhatALaterVersionHasAdded) {
+  put(file("settings.json"),
+      R"({"shine": 1, "threads": 3, "scan": {"snapshots": 12, "glow": true}})");
+  const ConfigStore store = open();
+  EXPECT_EQ(store.stored(), json::parse(R"({"threads": 3, "scan": {"snapshots": 12}})"));
+  EXPECT_NE(store.trouble().find("unknown key"), std::string::npos) << store.trouble();
+}
+
+TEST_F(ConfigStores, ForgetTheTroubleWithTheNextChange) {
+  put(file("settings.json"), "{");
+  ConfigStore store = open();
+  ASSERT_NE(store.trouble(), "");
+  store.change({{"threads", 3}});
+  EXPECT_EQ(store.trouble(), "");
+  EXPECT_EQ(open().trouble(), "");
+}
+
+TEST_F(ConfigStores, ReturnToTheLastGoodSettingsOnce) {
+  ConfigStore store = open();
+  store.change({{"threads", 3}});
+  store.keep_as_good();
+  store.change({{"port", 1}});
+  EXPECT_TRUE(store.return_to_last_good());
+  EXPECT_EQ(open().stored(), json({{"threads", 3}}));
+  EXPECT_FALSE(store.return_to_last_good());
+}
+
+TEST(ConfigSchema, TellsWhatIsAllowedAndWhatWaitsForARestart) {
+  const json keys = config_schema()["properties"];
+  EXPECT_EQ(keys["turntable"]["properties"]["gear_ratio"]["maximum"], 1000);
+  EXPECT_EQ(keys["turntable"]["x-restart"], true);
+  EXPECT_EQ(keys["scan"]["x-restart"], false);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -8,6 +8,7 @@ const first = 'scan';
 /** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>}>} */
 const others = {
   calibrate: {title: 'Calibrate', load: () => import('./calibrate.js')},
+  settings: {title: 'Settings', load: () => import('./settings_page.js')},
 };
 
 const betweenAttempts = 2000;  // milliseconds, while a part does not arrive

@@ -1,0 +1,108 @@
+import assert from 'node:assert/strict';
+import {readFile, writeFile} from 'node:fs/promises';
+import {join} from 'node:path';
+import {test} from 'node:test';
+
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, startScanner} from './scanner.js';
+
+async function openSettings(browser, scanner, options) {
+  const opened = await openPage(browser, scanner.url, options);
+  await opened.page.getByRole('link', {name: 'Settings'}).click();
+  await opened.page.locator('#cards').waitFor();
+  return opened;
+}
+
+const card = (page, label) => page.locator('form[data-card]').filter({has: page.getByLabel(label)});
+const save = (page, label) => card(page, label).getByRole('button', {name: 'Save'});
+
+/** The settings once none waits for a restart, during which the scanner does not answer. */
+async function settled(scanner) {
+  for (;;) {
+    const now = await ask(scanner, 'settings').catch(() => null);
+    if (now?.restart_needed.length === 0) {
+      return now;
+    }
+    await new Promise((done) => {
+      setTimeout(done, 50);
+    });
+  }
+}
+
+/** A default of scans: there on the form of a new scan at once, and after a restart. */
+async function keepScanDefault(scanner, browser) {
+  const {page, faults} = await openSettings(browser, scanner);
+  assert.equal(await save(page, 'Snapshots a turn').isVisible(), false);
+  await card(page, 'Snapshots a turn').getByLabel('Snapshots a turn').fill('12');
+  await save(page, 'Snapshots a turn').click();
+  await page.getByText('Saved.', {exact: true}).waitFor();
+  assert.equal((await ask(scanner, 'settings')).defaults.snapshots, 12);
+  assert.deepEqual(faults, []);
+  await scanner.end('SIGKILL');
+  await scanner.restart();
+  const {page: next} = await openPage(browser, scanner.url);
+  assert.equal(await next.locator('#snapshots').inputValue(), '12');
+}
+
+/** A wrong value is told beside its field, whoever finds it wrong, and changes nothing. */
+async function refuseByField(scanner, browser) {
+  const {page} = await openSettings(browser, scanner);
+  await page.getByLabel('Gear ratio').fill('0');
+  await save(page, 'Gear ratio').click();
+  const field = page.locator('[data-setting="turntable.gear_ratio"]');
+  await field.getByText('It must be from 0.001 to 1000.').waitFor();
+  await page.getByLabel('Gear ratio').fill('1');
+  await page.getByLabel('Take-up of play').fill('801');  // more than a turn, as the scanner alone knows
+  await save(page, 'Gear ratio').click();
+  await page.locator('[data-setting="turntable.take_up_steps"]').getByText('a whole number from 0 to 800').waitFor();
+  assert.deepEqual((await ask(scanner, 'settings')).stored.turntable, undefined);
+}
+
+/** The turntable's gear: the scanner starts again by itself, and the page goes on. */
+async function takeUpGear(scanner, browser) {
+  const {page} = await openSettings(browser, scanner);
+  await page.getByLabel('Gear ratio').fill('3');
+  await save(page, 'Gear ratio').click();
+  await page.getByText('The platform makes a turn of 2400 steps.').waitFor();
+  assert.equal((await settled(scanner)).settings.turntable.gear_ratio, 3);
+  await page.locator('#settings-restart').waitFor({state: 'hidden'});
+  await page.getByRole('button', {name: 'Back to 1', exact: true}).click();
+  await page.getByText('The platform makes a turn of 800 steps.').waitFor();
+  assert.deepEqual((await settled(scanner)).stored.turntable, undefined);
+}
+
+/** What is downloaded can be restored. */
+async function backUp(scanner, browser) {
+  const {page} = await openSettings(browser, scanner);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.locator('#backup').click()]);
+  assert.match(file.suggestedFilename(), /^octurn-settings-.*\.json$/);
+  const backup = JSON.parse(await readFile(await file.path(), 'utf8'));
+  const changed = join(scanner.data, 'backup.json');
+  await writeFile(changed, JSON.stringify({...backup, settings: {scan: {snapshots: 20}}}));
+  await page.locator('#restore-file').setInputFiles(changed);
+  await page.getByText('Restored.').waitFor();
+  assert.deepEqual((await ask(scanner, 'settings')).stored, {scan: {snapshots: 20}});
+  await writeFile(changed, '{}');
+  await page.locator('#restore-file').setInputFiles(changed);
+  await page.getByText('Choose a file octurn-settings').waitFor();
+}
+
+/** On any screen, nothing is cut off. */
+async function fits(scanner, browser, screen, colorScheme) {
+  const {page, faults} = await openSettings(browser, scanner, {screen, colorScheme});
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(overflow <= 0, `${overflow} pixels too wide`);
+  await picture(page, `settings-${screen}-${colorScheme}`);
+  assert.deepEqual(faults, []);
+}
+
+test('settings are set on the page and last', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t, {hasWebGl: false});
+  await t.test('a default of scans', () => keepScanDefault(scanner, browser));
+  await t.test('a wrong one is told by its field', () => refuseByField(scanner, browser));
+  await t.test('one that needs a restart', () => takeUpGear(scanner, browser));
+  await t.test('a backup', () => backUp(scanner, browser));
+  await t.test('on a desktop', () => fits(scanner, browser, 'desktop', 'light'));
+  await t.test('on a phone', () => fits(scanner, browser, 'phone', 'dark'));
+});

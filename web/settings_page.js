@@ -1,0 +1,242 @@
+// "Settings": what the scanner is told to last, on cards of which each is saved by itself.
+
+import * as api from './api.js';
+import {copyOf, element, part, setText, show} from './dom.js';
+import {sentence} from './format.js';
+import {makeField} from './settings_fields.js';
+import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
+
+/** @typedef {import('./api.js').Configuration} Configuration */
+/** @typedef {import('./settings_fields.js').SettingField} SettingField */
+
+const pauseUntilRestarted = 500;  // milliseconds between looks
+
+/** @typedef {{form: HTMLFormElement, fields: SettingField[], saved: HTMLElement, actions: HTMLElement}} Card */
+
+/** @type {Configuration} */
+let told;
+/** @type {Card[]} */
+const cards = [];
+
+/** What was set, and waits for a restart or is in force. @param {string} key */
+const valueOf = (key) => valueAt(told.stored, key) ?? valueAt(told.preset, key);
+
+/** @param {SettingField} field */
+const isChanged = (field) => !areEqual(field.read(), valueOf(field.key));
+
+/** @param {unknown} error @returns {api.Problem} */
+const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
+
+/** @param {api.Problem} problem */
+const wordsOf = ({detail, title, hint}) => [detail || title, hint].map(sentence).join(' ').trim();
+
+/** @param {Card} card */
+function writeCard({fields}) {
+  for (const field of fields) {
+    field.write(valueOf(field.key), valueAt(told.preset, field.key), valueAt(told.stored, field.key) !== undefined);
+  }
+}
+
+/** @param {Card} card */
+function showChanged({fields, actions}) {
+  const changed = fields.some(isChanged);
+  for (const button of actions.querySelectorAll('button')) {
+    show(button, changed);
+  }
+}
+
+function showPassword() {
+  const {password} = told;
+  setText(element('password-about'), password === 'everybody' ? 'Everybody in this network may use the scanner.' :
+    password === 'page' ? 'The page asks for a password.' : 'The page asks for the password that the card, or octurn.json, has set.');
+  show(element('password-remove'), password === 'page');
+}
+
+function showNews() {
+  const {settings, stored, preset, trouble} = told;
+  show(element('settings-trouble'), trouble !== '');
+  setText(part(element('settings-trouble'), 'p'), sentence(trouble));
+  setText(element('pose-text'), poseText(settings.scan.platform_from_sensor));
+  setText(element('turntable-about'),
+      `The platform makes a turn of ${stepsOf({...preset.turntable, ...stored.turntable})} steps.`);
+  showPassword();
+}
+
+async function showRestart() {
+  const isScanning = told.restart_needed.length > 0 && (await api.status()).scan !== null;
+  const text = restartText(told.restart_needed, isScanning);
+  setText(part(element('settings-restart'), 'p'), text);
+  show(element('settings-restart'), text !== '');
+}
+
+let isFollowing = false;
+
+/** Looks until the scanner has taken up what was saved. */
+async function followRestart() {
+  if (isFollowing) {
+    return;
+  }
+  isFollowing = true;
+  while (told.restart_needed.length > 0) {
+    try {
+      await showRestart();
+      await new Promise((done) => {
+        setTimeout(done, pauseUntilRestarted);
+      });
+      told = await api.configuration();
+    } catch {
+      // It starts again just now.
+    }
+  }
+  isFollowing = false;
+  show(element('settings-restart'), false);
+  showNews();
+  for (const card of cards.filter(({fields}) => !fields.some(isChanged))) {
+    writeCard(card);
+  }
+}
+
+/** @param {Configuration} news */
+function take(news) {
+  told = news;
+  showNews();
+  followRestart();
+}
+
+/** @param {Card} card @param {api.Problem} problem */
+function showProblem({fields, saved}, problem) {
+  const key = keyOf(problem.detail);
+  const field = fields.find((one) => one.key === key);
+  if (field) {
+    field.complain(reasonOf(problem.detail));
+    field.focus();
+  } else {
+    setText(saved, wordsOf(problem));
+  }
+  saved.dataset.tone = field ? '' : 'bad';
+}
+
+/** @param {Card} card @param {Object} change */
+async function save(card, change) {
+  setText(card.saved, '');
+  try {
+    take(await api.changeSettings(change));
+    writeCard(card);
+    showChanged(card);
+    card.saved.dataset.tone = 'good';
+    setText(card.saved, 'Saved.');
+  } catch (error) {
+    showProblem(card, problemOf(error));
+  }
+}
+
+/** @param {Card} card */
+function saveChanged(card) {
+  const complaints = card.fields.map((field) => ({field, text: field.check()}));
+  complaints.forEach(({field, text}) => field.complain(text));
+  const wrong = complaints.find(({text}) => text !== '');
+  if (wrong) {
+    wrong.field.root.closest('details')?.setAttribute('open', '');
+    wrong.field.focus();
+    return;
+  }
+  const changes = card.fields.filter(isChanged).map((field) => changeOf(field.key, field.read()));
+  if (changes.length > 0) {
+    save(card, changes.reduce(joined, {}));
+  }
+}
+
+/** @param {HTMLFormElement} form @returns {Card} */
+function makeCard(form) {
+  form.append(copyOf('card-actions'));
+  /** @type {Card} */
+  const card = {form, fields: [], saved: part(form, '.saved'), actions: part(form, '.actions')};
+  for (const place of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll('[data-fields]'))) {
+    for (const key of (place.dataset.fields ?? '').split(' ')) {
+      const field = makeField(key, schemaAt(told.settings_schema, key), () => save(card, changeOf(key, null)));
+      place.append(field.root);
+      card.fields.push(field);
+    }
+  }
+  form.addEventListener('input', () => {
+    setText(card.saved, '');
+    showChanged(card);
+  });
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    saveChanged(card);
+  });
+  part(card.actions, '[data-do=discard]').addEventListener('click', () => {
+    writeCard(card);
+    showChanged(card);
+  });
+  writeCard(card);
+  showChanged(card);
+  return card;
+}
+
+/** @param {string | null} password */
+async function setPassword(password) {
+  setText(element('password-complaint'), '');
+  try {
+    take(await api.setPassword(password));
+    element('page-password').value = '';
+  } catch (error) {
+    setText(element('password-complaint'), wordsOf(problemOf(error)));
+  }
+}
+
+function preparePassword() {
+  const input = element('page-password');
+  element('password-card').addEventListener('submit', (/** @type {Event} */ event) => {
+    event.preventDefault();
+    input.value === '' ? setText(element('password-complaint'), 'Write a password.') : setPassword(input.value);
+  });
+  element('password-remove').addEventListener('click', () => setPassword(null));
+  element('password-show').addEventListener('click', () => {
+    const isShown = input.type === 'text';
+    input.type = isShown ? 'password' : 'text';
+    element('password-show').setAttribute('aria-pressed', String(!isShown));
+  });
+}
+
+async function restore() {
+  const file = element('restore-file').files[0];
+  setText(element('restore-complaint'), '');
+  setText(element('restore-done'), '');
+  try {
+    take(await api.restoreSettings(await file.text()));
+    cards.forEach(writeCard);
+    cards.forEach(showChanged);
+    element('restore-done').dataset.tone = 'good';
+    setText(element('restore-done'), 'Restored.');
+  } catch (error) {
+    setText(element('restore-complaint'), wordsOf(problemOf(error)));
+  }
+  element('restore-file').value = '';  // or the same file could not be chosen again
+}
+
+async function begin() {
+  try {
+    told = await api.configuration();
+  } catch (error) {
+    setText(part(element('settings-away'), 'strong'), 'The settings have not arrived yet');
+    setText(part(element('settings-away'), 'p'), wordsOf(problemOf(error)));
+    show(element('settings-away'), true);
+    setTimeout(begin, 4 * pauseUntilRestarted);
+    return;
+  }
+  show(element('settings-away'), false);
+  for (const form of /** @type {NodeListOf<HTMLFormElement>} */ (document.querySelectorAll('form[data-card]'))) {
+    cards.push(makeCard(form));
+  }
+  show(element('cards'), true);
+  take(told);
+}
+
+/** Makes the part of the page work that settings.html is. */
+export function prepare() {
+  preparePassword();
+  element('restore-file').addEventListener('change', restore);
+  begin();
+}

@@ -39,12 +39,13 @@
  * @property {number} seconds
  * @property {number | null} parts
  * @property {number | null} filled_share  of the surface's area, that nobody saw
+ * @property {{verdict: 'good' | 'look' | 'bad', reasons: {code: string, detail: string, hint: string}[]} | null} [quality]
  *
  * @typedef {Object} Scan
  * @property {string} id
  * @property {string} name
  * @property {'running' | 'paused' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
- * @property {'starting' | 'turning' | 'capturing' | 'building' | 'done'} phase
+ * @property {'starting' | 'turning' | 'capturing' | 'calibrating' | 'rebuilding' | 'building' | 'done'} phase
  * @property {string} created
  * @property {number} snapshots_done
  * @property {number} snapshots_total
@@ -54,6 +55,7 @@
  * @property {number} late_pulses  of the motor
  * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
  * @property {Model | null} model
+ * @property {{accepted: boolean, reason: string, solved: {after_mm: number} | null} | null} [calibration]  by the scan itself
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device

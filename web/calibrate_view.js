@@ -100,7 +100,8 @@ function showHistory(calibration) {
 /** @param {Calibration} calibration */
 export function showCalibration(calibration) {
   const summary = texts.summaryOf(calibration);
-  showNotice('pose-summary', {...summary, detail: summary.text});
+  const isNews = texts.outcomeOf(calibration, 'turn')?.tone === 'good';  // which says it already
+  showNotice('pose-summary', isNews ? null : {...summary, detail: summary.text});
   showRun(calibration, 'turn');
   showRun(calibration, 'wall');
   showReport(calibration);

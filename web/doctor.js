@@ -11,6 +11,9 @@ const order = /** @type {const} */ (['fault', 'warning', 'ok', 'unknown']);
 
 const stateNames = {fault: 'Fault', warning: 'Warning', ok: 'In order', unknown: 'Not known'};
 
+/** Checks of the rig's pose, whose cure is a page. */
+const pose = new Set(['platform', 'tilt']);
+
 const expected = 4;  // seconds that a check takes, two of them to watch the sensor
 
 /** What to show of a report. Pure. @param {import('./api.js').Report} report */
@@ -27,6 +30,7 @@ export function shownOf({findings}) {
       stateName: stateNames[finding.state],
       measured: finding.measured && finding.measured[0].toUpperCase() + finding.measured.slice(1),
       advice: sentence(finding.advice),
+      leadsToCalibrate: pose.has(finding.check) && finding.state !== 'ok' && finding.state !== 'unknown',
     })),
   };
 }
@@ -44,6 +48,7 @@ function showReport({summary, lines}) {
     setText(part(item, '.finding-state'), line.stateName);
     setText(part(item, '.finding-measured'), line.measured);
     setText(part(item, '.finding-advice'), line.advice);
+    show(part(item, 'a'), line.leadsToCalibrate);
   });
 }
 
@@ -65,7 +70,8 @@ function startProgress() {
   return () => clearInterval(timer);
 }
 
-async function examine() {
+/** @param {(report: import('./api.js').Report) => void} onReport */
+async function examine(onReport) {
   if (element('examine').getAttribute('aria-disabled') === 'true') {
     return;
   }
@@ -74,7 +80,9 @@ async function examine() {
   showRunning(true);
   const endProgress = startProgress();
   try {
-    showReport(shownOf(await api.examine()));
+    const report = await api.examine();
+    showReport(shownOf(report));
+    onReport(report);
   } catch (error) {
     const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
     setText(element('doctor-summary'), 'The check did not end.');
@@ -85,6 +93,7 @@ async function examine() {
   showRunning(false);
 }
 
-export function prepareDoctor() {
-  element('examine').addEventListener('click', examine);
+/** @param {(report: import('./api.js').Report) => void} onReport  told of each check */
+export function prepareDoctor(onReport) {
+  element('examine').addEventListener('click', () => examine(onReport));
 }

@@ -3,6 +3,7 @@
 import * as api from './api.js';
 import {seeStatus, watchAppliance} from './appliance.js';
 import {watchCamera} from './camera.js';
+import {seeNewest, seeReport} from './checklist.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import {chosenSettings, prepareForm} from './form.js';
@@ -99,6 +100,7 @@ async function look() {
   try {
     const status = await api.status();
     seeStatus(status);
+    seeNewest(status);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
     if (before !== actions || state.isPending) {
@@ -168,7 +170,7 @@ follow();
 listen();
 preparePlaces();
 prepareStage();
-prepareDoctor();
+prepareDoctor(seeReport);
 watch();
 watchCamera();
 watchAppliance();

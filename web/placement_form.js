@@ -41,8 +41,8 @@ function fill() {
   }
   show(element('kept'), draft !== null);
   if (draft && inForce) {
-    const {shift_mm, tilt_deg} = differenceOf(inForce, poseOf(draft));
-    setText(element('kept-text'), `Moves the axis by ${millimetres(shift_mm)} and tilts it by ${degrees(tilt_deg)}.`);
+    const {shift_mm, lift_mm, tilt_deg} = differenceOf(inForce, poseOf(draft));
+    setText(element('kept-text'), `Moves the axis by ${millimetres(shift_mm)}, the surface by ${millimetres(lift_mm)}; tilts both by ${degrees(tilt_deg)}.`);
   }
 }
 

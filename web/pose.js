@@ -73,7 +73,8 @@ export function toSensor(pose, point) {
 /**
  * What one pose lacks of another, for people.
  * @param {Matrix} pose @param {Matrix} other
- * @returns {{shift_mm: number, tilt_deg: number}} how far the axis moves at the platform's surface, and how far it turns
+ * @returns {{shift_mm: number, lift_mm: number, tilt_deg: number}} how far the axis moves at the platform's surface, how far
+ *     that surface rises or sinks at the axis, and how far the axis turns
  */
 export function differenceOf(pose, other) {
   const origin = toPlatform(pose, toSensor(other, [0, 0, 0]));
@@ -82,6 +83,7 @@ export function differenceOf(pose, other) {
   const share = along[2] === 0 ? 0 : origin[2] / along[2];  // from there along the axis to the surface
   return {
     shift_mm: millimetres(Math.hypot(origin[0] - share * along[0], origin[1] - share * along[1])),
+    lift_mm: Math.abs(millimetres(origin[2])),
     tilt_deg: degrees(Math.atan2(Math.hypot(along[0], along[1]), along[2])),
   };
 }

@@ -1,6 +1,7 @@
 // What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
 
 import * as format from './format.js';
+import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
 
 /** @typedef {import('./state.js').State} State */
@@ -38,9 +39,16 @@ function phaseText(scan) {
     case 'starting': return 'Getting ready';
     case 'turning': return `Turning to ${stop}`;
     case 'capturing': return `Looking at ${stop}`;
+    case 'calibrating': return 'Checking where the sensor stands';
+    case 'rebuilding': return 'Building again, with the pose corrected';
     default: return 'Building the model';
   }
 }
+
+const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'building', 'done']);
+
+/** @param {Scan} scan */
+const isBuilding = ({phase}) => phasesAfterTheTurn.has(phase);
 
 /**
  * Building takes a moment after the last stop, so the last hundredths are its own.
@@ -54,7 +62,7 @@ const steps = /** @type {const} */ (['ready', 'capture', 'build']);
 
 /** @param {Scan} scan */
 function stepStates(scan) {
-  const now = scan.phase === 'starting' ? 0 : scan.phase === 'building' || scan.phase === 'done' ? 2 : 1;
+  const now = scan.phase === 'starting' ? 0 : isBuilding(scan) ? 2 : 1;
   return steps.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'}));
 }
 
@@ -73,7 +81,11 @@ const progressOf = (scan) => ({
 
 /** Why a scan has no model. @param {Scan} scan */
 function troubleOf(scan) {
-  const said = {detail: format.sentence(scan.error?.detail ?? ''), hint: format.sentence(scan.error?.hint ?? '')};
+  const said = {
+    detail: format.sentence(scan.error?.detail ?? ''),
+    hint: format.sentence(scan.error?.hint ?? ''),
+    action: actionOf(scan.error?.code),
+  };
   switch (scan.state) {
     case 'cancelled':
       return {...said, tone: 'idle', title: 'Scan cancelled', detail: said.detail || 'It was stopped before the turn was complete.'};
@@ -88,6 +100,15 @@ function troubleOf(scan) {
   }
 }
 
+/** @param {Scan} scan */
+function poseFacts({calibration}) {
+  if (!calibration) {
+    return [];
+  }
+  return [{label: 'Pose', text: calibration.accepted && calibration.solved ?
+    `Found by this scan, looks agree to ${calibration.solved.after_mm.toFixed(2)} mm` : `As it was: ${calibration.reason}`}];
+}
+
 /** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan) {
   const {model, settings} = scan;
@@ -96,6 +117,7 @@ function factsOf(scan) {
   const capture = [
     {label: 'Snapshots', text: `${taken(scan)}, ${filters[settings.filter]}${pictures}`},
     {label: 'Taken', text: `${format.when(scan.created)}${took}`},
+    ...poseFacts(scan),
     ...(scan.late_pulses > 0 ? [{label: 'Motor', text: `${format.number(scan.late_pulses)} pulses late, so it turned more slowly`}] : []),
   ];
   if (!model) {
@@ -103,8 +125,7 @@ function factsOf(scan) {
   }
   return [
     {label: 'Triangles', text: format.number(model.triangles)},
-    model.watertight ? {label: 'Watertight', text: 'Yes, ready to slice', tone: 'good'} :
-        {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
+    model.watertight ? {label: 'Watertight', text: 'Yes'} : {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
     ...(model.filled_share === null ? [] :
       [{label: 'Seen', text: `${Math.round(100 * (1 - model.filled_share))} % of the surface, the rest is filled in`}]),
     {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
@@ -131,6 +152,7 @@ const detailsOf = (scan) => ({
   id: scan.id,
   name: nameOf(scan),
   trouble: troubleOf(scan),
+  verdict: scan.model && verdictOf(scan.model),
   size: scan.model ? format.size(scan.model.size_mm) : '',
   facts: factsOf(scan),
   canResume: scan.state === 'paused' || scan.state === 'interrupted',
@@ -142,7 +164,7 @@ const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   id: scan.id,
   name: scan.name || 'Untitled scan',
   fullName: nameOf(scan),
-  badge: badges[scan.state],
+  badge: scan.model && badgeOf(scan.model) || badges[scan.state],
   when: format.when(scan.created),
   about: scan.model ? `${format.size(scan.model.size_mm, 0)} · ${format.bytes(scan.model.bytes)}` :
     `${taken(scan)} snapshots${scan.state === 'running' ? '' : ' kept'}`,
@@ -171,7 +193,7 @@ function titleOf(state) {
     return 'No answer · Octurn';
   }
   if (scan) {
-    return scan.phase === 'building' ? 'Building · Octurn' : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
+    return isBuilding(scan) ? 'Building · Octurn' : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
   }
   const shown = scanOf(state, state.selected);
   return shown ? `${shown.state === 'finished' ? 'Done' : badges[shown.state].text} · Octurn` : 'Octurn';
@@ -185,11 +207,15 @@ function announcementOf(state) {
   const scan = running(state);
   if (scan) {
     const quarter = Math.floor(4 * scan.snapshots_done / Math.max(scan.snapshots_total, 1)) * 25;
-    return scan.phase === 'building' ? 'Building the model.' :
+    return isBuilding(scan) ? `${phaseText(scan)}.` :
       quarter === 0 ? `Scanning, ${scan.snapshots_total} snapshots.` : `${quarter} percent of the snapshots taken.`;
   }
   const shown = scanOf(state, state.selected);
-  return shown?.model ? `The model of ${nameOf(shown)} is ready.` : shown ? `${troubleOf(shown)?.title ?? ''}.` : '';
+  if (!shown?.model) {
+    return shown ? `${troubleOf(shown)?.title ?? ''}.` : '';
+  }
+  const verdict = verdictOf(shown.model);
+  return `The model of ${nameOf(shown)} is ready.${verdict && verdict.tone !== 'good' ? ` ${verdict.title}.` : ''}`;
 }
 
 /** @param {State} state */

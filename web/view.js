@@ -64,8 +64,31 @@ function showProgress(progress) {
   }
 }
 
+/** @param {HTMLAnchorElement} link @param {import('./quality.js').Action | null} action */
+function setAction(link, action) {
+  show(link, action !== null);
+  setText(link, action?.text ?? '');
+  link.href = action?.href ?? '';
+}
+
+/** @param {NonNullable<Screen['details']>['verdict']} verdict */
+function showVerdict(verdict) {
+  show(element('verdict'), verdict !== null);
+  if (verdict) {
+    element('verdict').dataset.tone = verdict.tone;
+    part(element('verdict'), 'use').setAttribute('href', `icons/symbols.svg#${verdict.icon}`);
+    setText(element('verdict-title'), verdict.title);
+    setText(element('verdict-text'), verdict.text);
+    list(element('reasons'), verdict.reasons, ({key}) => key, 'reason', (item, {detail, hint, action}) => {
+      setText(part(item, '.reason-detail'), detail);
+      setText(part(item, '.reason-hint'), hint);
+      setAction(part(item, 'a'), action);
+    });
+  }
+}
+
 /** @param {NonNullable<Screen['details']>} details */
-function showDetails({name, trouble, size, facts, canResume, download}) {
+function showDetails({name, trouble, verdict, size, facts, canResume, download}) {
   setText(element('details-name'), name);
   show(element('trouble'), trouble !== null);
   if (trouble) {
@@ -73,7 +96,9 @@ function showDetails({name, trouble, size, facts, canResume, download}) {
     setText(element('trouble-title'), trouble.title);
     setText(element('trouble-detail'), trouble.detail);
     setText(element('trouble-hint'), trouble.hint);
+    setAction(element('trouble-action'), trouble.action);
   }
+  showVerdict(verdict);
   show(element('resumable'), canResume);
   show(element('size'), size !== '');
   setText(element('size'), size);

@@ -63,7 +63,7 @@ async function startByKeyboard(scanner, browser) {
   await page.keyboard.press('Enter');
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   assert.equal(await page.evaluate(() => document.activeElement?.textContent), 'Scanning');
-  await page.getByRole('status').filter({hasText: /^The model of .* is ready\.$/}).waitFor();
+  await page.getByRole('status').filter({hasText: /^The model of .* is ready\./}).waitFor();
 }
 
 /** Looks at a scan on a phone as if its file had `bytes`. */

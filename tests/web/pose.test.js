@@ -56,6 +56,6 @@ test('the difference of two poses is how far the axis moves and tilts', () => {
   const moved = differenceOf(poseOf(drawing), poseOf({...drawing, x_mm: 3, y_mm: -616}));
   near([moved.shift_mm, moved.tilt_deg], [5, 0], 1e-6);
   const lifted = differenceOf(poseOf(drawing), poseOf({...drawing, z_mm: 365}));
-  near([lifted.shift_mm, lifted.tilt_deg], [0, 0], 1e-6);
+  near([lifted.shift_mm, lifted.lift_mm, lifted.tilt_deg], [0, 5, 0], 1e-6);
   assert.ok(Math.abs(differenceOf(poseOf(drawing), poseOf({...drawing, tilt_deg: 27})).tilt_deg - 2) < 1e-6);
 });

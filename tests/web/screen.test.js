@@ -51,7 +51,7 @@ test('a finished scan shows its size, its facts and its download', () => {
   const facts = Object.fromEntries(details.facts.map(({label, text}) => [label, text]));
   assert.equal(facts.Triangles, '1,011,032');
   assert.equal(facts.Volume, '97.1 cm³');
-  assert.equal(facts.Watertight, 'Yes, ready to slice');
+  assert.equal(facts.Watertight, 'Yes');
   assert.equal(facts.Snapshots, '36 of 36, average of 10');
   assert.deepEqual(details.download, {url: finished.model.url, about: '51 MB'});
   assert.equal(stage.shows, 'model');
@@ -69,7 +69,7 @@ test('a scan without a model says why, and what of it is kept', () => {
   const error = {code: 'sensor-silent', detail: 'no frame for 2000 ms', hint: 'Check the cable'};
   const failed = {...running, id: 'bad', state: 'failed', error};
   const {details, rows, stage} = screenOf(looking(failed));
-  assert.deepEqual(details.trouble, {tone: 'bad', title: 'Scan failed', detail: 'No frame for 2000 ms.', hint: 'Check the cable.'});
+  assert.deepEqual(details.trouble, {tone: 'bad', title: 'Scan failed', detail: 'No frame for 2000 ms.', hint: 'Check the cable.', action: null});
   assert.deepEqual(details.download, {url: '/api/v1/scans/bad/Scan.stl?leaf_size_mm=1', about: 'of 9 snapshots'});
   assert.equal(details.canResume, false);
   assert.equal(rows[0].about, '9 of 36 snapshots kept');
@@ -98,7 +98,7 @@ test('progress is announced four times a turn, not at each stop', () => {
 test('a paused scan says why, and can be resumed or ended', () => {
   const error = {code: 'sensor-lost', detail: 'the Kinect is gone', hint: 'Plug it in. Then resume the scan.'};
   const {details, rows, title, announcement, panel} = screenOf(looking({...running, id: 'wait', state: 'paused', phase: 'done', error}));
-  assert.deepEqual(details.trouble, {tone: 'warn', title: 'Scan paused', detail: 'The Kinect is gone.', hint: 'Plug it in. Then resume the scan.'});
+  assert.deepEqual(details.trouble, {tone: 'warn', title: 'Scan paused', detail: 'The Kinect is gone.', hint: 'Plug it in. Then resume the scan.', action: null});
   assert.equal(details.canResume, true);
   assert.equal(details.download, null);
   assert.deepEqual(rows[0].badge, {tone: 'warn', text: 'Paused'});
@@ -130,4 +130,40 @@ test('late pulses of the motor are told, if there were any', () => {
   const motor = (late_pulses) => screenOf(looking({...finished, late_pulses})).details.facts.find(({label}) => label === 'Motor');
   assert.equal(motor(0), undefined);
   assert.match(motor(1234).text, /^1,234 pulses late/);
+});
+
+test('a model is judged where it is shown and where it is listed', () => {
+  const quality = {verdict: 'bad', reasons: [{code: 'stops-disagree', detail: 'the stops disagree by 4.2 mm', hint: 'calibrate the rig'}]};
+  const {details, rows, announcement} = screenOf(looking({...finished, model: {...finished.model, quality}}));
+  assert.deepEqual(details.verdict.reasons.map(({detail, hint, action}) => [detail, hint, action.href]),
+      [['The stops disagree by 4.2 mm.', 'Calibrate the rig.', '#calibrate']]);
+  assert.deepEqual(rows[0].badge, {tone: 'bad', text: 'Not good'});
+  assert.equal(announcement, 'The model of Owl is ready. Not a good model.');
+});
+
+test('a model that was never judged is finished, and no more', () => {
+  const {details, rows} = screenOf(looking(finished));
+  assert.equal(details.verdict, null);
+  assert.deepEqual(rows[0].badge, {tone: 'good', text: 'Finished'});
+});
+
+test('a scan without a model leads to what cures it, too', () => {
+  const error = {code: 'model-empty', detail: 'nothing was seen', hint: ''};
+  assert.equal(screenOf(looking({...running, state: 'failed', error})).details.trouble.action.href, '#');
+});
+
+test('solving the pose and building again are told, after the turn', () => {
+  for (const [phase, text] of [['calibrating', 'Checking where the sensor stands'], ['rebuilding', 'Building again, with the pose corrected']]) {
+    const {progress, title} = screenOf(scanning({phase, snapshots_done: 36}));
+    assert.equal(progress.text, text);
+    assert.deepEqual(progress.steps.map(({state}) => state), ['done', 'done', 'now']);
+    assert.equal(title, 'Building · Octurn');
+  }
+});
+
+test('a scan says what became of the pose', () => {
+  const pose = (calibration) => screenOf(looking({...finished, calibration})).details.facts.find(({label}) => label === 'Pose')?.text;
+  assert.equal(pose(null), undefined);
+  assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Found by this scan, looks agree to 0.52 mm');
+  assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'As it was: two stops are too few');
 });

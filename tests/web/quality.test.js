@@ -1,0 +1,26 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {actionOf, badgeOf, verdictOf} from '../../web/quality.js';
+import {finished} from './examples.js';
+
+const judged = (verdict, reasons = [], changes = {}) => ({...finished.model, quality: {verdict, reasons}, ...changes});
+
+test('a good model is ready to slice only if it is closed', () => {
+  assert.match(verdictOf(judged('good')).text, /ready to slice/);
+  assert.doesNotMatch(verdictOf(judged('good', [], {watertight: false})).text, /ready/);
+});
+
+test('each verdict has its tone, and is never told by colour alone', () => {
+  const shown = ['good', 'look', 'bad'].map((verdict) => verdictOf(judged(verdict)));
+  assert.deepEqual(shown.map(({tone}) => tone), ['good', 'warn', 'bad']);
+  assert.equal(new Set(shown.map(({title}) => title)).size, 3);
+  assert.equal(new Set(shown.map(({icon}) => icon)).size, 3);
+  assert.equal(new Set(['good', 'look', 'bad'].map((verdict) => badgeOf(judged(verdict)).text)).size, 3);
+});
+
+test('a reason leads to its cure', () => {
+  const href = (code) => actionOf(code)?.href ?? null;
+  assert.deepEqual(['stops-disagree', 'cut-by-box', 'little-seen', 'something-new', undefined].map(href),
+      ['#calibrate', '#calibrate', '#', null, null]);
+});

@@ -1,0 +1,106 @@
+// The first visit: check the scanner, calibrate, scan. It goes away once that is done, or is dismissed.
+
+import * as requests from './api_calibration.js';
+import {isCalibrated} from './calibration.js';
+import {element, part, show} from './dom.js';
+import {here} from './places.js';
+
+const betweenLooks = 2000;  // milliseconds
+const checkedKey = 'octurn-checked';
+const dismissedKey = 'octurn-first-steps-dismissed';
+
+/** @typedef {{isChecked: boolean, isCalibrated: boolean | null, hasModel: boolean | null, isDismissed: boolean}} Known  null: not known yet */
+
+/**
+ * What of the first steps is done; null where they are not shown. Pure.
+ * @param {Known} known
+ * @returns {Record<'check' | 'calibrate' | 'scan', 'done' | 'now' | 'next'> | null}
+ */
+export function stepsOf({isChecked, isCalibrated: hasPose, hasModel, isDismissed}) {
+  if (hasPose === null || hasModel === null || isDismissed || (hasPose && hasModel)) {
+    return null;
+  }
+  const done = {check: isChecked || hasModel, calibrate: hasPose, scan: hasModel};
+  const now = /** @type {const} */ (['check', 'calibrate', 'scan']).find((step) => !done[step]);
+  const stateOf = (/** @type {keyof typeof done} */ step) => done[step] ? 'done' : step === now ? 'now' : 'next';
+  return {check: stateOf('check'), calibrate: stateOf('calibrate'), scan: stateOf('scan')};
+}
+
+/** What this browser remembers, as long as it may. @param {string} key */
+function isNoted(key) {
+  try {
+    return localStorage.getItem(key) !== null;
+  } catch {
+    return false;
+  }
+}
+
+/** @param {string} key */
+function note(key) {
+  try {
+    localStorage.setItem(key, 'yes');
+  } catch {
+    // a browser that keeps nothing shows the steps again
+  }
+}
+
+/** @type {Known} */
+const known = {isChecked: isNoted(checkedKey), isCalibrated: null, hasModel: null, isDismissed: isNoted(dismissedKey)};
+
+function render() {
+  const steps = stepsOf(known);
+  const list = element('first-steps');
+  show(list, steps !== null);
+  for (const [name, state] of Object.entries(steps ?? {})) {
+    const step = part(list, `[data-step=${name}]`);
+    step.dataset.state = state;
+    step.toggleAttribute('aria-current', state === 'now');
+    show(part(step, '.unseen'), state === 'done');
+  }
+}
+
+/** @param {import('./api.js').Status} status */
+export function seeNewest({newest}) {
+  known.hasModel = newest !== null;
+  render();
+}
+
+/** @param {import('./api.js').Report} report */
+export function seeReport({state}) {
+  if (state !== 'fault') {
+    known.isChecked = true;
+    note(checkedKey);
+    render();
+  }
+}
+
+function listen() {
+  part(element('first-steps'), '[data-step=check] button').addEventListener('click', () => {
+    element('examine').scrollIntoView({block: 'center'});
+    element('examine').focus({preventScroll: true});
+    element('examine').click();
+  });
+  part(element('first-steps'), '[data-step=scan] button').addEventListener('click', () => element('start').focus());
+  element('dismiss-steps').addEventListener('click', () => {
+    known.isDismissed = true;
+    note(dismissedKey);
+    render();
+    element('panel').focus({preventScroll: true});
+  });
+}
+
+/** Runs until the steps are done. */
+export async function watchSteps() {
+  listen();
+  while (!known.isDismissed && !(known.isCalibrated && known.hasModel)) {
+    if (here() === 'scan' && !document.hidden) {
+      await requests.calibration().then((calibration) => {
+        known.isCalibrated = isCalibrated(calibration);
+        render();
+      }, () => {});
+    }
+    await new Promise((done) => {
+      setTimeout(done, betweenLooks);
+    });
+  }
+}

@@ -1,0 +1,54 @@
+// What the page says of a model's worth. Pure: the scanner's verdict in, texts and links out.
+
+import {sentence} from './format.js';
+
+/** @typedef {import('./api.js').Model} Model */
+
+/** @typedef {{code: string, detail: string, hint: string}} Reason */
+/** @typedef {{text: string, href: string}} Action  where a reason's cure is */
+
+const calibrate = {text: 'Calibrate', href: '#calibrate'};
+const space = {text: 'Change the scanned space', href: '#calibrate'};
+const again = {text: 'Scan again', href: '#'};
+
+/** @type {Record<string, Action>} */
+const actions = {
+  'stops-disagree': calibrate,
+  'floats': calibrate,
+  'sunk': calibrate,
+  'cut-by-box': space,
+  'empty': again,
+  'model-empty': again,
+  'moved': again,
+  'little-seen': again,
+  'parts-dropped': again,
+};
+
+/** @param {string | undefined} code @returns {Action | null} */
+export const actionOf = (code) => actions[code ?? ''] ?? null;
+
+const verdicts = {
+  good: {tone: 'good', icon: 'ok', badge: 'Good', title: 'A good model'},
+  look: {tone: 'warn', icon: 'warning', badge: 'Have a look', title: 'Have a look at it'},
+  bad: {tone: 'bad', icon: 'fault', badge: 'Not good', title: 'Not a good model'},
+};
+
+/** @param {Model} model @returns {{tone: string, text: string} | null} null for a model that was never judged */
+export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: verdicts[quality.verdict].badge} : null;
+
+/** @param {Model} model */
+export function verdictOf({quality, watertight}) {
+  if (!quality) {
+    return null;
+  }
+  const {tone, icon, title} = verdicts[quality.verdict];
+  return {
+    tone,
+    icon,
+    title,
+    text: quality.verdict !== 'good' ? '' :
+      watertight ? 'Nothing speaks against it: ready to slice.' : 'Nothing speaks against it, but it has open edges.',
+    reasons: quality.reasons.map(({code, detail, hint}) => (
+      {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code)})),
+  };
+}

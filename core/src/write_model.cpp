@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <span>
 
 #include "octurn/error.hpp"
@@ -16,15 +17,20 @@ void expect_facets(const SurfaceCount& count) {
 
 ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
   const Eigen::Vector3d size_mm = check.bounds_mm().max - check.bounds_mm().min;
+  const double volume = m3_from_mm3(check.volume_mm3());
   return {.leaves = count.leaves,
           .triangles = count.facets,
           .bytes = stl_bytes(count.facets),
           .parts = count.parts,
           .filled_share = check.filled_share(),
+          .unseen_share = check.unseen_share(),
           .watertight = check.closed(),
-          .volume = m3_from_mm3(check.volume_mm3()),
+          .volume = volume,
+          .dropped_volume = volume * static_cast<double>(count.dropped_leaves) /
+                            static_cast<double>(std::max<std::uint64_t>(count.leaves, 1)),
           .size = {metres_from_mm(size_mm.x()), metres_from_mm(size_mm.y()),
-                   metres_from_mm(size_mm.z())}};
+                   metres_from_mm(size_mm.z())},
+          .bottom = metres_from_mm(check.bounds_mm().min.z())};
 }
 
 std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,

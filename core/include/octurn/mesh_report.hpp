@@ -32,6 +32,11 @@ class MeshCheck {
   /// The share of the surface's area in facets that are marked as filled in, 0 to 1.
   double filled_share() const { return area_ > 0 ? filled_area_ / area_ : 0; }
 
+  /// The same of the area above the base, the facets that lie in z = 0.
+  double unseen_share() const {
+    return area_ > base_area_ ? (filled_area_ - filled_base_area_) / (area_ - base_area_) : 0;
+  }
+
   /// The bounding box of all corners, millimetres.
   const Box& bounds_mm() const { return bounds_mm_; }
 
@@ -39,8 +44,10 @@ class MeshCheck {
   std::uint64_t facets_ = 0;
   std::uint64_t edges_ = 0;
   double six_volumes_ = 0;
-  double area_ = 0;  // both areas twice, mm2
+  double area_ = 0;  // all areas twice, mm2
   double filled_area_ = 0;
+  double base_area_ = 0;
+  double filled_base_area_ = 0;
   Box bounds_mm_ = {};
 };
 
@@ -48,12 +55,15 @@ class MeshCheck {
 struct ModelReport {
   std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t triangles = 0;
-  std::uint64_t bytes = 0;                         ///< of the STL
-  std::uint64_t parts = 0;                         ///< connected components; 0: not counted
-  double filled_share = 0;                         ///< of the area, made by hole filling, 0 to 1
-  bool watertight = false;                         ///< as `MeshCheck::closed`
-  double volume = 0.0;                             ///< cubic metres
+  std::uint64_t bytes = 0;      ///< of the STL
+  std::uint64_t parts = 0;      ///< connected components; 0: not counted
+  double filled_share = 0;      ///< of the area, made by hole filling, 0 to 1
+  double unseen_share = 0;      ///< the same of the area above the base
+  bool watertight = false;      ///< as `MeshCheck::closed`
+  double volume = 0.0;          ///< cubic metres
+  double dropped_volume = 0.0;  ///< cubic metres of components that are not in the model
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
+  double bottom = 0.0;                             ///< metres, of that box, above z = 0
 };
 
 /// The figures of a surface that was counted and checked while it was made.

@@ -76,7 +76,8 @@ struct ReconstructOptions {
 struct SurfaceCount {
   std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t facets = 0;
-  std::uint64_t parts = 0;  ///< connected components; 0: not counted
+  std::uint64_t parts = 0;           ///< connected components; 0: not counted
+  std::uint64_t dropped_leaves = 0;  ///< voxels of components that are not in the model
 };
 
 /// A reconstruction in progress: snapshots are added, then its surface is asked for. Not

@@ -1,12 +1,16 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {
+
+constexpr double base_thickness_mm = 0.1;  // what the simplifier may leave of a flat base
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
 std::uint64_t mixed(std::uint64_t bits) {
@@ -48,7 +52,14 @@ void MeshCheck::add(std::span<const Facet> facets) {
     }
     const double area = (points[1] - points[0]).cross(points[2] - points[0]).norm();
     area_ += area;
-    filled_area_ += facet.attributes == filled_in ? area : 0;
+    const double filled_area = facet.attributes == filled_in ? area : 0;
+    filled_area_ += filled_area;
+    if (std::ranges::all_of(points, [](const Eigen::Vector3d& point) {
+          return std::abs(point.z()) < base_thickness_mm;
+        })) {
+      base_area_ += area;
+      filled_base_area_ += filled_area;
+    }
     six_volumes_ += points[0].dot(points[1].cross(points[2]));
   }
 }

@@ -179,11 +179,16 @@ SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const 
   const HoleFilledSdf sdf(known, base_layer(), stop);
   expect_room_for_masks(known, sdf);
   VoxelMask solid = sdf.inside(stop);
+  const std::uint64_t all = solid.count();
   solid.keep_main_component(stop);
+  const std::uint64_t dropped = all - solid.count();
   solid = solid.cropped();
   solid.remove_spurs(stop);
   solid.fill_cavities(stop);
-  SurfaceCount count{.leaves = solid.count(), .facets = 0, .parts = solid.component_count(stop)};
+  SurfaceCount count{.leaves = solid.count(),
+                     .facets = 0,
+                     .parts = solid.component_count(stop),
+                     .dropped_leaves = dropped};
   draw(
       solid, sdf,
       [&](std::span<const Facet> facets) {

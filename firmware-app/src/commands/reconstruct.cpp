@@ -4,11 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "octurn/mesh_report.hpp"
+#include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
@@ -76,7 +79,25 @@ Json to_json(ModelSettings settings) {
   return json;
 }
 
-Json to_json(const ModelReport& report, const ModelSettings& settings, const Times& times) {
+Json to_json(const Quality& quality) {
+  Json reasons = Json::array();
+  for (const QualityReason& reason : quality.reasons) {
+    reasons.push_back({{"code", reason.code}, {"detail", reason.detail}, {"hint", reason.hint}});
+  }
+  return {{"verdict", to_string(quality.verdict)}, {"reasons", std::move(reasons)}};
+}
+
+/// One line for people, if the model is not good.
+std::string to_text(const Quality& quality) {
+  std::string text = quality.verdict == Verdict::bad ? "The model is bad: " : "Look at the model: ";
+  for (const QualityReason& reason : quality.reasons) {
+    text += (&reason == quality.reasons.data() ? "" : "; ") + reason.detail;
+  }
+  return text + ".\n";
+}
+
+Json to_json(const ModelReport& report, const Quality& quality, const ModelSettings& settings,
+             const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
@@ -92,6 +113,7 @@ Json to_json(const ModelReport& report, const ModelSettings& settings, const Tim
     json["seen_share"] = 1 - report.filled_share;
     json["filled_share"] = report.filled_share;
   }
+  json["quality"] = to_json(quality);
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["seconds"] = {{"snapshots", seconds(times.snapshots)},
                      {"surface", seconds(times.surface)},
@@ -131,30 +153,39 @@ class ModelOutput {
   std::optional<StlFile> file_ = {};
 };
 
-/// The scan's snapshots. Reading one updates the progress bar, and throws Stopped once `stop` is
-/// requested.
+/// The scan's snapshots. Reading one updates the progress bar, shows it to the check, and throws
+/// Stopped once `stop` is requested.
 SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& scan,
-                               ProgressBar& bar, const std::stop_token& stop) {
+                               ProgressBar& bar, ScanCheck& check, const std::stop_token& stop) {
   return {.count = scan.shots.size(),
-          .read = [&bar, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
+          .read = [&bar, &check, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
             bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
-            return stored.read(i);
+            Snapshot snapshot = stored.read(i);
+            check.add(i, snapshot);
+            return snapshot;
           }};
 }
 
-/// The scan with the pose that its model is made with. A solved pose that merely confirms the told
-/// one does not replace it: the model keeps its bytes.
-Scan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
-               const std::stop_token& stop) {
+/// A scan with the pose that its model is made with, and what solving it found.
+struct PosedScan {
+  Scan scan = {};
+  std::vector<CalibrationFinding> findings = {};
+};
+
+/// A solved pose that merely confirms the told one does not replace it: the model keeps its bytes.
+PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
+                    const std::stop_token& stop) {
+  PosedScan posed{.scan = std::move(scan)};
   if (settings.pose == PoseSource::told) {
-    scan.solved.reset();
-  } else if (!scan.solved) {
-    const CalibrationReport report = solve_pose(folder, scan, settings.limits.threads, stop);
+    posed.scan.solved.reset();
+  } else if (!posed.scan.solved) {
+    CalibrationReport report = solve_pose(folder, posed.scan, settings.limits.threads, stop);
     if (report.accepted && !report.confirms_told()) {
-      scan.solved = to_solved_pose(report);
+      posed.scan.solved = to_solved_pose(report);
     }
+    posed.findings = std::move(report.findings);
   }
-  return scan;
+  return posed;
 }
 
 }  // namespace
@@ -164,7 +195,8 @@ void reconstruct(const ReconstructArguments& arguments) try {
   const std::stop_token stop = signal.token();
   ModelSettings settings = settings_from(arguments.settings);
   expect_writable(arguments.output);
-  const Scan scan = with_pose(read_scan(arguments.folder), arguments.folder, settings, stop);
+  const auto [scan, findings] =
+      with_pose(read_scan(arguments.folder), arguments.folder, settings, stop);
   if (!arguments.settings.contains("clip_mm")) {
     settings.scan.clip = scan.clip;
   }
@@ -173,12 +205,13 @@ void reconstruct(const ReconstructArguments& arguments) try {
     return_freed_memory();
   }
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  ScanCheck scan_check(options.clip, scan.shots.size());
   MeshCheck check;
   std::optional<SurfaceCount> count;
   Times times;
   {
     ProgressBar bar;
-    const SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, stop);
+    const SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, scan_check, stop);
     const Clock::time_point start = Clock::now();
     reconstruction->add(snapshots, stop);
     const Clock::time_point seen = Clock::now();
@@ -186,9 +219,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
     ModelOutput output(arguments.output,
                        [&] { return reconstruction->count(snapshots, stop).facets; });
     const auto checked = [&](std::span<const Facet> facets) {
-      if (arguments.json) {
-        check.add(facets);
-      }
+      check.add(facets);
       output.write(facets);
     };
     count = write_model(*reconstruction, snapshots, checked, stop);
@@ -198,8 +229,13 @@ void reconstruct(const ReconstructArguments& arguments) try {
     output.commit();
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
+  const ModelReport report = report_of(*count, check);
+  const Quality quality = judge(scan_check.figures(options.threads), report, findings);
+  if (quality.verdict != Verdict::good) {
+    std::cerr << to_text(quality);
+  }
   if (arguments.json) {
-    const std::string line = to_json(report_of(*count, check), settings, times).dump() + "\n";
+    const std::string line = to_json(report, quality, settings, times).dump() + "\n";
     if (arguments.output == "-") {
       std::cerr << line;  // a line of text does not belong into the model
     } else {

@@ -1,0 +1,294 @@
+#include "calibrate/checked_stop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibrate/for_each_stop.hpp"
+#include "depth/depth_limits.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr int thinning = 2;               // every other row and column is kept
+constexpr int block = 4;                  // of these rows and columns to a side
+constexpr double readings_wanted = 400;   // of a stop, to compare
+constexpr double platform_radius = 0.13;  // metres, in which heights are counted
+constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
+constexpr double min_cut_height =
+    0.01;  // metres above the box's bottom: the platform's rim is lower
+
+// Stops that are compared. Near ones tell little of a wrong axis, far ones see other surfaces.
+constexpr double min_apart_deg = 20;
+constexpr double max_apart_deg = 50;
+constexpr double max_neighbour_deg = 100;  // where there are no stops so near
+
+constexpr double max_distance = 0.02;          // metres: what is farther off is another surface
+constexpr double confirming_distance = 0.006;  // metres
+
+/// Of the image whose pixels are blocks of `size` x `size` pixels of another.
+Intrinsics merged(Intrinsics lens, int size) {
+  lens.width /= size;
+  lens.height /= size;
+  lens.fx /= size;
+  lens.fy /= size;
+  const double corner = (size - 1) / 2.0;  // from a block's first pixel to its middle
+  lens.cx = (lens.cx - corner) / size;
+  lens.cy = (lens.cy - corner) / size;
+  return lens;
+}
+
+/// Every other row and column of a depth image.
+Snapshot thinned(const Snapshot& snapshot) {
+  const DepthFrame& frame = snapshot.frame;
+  const Intrinsics& lens = snapshot.intrinsics;
+  check_size(frame, lens, "ScanCheck");
+  Snapshot thin{.frame = {.width = (frame.width + thinning - 1) / thinning,
+                          .height = (frame.height + thinning - 1) / thinning,
+                          .depth = {}},
+                .intrinsics = lens,
+                .object_from_sensor = snapshot.object_from_sensor};
+  thin.intrinsics.width = thin.frame.width;
+  thin.intrinsics.height = thin.frame.height;
+  thin.intrinsics.fx /= thinning;
+  thin.intrinsics.fy /= thinning;
+  thin.intrinsics.cx /= thinning;
+  thin.intrinsics.cy /= thinning;
+  for (int v = 0; v < frame.height; v += thinning) {
+    const auto row = frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
+    for (int u = 0; u < frame.width; u += thinning) {
+      thin.frame.depth.push_back(row[u]);
+    }
+  }
+  return thin;
+}
+
+/// Readings above the plane z = 0 and near the axis x = y = 0 of the object's frame.
+ObjectView::Mask mask_of(const Isometry3d& object_from_sensor) {
+  const Isometry3d sensor_from_object = object_from_sensor.inverse();
+  const Vector3d normal = sensor_from_object.linear() * Vector3d::UnitZ();
+  return {.plane = {.normal = normal, .offset = normal.dot(sensor_from_object.translation())},
+          .axis_point = sensor_from_object.translation()};
+}
+
+bool contains(const Box& box, const Vector3d& point) {
+  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+}
+
+/// The side of the box that lies between a point inside and one outside, numbered as
+/// `ScanFigures::cut_pixels`; 5 is the bottom.
+std::size_t side_between(const Box& box, const Vector3d& outside) {
+  for (const int axis : {2, 0, 1}) {
+    if (outside[axis] > box.max[axis]) {
+      return axis == 2 ? 4 : static_cast<std::size_t>(2 * axis + 1);
+    }
+    if (outside[axis] < box.min[axis]) {
+      return axis == 2 ? 5 : static_cast<std::size_t>(2 * axis);
+    }
+  }
+  return 5;
+}
+
+/// The points that a depth image reads, in the object's frame.
+class Points {
+ public:
+  explicit Points(const Snapshot& snapshot) : snapshot_(snapshot) {}
+
+  double depth(int u, int v) const {
+    const DepthFrame& frame = snapshot_.frame;
+    return frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                       static_cast<std::size_t>(u)] *
+           snapshot_.intrinsics.depth_unit;
+  }
+  Vector3d at(int u, int v) const {
+    const Intrinsics& lens = snapshot_.intrinsics;
+    const double z = depth(u, v);
+    return snapshot_.object_from_sensor *
+           Vector3d((u - lens.cx) / lens.fx * z, (v - lens.cy) / lens.fy * z, z);
+  }
+
+ private:
+  const Snapshot& snapshot_;
+};
+
+/// The smallest depth in each block, metres; 0 if one of its pixels has none.
+std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& lens) {
+  std::vector<float> nearest;
+  for (int v = 0; v < lens.height; ++v) {
+    for (int u = 0; u < lens.width; ++u) {
+      double min = points.depth(u * block, v * block);
+      for (int i = 0; i < block * block; ++i) {
+        min = std::min(min, points.depth(u * block + i % block, v * block + i / block));
+      }
+      nearest.push_back(static_cast<float>(min));
+    }
+  }
+  return nearest;
+}
+
+/// The turn between two stops, radians.
+double turn_between(const ScanCheck::Stop& a, const ScanCheck::Stop& b) {
+  return Eigen::AngleAxisd(a.object_from_sensor.linear().transpose() *
+                           b.object_from_sensor.linear())
+      .angle();
+}
+
+std::vector<std::size_t> partners_of(const std::vector<const ScanCheck::Stop*>& stops,
+                                     std::size_t from, double min_deg, double max_deg) {
+  std::vector<std::size_t> partners;
+  for (std::size_t to = 0; to < stops.size(); ++to) {
+    const double apart = to == from ? 0 : turn_between(*stops[from], *stops[to]);
+    if (to != from && apart > radians_from_degrees(min_deg) &&
+        apart < radians_from_degrees(max_deg)) {
+      partners.push_back(to);
+    }
+  }
+  return partners;
+}
+
+/// How one stop's readings compare with the others'.
+struct Comparison {
+  std::vector<float> distances = {};
+  std::size_t readings = 0;
+  std::size_t contradicted = 0;
+};
+
+enum class Agreement { unknown, confirmed, contradicted };
+
+/// @param point  of the object's frame, and its normal
+Agreement compare(const ScanCheck::Stop& to, const Vector3d& point, const Vector3d& normal,
+                  Comparison& comparison) {
+  constexpr double min_agreement = 0.7;  // cosine between the two normals
+  const Vector3d seen_from = to.object_from_sensor.inverse() * point;
+  if (to.empty_depth(seen_from) > seen_from.z() + max_distance) {
+    return Agreement::contradicted;
+  }
+  const auto surface = to.view.look_up(seen_from);
+  if (!surface) {
+    return Agreement::unknown;
+  }
+  const Vector3d other = to.object_from_sensor.linear() * surface->normal;
+  const double distance = other.dot(point - to.object_from_sensor * surface->point);
+  if (std::abs(distance) < max_distance && other.dot(normal) > min_agreement) {
+    comparison.distances.push_back(static_cast<float>(std::abs(distance)));
+  }
+  return std::abs(distance) < confirming_distance ? Agreement::confirmed : Agreement::unknown;
+}
+
+Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::size_t from) {
+  auto partners = partners_of(stops, from, min_apart_deg, max_apart_deg);
+  if (partners.empty()) {
+    partners = partners_of(stops, from, 0, max_neighbour_deg);
+  }
+  Comparison comparison;
+  for (const SurfaceReading& reading : stops[from]->readings) {
+    const Vector3d point = stops[from]->object_from_sensor * reading.point;
+    const Vector3d normal = stops[from]->object_from_sensor.linear() * reading.normal;
+    bool is_confirmed = false;
+    bool is_contradicted = false;
+    for (const std::size_t to : partners) {
+      const Agreement agreement = compare(*stops[to], point, normal, comparison);
+      is_confirmed |= agreement == Agreement::confirmed;
+      is_contradicted |= agreement == Agreement::contradicted;
+    }
+    ++comparison.readings;
+    comparison.contradicted += is_contradicted && !is_confirmed ? 1 : 0;
+  }
+  return comparison;
+}
+
+}  // namespace
+
+ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
+    : Stop(thinned(snapshot), clip, mask_of(snapshot.object_from_sensor)) {}
+
+ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask)
+    : object_from_sensor(thin.object_from_sensor),
+      block_lens(merged(thin.intrinsics, block)),
+      view(thin.frame, thin.intrinsics, mask),
+      heights(static_cast<std::size_t>(std::lround(2 * highest / height_step))) {
+  const Points points(thin);
+  nearest_in_block = nearest_in_blocks(points, block_lens);
+  const auto count_cut = [&](const Vector3d& inside, int u, int v, double z) {
+    const double depth = points.depth(u, v);
+    if (!(depth > nearest_z) || std::abs(depth - z) > max_cut_step ||
+        inside.z() < clip.min.z() + min_cut_height) {
+      return;
+    }
+    const Vector3d other = points.at(u, v);
+    if (!contains(clip, other)) {
+      const std::size_t side = side_between(clip, other);
+      cut[std::min<std::size_t>(side, cut.size() - 1)] += side < cut.size() ? thinning : 0;
+    }
+  };
+  for (int v = 1; v + 1 < thin.frame.height; ++v) {
+    for (int u = 1; u + 1 < thin.frame.width; ++u) {
+      const double z = points.depth(u, v);
+      if (!(z > nearest_z)) {
+        continue;
+      }
+      const Vector3d point = points.at(u, v);
+      if (std::abs(point.z()) < highest && point.head<2>().norm() < platform_radius) {
+        ++heights[static_cast<std::size_t>((point.z() + highest) / height_step)];
+      }
+      if (contains(clip, point)) {
+        object_pixels += thinning * thinning;
+        depths += z * thinning * thinning;
+        count_cut(point, u - 1, v, z);
+        count_cut(point, u + 1, v, z);
+        count_cut(point, u, v - 1, z);
+        count_cut(point, u, v + 1, z);
+      }
+    }
+  }
+  const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / readings_wanted)));
+  readings = view.readings(step);
+  std::erase_if(readings, [&](const SurfaceReading& reading) {
+    return !contains(clip, object_from_sensor * reading.point);
+  });
+}
+
+double ScanCheck::Stop::empty_depth(const Vector3d& point) const {
+  if (!(point.z() > nearest_z)) {
+    return 0;
+  }
+  const double u = point.x() / point.z() * block_lens.fx + block_lens.cx;
+  const double v = point.y() / point.z() * block_lens.fy + block_lens.cy;
+  if (!(u >= 1 && v >= 1 && u < block_lens.width - 2 && v < block_lens.height - 2)) {
+    return 0;
+  }
+  float nearest = std::numeric_limits<float>::max();
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      const auto at = static_cast<std::size_t>((std::lround(v) + row) * block_lens.width +
+                                               std::lround(u) + column);
+      nearest = std::min(nearest, nearest_in_block[at]);
+    }
+  }
+  return static_cast<double>(nearest);
+}
+
+StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads) {
+  std::vector<Comparison> of_stops(stops.size());
+  for_each_stop(stops.size(), threads,
+                [&](std::size_t stop) { of_stops[stop] = compare_stop(stops, stop); });
+  StopComparison all;
+  std::vector<float> distances;
+  for (const Comparison& stop : of_stops) {
+    distances.insert(distances.end(), stop.distances.begin(), stop.distances.end());
+    all.contradicted.push_back(static_cast<double>(stop.contradicted) /
+                               static_cast<double>(std::max<std::size_t>(stop.readings, 1)));
+  }
+  if (!distances.empty()) {
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::ranges::nth_element(distances, middle);
+    all.disagreement = static_cast<double>(*middle);
+  }
+  return all;
+}
+
+}  // namespace octurn

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "calibrate/object_view.hpp"
+#include "octurn/box.hpp"
+#include "octurn/quality.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+
+/// What `ScanCheck` keeps of a snapshot.
+struct ScanCheck::Stop {
+  Stop(const Snapshot& snapshot, const Box& clip);
+
+  static constexpr double highest = 0.03;  ///< metres, of `heights`; as far down, too
+  static constexpr double height_step = 0.001;
+
+  /// Metres along z that are empty in front of all pixels beside the one that sees a point; 0 if
+  /// one of them has no reading.
+  /// @param point  metres, optical frame
+  double empty_depth(const Eigen::Vector3d& point) const;
+
+  Eigen::Isometry3d object_from_sensor;
+  Intrinsics block_lens;                      ///< of the image whose pixels are blocks
+  std::vector<float> nearest_in_block = {};   ///< metres along z, row by row; 0 as `empty_depth`
+  ObjectView view;                            ///< of every other row and column
+  std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
+  std::size_t object_pixels = 0;              ///< inside the box
+  double depths = 0;                          ///< metres, the sum of theirs
+  std::array<std::size_t, 5> cut = {};        ///< as in `ScanFigures::cut_pixels`
+  std::vector<std::size_t> heights;           ///< of readings near z = 0, a count for each step
+
+ private:
+  Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);
+};
+
+/// What comparing the stops gives.
+struct StopComparison {
+  double disagreement = 0;                ///< metres: the median of the distances
+  std::vector<double> contradicted = {};  ///< as in `ScanFigures`
+};
+
+/// Compares what each stop saw of the object with what the stops some way around it saw.
+StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads);
+
+}  // namespace octurn

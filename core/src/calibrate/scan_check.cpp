@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "calibrate/checked_stop.hpp"
+#include "octurn/quality.hpp"
+
+namespace octurn {
+namespace {
+
+using Stops = std::vector<const ScanCheck::Stop*>;
+
+constexpr std::size_t window = 5;  // steps of height that a platform's readings spread over
+constexpr std::size_t min_platform_readings = 500;  // at a stop
+
+/// The largest turn from one stop to the next, radians.
+///
+/// The object's frame turns back by a stop's angle: headings are taken in it.
+double find_widest_gap(const Stops& stops) {
+  std::vector<double> headings;
+  for (const ScanCheck::Stop* stop : stops) {
+    const Eigen::Vector3d across = stop->object_from_sensor.linear() * Eigen::Vector3d::UnitX();
+    headings.push_back(std::atan2(across.y(), across.x()));
+  }
+  std::ranges::sort(headings);
+  headings.push_back(headings.front() + 2 * std::numbers::pi);
+  double widest = 0;
+  for (std::size_t i = 1; i < headings.size(); ++i) {
+    widest = std::max(widest, headings[i] - headings[i - 1]);
+  }
+  return widest;
+}
+
+/// The height at which most readings near z = 0 lie, metres.
+std::optional<double> find_platform(const Stops& stops) {
+  std::vector<std::size_t> counts(stops.front()->heights.size());
+  for (const ScanCheck::Stop* stop : stops) {
+    std::ranges::transform(counts, stop->heights, counts.begin(), std::plus<>());
+  }
+  std::size_t best = 0;
+  std::size_t best_count = 0;
+  for (std::size_t first = 0; first + window <= counts.size(); ++first) {
+    const auto begin = counts.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::size_t count = std::accumulate(begin, begin + window, std::size_t{0});
+    if (count > best_count) {
+      best = first;
+      best_count = count;
+    }
+  }
+  if (best_count < min_platform_readings * stops.size()) {
+    return std::nullopt;
+  }
+  double sum = 0;
+  for (std::size_t bin = best; bin < best + window; ++bin) {
+    const double height =
+        (static_cast<double>(bin) + 0.5) * ScanCheck::Stop::height_step - ScanCheck::Stop::highest;
+    sum += height * static_cast<double>(counts[bin]);
+  }
+  return sum / static_cast<double>(best_count);
+}
+
+}  // namespace
+
+ScanCheck::ScanCheck(const Box& clip, std::size_t stops) : clip_(clip), stops_(stops) {}
+
+ScanCheck::~ScanCheck() = default;
+
+void ScanCheck::add(std::size_t stop, const Snapshot& snapshot) {
+  stops_[stop] = std::make_unique<Stop>(snapshot, clip_);
+}
+
+ScanFigures ScanCheck::figures(int threads) const {
+  Stops stops;
+  for (const auto& stop : stops_) {
+    if (stop) {
+      stops.push_back(stop.get());
+    }
+  }
+  ScanFigures figures{.stops = stops.size()};
+  if (stops.empty()) {
+    return figures;
+  }
+  const auto count = static_cast<double>(stops.size());
+  double depths = 0;
+  for (const Stop* stop : stops) {
+    figures.object_pixels += static_cast<double>(stop->object_pixels) / count;
+    depths += stop->depths / count;
+    for (std::size_t side = 0; side < figures.cut_pixels.size(); ++side) {
+      figures.cut_pixels[side] += static_cast<double>(stop->cut[side]) / count;
+    }
+  }
+  figures.distance = figures.object_pixels > 0 ? depths / figures.object_pixels : 0;
+  figures.widest_gap = find_widest_gap(stops);
+  figures.platform_height = find_platform(stops);
+  StopComparison comparison = compare_stops(stops, threads);
+  figures.disagreement = comparison.disagreement;
+  figures.contradicted = std::move(comparison.contradicted);
+  return figures;
+}
+
+}  // namespace octurn

@@ -1,0 +1,180 @@
+#include "octurn/quality.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
+constexpr double min_volume = 1e-7;        // cubic metres
+
+// Two stops of a right rig disagree by 0.5 to 0.7 mm at 0.65 m with a Kinect v1, whose noise grows
+// with the square of the distance.
+constexpr double noise_distance = 0.65;       // metres
+constexpr double look_disagreement = 0.0011;  // metres
+constexpr double bad_disagreement = 0.0022;
+constexpr double max_contradicted = 0.1;  // of what a stop saw
+
+constexpr double look_height = 0.0025;  // metres between platform and z = 0
+constexpr double bad_height = 0.008;
+
+constexpr double look_gap_deg = 100;  // between neighbouring stops: each sees 60 degrees to a side
+constexpr double bad_gap_deg = 170;
+constexpr double look_unseen = 0.25;  // of the surface above the base
+constexpr double bad_unseen = 0.5;
+
+constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
+constexpr double max_dropped = 0.01;  // of the model's volume
+constexpr double min_dropped = 2e-7;  // cubic metres
+
+std::string text(const char* format, double value) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), format, value);
+  return buffer.data();
+}
+
+std::string mm_text(double metres) { return text("%.1f mm", mm_from_metres(metres)); }
+std::string percent_text(double share) { return text("%.0f %%", 100 * share); }
+
+/// Collects reasons; the worst of them is the verdict.
+class Judgement {
+ public:
+  void add(Verdict verdict, QualityReason reason) {
+    quality_.verdict = std::max(quality_.verdict, verdict);
+    quality_.reasons.push_back(std::move(reason));
+  }
+  Quality take() { return std::move(quality_); }
+
+ private:
+  Quality quality_ = {};
+};
+
+void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
+  const double scale = std::pow(std::max(scan.distance, noise_distance) / noise_distance, 2);
+  if (scan.disagreement > look_disagreement * scale) {
+    judgement.add(scan.disagreement > bad_disagreement * scale ? Verdict::bad : Verdict::look,
+                  {.code = "stops-disagree",
+                   .detail = "two stops disagree about the object by " + mm_text(scan.disagreement),
+                   .hint = "Calibrate the rig; look that object and sensor stand firm."});
+  }
+  const auto odd = std::ranges::max_element(scan.contradicted);
+  if (odd != scan.contradicted.end() && *odd > max_contradicted) {
+    judgement.add(
+        Verdict::look,
+        {.code = "moved",
+         .detail = "at stop " + std::to_string(odd - scan.contradicted.begin()) + " " +
+                   percent_text(*odd) + " of what was seen is empty space as other stops saw it",
+         .hint = "Keep hands out of the picture, and look that nothing moves."});
+  }
+}
+
+void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
+  for (const CalibrationFinding& finding : findings) {
+    if (finding.code == "moved") {
+      judgement.add(Verdict::look,
+                    {.code = finding.code, .detail = finding.detail, .hint = finding.hint});
+    } else if (finding.code == "slip" || finding.code == "turn-not-whole") {
+      judgement.add(Verdict::look,
+                    {.code = "stops-disagree", .detail = finding.detail, .hint = finding.hint});
+    }
+  }
+}
+
+void judge_height(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  const double platform = scan.platform_height.value_or(0);
+  if (platform > look_height) {
+    judgement.add(platform > bad_height ? Verdict::bad : Verdict::look,
+                  {.code = "floats",
+                   .detail = "the platform is seen " + mm_text(platform) +
+                             " above where it should be, and becomes a part of the model",
+                   .hint = "Calibrate the rig."});
+  } else if (-platform > look_height) {
+    judgement.add(-platform > bad_height ? Verdict::bad : Verdict::look,
+                  {.code = "sunk",
+                   .detail = "the platform is seen " + mm_text(-platform) +
+                             " below where it should be, and as much of the object is missing",
+                   .hint = "Calibrate the rig."});
+  } else if (model.parts > 0 && model.bottom > bad_height) {  // a shell ends where nobody saw
+    judgement.add(Verdict::look,
+                  {.code = "floats",
+                   .detail = "the model begins " + mm_text(model.bottom) + " above the platform",
+                   .hint = "Look whether the box reaches down to the platform."});
+  }
+}
+
+void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  if (scan.widest_gap > radians_from_degrees(look_gap_deg)) {
+    judgement.add(
+        scan.widest_gap > radians_from_degrees(bad_gap_deg) ? Verdict::bad : Verdict::look,
+        {.code = "little-seen",
+         .detail = "the platform turned by " +
+                   text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
+                   " without a stop: nobody saw that side of the object",
+         .hint = "Scan a whole turn."});
+  } else if (model.unseen_share > look_unseen) {
+    judgement.add(model.unseen_share > bad_unseen ? Verdict::bad : Verdict::look,
+                  {.code = "little-seen",
+                   .detail = percent_text(model.unseen_share) +
+                             " of the surface above the base was not seen, and is filled in",
+                   .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
+                           "object another way, and scan it again."});
+  }
+}
+
+void judge_box(Judgement& judgement, const ScanFigures& scan) {
+  constexpr std::array sides = {"the side towards -X", "the side towards +X",
+                                "the side towards the sensor", "the far side", "the top"};
+  const auto worst = std::ranges::max_element(scan.cut_pixels);
+  if (*worst > max_cut_pixels) {
+    const auto side = static_cast<std::size_t>(worst - scan.cut_pixels.begin());
+    judgement.add(Verdict::look, {.code = "cut-by-box",
+                                  .detail = "the object reaches through " +
+                                            std::string(sides[side]) + " of the scanned space",
+                                  .hint = "Make the scanned space larger, or move the object."});
+  }
+}
+
+void judge_parts(Judgement& judgement, const ModelReport& model) {
+  if (model.dropped_volume > min_dropped && model.dropped_volume > max_dropped * model.volume) {
+    judgement.add(model.dropped_volume > model.volume ? Verdict::bad : Verdict::look,
+                  {.code = "parts-dropped",
+                   .detail = text("parts of %.1f cm3 in all", cm3_from_m3(model.dropped_volume)) +
+                             " were not joined to the model, and were dropped",
+                   .hint = "Scan one object at a time."});
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  constexpr std::array<std::string_view, 3> names = {"good", "look", "bad"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+Quality judge(const ScanFigures& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings) {
+  Judgement judgement;
+  if (scan.object_pixels < min_object_pixels || model.volume + model.dropped_volume < min_volume) {
+    judgement.add(Verdict::bad, {.code = "empty",
+                                 .detail = "next to nothing stands on the platform",
+                                 .hint = "Stand the object on the platform's middle."});
+    return judgement.take();
+  }
+  judge_agreement(judgement, scan);
+  judge_findings(judgement, findings);
+  judge_height(judgement, scan, model);
+  judge_coverage(judgement, scan, model);
+  if (scan.platform_height.value_or(0) <= look_height) {  // else they tell of the platform
+    judge_box(judgement, scan);
+    judge_parts(judgement, model);
+  }
+  return judgement.take();
+}
+
+}  // namespace octurn

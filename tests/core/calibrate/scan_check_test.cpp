@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "core/calibrate/rendered_turn.hpp"
+#include "octurn/platform_pose.hpp"
+#include "octurn/quality.hpp"
+
+namespace octurn {
+namespace {
+
+const Box roomy{.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}};
+
+/// The figures of the stops of a turn that `is_taken` takes, with the turn's pose.
+template <typename IsTaken>
+ScanFigures figures(const CalibrationTurn& turn, const Box& clip, IsTaken is_taken) {
+  ScanCheck check(clip, turn.angles.size());
+  for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+    if (is_taken(stop)) {
+      check.add(stop, {.frame = turn.read(stop),
+                       .intrinsics = turn.intrinsics,
+                       .object_from_sensor =
+                           object_from_sensor(turn.platform_from_sensor, turn.angles[stop])});
+    }
+  }
+  return check.figures();
+}
+
+ScanFigures figures(const CalibrationTurn& turn, const Box& clip = roomy) {
+  return figures(turn, clip, [](std::size_t) { return true; });
+}
+
+TEST(ScanCheck, FindsNothingWrongWithARightRig) {
+  const ScanFigures scan = figures(rendered_turn(figure(), 8));
+  EXPECT_EQ(scan.stops, 8U);
+  EXPECT_NEAR(scan.distance, 0.66, 0.05);
+  EXPECT_NEAR(degrees_from_radians(scan.widest_gap), 45, 0.01);
+  EXPECT_NEAR(scan.platform_height.value_or(1), 0, 0.0005);
+  // The noise, of 0.3 steps of 1.3 mm at 0.66 m, and where two stops see an edge differently.
+  EXPECT_LT(scan.disagreement, 0.0007);
+  EXPECT_LT(std::ranges::max(scan.contradicted), 0.05);
+  EXPECT_EQ(std::ranges::max(scan.cut_pixels), 0);
+}
+
+TEST(ScanCheck, SeesThatStopsDisagreeWithARigTwoDegreesOff) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  const double right = figures(turn).disagreement;
+  turn.platform_from_sensor = wrong_pose({0, 0, 0}, {0, 1, 0}, 2);
+  // The top, 12 cm up, is 4 mm from the axis, at which stops of 45 degrees see it 3 mm apart.
+  EXPECT_GT(figures(turn).disagreement, 2 * right);
+  EXPECT_GT(figures(turn).disagreement, 0.0011);
+}
+
+TEST(ScanCheck, MeasuresHowFarThePlatformIsFromWhereItShouldBe) {
+  CalibrationTurn turn = rendered_turn(figure(), 4);
+  turn.platform_from_sensor = wrong_pose({0, 0, 0.012}, {1, 0, 0}, 0);
+  EXPECT_NEAR(figures(turn).platform_height.value_or(0), 0.012, 0.0005);
+  turn.platform_from_sensor = wrong_pose({0, 0, -0.007}, {1, 0, 0}, 0);
+  EXPECT_NEAR(figures(turn).platform_height.value_or(0), -0.007, 0.0005);
+}
+
+TEST(ScanCheck, SeesABoxThatIsTooLowCutTheHeadOff) {
+  const CalibrationTurn turn = rendered_turn(figure(), 4);
+  const Box low{.min = roomy.min, .max = {0.14, 0.14, 0.09}};
+  const auto cut = figures(turn, low).cut_pixels;
+  // The ball of 7 cm is cut 5 mm above its middle: 60 pixels of 1.1 mm.
+  EXPECT_GT(cut[4], 20);
+  EXPECT_LT(cut[4], 120);
+  EXPECT_EQ(cut[0] + cut[1] + cut[2] + cut[3], 0);
+}
+
+TEST(ScanCheck, NamesTheSideThatCuts) {
+  const CalibrationTurn turn = rendered_turn(figure(), 4);
+  const Box narrow{.min = roomy.min, .max = {0.02, 0.14, 0.4}};
+  const auto cut = figures(turn, narrow).cut_pixels;
+  EXPECT_EQ(std::ranges::max_element(cut) - cut.begin(), 1);
+  EXPECT_GT(cut[1], 20);
+}
+
+TEST(ScanCheck, MeasuresTheGapThatMissingStopsLeave) {
+  const CalibrationTurn turn = rendered_turn(figure(), 8);
+  const ScanFigures half = figures(turn, roomy, [](std::size_t stop) { return stop < 4; });
+  EXPECT_EQ(half.stops, 4U);
+  EXPECT_NEAR(degrees_from_radians(half.widest_gap), 225, 0.01);
+}
+
+TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  const Shape with_hand = joined(figure(), moved(ball({0, 0, 0.05}, 0.03), {-0.075, 0.075, 0}));
+  std::mt19937 random(5);
+  const DepthFrame hand = rendered_frame(with_hand, turn.angles[3], random);
+  turn.read = [hand, others = turn.read](std::size_t stop) {
+    return stop == 3 ? hand : others(stop);
+  };
+  const auto contradicted = figures(turn).contradicted;
+  EXPECT_EQ(std::ranges::max_element(contradicted) - contradicted.begin(), 3);
+  EXPECT_GT(contradicted[3], 0.1);
+}
+
+TEST(ScanCheck, CountsNextToNothingOnAnEmptyPlatform) {
+  const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
+  EXPECT_LT(figures(rendered_turn(nothing, 4)).object_pixels, 120);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -5,6 +5,7 @@ import * as api from './api.js';
 import * as requests from './api_calibration.js';
 import {showCalibration, showNotice} from './calibrate_view.js';
 import {scaleOf} from './calibration.js';
+import {chosenSpace, discardSpace, prepareSpace, showSpace} from './clip_form.js';
 import {element, setText} from './dom.js';
 import {sentence} from './format.js';
 import {here} from './places.js';
@@ -58,6 +59,26 @@ async function keep() {
       await requests.change({platform_from_sensor: pose});
       discard();
     });
+  }
+}
+
+async function keepSpace() {
+  const clip_mm = chosenSpace();
+  if (clip_mm) {
+    await act('The scanned space was not kept', async () => {
+      const {defaults} = await api.changeSettings({scan: {clip_mm}});
+      discardSpace();
+      showSpace(defaults.clip_mm);
+    });
+  }
+}
+
+async function lookAtSpace() {
+  try {
+    showSpace((await api.defaults()).clip_mm);
+    return 5000;
+  } catch {
+    return 2000;
   }
 }
 
@@ -135,7 +156,8 @@ export function prepare() {
   preparePicture();
   preparePlacement({onChange: showPose, onKeep: keep});
   listen();
-  api.defaults().then(({clip_mm}) => showClip(clip_mm), () => {});
+  prepareSpace({onChange: showClip, onKeep: keepSpace});
+  watch(lookAtSpace);
   watch(lookAtCalibration);
   watch(lookAtPicture);
 }

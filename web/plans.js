@@ -86,6 +86,10 @@ function drawBox(context, {toPixel}, {right, up}, clip_mm) {
   context.setLineDash([5, 4]);
   context.strokeRect(x0, y1, x1 - x0, y0 - y1);
   context.setLineDash([]);
+  context.fillStyle = colours.box;
+  for (const [x, y] of [[x0, (y0 + y1) / 2], [x1, (y0 + y1) / 2], [(x0 + x1) / 2, y0], [(x0 + x1) / 2, y1]]) {
+    context.fillRect(x - 3.5, y - 3.5, 7, 7);  // to take hold of
+  }
 }
 
 /** Makes a canvas as fine as the screen. @param {HTMLCanvasElement} canvas @returns {CanvasRenderingContext2D} in CSS pixels, empty */

@@ -12,6 +12,10 @@ export const radius_mm = 150;  // of the platform
 
 const plans = /** @type {const} */ ([['plan-side', fromSide], ['plan-above', fromAbove]]);
 
+/** @type {Map<string, import('./plans.js').Plan>} as drawn */
+const drawnPlans = new Map();
+let arePlansHeld = false;  // while something is dragged in them
+
 /** @type {{pose: Matrix | null, clip_mm: number[], seen: import('./api_calibration.js').Points | null}} */
 const shown = {pose: null, clip_mm: [-140, -140, 5, 140, 140, 400], seen: null};
 
@@ -36,7 +40,9 @@ function drawPlans() {
   for (const [id, side] of plans) {
     const canvas = element(id);
     if (canvas.clientWidth > 0) {
-      const plan = planOf(side, shown.clip_mm, radius_mm, canvas.clientWidth, canvas.clientHeight);
+      const fitted = planOf(side, shown.clip_mm, radius_mm, canvas.clientWidth, canvas.clientHeight);
+      const plan = arePlansHeld ? drawnPlans.get(id) ?? fitted : fitted;
+      drawnPlans.set(id, plan);
       drawPlan(canvas, side, {points, clip_mm: shown.clip_mm, radius_mm, plan});
     }
   }
@@ -60,11 +66,16 @@ export function showPose(pose) {
   redraw();
 }
 
-/** @param {number[]} clip_mm */
-export function showClip(clip_mm) {
+/** @param {number[]} clip_mm @param {boolean} isDragged  then the plans stay where they lie */
+export function showClip(clip_mm, isDragged) {
   shown.clip_mm = clip_mm;
+  arePlansHeld = isDragged;
   redraw();
 }
+
+/** The plans, with how each lies on its canvas once it is drawn. */
+export const plansShown = () => plans.map(([id, side]) => (
+  {canvas: /** @type {HTMLCanvasElement} */ (element(id)), side, planNow: () => drawnPlans.get(id) ?? null}));
 
 /** @param {import('./api_calibration.js').Points} seen */
 export function showPoints(seen) {

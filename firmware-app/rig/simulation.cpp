@@ -20,7 +20,7 @@ constexpr double max_speed = 1000;
 }
 
 template <typename Number>
-std::string text_of(Number value) {
+std::string to_text(Number value) {
   std::array<char, 32> text = {};
   const auto written = std::to_chars(text.begin(), text.end(), value);
   return {text.begin(), written.ptr};
@@ -31,8 +31,8 @@ Number number_of(std::string_view key, std::string_view text, Number min, Number
   Number value = {};
   const auto read = std::from_chars(text.begin(), text.end(), value);
   if (read.ec != std::errc() || read.ptr != text.end() || !(value >= min && value <= max)) {
-    refuse(std::string(key) + "=" + std::string(text) + ": not a number from " + text_of(min) +
-           " to " + text_of(max));
+    refuse(std::string(key) + "=" + std::string(text) + ": not a number from " + to_text(min) +
+           " to " + to_text(max));
   }
   return value;
 }
@@ -97,19 +97,19 @@ std::string simulation_uri(const Simulation& simulation) {
     query += (query.empty() ? "?" : "&") + std::string(key) + "=" + value;
   };
   if (simulation.seed != usual.seed) {
-    add("seed", text_of(simulation.seed));
+    add("seed", to_text(simulation.seed));
   }
   if (simulation.noise != usual.noise) {
-    add("noise", text_of(simulation.noise));
+    add("noise", to_text(simulation.noise));
   }
   if (simulation.speed != usual.speed) {
-    add("speed", text_of(simulation.speed));
+    add("speed", to_text(simulation.speed));
   }
   if (simulation.silent_after) {
-    add("silent-after", text_of(*simulation.silent_after));
+    add("silent-after", to_text(*simulation.silent_after));
   }
   if (simulation.lost_after) {
-    add("lost-after", text_of(*simulation.lost_after));
+    add("lost-after", to_text(*simulation.lost_after));
   }
   std::string uri = std::string(simulator_scheme) + encoded(simulation.mesh_file) + query;
   if (uri.size() > longest_uri) {

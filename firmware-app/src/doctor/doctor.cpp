@@ -38,7 +38,7 @@ std::vector<Finding> check_machine(const DoctorInput& input) {
   const auto& root = input.root;
   return {check_data_folder(input.config.data),
           check_settings(input.settings_trouble),
-          check_disk(free_bytes_in(input.config.data), most_bytes_of(input.config.scan)),
+          check_disk(free_bytes_in(input.config.data), max_scan_bytes(input.config.scan)),
           check_memory(root, input.config.limits.memory_bytes),
           check_temperature(root),
           check_supply(root),

@@ -47,7 +47,7 @@ void throw_data_error(const fs::path& path, const std::string& doing, std::error
            : "Check that this program may write there, or choose another folder with --data.");
 }
 
-std::uint64_t most_bytes_of(const ScanSettings& settings) {
+std::uint64_t max_scan_bytes(const ScanSettings& settings) {
   return model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
 }
 

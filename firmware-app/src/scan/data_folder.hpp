@@ -12,7 +12,7 @@
 namespace octurn {
 
 /// What a scan with these settings takes on the disk at most.
-std::uint64_t most_bytes_of(const ScanSettings& settings);
+std::uint64_t max_scan_bytes(const ScanSettings& settings);
 
 /// The folder, or the nearest one above it that exists.
 std::filesystem::path existing_part(std::filesystem::path folder);

@@ -52,7 +52,7 @@ std::optional<Eigen::Matrix4d> matrix_from(const json& rows) {
   return matrix;
 }
 
-json rows_of(const Eigen::Matrix4d& matrix) {
+json to_rows(const Eigen::Matrix4d& matrix) {
   json rows = json::array();
   for (int row = 0; row < 4; ++row) {
     rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
@@ -72,7 +72,7 @@ Access pose(Eigen::Isometry3d& value) {
                 }
                 value = Eigen::Isometry3d(*matrix);
               },
-          .write = [&value] { return rows_of(value.matrix()); },
+          .write = [&value] { return to_rows(value.matrix()); },
           .schema = {{"type", "array"}, {"items", row}}};
 }
 

@@ -42,7 +42,7 @@ int stored_snapshots(const fs::path& folder) {
 }
 
 /// As `job.json` has it. Names and messages may hold bytes that are no UTF-8: those are replaced.
-std::string text_of(const Job& job) {
+std::string to_text(const Job& job) {
   return to_job_json(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
@@ -107,7 +107,7 @@ ScanStore::ScanStore(fs::path data)
 }
 
 Job ScanStore::create(const ScanSettings& settings) {
-  const std::uint64_t needed = most_bytes_of(settings);
+  const std::uint64_t needed = max_scan_bytes(settings);
   if (const std::uint64_t available = free_bytes(); available < needed) {
     const auto mb = [](std::uint64_t bytes) {
       return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
@@ -127,7 +127,7 @@ Job ScanStore::create(const ScanSettings& settings) {
   if (error) {
     throw_data_error(beginning, "make the folder", error);
   }
-  write_file(beginning / "job.json", text_of(job));
+  write_file(beginning / "job.json", to_text(job));
   fs::rename(beginning, folder(job.id), error);
   if (error) {
     throw_data_error(folder(job.id), "make the folder", error);
@@ -147,7 +147,7 @@ ScanTime ScanStore::next_time() const {
 void ScanStore::save(const Job& job) {
   const std::lock_guard writing(writing_);
   get(job.id);  // or there is no such scan
-  write_file(folder(job.id) / "job.json", text_of(job));
+  write_file(folder(job.id) / "job.json", to_text(job));
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
   const std::string name = held.name;  // given meanwhile
@@ -259,7 +259,7 @@ void ScanStore::recover() {
     log::info("store", "scan " + id + " was interrupted after " +
                            std::to_string(job.snapshots_done) + " snapshots");
     try {
-      write_file(folder(id) / "job.json", text_of(job));
+      write_file(folder(id) / "job.json", to_text(job));
     } catch (...) {
       // A full or read-only disk: the scan is interrupted all the same, and can be deleted.
       log::warning("store", current_failure().detail);

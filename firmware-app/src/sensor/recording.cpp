@@ -68,7 +68,7 @@ RecordedFrame frame_from(const JsonValue& object) {
   return frame;
 }
 
-json json_of(const RecordedFrame& frame) {
+json to_json(const RecordedFrame& frame) {
   json object{{"time_s", frame.time.count()}, {"angle_deg", degrees_from_radians(frame.angle)}};
   if (frame.tilt) {
     object["pitch_deg"] = degrees_from_radians(frame.tilt->pitch);
@@ -77,11 +77,11 @@ json json_of(const RecordedFrame& frame) {
   return object;
 }
 
-json json_of(const Recording& recording) {
+json to_json(const Recording& recording) {
   const Intrinsics& camera = recording.intrinsics;
   json frames = json::array();
   for (const RecordedFrame& frame : recording.frames) {
-    frames.push_back(json_of(frame));
+    frames.push_back(to_json(frame));
   }
   return {{"format", format},
           {"version", version},
@@ -200,7 +200,7 @@ void RecordingWriter::write(const DepthFrame& frame, const RecordedFrame& about)
 }
 
 void RecordingWriter::commit() {
-  write_file(temporary_ / "recording.json", json_of(recording_).dump(1) + "\n");
+  write_file(temporary_ / "recording.json", to_json(recording_).dump(1) + "\n");
   sync_disk_of(temporary_);
   std::error_code error;
   fs::rename(temporary_, folder_, error);

@@ -163,7 +163,7 @@ StepperSettings stepper_settings_from(const json& object) {
   return settings;
 }
 
-json json_of(const StepperSettings& settings) {
+json to_json(const StepperSettings& settings) {
   StepperSettings copy = settings;
   return to_json(fields(copy));
 }

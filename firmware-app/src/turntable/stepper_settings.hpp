@@ -40,7 +40,7 @@ struct StepperSettings {
 StepperSettings stepper_settings_from(const nlohmann::json& object);
 
 /// The inverse of `stepper_settings_from`, with every key.
-nlohmann::json json_of(const StepperSettings& settings);
+nlohmann::json to_json(const StepperSettings& settings);
 
 struct Field;
 std::vector<Field> fields(StepperSettings& settings);

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr std::size_t part_bytes = std::size_t{64} << 10U;  // bytes of an update, held at a time
 
-json json_of(const UpdateState& update) {
+json to_json(const UpdateState& update) {
   return {{"version", version()},
           {"slot", update.slot},
           {"state", update.state},
@@ -33,7 +33,7 @@ std::string host_name() {
   return name.data();
 }
 
-json json_of(const WifiState& wifi) {
+json to_json(const WifiState& wifi) {
   json networks = json::array();
   for (const WifiNetwork& network : wifi.networks) {
     networks.push_back(
@@ -81,7 +81,7 @@ void expect_no_update(const App& app) {
 }
 
 Response send_update_state(App& app) {
-  return json_response(json_of(expect_appliance(app).update()));
+  return json_response(to_json(expect_appliance(app).update()));
 }
 
 Response take_update(App& app, const Request& request) {
@@ -104,17 +104,17 @@ Response take_update(App& app, const Request& request) {
   }
   log::info("appliance",
             "an update of " + std::to_string(*request.upload.length) + " bytes is to be installed");
-  return json_response(json_of(machine.update()), 202);
+  return json_response(to_json(machine.update()), 202);
 }
 
-Response send_wifi_state(App& app) { return json_response(json_of(expect_appliance(app).wifi())); }
+Response send_wifi_state(App& app) { return json_response(to_json(expect_appliance(app).wifi())); }
 
 Response join_wifi(App& app, const Request& request) {
   Appliance& machine = expect_appliance(app);
   const WifiRequest wanted = wifi_request_from(parse_body(request));
   machine.ask_for_wifi(wanted);
   log::info("appliance", "a WiFi is to be joined");
-  return json_response(json_of(machine.wifi()), 202);
+  return json_response(to_json(machine.wifi()), 202);
 }
 
 }  // namespace octurn

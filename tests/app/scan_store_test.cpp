@@ -51,7 +51,7 @@ TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
   job.state = JobState::finished;
   job.phase = Phase::done;
   job.snapshots_done = 36;
-  job.elapsed = std::chrono::milliseconds(12345);
+  job.times.elapsed = std::chrono::milliseconds(12345);
   job.model = Model{.report = {.leaves = 11,
                                .triangles = 22,
                                .bytes = 1184,

@@ -195,14 +195,14 @@ TEST(Heartbeat, IsAliveForAsLongAsItMayBeSilent) {
 TEST_F(ScannerTest, CountsDownWhatIsLeft) {
   Scanner scanner(rig(), {}, store_);
   ASSERT_TRUE(scanner.start(few_snapshots(20)));
-  EXPECT_FALSE(scanner.status().job->left);  // nothing has happened to tell it from
+  EXPECT_FALSE(scanner.status().job->times.left);  // nothing has happened to tell it from
   const Status early =
       wait_until(scanner, [](const Status& s) { return s.job->snapshots_done >= 2; });
   const Status late =
       wait_until(scanner, [](const Status& s) { return s.job->snapshots_done >= 18; });
-  ASSERT_TRUE(early.job->left && late.job->left);
-  EXPECT_LT(*late.job->left, *early.job->left / 2);
-  EXPECT_GT(late.job->elapsed, early.job->elapsed);
+  ASSERT_TRUE(early.job->times.left && late.job->times.left);
+  EXPECT_LT(*late.job->times.left, *early.job->times.left / 2);
+  EXPECT_GT(late.job->times.elapsed, early.job->times.elapsed);
 }
 
 TEST_F(ScannerTest, CallsAScanInterruptedThatItsOwnEndCutsShort) {

@@ -1,13 +1,13 @@
 #include "octurn/calibrate.hpp"
 
-#include <cmath>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "scan/calibration_json.hpp"
 #include "scan/scan_settings.hpp"
 #include "scan/solve_pose.hpp"
 #include "signal_stop.hpp"
@@ -16,49 +16,12 @@
 namespace octurn {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json to_json(const Eigen::Isometry3d& pose) {
-  Json rows = Json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
+std::vector<double> stop_angles(const Scan& scan) {
+  std::vector<double> angles;
+  for (const Shot& shot : scan.shots) {
+    angles.push_back(shot.angle);
   }
-  return rows;
-}
-
-Json to_json(const CalibrationFinding& finding) {
-  Json json{{"code", finding.code}, {"detail", finding.detail}, {"hint", finding.hint}};
-  if (finding.stop) {
-    json["stop"] = *finding.stop;
-  }
-  if (finding.angle) {
-    json["deg"] = degrees_from_radians(*finding.angle);
-  }
-  return json;
-}
-
-Json to_json(const CalibrationReport& report, const Scan& scan) {
-  Json stops = Json::array();
-  for (std::size_t stop = 0; stop < report.stop_offsets.size(); ++stop) {
-    stops.push_back({{"angle_deg", degrees_from_radians(scan.shots[stop].angle)},
-                     {"off_deg", degrees_from_radians(report.stop_offsets[stop])}});
-  }
-  Json findings = Json::array();
-  for (const CalibrationFinding& finding : report.findings) {
-    findings.push_back(to_json(finding));
-  }
-  return {{"accepted", report.accepted},
-          {"reason", report.reason},
-          {"platform_from_sensor",
-           report.accepted ? to_json(report.platform_from_sensor) : Json(nullptr)},
-          {"shift_mm", mm_from_metres(report.shift)},
-          {"tilt_deg", degrees_from_radians(report.tilt)},
-          {"sigma_mm", mm_from_metres(report.position_sigma)},
-          {"sigma_deg", degrees_from_radians(report.direction_sigma)},
-          {"before_mm", mm_from_metres(report.before)},
-          {"after_mm", mm_from_metres(report.after)},
-          {"stops", std::move(stops)},
-          {"findings", std::move(findings)}};
+  return angles;
 }
 
 /// The report as lines for people.
@@ -89,12 +52,13 @@ std::string to_text(const CalibrationReport& report) {
 bool calibrate(const CalibrateArguments& arguments) try {
   const SignalStop signal;
   const Scan scan = read_scan(arguments.folder);
-  const CalibrationReport report =
-      solve_pose(arguments.folder, scan, available_threads(), signal.token());
+  const CalibrationReport report = solve_pose(
+      scan, stored_snapshots(arguments.folder, scan, signal.token()), available_threads());
   if (arguments.apply && report.accepted) {
     write_solved_pose(arguments.folder, to_solved_pose(report));
   }
-  write_standard_output(arguments.json ? to_json(report, scan).dump() + "\n" : to_text(report));
+  write_standard_output(arguments.json ? to_json(report, stop_angles(scan)).dump() + "\n"
+                                       : to_text(report));
   return report.accepted;
 } catch (const Stopped&) {
   throw_stopped("nothing was solved");

@@ -176,10 +176,11 @@ struct PosedScan {
 PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
                     const std::stop_token& stop) {
   PosedScan posed{.scan = std::move(scan)};
-  if (settings.pose == PoseSource::told) {
+  if (settings.scan.pose == PoseSource::told) {
     posed.scan.solved.reset();
   } else if (!posed.scan.solved) {
-    CalibrationReport report = solve_pose(folder, posed.scan, settings.limits.threads, stop);
+    CalibrationReport report =
+        solve_pose(posed.scan, stored_snapshots(folder, posed.scan, stop), settings.limits.threads);
     if (report.accepted && !report.confirms_told()) {
       posed.scan.solved = to_solved_pose(report);
     }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "octurn/units.hpp"
+#include "scan/calibration_json.hpp"
 
 namespace octurn {
 namespace {
@@ -46,11 +47,12 @@ json to_json(const Job& job) {
           {"created", job.created},
           {"snapshots_done", job.snapshots_done},
           {"snapshots_total", job.settings.snapshots},
-          {"seconds_elapsed", rounded(job.elapsed.count())},
-          {"seconds_left", job.left ? json(rounded(job.left->count())) : json()},
+          {"seconds_elapsed", rounded(job.times.elapsed.count())},
+          {"seconds_left", job.times.left ? json(rounded(job.times.left->count())) : json()},
           {"late_pulses", job.late_pulses},
           {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},
+          {"calibration", job.calibration ? to_json(*job.calibration) : json()},
           {"model", job.model ? to_json(*job.model, job.id) : json()}};
 }
 

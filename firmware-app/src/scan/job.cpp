@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "scan/solve_pose.hpp"
+
 namespace octurn {
 namespace {
 
@@ -17,9 +19,11 @@ constexpr std::array<Names<JobState>, 6> states{{{JobState::running, "running"},
                                                  {JobState::failed, "failed"},
                                                  {JobState::interrupted, "interrupted"}}};
 
-constexpr std::array<Names<Phase>, 5> phases{{{Phase::starting, "starting"},
+constexpr std::array<Names<Phase>, 7> phases{{{Phase::starting, "starting"},
                                               {Phase::turning, "turning"},
                                               {Phase::capturing, "capturing"},
+                                              {Phase::calibrating, "calibrating"},
+                                              {Phase::rebuilding, "rebuilding"},
                                               {Phase::building, "building"},
                                               {Phase::done, "done"}}};
 
@@ -47,6 +51,14 @@ std::optional<JobState> job_state_named(std::string_view name) { return named(na
 
 std::optional<Phase> phase_named(std::string_view name) { return named(name, phases); }
 
+ScanCalibration to_scan_calibration(const CalibrationReport& report) {
+  return {.accepted = report.accepted,
+          .confirms_told = report.confirms_told(),
+          .reason = report.reason,
+          .solved = report.accepted ? std::optional(to_solved_pose(report)) : std::nullopt,
+          .findings = report.findings};
+}
+
 Failure interruption() {
   return {.code = ErrorCode::interrupted,
           .detail = "the scanner was switched off during this scan",
@@ -57,7 +69,7 @@ Job to_interrupted(Job job, int snapshots) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;
   job.snapshots_done = snapshots;
-  job.left.reset();
+  job.times.left.reset();
   job.failure = interruption();
   return job;
 }

@@ -4,9 +4,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "failure.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/mesh_report.hpp"
+#include "octurn/scan_folder.hpp"
 #include "scan/scan_settings.hpp"
 
 namespace octurn {
@@ -21,7 +24,15 @@ enum class JobState {
 };
 
 /// What a scan is doing.
-enum class Phase { starting, turning, capturing, building, done };
+enum class Phase {
+  starting,
+  turning,
+  capturing,
+  calibrating,  ///< solving the sensor's pose from the snapshots
+  rebuilding,   ///< adding the stored snapshots with another pose than while the platform turned
+  building,
+  done,
+};
 
 /// Whether a scan in that state can go on where it stopped.
 bool is_resumable(JobState state);
@@ -42,6 +53,24 @@ struct Model {
   std::chrono::duration<double> build_time = {};
 };
 
+/// What a scan's own snapshots told of the sensor's pose.
+struct ScanCalibration {
+  bool accepted = false;
+  bool confirms_told = false;             ///< the told pose is right, and stays
+  std::string reason = {};                ///< why what was solved is refused, or empty
+  std::optional<SolvedPose> solved = {};  ///< if accepted
+  std::vector<CalibrationFinding> findings = {};
+  int rebuilt = 0;  ///< snapshots of which the model is built again, so far
+};
+
+ScanCalibration to_scan_calibration(const CalibrationReport& report);
+
+/// How long a scan takes.
+struct JobTimes {
+  std::chrono::duration<double> elapsed = {};
+  std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
+};
+
 /// One scan: what was asked for, and what has become of it.
 struct Job {
   std::string id = {};
@@ -50,11 +79,11 @@ struct Job {
   Phase phase = Phase::starting;
   std::string created = {};  ///< UTC, as in ISO 8601
   int snapshots_done = 0;
-  std::chrono::duration<double> elapsed = {};
-  std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
+  JobTimes times = {};
   ScanSettings settings = {};
   int late_pulses = 0;                  ///< of the motor, which turned more slowly for it
   std::optional<Failure> failure = {};  ///< of a running scan: what is being tried again
+  std::optional<ScanCalibration> calibration = {};  ///< from the last stop on, unless told
   std::optional<Model> model = {};
 };
 

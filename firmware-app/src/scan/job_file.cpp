@@ -8,6 +8,7 @@
 
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
+#include "scan/calibration_json.hpp"
 
 namespace octurn {
 namespace {
@@ -66,6 +67,11 @@ std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
                  .hint = keys.at("hint").text()};
 }
 
+std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& object) {
+  return !object || object->json().is_null() ? std::nullopt
+                                             : std::optional(to_scan_calibration(*object));
+}
+
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
   if (!object || object->json().is_null()) {
     return std::nullopt;
@@ -97,15 +103,19 @@ json to_job_json(const Job& job) {
               {"created", job.created},
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
-              {"seconds_elapsed", rounded(job.elapsed.count())},
+              {"seconds_elapsed", rounded(job.times.elapsed.count())},
               {"late_pulses", job.late_pulses},
               {"settings", to_json(job.settings)},
               {"error", nullptr},
+              {"calibration", nullptr},
               {"model", nullptr}};
   if (job.failure) {
     object["error"] = {{"code", to_string(job.failure->code)},
                        {"detail", job.failure->detail},
                        {"hint", job.failure->hint}};
+  }
+  if (job.calibration) {
+    object["calibration"] = to_json(*job.calibration);
   }
   if (job.model) {
     object["model"] = to_json(*job.model);
@@ -122,10 +132,11 @@ Job to_job(const json& object) {
           .phase = one_of(keys.at("phase"), phase_named),
           .created = keys.at("created").text(),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
-          .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+          .times = {.elapsed = Seconds(keys.at("seconds_elapsed").number(0, most))},
           .settings = stored_settings_from(keys.at("settings")),
           .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
           .failure = failure_from(keys.value("error")),
+          .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model"))};
 }
 

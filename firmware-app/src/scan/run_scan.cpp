@@ -1,6 +1,7 @@
 #include "scan/run_scan.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <future>
 #include <utility>
@@ -11,41 +12,22 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "scan/plan.hpp"
+#include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
+#include "scan/take_depth_image.hpp"
 
 namespace octurn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Frames older than the end of a move that a sensor may still hand out: a second of them, at 30 Hz.
-constexpr int max_stale_frames = 30;
-
 constexpr auto wait_interval = std::chrono::milliseconds(500);
 
 // A sensor that is well sees about as much at every stop: what turns is a part of the picture.
 constexpr double min_coverage = 0.6;  // of the readings in the scan's first snapshot
 
-/// Takes frames whose exposure ended after `settled`; none if stopped first.
-std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_point settled,
-                                    const std::stop_token& stop, const ScanObserver& observer) {
-  std::vector<DepthFrame> frames;
-  for (int stale = 0; frames.size() < static_cast<std::size_t>(count);) {
-    std::optional<TimedFrame> timed = sensor.read(stop);
-    if (!timed) {
-      return {};
-    }
-    if (timed->time > settled) {
-      observer.on_frame(timed->frame, sensor.intrinsics().depth_unit);
-      frames.push_back(std::move(timed->frame));
-    } else if (++stale > max_stale_frames) {
-      throw Error(ErrorCode::sensor_failed,
-                  sensor.name() + ": its frames are older than they may be",
-                  "Unplug the sensor, and plug it in again.");
-    }
-  }
-  return frames;
-}
+// What a calibration holds of each snapshot, beside the reconstruction.
+constexpr std::size_t calibration_bytes = 350'000;
 
 /// Stores one more snapshot: first its image, then the scan.json that names it.
 void store(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
@@ -66,6 +48,9 @@ std::ptrdiff_t readings_in(const DepthFrame& frame) {
 ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
                                const Limits& limits) {
   ReconstructOptions options = reconstruct_options(settings, limits);
+  if (settings.pose == PoseSource::solved) {
+    options.program_memory += calibration_bytes * static_cast<std::size_t>(settings.snapshots);
+  }
   if (!scan.shots.empty()) {
     options.clip = scan.clip;  // which lost nothing by being written in millimetres
   }
@@ -83,19 +68,22 @@ class Run {
         stop_(stop),
         observer_(observer),
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
-        reconstruction_(make_reconstructor(options_for(scan_, settings, limits))) {}
+        options_(options_for(scan_, settings, limits)),
+        reconstruction_(make_reconstructor(options_)) {}
 
   /// @return false if stopped first
   bool take_snapshots();
-  std::optional<Model> build();
+  void calibrate();
+  std::optional<Model> build(Clock::time_point captured);
 
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
   void begin();
   void resume();
-  std::optional<DepthFrame> take_depth_image(std::int64_t position);
   void require_coverage(const DepthFrame& frame);
-  void wait_for_added();
+  void rebuild();
+  template <typename Tell>
+  void wait_for_added(Tell tell);
   template <typename Add>
   void add(Add add_to);
 
@@ -106,14 +94,16 @@ class Run {
   const ScanObserver& observer_;
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
+  ReconstructOptions options_;
   std::unique_ptr<Reconstructor> reconstruction_;
-  std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
+  int added_ = 0;                // snapshots that the reconstruction was given
+  std::atomic<int> reread_ = 0;  // snapshots that it has asked for while it is built again
+  std::future<void> adding_;     // at most one: joined before the next begins, and on every way out
 };
 
 bool Run::take_snapshots() {
   if (done() == settings_.snapshots) {
-    resume();
-    return true;
+    return true;  // before the model: it is built of what is stored
   }
   Turntable& turntable = rig_.turntable();
   if (done() == 0) {
@@ -124,7 +114,8 @@ bool Run::take_snapshots() {
   const int steps = turntable.steps_per_turn();
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
-    std::optional<DepthFrame> frame = take_depth_image(position);
+    std::optional<DepthFrame> frame = take_depth_image(
+        rig_, {.index = done(), .position = position}, settings_, stop_, observer_);
     if (!frame) {
       return false;
     }
@@ -134,8 +125,8 @@ bool Run::take_snapshots() {
     store(folder_, scan_, shot, *frame);
     add([added = Snapshot{.frame = *std::move(frame),
                           .intrinsics = scan_.intrinsics,
-                          .object_from_sensor = object_from_sensor(scan_.platform_from_sensor,
-                                                                   stored_angle(shot.angle))},
+                          .object_from_sensor =
+                              object_from_sensor(model_pose(scan_), stored_angle(shot.angle))},
          this](Reconstructor& reconstruction) { reconstruction.add(added, stop_); });
   }
   return true;
@@ -151,7 +142,7 @@ void Run::begin() {
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
 void Run::resume() {
-  if (done() < settings_.snapshots && rig_.sensor().intrinsics() != scan_.intrinsics) {
+  if (rig_.sensor().intrinsics() != scan_.intrinsics) {
     throw Error(ErrorCode::sensor_other,
                 "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
@@ -159,23 +150,6 @@ void Run::resume() {
   const SnapshotSource stored = readable_snapshots(folder_, scan_, stop_);
   first_readings_ = readings_in(stored.read(0).frame);
   add([stored, this](Reconstructor& reconstruction) { reconstruction.add(stored, stop_); });
-}
-
-/// Turns to a stop, and takes its depth image; nothing if stopped first.
-std::optional<DepthFrame> Run::take_depth_image(std::int64_t position) {
-  Turntable& turntable = rig_.turntable();
-  DepthSensor& sensor = rig_.sensor();
-  const double angle_deg = angle_deg_at(position, turntable.steps_per_turn());
-  observer_.on_progress(Phase::turning, done());
-  observer_.on_turn(angle_deg);
-  if (!turntable.move_to(position, stop_)) {
-    return std::nullopt;
-  }
-  observer_.on_progress(Phase::capturing, done());
-  sensor.show_angle(radians_from_degrees(angle_deg));
-  const int count = settings_.filter == DepthFilter::basic ? 1 : settings_.frames;
-  const std::vector<DepthFrame> frames = read_frames(sensor, count, Clock::now(), stop_, observer_);
-  return frames.empty() ? std::nullopt : std::optional(merge_frames(frames, settings_.filter));
 }
 
 void Run::require_coverage(const DepthFrame& frame) {
@@ -193,9 +167,45 @@ void Run::require_coverage(const DepthFrame& frame) {
   }
 }
 
-void Run::wait_for_added() {
+/// Solves the sensor's pose from the snapshots. Where that is another than the told one, what was
+/// built is given up.
+void Run::calibrate() {
+  if (settings_.pose == PoseSource::told || scan_.solved) {
+    return;
+  }
+  observer_.on_progress(Phase::calibrating, done());
+  const CalibrationReport report =
+      solve_pose(scan_, readable_snapshots(folder_, scan_, stop_), options_.threads);
+  throw_if_stopped(stop_);
+  observer_.on_calibrated(report);
+  if (report.accepted && !report.confirms_told()) {
+    wait_for_added([] {});
+    scan_.solved = to_solved_pose(report);
+    write_solved_pose(folder_, *scan_.solved);
+    reconstruction_.reset();  // its memory is the next one's
+    reconstruction_ = make_reconstructor(options_);
+    added_ = 0;
+  }
+}
+
+/// Adds all snapshots as they are stored.
+void Run::rebuild() {
+  observer_.on_progress(Phase::rebuilding, done());
+  const SnapshotSource counted{
+      .count = scan_.shots.size(),
+      .read = [this, stored = readable_snapshots(folder_, scan_, stop_)](std::size_t shot) {
+        ++reread_;
+        return stored.read(shot);
+      }};
+  add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
+  wait_for_added([this] { observer_.on_rebuilt(std::min(reread_.load(), done())); });
+}
+
+/// @param tell  called now and then
+template <typename Tell>
+void Run::wait_for_added(Tell tell) {
   while (adding_.valid() && adding_.wait_for(wait_interval) != std::future_status::ready) {
-    observer_.on_wait();
+    tell();
   }
   if (adding_.valid()) {
     adding_.get();
@@ -204,7 +214,8 @@ void Run::wait_for_added() {
 
 template <typename Add>
 void Run::add(Add add_to) {
-  wait_for_added();
+  wait_for_added([this] { observer_.on_wait(); });
+  added_ = done();
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
     add_to(*reconstruction_);
     if (done < settings_.snapshots && !stop_.stop_requested()) {  // else comes the model itself
@@ -215,10 +226,13 @@ void Run::add(Add add_to) {
 
 /// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
 /// again for each part.
-std::optional<Model> Run::build() {
+/// @param captured  when the last snapshot was stored
+std::optional<Model> Run::build(Clock::time_point captured) {
+  if (added_ < done()) {
+    rebuild();
+  }
   observer_.on_progress(Phase::building, done());
-  const Clock::time_point captured = Clock::now();
-  wait_for_added();
+  wait_for_added([] {});
   if (stop_.stop_requested()) {
     return std::nullopt;  // before all was added
   }
@@ -234,7 +248,12 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
                               const std::filesystem::path& folder, Rig& rig,
                               const std::stop_token& stop, const ScanObserver& observer) try {
   Run run(settings, limits, folder, rig, stop, observer);
-  return run.take_snapshots() ? run.build() : std::nullopt;
+  if (!run.take_snapshots()) {
+    return std::nullopt;
+  }
+  const Clock::time_point captured = Clock::now();
+  run.calibrate();
+  return run.build(captured);
 } catch (const Stopped&) {
   return std::nullopt;  // while snapshots were added, or the model was made
 }

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
+#include "scan/pose_json.hpp"
 #include "settings/field.hpp"
 
 namespace octurn {
@@ -30,49 +30,10 @@ constexpr double min_memory_mb = 17;  // of the intersection of one thread
 const auto solid_program_bytes = static_cast<std::size_t>(bytes_from_mb(12));
 const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(10));
 
-/// @return nothing if they are no rows of numbers in their range
-std::optional<Eigen::Matrix4d> matrix_from(const json& rows) {
-  const auto in_range = [](const json& value) {
-    return value.is_number() && std::abs(value.get<double>()) <= metres_from_mm(max_coordinate_mm);
-  };
-  if (!rows.is_array() || rows.size() != 4) {
-    return std::nullopt;
-  }
-  Eigen::Matrix4d matrix;
-  for (std::size_t row = 0; row < 4; ++row) {
-    if (!rows[row].is_array() || rows[row].size() != 4 ||
-        !std::ranges::all_of(rows[row], in_range)) {
-      return std::nullopt;
-    }
-    for (std::size_t column = 0; column < 4; ++column) {
-      matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-          rows[row][column].get<double>();
-    }
-  }
-  return matrix;
-}
-
-json to_rows(const Eigen::Matrix4d& matrix) {
-  json rows = json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
-  }
-  return rows;
-}
-
 Access pose(Eigen::Isometry3d& value) {
   const json row{{"type", "array"}, {"items", {{"type", "number"}}}};
-  return {.read =
-              [&value](const JsonValue& given) {
-                const auto matrix = matrix_from(given.json());
-                if (!matrix || !is_rigid(*matrix)) {
-                  given.refuse(
-                      "four rows of four numbers, a rotation and a translation in metres, the last "
-                      "row 0 0 0 1");
-                }
-                value = Eigen::Isometry3d(*matrix);
-              },
-          .write = [&value] { return to_rows(value.matrix()); },
+  return {.read = [&value](const JsonValue& given) { value = to_pose(given); },
+          .write = [&value] { return to_rows(value); },
           .schema = {{"type", "array"}, {"items", row}}};
 }
 
@@ -156,6 +117,10 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .help = "square of the longest side that a triangle may have",
        .access = number(s.threshold, 1e-8, 1),
        .method = "intersection"},
+      {.key = "calibrate",
+       .help = "pose of the sensor: auto solves it from the snapshots, told takes the one that the "
+               "rig was told",
+       .access = choice(s.pose, {PoseSource::solved, PoseSource::told})},
       {.key = "root_size_mm",
        .unit = "mm",
        .help = "side of the root cube",
@@ -209,10 +174,6 @@ std::vector<Field> fields(ModelSettings& settings) {
                    .access = whole(settings.level, 0, max_levels),
                    .method = "intersection",
                    .default_text = "the leaves'"});
-  model.push_back({.key = "calibrate",
-                   .help = "pose of the sensor: auto solves it from the snapshots, told takes the "
-                           "one that the rig was told",
-                   .access = choice(settings.pose, {PoseSource::solved, PoseSource::told})});
   return joined(std::move(model), fields(settings.limits));
 }
 

@@ -20,6 +20,15 @@ int available_threads();
 /// Half of the machine's memory, bytes: the rest is for the system and its buffers.
 std::size_t half_of_memory();
 
+/// Which pose of the sensor a model is made with.
+enum class PoseSource {
+  solved,  ///< the scan's solved pose, else one solved from its snapshots, if that is better
+  told,    ///< what the rig was told
+};
+
+/// The source's name in settings: "auto", "told".
+std::string_view to_string(PoseSource source);
+
 /// What one scan is made with.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
@@ -32,6 +41,8 @@ struct ScanSettings {
   double root_size = 1.0;                                   ///< metres
   /// Metres, platform frame. Below 5 mm lies what a Kinect v1 sees of the platform, with its noise.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
+  PoseSource pose = PoseSource::solved;
+  /// As the rig is told: optical frame to platform frame, metres.
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_sensor();
 };
 
@@ -41,20 +52,10 @@ struct Limits {
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
-/// Which pose of the sensor a model is made with.
-enum class PoseSource {
-  solved,  ///< the scan's solved pose, else one solved from its snapshots, if that is better
-  told,    ///< what the rig was told
-};
-
-/// The source's name in settings: "auto", "told".
-std::string_view to_string(PoseSource source);
-
 /// What `octurn reconstruct` makes a model with.
 struct ModelSettings {
   ScanSettings scan = {.method = Method::intersection};
   std::optional<int> level = {};  ///< surface of this coarser level; intersection
-  PoseSource pose = PoseSource::solved;
   Limits limits = {.memory_bytes = 0};
 };
 

@@ -69,7 +69,8 @@ std::optional<Job> Scanner::resume(std::string_view id) {
 
 /// Gives a scan to the worker, which has none; `scans_` is held.
 std::optional<Job> Scanner::hand_over(Job job, Command command) {
-  board_.begin_scan(job, Clock::now() - std::chrono::duration_cast<Clock::duration>(job.elapsed));
+  board_.begin_scan(job,
+                    Clock::now() - std::chrono::duration_cast<Clock::duration>(job.times.elapsed));
   if (!slot_.offer_scan(std::move(command))) {
     board_.set_job(store_.interrupt(job.id));  // this program is ending
     return std::nullopt;

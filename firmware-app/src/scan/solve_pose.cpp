@@ -2,8 +2,7 @@
 
 namespace octurn {
 
-CalibrationReport solve_pose(const std::filesystem::path& folder, const Scan& scan, int threads,
-                             const std::stop_token& stop) {
+CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads) {
   CalibrationTurn turn{.intrinsics = scan.intrinsics,
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},
@@ -11,9 +10,7 @@ CalibrationReport solve_pose(const std::filesystem::path& folder, const Scan& sc
   for (const Shot& shot : scan.shots) {
     turn.angles.push_back(shot.angle);
   }
-  turn.read = [snapshots = stored_snapshots(folder, scan, stop)](std::size_t stop_index) {
-    return snapshots.read(stop_index).frame;
-  };
+  turn.read = [&snapshots](std::size_t stop) { return snapshots.read(stop).frame; };
   return calibrate(turn, threads);
 }
 

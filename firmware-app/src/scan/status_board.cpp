@@ -42,9 +42,9 @@ Status StatusBoard::status() const {
   Status status = *status_.get();
   if (status.busy()) {
     const Clock::time_point now = Clock::now();
-    status.job->elapsed = now - status.job_started;
+    status.job->times.elapsed = now - status.job_started;
     if (status.job_end) {
-      status.job->left = std::max(*status.job_end - now, Clock::duration::zero());
+      status.job->times.left = std::max(*status.job_end - now, Clock::duration::zero());
     }
   }
   return status;

@@ -47,6 +47,8 @@ class Worker {
   void attempt(const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
   void show_progress(Phase phase, int snapshots_done);
+  void keep_calibration(const CalibrationReport& report);
+  void show_rebuilt(int snapshots);
   void close_device(const Failure& failure);
   void release_rig();
   void save_platform_angle(double angle_deg);
@@ -58,6 +60,7 @@ class Worker {
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs
   Clock::time_point job_started_ = {};
+  Clock::time_point rebuild_started_ = {};  // of its model
   bool turntable_is_ready_ = false;
 };
 

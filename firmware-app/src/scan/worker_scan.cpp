@@ -1,6 +1,7 @@
 // How the worker runs a scan.
 
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,12 @@ constexpr auto attempt_interval = 2s;
 constexpr double preview_leaf_size = 0.004;  // metres
 constexpr std::uint64_t max_preview_facets = 60'000;
 
+std::string to_text(const CalibrationReport& report) {
+  return report.confirms_told() ? "the told pose is right"
+         : report.accepted      ? "its pose is solved, the model is built again"
+                                : "the told pose stays: " + report.reason;
+}
+
 MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruction, int snapshots,
                          const std::stop_token& stop) {
   std::vector<Facet> facets;
@@ -37,7 +44,7 @@ MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruct
 
 void Worker::run(Job job, const std::stop_token& stop) {
   job_ = std::move(job);
-  job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.elapsed);
+  job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.times.elapsed);
   log::info("scanner", "scan " + job_.id +
                            " started, snapshots=" + std::to_string(job_.settings.snapshots) +
                            ", of which taken=" + std::to_string(job_.snapshots_done));
@@ -117,6 +124,8 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
                   ports_.board.set_mesh_preview(std::move(preview));
                 }
               },
+          .on_calibrated = [this](const CalibrationReport& report) { keep_calibration(report); },
+          .on_rebuilt = [this](int snapshots) { show_rebuilt(snapshots); },
           .on_wait = [this] { ports_.heartbeat.beat(); }};
 }
 
@@ -126,6 +135,9 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   }
   job_.phase = phase;
   job_.snapshots_done = snapshots_done;
+  if (phase == Phase::rebuilding) {
+    rebuild_started_ = Clock::now();
+  }
   std::optional<Clock::time_point> expected_end;
   if (snapshots_done > 0) {
     const Clock::time_point now = Clock::now();
@@ -140,6 +152,30 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   } else {
     ports_.heartbeat.suspend();  // a whole turn, or a model, may take minutes
   }
+}
+
+/// Saved at once: a scan that is resumed while its model is built again is not solved once more.
+void Worker::keep_calibration(const CalibrationReport& report) {
+  job_.calibration = to_scan_calibration(report);
+  log::info("scanner", "scan " + job_.id + ": " + to_text(report));
+  ports_.board.set_job(job_);
+  try {
+    ports_.store.save(job_);
+  } catch (...) {
+    log::warning("scanner", current_failure().detail);
+  }
+}
+
+void Worker::show_rebuilt(int snapshots) {
+  const Clock::time_point now = Clock::now();
+  if (job_.calibration) {
+    job_.calibration->rebuilt = snapshots;
+  }
+  std::optional<Clock::time_point> expected_end;
+  if (snapshots > 0) {
+    expected_end = now + (now - rebuild_started_) / snapshots * (job_.snapshots_done - snapshots);
+  }
+  ports_.board.set_job(job_, expected_end);
 }
 
 void Worker::close_device(const Failure& failure) {
@@ -175,7 +211,7 @@ void Worker::save_platform_angle(double angle_deg) {
 
 void Worker::finish() {
   job_.phase = Phase::done;
-  job_.elapsed = Clock::now() - job_started_;
+  job_.times.elapsed = Clock::now() - job_started_;
   const std::string outcome = "scan " + job_.id + " " + std::string(to_string(job_.state));
   if (job_.failure) {
     log::error("scanner", outcome + ": " + job_.failure->detail);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "octurn/calibrate.hpp"
+#include "octurn/json_object.hpp"
+#include "scan/job.hpp"
+
+namespace octurn {
+
+/// What `octurn calibrate --json` prints: millimetres and degrees.
+/// @param angles  of the stops as told, radians
+nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles);
+
+/// A scan's calibration as the API and `job.json` have it.
+nlohmann::json to_json(const ScanCalibration& calibration);
+
+/// The calibration of a `job.json`. @throws Error  of the value's code
+ScanCalibration to_scan_calibration(const JsonValue& object);
+
+}  // namespace octurn

@@ -1,0 +1,60 @@
+#include "scan/take_depth_image.hpp"
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "scan/plan.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Frames older than the end of a move that a sensor may still hand out: a second of them, at 30 Hz.
+constexpr int max_stale_frames = 30;
+
+/// Takes frames whose exposure ended after `settled`; none if stopped first.
+std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_point settled,
+                                    const std::stop_token& stop, const ScanObserver& observer) {
+  std::vector<DepthFrame> frames;
+  for (int stale = 0; frames.size() < static_cast<std::size_t>(count);) {
+    std::optional<TimedFrame> timed = sensor.read(stop);
+    if (!timed) {
+      return {};
+    }
+    if (timed->time > settled) {
+      observer.on_frame(timed->frame, sensor.intrinsics().depth_unit);
+      frames.push_back(std::move(timed->frame));
+    } else if (++stale > max_stale_frames) {
+      throw Error(ErrorCode::sensor_failed,
+                  sensor.name() + ": its frames are older than they may be",
+                  "Unplug the sensor, and plug it in again.");
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
+std::optional<DepthFrame> take_depth_image(Rig& rig, const Stop& at, const ScanSettings& settings,
+                                           const std::stop_token& stop,
+                                           const ScanObserver& observer) {
+  Turntable& turntable = rig.turntable();
+  DepthSensor& sensor = rig.sensor();
+  const double angle_deg = angle_deg_at(at.position, turntable.steps_per_turn());
+  observer.on_progress(Phase::turning, at.index);
+  observer.on_turn(angle_deg);
+  if (!turntable.move_to(at.position, stop)) {
+    return std::nullopt;
+  }
+  observer.on_progress(Phase::capturing, at.index);
+  sensor.show_angle(radians_from_degrees(angle_deg));
+  const int count = settings.filter == DepthFilter::basic ? 1 : settings.frames;
+  const std::vector<DepthFrame> frames = read_frames(sensor, count, Clock::now(), stop, observer);
+  return frames.empty() ? std::nullopt : std::optional(merge_frames(frames, settings.filter));
+}
+
+}  // namespace octurn

@@ -96,6 +96,7 @@ TEST(RunScan, GoesThroughItsPhasesInOrder) {
                                                       {Phase::capturing, 0},
                                                       {Phase::turning, 1},
                                                       {Phase::capturing, 1},
+                                                      {Phase::calibrating, 2},
                                                       {Phase::building, 2}}));
 }
 
@@ -113,8 +114,10 @@ TEST(RunScan, HasASnapshotOnTheDiskBeforeThePlatformMovesOn) {
 }
 
 TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
-  for (const auto& moment :
-       {std::pair{Phase::turning, 1}, {Phase::capturing, 1}, {Phase::building, 3}}) {
+  for (const auto& moment : {std::pair{Phase::turning, 1},
+                             {Phase::capturing, 1},
+                             {Phase::calibrating, 3},
+                             {Phase::building, 3}}) {
     const TemporaryFolder folder;
     Rig rig(rig_of());
     std::stop_source stop;

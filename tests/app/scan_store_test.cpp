@@ -59,6 +59,15 @@ TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
                                .volume = 0.000123,
                                .size = {0.12, 0.095, 0.151}},
                     .build_time = std::chrono::milliseconds(80)};
+  job.calibration = ScanCalibration{
+      .accepted = true,
+      .solved = SolvedPose{.platform_from_sensor = nominal_platform_from_sensor(),
+                           .position_sigma = 0.00004,
+                           .direction_sigma = 0.0002,
+                           .before = 0.0021,
+                           .after = 0.0005},
+      .findings = {{.code = "slip", .detail = "stop 3", .hint = "Look.", .stop = 3, .angle = 0.03}},
+      .rebuilt = 36};
   store.save(job);
   const auto found = store.find(job.id);
   ASSERT_TRUE(found && found->model);

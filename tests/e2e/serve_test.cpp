@@ -45,10 +45,9 @@ TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   EXPECT_EQ(daemon.status()["newest"], done["id"]);
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], done);
 
-  // The command gives the same bytes from the scan that was stored, with the pose that the daemon
-  // used.
+  // The command gives the same bytes from the scan that was stored.
   Program again({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / done["id"], "-o",
-                 "-", "--leaf-size-mm", "2", "--method", method, "--calibrate", "told"});
+                 "-", "--leaf-size-mm", "2", "--method", method});
   EXPECT_EQ(again.wait(), 0);
   EXPECT_TRUE(again.output() == model.body);
   EXPECT_EQ(done["model"]["parts"], method == "solid" ? json(1) : json(nullptr));

@@ -199,6 +199,7 @@ void Run::rebuild() {
       }};
   add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
   wait_for_added([this] { observer_.on_rebuilt(std::min(reread_.load(), done())); });
+  observer_.on_rebuilt(done());
 }
 
 /// @param tell  called now and then

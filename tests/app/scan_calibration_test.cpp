@@ -1,0 +1,163 @@
+// A scan that solves the sensor's pose from its own snapshots.
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+#include "app/few_snapshots.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
+#include "scan/run_scan.hpp"
+#include "scan/stored_scan.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A pose that is wrong by 2 cm and 2 degrees.
+Eigen::Isometry3d wrong_pose() {
+  return Eigen::Translation3d(0.012, -0.016, 0) *
+         Eigen::AngleAxisd(radians_from_degrees(2), Eigen::Vector3d::UnitX()) *
+         nominal_platform_from_sensor();
+}
+
+/// Millimetres between the platform's origin as two poses have it.
+double origins_apart_mm(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return mm_from_metres((a.inverse().translation() - b.inverse().translation()).norm());
+}
+
+class ScanCalibrationTest : public ::testing::Test {
+ protected:
+  static ScanSettings told(const Eigen::Isometry3d& pose) {
+    ScanSettings settings = few_snapshots(12);
+    settings.platform_from_sensor = pose;
+    return settings;
+  }
+
+  /// Scans to the end. @return the phases that it went through, without repetitions
+  std::vector<Phase> scan(const ScanSettings& settings, const fs::path& folder) {
+    Rig rig({.sensor_uri = "octurn-simulator://?speed=50", .speed = 50});
+    std::vector<Phase> phases;
+    const ScanObserver observer{
+        .on_progress =
+            [&](Phase phase, int /*done*/) {
+              if (phases.empty() || phases.back() != phase) {
+                phases.push_back(phase);
+              }
+            },
+        .on_calibrated = [&](const CalibrationReport& report) { report_ = report; },
+        .on_rebuilt = [&](int snapshots) { rebuilt_.push_back(snapshots); }};
+    report_.reset();
+    EXPECT_TRUE(run_scan(settings, {}, folder, rig, {}, observer));
+    return phases;
+  }
+
+  /// The model of a stored scan, as it is made from the folder alone.
+  static std::string model_of(const fs::path& folder, const ScanSettings& settings) {
+    const Scan scan = read_scan(folder);
+    const SnapshotSource snapshots = stored_snapshots(folder, scan);
+    const auto reconstruction = make_reconstructor(reconstruct_options(settings, {.threads = 1}));
+    reconstruction->add(snapshots);
+    const TemporaryFolder other;
+    write_model(*reconstruction, snapshots, other.path() / "Scan.stl", {});
+    return content_of(other.path() / "Scan.stl");
+  }
+
+  TemporaryFolder folder_;
+  std::optional<CalibrationReport> report_;
+  std::vector<int> rebuilt_;
+};
+
+TEST_F(ScanCalibrationTest, BuildsTheModelAgainWhereTheToldPoseIsWrong) {
+  const ScanSettings settings = told(wrong_pose());
+  const std::vector<Phase> phases = scan(settings, folder_.path());
+  ASSERT_GE(phases.size(), 3U);
+  EXPECT_EQ(std::vector<Phase>(phases.end() - 3, phases.end()),
+            (std::vector<Phase>{Phase::calibrating, Phase::rebuilding, Phase::building}));
+  ASSERT_TRUE(report_ && report_->accepted) << report_->reason;
+
+  const Scan stored = read_scan(folder_.path());
+  ASSERT_TRUE(stored.solved);
+  EXPECT_TRUE(stored.platform_from_sensor.isApprox(wrong_pose(), 1e-12));
+  // A millimetre is a twentieth of what it was wrong by, and twice the bias of the simulated
+  // sensor's shadows.
+  EXPECT_LT(origins_apart_mm(stored.solved->platform_from_sensor, nominal_platform_from_sensor()),
+            1.0);
+  EXPECT_GT(origins_apart_mm(wrong_pose(), nominal_platform_from_sensor()), 15.0);
+  EXPECT_TRUE(content_of(folder_.path() / "Scan.stl") == model_of(folder_.path(), settings));
+}
+
+TEST_F(ScanCalibrationTest, KeepsAPoseThatAnEarlierScanHasSolved) {
+  const TemporaryFolder first;
+  scan(told(wrong_pose()), first.path());
+  const ScanSettings settings = told(model_pose(read_scan(first.path())));
+
+  const std::vector<Phase> phases = scan(settings, folder_.path());
+  EXPECT_EQ(std::vector<Phase>(phases.end() - 2, phases.end()),
+            (std::vector<Phase>{Phase::calibrating, Phase::building}));
+  ASSERT_TRUE(report_);
+  EXPECT_TRUE(report_->confirms_told()) << mm_from_metres(report_->shift);
+  EXPECT_FALSE(read_scan(folder_.path()).solved);
+}
+
+TEST_F(ScanCalibrationTest, SolvesNothingWhereThePoseIsTold) {
+  ScanSettings settings = told(wrong_pose());
+  settings.pose = PoseSource::told;
+  const std::vector<Phase> phases = scan(settings, folder_.path());
+  EXPECT_EQ(std::ranges::count(phases, Phase::calibrating), 0);
+  EXPECT_FALSE(report_);
+  EXPECT_FALSE(read_scan(folder_.path()).solved);
+}
+
+TEST_F(ScanCalibrationTest, KeepsTheToldPoseWhereTheSolvedOneIsRefused) {
+  ScanSettings settings = told(wrong_pose());
+  settings.snapshots = 2;
+  scan(settings, folder_.path());
+  ASSERT_TRUE(report_);
+  EXPECT_FALSE(report_->accepted);
+  EXPECT_NE(report_->reason.find("too few stops"), std::string::npos) << report_->reason;
+  EXPECT_FALSE(read_scan(folder_.path()).solved);
+}
+
+TEST_F(ScanCalibrationTest, CountsTheSnapshotsThatItBuildsAgain) {
+  scan(told(wrong_pose()), folder_.path());
+  ASSERT_FALSE(rebuilt_.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(rebuilt_));
+  EXPECT_EQ(rebuilt_.back(), 12);
+}
+
+// As a scan that is killed leaves its folder, and resumed later.
+TEST_F(ScanCalibrationTest, GivesTheSameModelWhereverItIsInterrupted) {
+  const ScanSettings settings = told(wrong_pose());
+  scan(settings, folder_.path());
+  const std::string model = content_of(folder_.path() / "Scan.stl");
+  const std::string solved = content_of(folder_.path() / "scan.json");
+  Scan unsolved = read_scan(folder_.path());
+  unsolved.solved.reset();
+
+  for (const Phase moment : {Phase::calibrating, Phase::rebuilding, Phase::building}) {
+    fs::remove(folder_.path() / "Scan.stl");
+    write_scan(folder_.path(), unsolved);
+    Rig rig({.sensor_uri = "octurn-simulator://?speed=50", .speed = 50});
+    std::stop_source stop;
+    const auto stop_there = [&](Phase phase, int /*done*/) {
+      if (phase == moment) {
+        stop.request_stop();
+      }
+    };
+    EXPECT_FALSE(
+        run_scan(settings, {}, folder_.path(), rig, stop.get_token(), {.on_progress = stop_there}));
+    EXPECT_FALSE(fs::exists(folder_.path() / "Scan.stl")) << to_string(moment);
+    EXPECT_EQ(read_scan(folder_.path()).solved.has_value(), moment != Phase::calibrating);
+
+    EXPECT_TRUE(run_scan(settings, {}, folder_.path(), rig, {}, {}));
+    EXPECT_TRUE(content_of(folder_.path() / "Scan.stl") == model) << to_string(moment);
+    EXPECT_EQ(content_of(folder_.path() / "scan.json"), solved);
+  }
+}
+
+}  // namespace
+}  // namespace octurn

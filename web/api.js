@@ -8,6 +8,7 @@
  * @property {'solid' | 'intersection'} method
  * @property {number} leaf_size_mm
  * @property {number} threshold_m2
+ * @property {'auto' | 'told'} calibrate  whether a scan solves the sensor's pose itself
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
  * @typedef {Object} SettingSchema  of one setting

@@ -46,8 +46,8 @@ let drawn = null;
 
 /** @param {import('./api_calibration.js').TurnReport} report */
 function drawReport(report) {
-  const {slice_mm: slice} = report;
-  show(element('slices'), slice !== undefined);
+  const slice = report.accepted && report.slice_mm;
+  show(element('slices'), Boolean(slice));
   if (slice) {
     const all = [...slice.before, ...slice.after];
     drawSlice(element('slice-before'), slice.before, all, '#f4c95d');
@@ -65,7 +65,7 @@ function drawReport(report) {
 
 /** @param {Calibration} calibration */
 function showReport({run}) {
-  const report = run?.state !== 'running' ? run?.report ?? null : null;
+  const report = run && texts.hasFound(run) ? run.report : null;
   show(element('found'), report !== null);
   if (!report) {
     drawn = null;

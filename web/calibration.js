@@ -27,12 +27,15 @@ const sources = {
 /** @param {PoseRecord} pose */
 export const sourceOf = ({source, at}) => at ? `${sources[source]}, ${when(at)}` : sources[source];
 
-/** Whether somebody, or a turn, told where this sensor stands. @param {PoseRecord} pose */
-export const isCalibrated = ({source}) => source !== 'default';
+/** Whether anybody told where this sensor stands. @param {PoseRecord} pose */
+const isTold = ({source}) => source !== 'default';
+
+/** Whether that was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */
+export const isCalibrated = ({source}) => source === 'turn' || source === 'scan' || source === 'page';
 
 /** @param {Calibration} calibration */
 export function summaryOf(calibration) {
-  if (!isCalibrated(calibration)) {
+  if (!isTold(calibration)) {
     return {
       tone: 'warn',
       title: 'Not calibrated yet',
@@ -98,9 +101,13 @@ export function outcomeOf(calibration, kind) {
   }
 }
 
-/** @param {TurnReport} report @returns {{label: string, text: string}[]} */
-export function figuresOf({shift_mm, tilt_deg, sigma_mm, sigma_deg, before_mm, after_mm}) {
-  return [
+/** Whether the last turn found anything worth a picture. @param {CalibrationRun} run */
+export const hasFound = ({state, report}) => state !== 'running' && report !== null &&
+  (report.accepted || report.stops.length > 0 || report.findings.length > 0);
+
+/** @param {TurnReport} report @returns {{label: string, text: string}[]} none where nothing was accepted */
+export function figuresOf({accepted, shift_mm, tilt_deg, sigma_mm, sigma_deg, before_mm, after_mm}) {
+  return !accepted ? [] : [
     ...(shift_mm === null ? [] : [{label: 'Axis moved', text: millimetres(shift_mm)}]),
     ...(tilt_deg === null ? [] : [{label: 'Axis tilted', text: degrees(tilt_deg)}]),
     ...(sigma_mm === null || sigma_deg === null ? [] : [{label: 'Known to', text: `±${millimetres(sigma_mm)}, ±${degrees(sigma_deg)}`}]),

@@ -15,6 +15,7 @@ function explainFields() {
   setText(element('snapshots-step'), snapshots > 0 ? stepText(snapshots) : '');
   setText(element('method-text'), explain(chosenMethod()));
   setText(element('filter-text'), explain(element('filter').value));
+  setText(element('calibrate-text'), explain(element('calibrate').value));
   element('gap').disabled = chosenMethod() === 'solid';
   element('frames').disabled = element('filter').value === 'basic';
 }
@@ -27,6 +28,7 @@ function fill(settings) {
   element('filter').value = form.filter;
   element('frames').value = form.frames;
   element('gap').value = form.gap_mm;
+  element('calibrate').value = form.calibrate;
   clipFields().forEach((field, index) => {
     field.value = String(form.clip_mm[index]);
   });
@@ -67,6 +69,7 @@ export const chosenSettings = () => settingsOf({
   filter: element('filter').value,
   frames: Number(element('frames').value),
   gap_mm: Number(element('gap').value),
+  calibrate: element('calibrate').value,
   clip_mm: clipFields().map((field) => Number(field.value)),
 });
 

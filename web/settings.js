@@ -27,10 +27,12 @@ const explanations = {
   'average': 'The mean of several pictures. Smooth surfaces, small holes filled.',
   'solid': 'One closed part on a flat foot, smooth, filled in where nothing was seen: made to be printed.',
   'intersection': 'A thin shell around every reading, as it was seen, nothing smoothed or filled in.',
+  'auto': 'Each scan finds out anew where the sensor stands, and builds with that.',
+  'told': 'The pose stays as it is, even where the snapshots contradict it.',
   'average-discard': 'The mean, but only where every picture saw something. Cleanest edges, more holes.',
 };
 
-/** @param {Settings['filter'] | Settings['method']} choice */
+/** @param {Settings['filter'] | Settings['method'] | Settings['calibrate']} choice */
 export const explain = (choice) => explanations[choice];
 
 const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
@@ -44,16 +46,17 @@ const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrec
  * @property {number} frames
  * @property {Settings['method']} method
  * @property {number} gap_mm  the longest edge between neighbouring readings
+ * @property {Settings['calibrate']} calibrate
  * @property {number[]} clip_mm
  */
 
 /** @param {Settings} settings @returns {Form} */
-export const formOf = ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2, clip_mm}) =>
-    ({snapshots, method, leaf_size_mm, filter, frames, gap_mm: gap(threshold_m2), clip_mm});
+export const formOf = ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2, calibrate, clip_mm}) =>
+    ({snapshots, method, leaf_size_mm, filter, frames, gap_mm: gap(threshold_m2), calibrate, clip_mm});
 
 /** @param {Form} form @returns {Partial<Settings>} */
-export const settingsOf = ({snapshots, method, leaf_size_mm, filter, frames, gap_mm, clip_mm}) =>
-    ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2: threshold(gap_mm), clip_mm});
+export const settingsOf = ({snapshots, method, leaf_size_mm, filter, frames, gap_mm, calibrate, clip_mm}) =>
+    ({snapshots, method, leaf_size_mm, filter, frames, threshold_m2: threshold(gap_mm), calibrate, clip_mm});
 
 /**
  * Angle between two stops.

@@ -103,3 +103,17 @@ test('brightness tells the distance, within what the picture can show', () => {
   assert.ok(Math.abs(distanceOf(24) - 2) < 1e-9);
   assert.deepEqual([null, 0.4502, 0.655, 1.234, 2].map(distanceText), ['No reading', '45.0 cm', '65.5 cm', '123 cm', '2 m or more']);
 });
+
+test('only what was found with this rig counts as calibrated', () => {
+  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => texts.isCalibrated({...calibration, source})),
+      ['page', 'turn', 'scan']);
+});
+
+test('of a refused turn only what it found is shown', () => {
+  const refused = {...turnReport, accepted: false, stops: [], findings: []};
+  assert.deepEqual(texts.figuresOf(refused), []);
+  assert.equal(texts.hasFound({...run, state: 'refused', report: refused}), false);
+  assert.equal(texts.hasFound({...run, state: 'refused', report: {...refused, findings: [{code: 'moved', detail: '', hint: ''}]}}), true);
+  assert.equal(texts.hasFound({...run, state: 'done', report: turnReport}), true);
+  assert.equal(texts.hasFound({...run, state: 'failed', report: null}), false);
+});

@@ -1,7 +1,7 @@
 // Answers of the scanner, as web/API.md describes them, for tests without one.
 
 export const settings = {
-  snapshots: 36, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 1, threshold_m2: 0.0001,
+  snapshots: 36, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 1, threshold_m2: 0.0001, calibrate: 'auto',
   clip_mm: [-140, -140, 5, 140, 140, 400],
 };
 

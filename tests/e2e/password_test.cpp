@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support/daemon.hpp"
+#include "support/digest_client.hpp"
 
 namespace octurn {
 namespace {
@@ -60,6 +61,62 @@ TEST(Serve, ShowsNothingWithoutThePassword) {
   EXPECT_EQ(daemon.post("/api/v1/scans").status, 401);
   EXPECT_EQ(daemon.get("/", {{"Authorization", "Digest username=\"octurn\""}}).status, 401);
   EXPECT_EQ(daemon.get("/", {{"Authorization", "Basic b2N0dXJuOm9wZW4gc2VzYW1l"}}).status, 401);
+}
+
+/// A daemon with the password "open sesame", and a nonce of its.
+struct LockedDaemon {
+  TemporaryFolder folder = {};
+  fs::path file = give("open sesame");
+  Daemon daemon{folder.path(), {"--config", config_with_password(folder.path())}};
+  std::string nonce = quoted_field(daemon.get("/").header("WWW-Authenticate"), "nonce");
+
+  fs::path give(const std::string& password) const {
+    EXPECT_EQ(give_password(folder.path() / "password", password), 0);
+    return folder.path() / "password";
+  }
+
+  int answer(const std::string& path, const std::string& proof,
+             const std::string& method = "GET") const {
+    return request(daemon.port(), method, path, method == "GET" ? "" : "{}",
+                   {{"Authorization", proof}})
+        .status;
+  }
+};
+
+TEST(Serve, TakesAProofOfThePasswordForOneRequest) {
+  const LockedDaemon locked;
+  const std::string scans = "/api/v1/scans";
+  const auto proof = [&](const ProvenRequest& request) {
+    return proof_of("open sesame", locked.nonce, request);
+  };
+  const std::string heard = proof({.target = "/api/v1/status"});
+  EXPECT_EQ(locked.answer(scans, heard), 401);
+  EXPECT_EQ(locked.answer("/api/v1/status", heard), 200);
+  EXPECT_EQ(locked.answer("/api/v1/status", heard), 401);
+  const std::string cancel = proof({.method = "POST", .target = scans + "/x/cancel", .uses = 2});
+  EXPECT_EQ(locked.answer(scans, cancel, "POST"), 401);
+  EXPECT_EQ(locked.answer(scans + "/x/cancel", cancel, "POST"), 404);
+  const std::string query = "/api/v1/scans/a%20b/Scan.stl?leaf_size_mm=1&level=%32";
+  EXPECT_EQ(locked.answer(query, proof({.target = query, .uses = 3})), 404);
+}
+
+TEST(Serve, SlowsGuessesOfThePasswordDown) {
+  const LockedDaemon locked;
+  int guesses = 0;
+  while (locked.answer("/", proof_of(std::to_string(guesses), locked.nonce)) == 401) {
+    ASSERT_LT(++guesses, 1000);
+  }
+  EXPECT_GE(guesses, 10);
+  const Reply reply = locked.daemon.get("/", {{"Authorization", proof_of("20", locked.nonce)}});
+  EXPECT_EQ(parsed(reply)["code"], "too-many-guesses");
+  EXPECT_GT(std::stoi(reply.header("Retry-After")), 0);
+}
+
+TEST(Serve, TakesANewPasswordAtOnce) {
+  const LockedDaemon locked;
+  locked.give("another");
+  EXPECT_EQ(locked.answer("/", proof_of("open sesame", locked.nonce)), 401);
+  EXPECT_EQ(locked.answer("/", proof_of("another", locked.nonce, {.uses = 2})), 200);
 }
 
 TEST(Serve, DoesNotStartWithoutTheFileOfItsPassword) {

@@ -11,7 +11,7 @@ struct Word {
   std::string_view text;
 };
 
-constexpr std::array<Word, 64> words{{
+constexpr std::array<Word, 66> words{{
     {ErrorCode::bad_config, "bad-config"},
     {ErrorCode::bad_json, "bad-json"},
     {ErrorCode::bad_name, "bad-name"},
@@ -26,8 +26,10 @@ constexpr std::array<Word, 64> words{{
     {ErrorCode::cut_short, "cut-short"},
     {ErrorCode::length_required, "length-required"},
     {ErrorCode::not_found, "not-found"},
+    {ErrorCode::password_needed, "password-needed"},
     {ErrorCode::too_large, "too-large"},
     {ErrorCode::too_many, "too-many"},
+    {ErrorCode::too_many_guesses, "too-many-guesses"},
     {ErrorCode::too_slow, "too-slow"},
     {ErrorCode::wrong_content_type, "wrong-content-type"},
     {ErrorCode::wrong_host, "wrong-host"},

@@ -13,7 +13,7 @@
 
 #include "http/connection_guard.hpp"
 #include "http/exchange.hpp"
-#include "http/password_file.hpp"
+#include "http/login.hpp"
 #include "http/problem.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -40,8 +40,8 @@ constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
 /// What the callbacks work with.
 struct Service {
   HttpServer::Answer answer = {};
-  std::filesystem::path password_file = {};
-  std::latch started{1};  // there is a guard
+  std::optional<Login> login = {};  // where not everybody may open the page
+  std::latch started{1};            // there is a guard
   std::optional<ConnectionGuard> guard = {};
 
   ConnectionGuard& wait_for_guard() {
@@ -54,11 +54,20 @@ Service& to_service(const mg_connection* connection) {
   return *static_cast<Service*>(mg_get_user_data(mg_get_context(connection)));
 }
 
-/// Whether a request proves to know the password, if there is one. The file is read each time, so
-/// that a new password counts at once.
-bool is_let_in(mg_connection* connection, const std::filesystem::path& password_file) {
-  return password_file.empty() ||
-         mg_check_digest_access_authentication(connection, page_realm, password_file.c_str()) > 0;
+/// The answer to who may not open the page; nothing if it is let in.
+std::optional<Response> refusal(mg_connection& connection, const Request& request,
+                                Service& service) {
+  if (!service.login) {
+    return std::nullopt;
+  }
+  const mg_request_info& info = *mg_get_request_info(&connection);
+  const auto text = [](const char* part) { return std::string(part != nullptr ? part : ""); };
+  return service.login->refusal({.method = request.method,
+                                 .path = text(info.request_uri),  // civetweb has decoded it
+                                 .query = text(info.query_string),
+                                 .address = info.remote_addr,
+                                 .authorization = request.header("Authorization")},
+                                std::chrono::steady_clock::now());
 }
 
 /// The answer to a request whose head is read.
@@ -85,12 +94,9 @@ int take_up(const mg_connection* connection, void** /*data*/) noexcept {
 int answer_request(mg_connection* connection) noexcept try {
   Service& service = to_service(connection);
   Exchange exchange(*connection, service.wait_for_guard());
-  if (!is_let_in(connection, service.password_file)) {
-    mg_send_digest_access_authentication_request(connection, page_realm);
-    return 401;
-  }
   Request request = exchange.head();
-  Response response = answer_to(request, exchange, service.answer);
+  std::optional<Response> refused = refusal(*connection, request, service);
+  Response response = refused ? std::move(*refused) : answer_to(request, exchange, service.answer);
   const int status = response.status;
   exchange.send(request.method, std::move(response));
   return status;
@@ -174,7 +180,9 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer)
   const std::string address = v6 ? "[" + options.address + "]" : options.address;
   Service& service = server_->service;
   service.answer = std::move(answer);
-  service.password_file = options.password_file;
+  if (!options.password_file.empty()) {
+    service.login.emplace(options.password_file);
+  }
   server_->address = reaching(options.address);
   server_->context = start_civetweb(address + ":" + std::to_string(options.port), options, service);
   service.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,

@@ -1,13 +1,26 @@
 #include "http/password_file.hpp"
 
-#include <civetweb.h>
+#include <sstream>
+#include <string_view>
 
-#include <array>
-
+#include "http/digest.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 
 namespace octurn {
+namespace {
+
+constexpr std::size_t hash_digits = 32;
+constexpr std::size_t max_file_bytes = 4096;  // one line is all that is written
+
+std::string line_begin() { return std::string(page_user) + ":" + page_realm + ":"; }
+
+bool is_hash(std::string_view text) {
+  return text.size() == hash_digits &&
+         text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+}  // namespace
 
 void write_password_file(const std::filesystem::path& file, const std::string& password) {
   constexpr std::size_t most = 100;
@@ -16,10 +29,23 @@ void write_password_file(const std::filesystem::path& file, const std::string& p
                 "the password has " + std::to_string(password.size()) + " bytes",
                 "It needs one at least, and at most " + std::to_string(most) + ".");
   }
-  std::array<char, 33> hash{};
-  mg_md5(hash.data(), page_user, ":", page_realm, ":", password.c_str(), nullptr);
-  const std::string line = std::string(page_user) + ":" + page_realm + ":" + hash.data() + "\n";
-  write_file(file, line, 0600);
+  write_file(file, line_begin() + digest_hash(page_user, page_realm, password) + "\n", 0600);
+}
+
+std::optional<std::string> read_password_hash(const std::filesystem::path& file) try {
+  const std::string begin = line_begin();
+  std::istringstream lines(read_regular_file(file, max_file_bytes).value_or(""));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.ends_with('\r')) {
+      line.pop_back();
+    }
+    if (line.starts_with(begin) && is_hash(std::string_view(line).substr(begin.size()))) {
+      return line.substr(begin.size());
+    }
+  }
+  return std::nullopt;
+} catch (const Error&) {
+  return std::nullopt;
 }
 
 }  // namespace octurn

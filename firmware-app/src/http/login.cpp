@@ -1,0 +1,147 @@
+#include "http/login.hpp"
+
+#include <civetweb.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <random>
+#include <utility>
+
+#include "http/password_file.hpp"
+#include "http/problem.hpp"
+#include "log.hpp"
+
+namespace octurn {
+namespace {
+
+// A nonce is its period and its number, 16 hexadecimal digits each, and their signature.
+constexpr std::size_t number_digits = 16;
+constexpr std::size_t signature_digits = 32;
+
+// The page asks about once a second, so that this many proofs are never reached but by a program
+// that means harm, or much.
+constexpr std::size_t max_used = 100'000;
+
+std::string to_hexadecimal(std::uint64_t number) {
+  std::array<char, number_digits + 1> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
+  return text.data();
+}
+
+std::string make_secret() {
+  std::random_device random;
+  std::string secret;
+  for (int i = 0; i < 4; ++i) {
+    secret += to_hexadecimal(random());
+  }
+  return secret;
+}
+
+std::int64_t to_period(Login::Time time) { return time.time_since_epoch() / Login::period; }
+
+std::int64_t period_of_nonce(const std::string& nonce) {
+  return static_cast<std::int64_t>(std::stoull(nonce.substr(0, number_digits), nullptr, 16));
+}
+
+/// Whether a proof is for the target of this request.
+bool is_for(const DigestProof& proof, const LoginAttempt& attempt) {
+  const std::string sent = proof.uri.substr(0, proof.uri.find('?'));
+  const std::string query =
+      sent.size() == proof.uri.size() ? "" : proof.uri.substr(sent.size() + 1);
+  std::string path(sent.size() + 1, '\0');
+  const int length = mg_url_decode(sent.data(), static_cast<int>(sent.size()), path.data(),
+                                   static_cast<int>(path.size()), 0);
+  path.resize(static_cast<std::size_t>(std::max(length, 0)));
+  return path == attempt.path && query == attempt.query;
+}
+
+Response refuse_guess(std::chrono::seconds wait) {
+  const std::string seconds = std::to_string(wait.count());
+  Response response =
+      problem({.code = ErrorCode::too_many_guesses,
+               .detail = "too many wrong passwords came from this address",
+               .hint = "Try again in " + seconds + " seconds, with the right one."});
+  response.headers.emplace_back("Retry-After", seconds);
+  return response;
+}
+
+}  // namespace
+
+Login::Login(std::filesystem::path password_file)
+    : password_file_(std::move(password_file)), secret_(make_secret()) {}
+
+/// The secret stands on both sides: MD5 of a secret and a text can be continued without it.
+std::string Login::sign(const std::string& text) const {
+  std::array<char, signature_digits + 1> signature{};
+  mg_md5(signature.data(), secret_.c_str(), text.c_str(), secret_.c_str(), nullptr);
+  return signature.data();
+}
+
+std::string Login::make_nonce(std::int64_t now) {
+  const std::string text =
+      to_hexadecimal(static_cast<std::uint64_t>(now)) + to_hexadecimal(++nonces_);
+  return text + sign(text);
+}
+
+bool Login::is_fresh(const std::string& nonce, std::int64_t now) {
+  if (nonce.size() != 2 * number_digits + signature_digits) {
+    return false;
+  }
+  const std::string text = nonce.substr(0, 2 * number_digits);
+  return text + sign(text) == nonce && now - period_of_nonce(nonce) <= 1;
+}
+
+/// Whether a right proof, with a fresh nonce, was not used before. It now is.
+bool Login::is_first_use(const DigestProof& proof, std::int64_t now) {
+  std::erase_if(used_, [&](const auto& entry) { return now - entry.first > 1; });
+  std::set<std::string>& used = used_[period_of_nonce(proof.nonce)];
+  if (used.size() >= max_used) {
+    secret_ = make_secret();  // no nonce is fresh any more, so nothing need be remembered
+    used_.clear();
+    return false;
+  }
+  return used.insert(proof.response).second;
+}
+
+Response Login::challenge(Freshness proof, std::int64_t now) {
+  Response response = problem({.code = ErrorCode::password_needed,
+                               .detail = "the page has a password",
+                               .hint = std::string("The user is ") + page_user + "."});
+  response.headers.emplace_back(
+      "WWW-Authenticate", std::string("Digest realm=\"") + page_realm +
+                              R"(", qop="auth", algorithm=MD5, nonce=")" + make_nonce(now) + "\"" +
+                              (proof == Freshness::stale ? ", stale=true" : ""));
+  return response;
+}
+
+std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
+  const std::optional<std::string> hash = read_password_hash(password_file_);
+  const std::int64_t current = to_period(now);
+  const std::lock_guard lock(mutex_);
+  const auto proof = parse_digest(attempt.authorization.value_or(""));
+  if (!proof) {
+    return challenge(Freshness::fresh, current);
+  }
+  if (const auto wait = guesses_.to_wait(attempt.address, now); wait.count() > 0) {
+    return refuse_guess(wait);
+  }
+  if (!hash || proof->user != page_user || proof->realm != page_realm || proof->qop != "auth" ||
+      proof->response != digest_response(*proof, *hash, attempt.method)) {
+    guesses_.count_wrong(attempt.address, now);
+    if (guesses_.to_wait(attempt.address, now).count() > 0) {
+      log::warning("http", "too many wrong passwords from " + attempt.address);
+    }
+    return challenge(Freshness::fresh, current);
+  }
+  if (!is_for(*proof, attempt)) {
+    return challenge(Freshness::fresh, current);
+  }
+  if (!is_fresh(proof->nonce, current) || !is_first_use(*proof, current)) {
+    return challenge(Freshness::stale, current);
+  }
+  guesses_.forgive(attempt.address);
+  return std::nullopt;
+}
+
+}  // namespace octurn

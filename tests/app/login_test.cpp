@@ -1,0 +1,142 @@
+#include "http/login.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "http/password_file.hpp"
+#include "support/digest_client.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+const Login::Time start = Login::Time{} + 1000h;
+
+/// A login with the password "open sesame", and what of it clients see.
+class LoginTest : public ::testing::Test {
+ protected:
+  LoginTest() { write_password_file(file(), "open sesame"); }
+
+  std::filesystem::path file() const { return folder_.path() / "password"; }
+
+  /// A nonce as a client gets it.
+  std::string nonce(Login::Time now = start) {
+    const auto answer = login.refusal({}, now);
+    return quoted_field(challenge_of(answer), "nonce");
+  }
+
+  /// What a request with this Authorization is answered; 200 if it is let in.
+  int answer(const std::string& authorization, const LoginAttempt& like = {},
+             Login::Time now = start) {
+    LoginAttempt attempt = like;
+    attempt.authorization = authorization;
+    last_ = login.refusal(attempt, now);
+    return last_ ? last_->status : 200;
+  }
+
+  bool is_told_stale() const { return challenge_of(last_).find("stale=true") != std::string::npos; }
+
+  static std::string challenge_of(const std::optional<Response>& response) {
+    for (const auto& [name, value] : response ? response->headers : Headers{}) {
+      if (name == "WWW-Authenticate") {
+        return value;
+      }
+    }
+    return "";
+  }
+
+ private:
+  TemporaryFolder folder_ = {};
+  std::optional<Response> last_ = {};
+
+ protected:
+  Login login{file()};
+};
+
+TEST_F(LoginTest, LetsInWhoKnowsThePassword) {
+  EXPECT_EQ(answer(""), 401);
+  const std::string one = nonce();
+  EXPECT_EQ(answer(proof_of("open sesame", one)), 200);
+  EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 2})), 200);
+  EXPECT_EQ(answer(proof_of("sesame", one, {.uses = 3})), 401);
+}
+
+TEST_F(LoginTest, TakesAProofForItsOwnTargetAndMethodAlone) {
+  const std::string heard = proof_of("open sesame", nonce(), {.target = "/api/v1/status"});
+  EXPECT_EQ(answer(heard, {.path = "/api/v1/scans"}), 401);
+  EXPECT_EQ(answer(heard, {.path = "/api/v1/status", .query = "x=1"}), 401);
+  EXPECT_EQ(answer(heard, {.method = "POST", .path = "/api/v1/status"}), 401);
+  EXPECT_EQ(answer(heard, {.path = "/api/v1/status"}), 200);
+}
+
+TEST_F(LoginTest, ComparesTargetsAsTheyAreDecoded) {
+  const std::string one = nonce();
+  const std::string coded = proof_of("open sesame", one, {.target = "/a%20%3Fb?c=%20"});
+  EXPECT_EQ(answer(coded, {.path = "/a ", .query = "b?c=%20"}), 401);
+  EXPECT_EQ(answer(coded, {.path = "/a ?b", .query = "c= "}), 401);
+  EXPECT_EQ(answer(coded, {.path = "/a ?b", .query = "c=%20"}), 200);
+}
+
+TEST_F(LoginTest, TakesAProofOnce) {
+  const std::string heard = proof_of("open sesame", nonce());
+  EXPECT_EQ(answer(heard), 200);
+  EXPECT_EQ(answer(heard), 401);
+  EXPECT_TRUE(is_told_stale());
+}
+
+TEST_F(LoginTest, TakesNoOldNonceAndSaysThatItIsOld) {
+  const std::string old = nonce();
+  EXPECT_EQ(answer(proof_of("open sesame", old), {}, start + 5min), 200);
+  EXPECT_EQ(answer(proof_of("open sesame", old, {.uses = 2}), {}, start + 11min), 401);
+  EXPECT_TRUE(is_told_stale());
+  EXPECT_EQ(answer(proof_of("wrong", old, {.uses = 3}), {}, start + 11min), 401);
+  EXPECT_FALSE(is_told_stale());
+}
+
+TEST_F(LoginTest, TakesNoNonceThatItDidNotMake) {
+  std::string forged = nonce();
+  forged[15] = forged[15] == '9' ? '8' : '9';  // another period
+  Login another(file());
+  const std::string foreign = quoted_field(challenge_of(another.refusal({}, start)), "nonce");
+  for (const std::string& other : {forged, foreign, std::string(), std::string("7ypf")}) {
+    EXPECT_EQ(answer(proof_of("open sesame", other)), 401) << other;
+  }
+}
+
+TEST_F(LoginTest, SlowsGuessesDownAndThoseOfOneAddressAlone) {
+  const std::string one = nonce();
+  const LoginAttempt thief{.address = "10.0.0.1"};
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(answer(proof_of(std::to_string(i), one), thief), 401);
+  }
+  EXPECT_EQ(answer(proof_of("open sesame", one), thief), 429);
+  EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 2}), {.address = "10.0.0.2"}), 200);
+  EXPECT_EQ(answer("", thief), 401);  // who sends no proof does not guess
+  EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 3}), thief, start + 10s), 200);
+}
+
+TEST_F(LoginTest, LetsNobodyInWithoutAHash) {
+  const std::string one = nonce();
+  for (const std::string& content :
+       {std::string(), std::string("octurn:Octurn:\n"), std::string("octurn:Octurn:00\n"),
+        std::string("\xff\xfe\n"), std::string(100'000, 'a')}) {
+    put(file(), content);
+    EXPECT_EQ(answer(proof_of("open sesame", one), {.address = content.substr(0, 20)}), 401);
+  }
+  std::filesystem::remove(file());
+  EXPECT_EQ(answer(proof_of("open sesame", one)), 401);
+  EXPECT_FALSE(read_password_hash("/dev/null"));
+}
+
+TEST_F(LoginTest, TakesFilesThatApachesProgramWrote) {
+  put(file(),
+      "other:Octurn:0123\r\nocturn:Octurn:" + digest_hash("octurn", "Octurn", "b") + "\r\n");
+  EXPECT_EQ(answer(proof_of("b", nonce())), 200);
+}
+
+}  // namespace
+}  // namespace octurn

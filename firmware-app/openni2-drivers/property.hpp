@@ -3,6 +3,7 @@
 #include <OniCTypes.h>
 
 #include <cstring>
+#include <string>
 #include <type_traits>
 
 namespace octurn {
@@ -16,6 +17,18 @@ OniStatus give_property(const Value& value, void* data, int* size) {
     return ONI_STATUS_BAD_PARAMETER;
   }
   std::memcpy(data, &value, sizeof value);
+  return ONI_STATUS_OK;
+}
+
+/// Copies a text to OpenNI2, with a 0 at its end.
+/// @return ONI_STATUS_BAD_PARAMETER if the caller has no room for it
+inline OniStatus give_text(const std::string& text, void* data, int* size) {
+  const auto length = static_cast<int>(text.size()) + 1;
+  if (*size < length) {
+    return ONI_STATUS_BAD_PARAMETER;
+  }
+  std::memcpy(data, text.c_str(), static_cast<std::size_t>(length));
+  *size = length;
   return ONI_STATUS_OK;
 }
 

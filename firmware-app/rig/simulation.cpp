@@ -11,12 +11,16 @@ namespace {
 
 constexpr std::size_t longest_uri = 255;  // ONI_MAX_STR - 1
 constexpr double max_noise = 100;
+constexpr double max_pattern = 10;
+constexpr double nearest_wall = 0.3;  // metres
+constexpr double farthest_wall = 6;
 constexpr double max_speed = 1000;
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorCode::bad_simulation, "simulator: " + what,
-              "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&speed=X"
-              "&silent-after=N&lost-after=N].");
+  throw Error(
+      ErrorCode::bad_simulation, "simulator: " + what,
+      "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&pattern=X&wall=X&speed=X"
+      "&silent-after=N&lost-after=N].");
 }
 
 template <typename Number>
@@ -71,6 +75,10 @@ void set(Simulation& simulation, std::string_view key, std::string_view value) {
         number_of(key, value, 0U, std::numeric_limits<decltype(simulation.seed)>::max());
   } else if (key == "noise") {
     simulation.noise = number_of(key, value, 0.0, max_noise);
+  } else if (key == "pattern") {
+    simulation.pattern = number_of(key, value, 0.0, max_pattern);
+  } else if (key == "wall") {
+    simulation.wall = number_of(key, value, nearest_wall, farthest_wall);
   } else if (key == "speed") {
     simulation.speed = number_of(key, value, 1 / max_speed, max_speed);
   } else if (key == "silent-after") {
@@ -101,6 +109,12 @@ std::string simulation_uri(const Simulation& simulation) {
   }
   if (simulation.noise != usual.noise) {
     add("noise", to_text(simulation.noise));
+  }
+  if (simulation.pattern != usual.pattern) {
+    add("pattern", to_text(simulation.pattern));
+  }
+  if (simulation.wall) {
+    add("wall", to_text(*simulation.wall));
   }
   if (simulation.speed != usual.speed) {
     add("speed", to_text(simulation.speed));

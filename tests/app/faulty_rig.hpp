@@ -79,6 +79,7 @@ class FaultyRig {
     explicit Sensor(FaultyRig& rig) : rig_(rig) {}
     const std::string& name() const override { return name_; }
     const Intrinsics& intrinsics() const override { return intrinsics_; }
+    std::string serial() const override { return {}; }
     std::optional<TimedFrame> read(const std::stop_token& stop) override {
       return stop.stop_requested()
                  ? std::nullopt

@@ -103,7 +103,8 @@ TEST(OniFile, HoldsTheSensorsDepthsExactly) {
   const Depths depths = recorded->read({}).value().frame.depth;
   // The simulator gives the same noise in the same frame; the number of the first one that was
   // recorded is not known.
-  SimulatedKinect kinect(simulator_object(), Simulation{}.seed, Simulation{}.noise);
+  const Simulation usual;
+  SimulatedKinect kinect(Scene(simulator_object()), usual.seed, usual.noise, usual.pattern);
   Depths exposed(depths.size());
   std::uint32_t number = 0;
   while (exposed != depths && number < 1000) {

@@ -23,7 +23,7 @@ DepthFrame frame_with(std::uint16_t depth) {
 
 /// Two frames at each of two angles: depths 1000, 1001 and 2000, 2001.
 fs::path write_recording(const fs::path& folder) {
-  RecordingWriter writer(folder, "Kinect v1", small);
+  RecordingWriter writer(folder, "Kinect v1", "A1", small);
   for (const int stop : {0, 1}) {
     for (const int frame : {0, 1}) {
       writer.write(
@@ -43,6 +43,7 @@ TEST(Recording, ComesBackAsItWasWritten) {
   const Recording recording = read_recording(file);
 
   EXPECT_EQ(recording.sensor_name, "Kinect v1");
+  EXPECT_EQ(recording.sensor_serial, "A1");
   EXPECT_EQ(recording.intrinsics.width, 4);
   EXPECT_EQ(recording.intrinsics.height, 3);
   EXPECT_EQ(recording.intrinsics.fx, 5.5);
@@ -62,7 +63,7 @@ TEST(Recording, ComesBackAsItWasWritten) {
 TEST(Recording, IsThereWholeOrNotAtAll) {
   const TemporaryFolder folder;
   {
-    RecordingWriter writer(folder.path() / "turn", "Kinect v1", small);
+    RecordingWriter writer(folder.path() / "turn", "Kinect v1", "A1", small);
     writer.write(frame_with(7), {});
     EXPECT_FALSE(fs::exists(folder.path() / "turn"));
   }
@@ -72,8 +73,9 @@ TEST(Recording, IsThereWholeOrNotAtAll) {
 TEST(Recording, ReplacesNothing) {
   const TemporaryFolder folder;
   put(folder.path() / "turn", "somebody's");
-  EXPECT_EQ(code_thrown_by([&] { RecordingWriter(folder.path() / "turn", "Kinect v1", small); }),
-            "write-failed");
+  EXPECT_EQ(
+      code_thrown_by([&] { RecordingWriter(folder.path() / "turn", "Kinect v1", "A1", small); }),
+      "write-failed");
   EXPECT_EQ(content_of(folder.path() / "turn"), "somebody's");
 }
 

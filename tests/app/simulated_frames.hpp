@@ -77,7 +77,7 @@ class BoxesOnPlatform {
 
   std::string uri(double noise = 0, double speed = 1) const {
     return simulation_uri(
-        {.mesh_file = folder_.path() / "boxes.stl", .noise = noise, .speed = speed});
+        {.mesh_file = folder_.path() / "boxes.stl", .noise = noise, .pattern = 0, .speed = speed});
   }
 
  private:

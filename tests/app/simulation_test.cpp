@@ -12,6 +12,7 @@ TEST(Simulation, IsItsSchemeAloneWhenNothingIsAsked) {
   const Simulation usual = parse_simulation("octurn-simulator://");
   EXPECT_EQ(usual.mesh_file, "");
   EXPECT_EQ(usual.noise, 1);
+  EXPECT_FALSE(usual.wall.has_value());
   EXPECT_EQ(usual.speed, 1);
   EXPECT_FALSE(usual.silent_after.has_value());
   EXPECT_FALSE(usual.lost_after.has_value());
@@ -21,22 +22,28 @@ TEST(Simulation, NamesEachSettingInItsUri) {
   const Simulation asked = {.mesh_file = "/home/me/100%?.stl",
                             .seed = 7,
                             .noise = 0.5,
+                            .pattern = 0.25,
+                            .wall = 0.75,
                             .speed = 20,
                             .silent_after = 100,
                             .lost_after = 0};
 
   EXPECT_EQ(simulation_uri(asked),
             "octurn-simulator:///home/me/100%25%3F.stl"
-            "?seed=7&noise=0.5&speed=20&silent-after=100&lost-after=0");
+            "?seed=7&noise=0.5&pattern=0.25&wall=0.75&speed=20&silent-after=100&lost-after=0");
 }
 
 TEST(Simulation, ComesBackFromItsUri) {
   const Simulation parsed = parse_simulation(
-      "octurn-simulator://a%20cup%3f.stl?lost-after=3&silent-after=2&speed=0.5&noise=2&seed=9");
+      "octurn-simulator://"
+      "a%20cup%3f.stl?lost-after=3&silent-after=2&speed=0.5&wall=0.6&pattern=3&noise=2&"
+      "seed=9");
 
   EXPECT_EQ(parsed.mesh_file, "a cup?.stl");
   EXPECT_EQ(parsed.seed, 9U);
   EXPECT_EQ(parsed.noise, 2);
+  EXPECT_EQ(parsed.pattern, 3);
+  EXPECT_EQ(parsed.wall, 0.6);
   EXPECT_EQ(parsed.speed, 0.5);
   EXPECT_EQ(parsed.silent_after, 2);
   EXPECT_EQ(parsed.lost_after, 3);
@@ -51,10 +58,29 @@ TEST(Simulation, RefusesWhatItDoesNotKnowByName) {
 }
 
 TEST(Simulation, RefusesValuesOutOfRange) {
-  for (const char* query :
-       {"noise", "noise=", "noise=-1", "noise=nan", "noise=inf", "noise=1x", "noise=101", "speed=0",
-        "speed=1001", "seed=-1", "seed=4294967296", "seed=1.5", "silent-after=-1",
-        "lost-after=", "lost-after=2147483648", "=1", "&", "seed=1&&noise=1"}) {
+  for (const char* query : {"noise",
+                            "noise=",
+                            "noise=-1",
+                            "noise=nan",
+                            "noise=inf",
+                            "noise=1x",
+                            "noise=101",
+                            "pattern=-1",
+                            "pattern=11",
+                            "wall=0.2",
+                            "wall=7",
+                            "wall=",
+                            "speed=0",
+                            "speed=1001",
+                            "seed=-1",
+                            "seed=4294967296",
+                            "seed=1.5",
+                            "silent-after=-1",
+                            "lost-after=",
+                            "lost-after=2147483648",
+                            "=1",
+                            "&",
+                            "seed=1&&noise=1"}) {
     EXPECT_EQ(
         code_thrown_by([query] { parse_simulation(std::string("octurn-simulator://?") + query); }),
         "bad-simulation")

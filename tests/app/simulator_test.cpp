@@ -202,7 +202,7 @@ TEST(Simulator, FollowsATurntable) {
 
 /// A frame's depths. @param number  of the frame, from 1
 std::vector<std::uint16_t> exposed(std::uint32_t seed, std::uint32_t number) {
-  SimulatedKinect kinect(simulator_object(), seed, 1);
+  SimulatedKinect kinect(Scene(simulator_object()), seed, 1, 0);
   std::vector<std::uint16_t> depth(std::size_t{640} * 480);
   kinect.expose(0, number, depth);
   return depth;

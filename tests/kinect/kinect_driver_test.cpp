@@ -25,6 +25,7 @@ TEST(KinectDriver, IsFoundAsAnySensor) {
   const KinectOnDesk desk({frame_of(700)});
   const auto sensor = open_sensor("");
   EXPECT_EQ(sensor->name(), "Kinect v1");
+  EXPECT_EQ(sensor->serial(), "A00000000000000A");
   EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
 }
 

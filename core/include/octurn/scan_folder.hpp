@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "octurn/box.hpp"
 #include "octurn/depth_frame.hpp"
+#include "octurn/sensor_map.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -32,13 +34,20 @@ struct SolvedPose {
 /// What `scan.json` says (format "octurn-scan", version 1).
 struct Scan {
   std::string sensor_name = {};
+  std::string sensor_serial = {};  ///< empty if it tells none
   Intrinsics intrinsics = {};
   /// As the rig was told when the scan was taken, metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};
   Box clip = {};  ///< metres, platform frame
   std::vector<Shot> shots = {};
+  /// What snapshots are freed from when they are read; none: they stay as the sensor gave them.
+  /// It is no part of `scan.json`.
+  std::shared_ptr<const SensorMap> sensor_map = {};
 };
+
+/// The map of the scan's sensor, in a scan folder.
+inline constexpr const char* sensor_map_file = "sensor-map.png";
 
 /// The pose that models are made with: the solved one, else the one that the rig was told.
 inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
@@ -53,10 +62,20 @@ inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
 /// @throws Error "scan-empty"      if it lists no snapshots
 Scan parse_scan(std::string_view text);
 
-/// The same from `folder/scan.json`. @throws Error "scan-missing"  also if there is no such file
+/// The same from `folder/scan.json`, with `folder/sensor-map.png` if there is one.
+/// @throws Error "scan-missing"          also if there is no scan.json
+/// @throws Error "scan-malformed"  if there is a map, and it cannot be used
 Scan read_scan(const std::filesystem::path& folder);
 
-/// Reads the depth image of one shot; its pose is `model_pose` at the shot's angle.
+/// Has the snapshots of a scan corrected by that map, in place of its own.
+/// @throws Error "scan-malformed"  if it is no map, or one of another size
+void use_sensor_map(Scan& scan, const std::filesystem::path& file);
+
+/// A depth image of the scan's sensor, corrected by its sensor map if it has one.
+DepthFrame corrected(DepthFrame frame, const Scan& scan);
+
+/// Reads the depth image of one shot, corrected by the scan's sensor map; its pose is `model_pose`
+/// at the shot's angle.
 ///
 /// @throws Error "scan-missing"        if there is no such file
 /// @throws Error "snapshot-malformed"  if it is no 16-bit greyscale PNG, is damaged or cut short,

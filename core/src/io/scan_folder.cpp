@@ -1,11 +1,11 @@
 #include "octurn/scan_folder.hpp"
 
-#include <algorithm>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
+#include <utility>
 
+#include "io/sensor_json.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
@@ -18,30 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_side = 8192;  // pixels; larger images than any depth sensor's are refused
-constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
-
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
-
-bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
-
-double positive_in(JsonObject& keys, std::string_view key) {
-  const JsonValue value = keys.at(key);
-  if (value.number() <= 0) {
-    value.refuse("above 0");
-  }
-  return value.number();
-}
-
-Intrinsics intrinsics_from(JsonObject& sensor) {
-  return {.width = sensor.at("width").whole_number(2, max_side),
-          .height = sensor.at("height").whole_number(2, max_side),
-          .fx = positive_in(sensor, "fx"),
-          .fy = positive_in(sensor, "fy"),
-          .cx = sensor.at("cx").number(),
-          .cy = sensor.at("cy").number(),
-          .depth_unit = positive_in(sensor, "depth_unit_m")};
-}
 
 Eigen::Isometry3d pose_from(const JsonValue& matrix) {
   Eigen::Matrix4d pose;
@@ -79,14 +56,8 @@ Box clip_from(const JsonValue& clip) {
 
 Shot shot_from(const JsonValue& shot) {
   JsonObject keys(shot);
-  const JsonValue file = keys.at("file");
-  const std::string text = file.text();
-  const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
-  if (path.empty() || path.is_absolute() || *path.begin() == ".." || !path.has_filename() ||
-      path == "." || std::ranges::any_of(text, is_control)) {
-    file.refuse("a file in the scan's folder");
-  }
-  return {.file = text, .angle = radians_from_degrees(keys.at("angle_deg").number())};
+  return {.file = file_inside(keys.at("file"), "a file in the scan's folder"),
+          .angle = radians_from_degrees(keys.at("angle_deg").number())};
 }
 
 SolvedPose solved_from(const JsonValue& solved) {
@@ -107,10 +78,11 @@ Scan scan_from(const json& document) {
   if (const JsonValue version = root.at("version"); version.number() != 1) {
     version.refuse("1, which this program reads");
   }
-  JsonObject sensor(root.at("sensor"));
+  SensorJson sensor = sensor_from(root.at("sensor"));
   JsonObject calibration(root.at("calibration"));
-  Scan scan{.sensor_name = sensor.at("name").text(),
-            .intrinsics = intrinsics_from(sensor),
+  Scan scan{.sensor_name = std::move(sensor.name),
+            .sensor_serial = std::move(sensor.serial),
+            .intrinsics = sensor.intrinsics,
             .platform_from_sensor = pose_from(calibration.at("platform_from_sensor")),
             .clip = clip_from(root.at("clip_m")),
             .shots = {}};
@@ -149,16 +121,8 @@ void write_document(const std::filesystem::path& folder, const json& document) {
 }
 
 std::string read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw Error(ErrorCode::scan_missing,
-                file.string() + ": " + (error ? error.message() : "not a regular file"),
-                "Name a folder that holds a whole scan.");
-  }
-  if (std::filesystem::file_size(file, error) > max_file_bytes) {
-    throw Error(malformed, file.string() + ": too large for a file of a scan");
-  }
-  return read_regular_file(file, max_file_bytes).value_or("");
+  return read_bytes(file, ErrorCode::scan_missing, "Name a folder that holds a whole scan.",
+                    malformed);
 }
 
 }  // namespace
@@ -174,14 +138,35 @@ Scan parse_scan(std::string_view text) {
 }
 
 Scan read_scan(const std::filesystem::path& folder) {
-  return parse_scan(read_bytes(folder / "scan.json"));
+  Scan scan = parse_scan(read_bytes(folder / "scan.json"));
+  const std::filesystem::path map = folder / sensor_map_file;
+  if (std::error_code ignored; std::filesystem::exists(map, ignored)) {
+    use_sensor_map(scan, map);
+  }
+  return scan;
+}
+
+void use_sensor_map(Scan& scan, const std::filesystem::path& file) {
+  SensorMap map = read_sensor_map(file);
+  if (map.width != scan.intrinsics.width || map.height != scan.intrinsics.height) {
+    throw Error(ErrorCode::scan_malformed,
+                file.string() + ": is for another sensor than the scan's: it has another size",
+                "Take the map of the sensor that made the scan.");
+  }
+  scan.sensor_map = std::make_shared<const SensorMap>(std::move(map));
+}
+
+DepthFrame corrected(DepthFrame frame, const Scan& scan) {
+  return scan.sensor_map ? corrected(std::move(frame), *scan.sensor_map, scan.intrinsics.depth_unit)
+                         : std::move(frame);
 }
 
 Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, const Shot& shot) {
   const Intrinsics& intrinsics = scan.intrinsics;
   const std::string png = read_bytes(folder / shot.file);
-  return {.frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
-                                    intrinsics.height),
+  DepthFrame frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
+                                      intrinsics.height);
+  return {.frame = corrected(std::move(frame), scan),
           .intrinsics = intrinsics,
           .object_from_sensor = object_from_sensor(model_pose(scan), shot.angle)};
 }
@@ -197,7 +182,6 @@ SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan&
 }
 
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
-  const Intrinsics& intrinsics = scan.intrinsics;
   json calibration{{"platform_from_sensor", to_json(scan.platform_from_sensor)}};
   if (scan.solved) {
     calibration["solved"] = to_json(*scan.solved);
@@ -211,14 +195,8 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
       {"format", "octurn-scan"},
       {"version", 1},
       {"sensor",
-       {{"name", scan.sensor_name},
-        {"width", intrinsics.width},
-        {"height", intrinsics.height},
-        {"fx", intrinsics.fx},
-        {"fy", intrinsics.fy},
-        {"cx", intrinsics.cx},
-        {"cy", intrinsics.cy},
-        {"depth_unit_m", intrinsics.depth_unit}}},
+       to_json(SensorJson{
+           .name = scan.sensor_name, .serial = scan.sensor_serial, .intrinsics = scan.intrinsics})},
       {"calibration", calibration},
       {"clip_m", {{"min", point(scan.clip.min)}, {"max", point(scan.clip.max)}}},
       {"snapshots", shots},

@@ -3,6 +3,8 @@
 // simulation.hpp).
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "depth_driver.hpp"
 #include "property.hpp"
@@ -15,24 +17,33 @@
 namespace octurn {
 namespace {
 
-Mesh object_of(const Simulation& simulation) {
+Scene make_scene(const Simulation& simulation) {
+  if (simulation.wall) {
+    return Scene::of_wall(*simulation.wall);
+  }
   if (simulation.mesh_file.empty()) {
-    return simulator_object();
+    return Scene(simulator_object());
   }
   Mesh mesh = read_mesh(simulation.mesh_file);
   stand_on_platform(mesh);
-  return mesh;
+  return Scene(std::move(mesh));
+}
+
+/// A sensor with another pattern is another sensor.
+std::string serial_of(const Simulation& simulation) {
+  const std::string serial = "simulated-" + std::to_string(simulation.seed);
+  return simulation.pattern > 0 ? serial : serial + "-perfect";
 }
 
 class Device final : public DepthDevice {
  public:
   explicit Device(const Simulation& simulation)
       : simulation_(simulation),
-        kinect_(object_of(simulation), simulation.seed, simulation.noise) {}
+        kinect_(make_scene(simulation), simulation.seed, simulation.noise, simulation.pattern) {}
 
   OniBool isPropertySupported(int property) override {
     return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property ||
-                   property == sensor_time_property
+                   property == sensor_time_property || property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
                ? TRUE
                : FALSE;
   }
@@ -48,6 +59,9 @@ class Device final : public DepthDevice {
     if (property == sensor_time_property) {
       constexpr double frames_per_second = DepthStream::video_mode.fps;
       return give_property(state_.periods / frames_per_second, data, size);
+    }
+    if (property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER) {
+      return give_text(serial_of(simulation_), data, size);
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }

@@ -17,11 +17,17 @@ class Scene {
   /// @param object  in the platform's frame at angle 0, metres
   explicit Scene(Mesh object);
 
+  /// A wall instead, and nothing else. @param distance  metres; the sensor looks squarely at it
+  static Scene of_wall(double distance);
+
   /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   InverseDepth lit_at(double angle) const;
 
  private:
+  /// @param around  what does not turn, in the platform's frame
+  Scene(Mesh object, const Mesh& around);
+
   Mesh object_;
   Eigen::Isometry3d camera_from_platform_;
   Eigen::Isometry3d projector_from_platform_;

@@ -48,12 +48,13 @@ float patience_of(const Surface& surface) {
 
 }  // namespace
 
-SimulatedKinect::SimulatedKinect(Mesh object, std::uint32_t seed, double noise)
-    : scene_(std::move(object)),
+SimulatedKinect::SimulatedKinect(Scene scene, std::uint32_t seed, double noise, double pattern)
+    : scene_(std::move(scene)),
       seed_(seed),
       noise_(static_cast<float>(noise)),
       field_(seed),
       distortion_(leftover_distortion(seed)),
+      pattern_(seed, pattern),
       depth_table_(depth_of_readings()),
       lit_(scene_.lit_at(angle_)),
       still_(pixels(camera)) {
@@ -117,7 +118,8 @@ void SimulatedKinect::hold_still(const Rectangle& part) {
       if (seen <= 0 || u >= camera.width - blind_columns) {
         pixel = {.reading = no_reading, .patience = never_lost};
       } else if (noise_ <= 0) {
-        pixel = {.reading = reading_of(seen), .patience = never_lost};
+        pixel = {.reading = reading_of(seen) + pattern_.error(index(u, v), seen),
+                 .patience = never_lost};
       } else {
         pixel = noisy(surface_at(depth, u, v), u, v);
       }
@@ -160,6 +162,7 @@ SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int
   const float fixed = std::sqrt(fixed_share);
   const float fresh = std::sqrt(1 - fixed_share);
   return {.reading = ideal + noise_ * distortion_[index(u, v)] +
+                     pattern_.error(index(u, v), surface.inverse_depth) +
                      fixed * spread * pattern / NoiseField::one,
           .spread = fresh * spread / NoiseField::one,
           .patience = (NoiseField::one * patience_of(surface) / noise_ - fixed * loss) / fresh};

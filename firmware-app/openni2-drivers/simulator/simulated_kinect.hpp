@@ -6,6 +6,7 @@
 
 #include "simulator/noise_field.hpp"
 #include "simulator/scene.hpp"
+#include "simulator/sensor_pattern.hpp"
 #include "simulator/surface.hpp"
 
 namespace octurn {
@@ -13,9 +14,10 @@ namespace octurn {
 /// A Kinect v1 that looks at a scene: 11-bit readings, their noise, lost edges and grazing
 /// surfaces, and no depth in the last 8 columns.
 ///
-/// Noise has three parts: one that is new in every frame; one that belongs to the place of the
+/// Its errors have four parts: one that is new in every frame; one that belongs to the place of the
 /// projector's pattern that falls on a surface, so that it stays as long as the scene does; and
-/// what calibration leaves of a lens's distortion, which stays for ever.
+/// what calibration leaves of a lens's distortion, which stays for ever; and the sensor's own
+/// pattern, which stays, too, and changes with distance.
 ///
 /// Planes of 40 x 40 pixels in eight frames of a real Kinect v1 and in simulated ones
 /// (kinect_noise_test compares them):
@@ -30,11 +32,12 @@ namespace octurn {
 /// 1.13 mm (root mean square), the mean of ten by 0.60 and of thirty by 0.54 mm.
 class SimulatedKinect {
  public:
-  /// @param object  in the platform's frame at angle 0, metres
+  /// @param scene   that it looks at
   /// @param seed    of the noise
   /// @param noise   times a real Kinect's; at 0 readings are only rounded, and nothing is lost
   ///                but what lies in shadow
-  SimulatedKinect(Mesh object, std::uint32_t seed, double noise);
+  /// @param pattern  times a real Kinect's; 0: it has none
+  SimulatedKinect(Scene scene, std::uint32_t seed, double noise, double pattern);
 
   /// Takes one frame: 640 x 480 depths in tenths of a millimetre, 0 for none.
   /// @param angle  of the platform, radians
@@ -66,7 +69,8 @@ class SimulatedKinect {
   std::uint32_t seed_;
   float noise_;
   NoiseField field_;
-  std::vector<float> distortion_;           // readings
+  std::vector<float> distortion_;  // readings
+  SensorPattern pattern_;
   std::vector<std::uint16_t> depth_table_;  // of readings
   double angle_ = 0;
   InverseDepth lit_;

@@ -51,7 +51,10 @@ std::string to_text(const CalibrationReport& report) {
 
 bool calibrate(const CalibrateArguments& arguments) try {
   const SignalStop signal;
-  const Scan scan = read_scan(arguments.folder);
+  Scan scan = read_scan(arguments.folder);
+  if (arguments.sensor_map) {
+    use_sensor_map(scan, *arguments.sensor_map);
+  }
   const CalibrationReport report = solve_pose(
       scan, stored_snapshots(arguments.folder, scan, signal.token()), available_threads());
   if (arguments.apply && report.accepted) {

@@ -24,6 +24,13 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
       ->check(CLI::Range(0.1, 1000.0))
       ->needs(simulate);
   command
+      .add_option("--simulate-wall", rig.wall,
+                  "the simulated sensor looks squarely at a wall so far away, as for a map of its "
+                  "own error")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.3, 6.0))
+      ->needs(simulate);
+  command
       .add_option("--sensor", rig.sensor_uri,
                   "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
                   "folder of `octurn record`")
@@ -87,18 +94,28 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
       "record", "what the sensor sees in a turn, to be replayed by --sensor");
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
   add_config_option(command, arguments.config);
-  command
-      .add_option("-o,--output", arguments.output,
-                  "folder for the recording, which must not exist yet")
-      ->type_name("DIR")
-      ->required();
+  CLI::Option* output = command
+                            .add_option("-o,--output", arguments.output,
+                                        "folder for the recording, which must not exist yet")
+                            ->type_name("DIR");
+  CLI::Option* wall =
+      command
+          .add_option("--wall", arguments.wall,
+                      "record what it sees of a bare wall instead, for `octurn calibrate --wall`: "
+                      "folder for it, which must not exist yet")
+          ->type_name("WALL_DIR")
+          ->excludes(output);
   command.add_option("--snapshots", arguments.snapshots, "stops in a turn (36); 1 does not turn")
       ->type_name("N")
-      ->check(CLI::Range(1, 200));
-  command.add_option("--frames", arguments.frames, "frames at each stop (10)")
+      ->check(CLI::Range(1, 200))
+      ->excludes(wall);
+  command.add_option("--frames", arguments.frames, "frames at each stop (10), or of a wall (25)")
       ->type_name("N")
       ->check(CLI::Range(1, 100'000));
-  command.callback([&arguments, simulate] {
+  command.callback([&arguments, simulate, output, wall] {
+    if (output->count() + wall->count() == 0) {
+      throw CLI::RequiredError("--output or --wall");
+    }
     arguments.rig.simulate = simulate->count() > 0;
     record(arguments);
   });
@@ -123,6 +140,16 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   });
 }
 
+/// @return the option --sensor-map
+CLI::Option* add_sensor_map_option(CLI::App& command,
+                                   std::optional<std::filesystem::path>& sensor_map) {
+  return command
+      .add_option("--sensor-map", sensor_map,
+                  "map of the sensor's own error, as --wall of `octurn calibrate` makes it (the "
+                  "folder's sensor-map.png)")
+      ->type_name("MAP");
+}
+
 void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
   CLI::App& command = *program.add_subcommand("reconstruct", "a model from a scan folder");
   command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
@@ -133,20 +160,47 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
       ->required();
   ModelSettings defaults;
   add_options(command, fields(defaults), arguments.settings);
+  add_sensor_map_option(command, arguments.sensor_map);
   command.add_flag("--json", arguments.json,
                    "print one line of JSON on standard output, or on standard error with -o -");
   command.callback([&] { reconstruct(arguments); });
 }
 
-void add_calibrate(CLI::App& program, CalibrateArguments& arguments, int& status) {
+void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
+                   CalibrateWallArguments& wall_arguments, int& status) {
   CLI::App& command = *program.add_subcommand(
-      "calibrate", "where the sensor stands, as the snapshots of a scan tell");
-  command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
-  command.add_flag("--apply", arguments.apply,
-                   "write what is accepted into scan.json, for models to come");
+      "calibrate", "where the sensor stands, as a scan tells; or its own error, as walls tell");
+  CLI::Option* folder = command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json");
+  CLI::Option* apply = command.add_flag(
+      "--apply", arguments.apply, "write what is accepted into scan.json, for models to come");
+  CLI::Option* map = add_sensor_map_option(command, arguments.sensor_map);
+  CLI::Option* wall =
+      command
+          .add_option("--wall", wall_arguments.walls,
+                      "looks at a bare wall, as `octurn record --wall` makes them: make a map of "
+                      "the sensor's own error from them")
+          ->type_name("WALL_DIR")
+          ->expected(1, 100)
+          ->excludes(folder)
+          ->excludes(apply)
+          ->excludes(map);
+  CLI::Option* output =
+      command.add_option("-o,--output", wall_arguments.output, "file for the map, a PNG")
+          ->type_name("MAP")
+          ->needs(wall);
+  wall->needs(output);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
-  command.footer("It ends with 0 if the pose is accepted, with 1 if it is not.");
-  command.callback([&arguments, &status] { status = calibrate(arguments) ? 0 : 1; });
+  command.footer("It ends with 0 if what it found is accepted, with 1 if it is not.");
+  command.callback([&, folder, wall] {
+    if (wall->count() > 0) {
+      wall_arguments.json = arguments.json;
+      status = calibrate_wall(wall_arguments) ? 0 : 1;
+    } else if (folder->count() > 0) {
+      status = calibrate(arguments) ? 0 : 1;
+    } else {
+      throw CLI::RequiredError("SCAN_DIR or --wall");
+    }
+  });
 }
 
 void add_password(CLI::App& program, std::filesystem::path& file) {
@@ -185,6 +239,7 @@ int run(int argc, char** argv) {
   DoctorArguments doctor_arguments;
   ReconstructArguments reconstruct_arguments;
   CalibrateArguments calibrate_arguments;
+  CalibrateWallArguments calibrate_wall_arguments;
   std::filesystem::path password_file;
   std::filesystem::path update_file;
   int status = 0;
@@ -193,7 +248,7 @@ int run(int argc, char** argv) {
   add_record(program, record_arguments);
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
-  add_calibrate(program, calibrate_arguments, status);
+  add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
   add_password(program, password_file);
   add_update(program, update_file);
 

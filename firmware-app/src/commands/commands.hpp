@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config.hpp"
 #include "config/config_store.hpp"
@@ -14,9 +15,10 @@ namespace octurn {
 /// Options of the sensor and the turntable.
 struct RigArguments {
   bool simulate = false;
-  std::string mesh_file = {};   ///< on the simulated platform; empty: the simulator's own object
-  double speed = 1.0;           ///< of the simulated rig, relative to life
-  std::string sensor_uri = {};  ///< of a DepthSensor; empty: the default one
+  std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
+  std::optional<double> wall = {};  ///< metres: the simulated sensor looks at a wall
+  double speed = 1.0;               ///< of the simulated rig, relative to life
+  std::string sensor_uri = {};      ///< of a DepthSensor; empty: the default one
 };
 
 /// The rig that the options select.
@@ -66,12 +68,15 @@ struct RecordArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
   std::filesystem::path output = {};
-  int snapshots = 36;  ///< stops in a turn
-  int frames = 10;     ///< at each stop
+  std::filesystem::path wall = {};  ///< folder for a look at a wall, in place of a recording
+  int snapshots = 36;               ///< stops in a turn
+  std::optional<int> frames = {};   ///< at each stop; 10, or 25 of a wall
 };
 
-/// `octurn record`: records the sensor during one turn of the platform, for `--sensor` to replay.
+/// `octurn record`: records the sensor during one turn of the platform, for `--sensor` to replay;
+/// or what it sees of a wall, for `octurn calibrate --wall`.
 void record(const RecordArguments& arguments);
+void record_wall(const RecordArguments& arguments);
 
 struct DoctorArguments {
   RigArguments rig = {};
@@ -86,9 +91,10 @@ bool doctor(const DoctorArguments& arguments);
 
 struct ReconstructArguments {
   std::filesystem::path folder = {};
-  std::filesystem::path output = {};                   ///< "-" is standard output
-  nlohmann::json settings = nlohmann::json::object();  ///< of ModelSettings, by their keys
-  bool json = false;                                   ///< one line of JSON on standard output
+  std::filesystem::path output = {};                     ///< "-" is standard output
+  nlohmann::json settings = nlohmann::json::object();    ///< of ModelSettings, by their keys
+  std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
+  bool json = false;                                     ///< one line of JSON on standard output
 };
 
 /// `octurn reconstruct`: makes a model from a scan folder.
@@ -96,6 +102,7 @@ void reconstruct(const ReconstructArguments& arguments);
 
 struct CalibrateArguments {
   std::filesystem::path folder = {};
+  std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
   bool apply = false;  ///< writes what is accepted into the folder's scan.json
   bool json = false;   ///< one line of JSON in place of text
 };
@@ -103,6 +110,16 @@ struct CalibrateArguments {
 /// `octurn calibrate`: the sensor's pose, from a stored scan.
 /// @return false if what was solved is not to be trusted
 bool calibrate(const CalibrateArguments& arguments);
+
+struct CalibrateWallArguments {
+  std::vector<std::filesystem::path> walls = {};  ///< folders with a wall.json
+  std::filesystem::path output = {};
+  bool json = false;  ///< one line of JSON in place of text
+};
+
+/// `octurn calibrate --wall`: the map of a sensor's own error, from looks at flat walls.
+/// @return false if they are no walls
+bool calibrate_wall(const CalibrateWallArguments& arguments);
 
 /// `octurn password`: reads a line from standard input, and writes it as a password file for
 /// `password_file` of the configuration.

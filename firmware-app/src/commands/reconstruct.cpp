@@ -189,6 +189,15 @@ PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelS
   return posed;
 }
 
+/// The scan, to be read with the sensor map that the arguments name, else with its own.
+Scan read_scan_of(const ReconstructArguments& arguments) {
+  Scan scan = read_scan(arguments.folder);
+  if (arguments.sensor_map) {
+    use_sensor_map(scan, *arguments.sensor_map);
+  }
+  return scan;
+}
+
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
@@ -197,7 +206,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   ModelSettings settings = settings_from(arguments.settings);
   expect_writable(arguments.output);
   const auto [scan, findings] =
-      with_pose(read_scan(arguments.folder), arguments.folder, settings, stop);
+      with_pose(read_scan_of(arguments), arguments.folder, settings, stop);
   if (!arguments.settings.contains("clip_mm")) {
     settings.scan.clip = scan.clip;
   }

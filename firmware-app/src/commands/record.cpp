@@ -13,6 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int usual_frames = 10;  // at a stop
+
 /// The next frame whose exposure ended after the platform had settled.
 TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
                          const std::stop_token& stop) {
@@ -30,6 +32,10 @@ TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
 }  // namespace
 
 void record(const RecordArguments& arguments) {
+  if (!arguments.wall.empty()) {
+    record_wall(arguments);
+    return;
+  }
   const Config config = make_config(arguments.config);
   const RigOptions options = rig_options(arguments.rig, config.turntable);
   load_sensor_drivers();  // before the first thread, as it asks
@@ -39,7 +45,8 @@ void record(const RecordArguments& arguments) {
   DepthSensor& sensor = rig.sensor();
   Turntable& turntable = rig.turntable();
   const int steps = turntable.steps_per_turn();
-  RecordingWriter writer(arguments.output, sensor.name(), sensor.intrinsics());
+  RecordingWriter writer(arguments.output, sensor.name(), sensor.serial(), sensor.intrinsics());
+  const int frames = arguments.frames.value_or(usual_frames);
   ProgressBar bar;
   std::optional<Clock::time_point> begin;
   int done = 0;
@@ -50,7 +57,7 @@ void record(const RecordArguments& arguments) {
       throw_stopped("no recording was written");
     }
     const Clock::time_point settled = Clock::now();
-    for (int frame = 0; frame < arguments.frames; ++frame) {
+    for (int frame = 0; frame < frames; ++frame) {
       const TimedFrame timed = settled_frame(sensor, settled, stop);
       begin = begin.value_or(timed.time);
       writer.write(timed.frame, {.time = timed.time - *begin,

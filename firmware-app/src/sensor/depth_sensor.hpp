@@ -29,6 +29,10 @@ class DepthSensor {
   virtual const std::string& name() const = 0;
   virtual const Intrinsics& intrinsics() const = 0;
 
+  /// What tells this sensor from others of its kind: its serial number, else where on USB it is
+  /// plugged in; empty if neither is known.
+  virtual std::string serial() const = 0;
+
   /// Waits for the next frame.
   /// @return nothing if a stop was requested first
   /// @throws Error "sensor-silent" if no frame comes for 2 s by the sensor's clock, "sensor-lost"

@@ -132,6 +132,7 @@ class OpenNiSensor final : public DepthSensor {
 
   const std::string& name() const override { return name_; }
   const Intrinsics& intrinsics() const override { return intrinsics_; }
+  std::string serial() const override;
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<int> damaged_frames() const override;
@@ -250,6 +251,21 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
 }
 
 std::optional<Tilt> OpenNiSensor::tilt() const { return property_of<Tilt>(device_, tilt_property); }
+
+/// OpenNI2 puts the place on USB into the URI of a sensor without a serial number.
+std::string OpenNiSensor::serial() const {
+  std::array<char, ONI_MAX_STR> text = {};
+  int size = sizeof text;
+  if (device_.isFile()) {
+    return {};
+  }
+  if (device_.getProperty(ONI_DEVICE_PROPERTY_SERIAL_NUMBER, text.data(), &size) ==
+          openni::STATUS_OK &&
+      text.front() != '\0') {
+    return {text.data(), ::strnlen(text.data(), text.size())};
+  }
+  return device_.getDeviceInfo().getUri();
+}
 
 std::optional<int> OpenNiSensor::damaged_frames() const {
   return property_of<int>(device_, damaged_frames_property);

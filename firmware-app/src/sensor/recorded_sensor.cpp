@@ -28,6 +28,7 @@ class RecordedSensor final : public DepthSensor {
 
   const std::string& name() const override { return name_; }
   const Intrinsics& intrinsics() const override { return recording_.intrinsics; }
+  std::string serial() const override { return recording_.sensor_serial; }
 
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     const std::size_t frame = next_frame();

@@ -1,7 +1,5 @@
 #include "sensor/recording.hpp"
 
-#include <fcntl.h>
-
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "file_descriptor.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
@@ -35,11 +32,6 @@ std::string frame_file(std::size_t frame) {
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "frames/%06zu.png", frame);
   return name.data();
-}
-
-[[noreturn]] void fail(const fs::path& file, const std::string& what) {
-  throw Error(ErrorCode::write_failed, file.string() + ": " + what,
-              "Name a folder that does not exist yet, where this program may write.");
 }
 
 Intrinsics intrinsics_from(JsonObject& sensor) {
@@ -83,18 +75,18 @@ json to_json(const Recording& recording) {
   for (const RecordedFrame& frame : recording.frames) {
     frames.push_back(to_json(frame));
   }
-  return {{"format", format},
-          {"version", version},
-          {"sensor",
-           {{"name", recording.sensor_name},
-            {"width", camera.width},
-            {"height", camera.height},
-            {"fx", camera.fx},
-            {"fy", camera.fy},
-            {"cx", camera.cx},
-            {"cy", camera.cy},
-            {"depth_unit_m", camera.depth_unit}}},
-          {"frames", frames}};
+  json sensor{{"name", recording.sensor_name},
+              {"width", camera.width},
+              {"height", camera.height},
+              {"fx", camera.fx},
+              {"fy", camera.fy},
+              {"cx", camera.cx},
+              {"cy", camera.cy},
+              {"depth_unit_m", camera.depth_unit}};
+  if (!recording.sensor_serial.empty()) {
+    sensor["serial"] = recording.sensor_serial;
+  }
+  return {{"format", format}, {"version", version}, {"sensor", sensor}, {"frames", frames}};
 }
 
 /// @throws Error "recording-malformed"  if it is missing, no file, too large, or its disk fails
@@ -111,14 +103,6 @@ std::string content_of(const fs::path& file) {
               "Give the folder that `octurn record` has made.");
 }
 
-/// Has the disk of that folder write everything that it was given.
-void sync_disk_of(const fs::path& folder) {
-  const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!opened.is_open() || ::syncfs(opened.number()) != 0) {
-    fail(folder, "cannot be synced");
-  }
-}
-
 }  // namespace
 
 Recording parse_recording(std::string_view text) {
@@ -130,6 +114,7 @@ Recording parse_recording(std::string_view text) {
   }
   JsonObject sensor(keys.at("sensor"));
   Recording recording{.sensor_name = sensor.at("name").text(),
+                      .sensor_serial = sensor.text("serial").value_or(""),
                       .intrinsics = intrinsics_from(sensor)};
   sensor.refuse_unread();
   const JsonValue frames = keys.at("frames");
@@ -161,53 +146,31 @@ DepthFrame read_recorded_frame(const fs::path& folder, const Recording& recordin
                           recording.intrinsics.height);
 }
 
-RecordingWriter::RecordingWriter(fs::path folder, std::string sensor_name,
-                                 const Intrinsics& intrinsics)
-    : folder_(folder.has_filename() ? std::move(folder) : folder.parent_path()),
-      recording_{.sensor_name = std::move(sensor_name), .intrinsics = intrinsics} {
-  std::error_code error;
-  if (fs::exists(fs::symlink_status(folder_, error))) {
-    fail(folder_, "is there already");
-  }
-  if (folder_.has_parent_path()) {
-    fs::create_directories(folder_.parent_path(), error);
-  }
-  for (int attempt = 0; temporary_.empty(); ++attempt) {
-    const fs::path wanted = temporary_name(folder_, attempt);
-    if (fs::create_directory(wanted, error)) {
-      temporary_ = wanted;
-    } else if (error) {
-      fail(folder_, "cannot be made: " + error.message());
-    }
-  }
-  fs::create_directory(temporary_ / "frames", error);
-}
-
-RecordingWriter::~RecordingWriter() {
-  std::error_code ignored;
-  fs::remove_all(temporary_, ignored);
+RecordingWriter::RecordingWriter(const fs::path& folder, std::string sensor_name,
+                                 std::string sensor_serial, const Intrinsics& intrinsics)
+    : folder_(folder),
+      recording_{.sensor_name = std::move(sensor_name),
+                 .sensor_serial = std::move(sensor_serial),
+                 .intrinsics = intrinsics} {
+  std::error_code ignored;  // if it cannot be made, its first frame says why
+  fs::create_directory(folder_.path() / "frames", ignored);
 }
 
 void RecordingWriter::write(const DepthFrame& frame, const RecordedFrame& about) {
-  const fs::path file = temporary_ / frame_file(recording_.frames.size());
+  const fs::path file = folder_.path() / frame_file(recording_.frames.size());
   const std::vector<std::byte> png = encode_depth_png(frame);
   std::ofstream stream(file, std::ios::binary);
   stream.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   if (!stream.flush()) {
-    fail(file, "cannot be written: is the disk full?");
+    throw Error(ErrorCode::write_failed, file.string() + ": cannot be written: is the disk full?",
+                "Name a folder where this program may write.");
   }
   recording_.frames.push_back(about);
 }
 
 void RecordingWriter::commit() {
-  write_file(temporary_ / "recording.json", to_json(recording_).dump(1) + "\n");
-  sync_disk_of(temporary_);
-  std::error_code error;
-  fs::rename(temporary_, folder_, error);
-  if (error) {
-    fail(folder_, "cannot be made: " + error.message());
-  }
-  sync_disk_of(folder_);
+  write_file(folder_.path() / "recording.json", to_json(recording_).dump(1) + "\n");
+  folder_.commit();
 }
 
 }  // namespace octurn

@@ -10,6 +10,7 @@
 
 #include "octurn/depth_frame.hpp"
 #include "rig/tilt.hpp"
+#include "sensor/new_folder.hpp"
 
 namespace octurn {
 
@@ -26,9 +27,10 @@ struct RecordedFrame {
 /// `{"format": "octurn-recording", "version": 1, "sensor": {"name": "Kinect v1", "width": 640,
 /// "height": 480, "fx": 575.8, "fy": 575.8, "cx": 320, "cy": 240, "depth_unit_m": 0.0001},
 /// "frames": [{"time_s": 0, "angle_deg": 0, "pitch_deg": -25, "roll_deg": 0}, ...]}`, the last two
-/// only where the sensor has told them.
+/// only where the sensor has told them; "sensor" also has its "serial", if it has told that.
 struct Recording {
   std::string sensor_name = {};
+  std::string sensor_serial = {};  ///< empty if it told none
   Intrinsics intrinsics = {};
   std::vector<RecordedFrame> frames = {};
 };
@@ -49,11 +51,8 @@ DepthFrame read_recorded_frame(const std::filesystem::path& folder, const Record
 class RecordingWriter {
  public:
   /// @throws Error "write-failed"  if `folder` exists or cannot be made
-  RecordingWriter(std::filesystem::path folder, std::string sensor_name,
-                  const Intrinsics& intrinsics);
-  ~RecordingWriter();
-  RecordingWriter(const RecordingWriter&) = delete;
-  RecordingWriter& operator=(const RecordingWriter&) = delete;
+  RecordingWriter(const std::filesystem::path& folder, std::string sensor_name,
+                  std::string sensor_serial, const Intrinsics& intrinsics);
 
   /// Appends a frame. @throws Error  if the disk does not take it
   void write(const DepthFrame& frame, const RecordedFrame& about);
@@ -62,8 +61,7 @@ class RecordingWriter {
   void commit();
 
  private:
-  std::filesystem::path folder_;
-  std::filesystem::path temporary_;
+  NewFolder folder_;
   Recording recording_;
 };
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "core/io/scan_json.hpp"
 #include "octurn/depth_png.hpp"
@@ -54,6 +56,70 @@ TEST(ReadSnapshot, IsTheImageSeenFromItsAngle) {
   // it come round clockwise, to (-0.62, -0.01, 0.4).
   const Eigen::Vector3d eye = snapshot.object_from_sensor.translation();
   EXPECT_LT((eye - Eigen::Vector3d(-0.62, -0.01, 0.4)).norm(), 1e-12);
+}
+
+/// A map that finds every pixel of the contract's scan too far by so much, 1/m.
+SensorMap map_of(float error, int width = 4) {
+  return {.width = width,
+          .height = 3,
+          .near_inverse_depth = 1.5,
+          .near = std::vector<float>(static_cast<std::size_t>(width) * 3, error)};
+}
+
+TEST(ReadSnapshot, IsCorrectedByTheFoldersSensorMap) {
+  const TemporaryFolder folder;
+  write_contract_scan(folder.path());
+  const std::string stored = content_of(folder.path() / "snapshots" / "000.png");
+  write_sensor_map(folder.path() / sensor_map_file, map_of(0.01F));
+  const Scan scan = read_scan(folder.path());
+
+  const Snapshot snapshot = read_snapshot(folder.path(), scan, scan.shots[0]);
+
+  EXPECT_EQ(snapshot.frame.depth[0], 0);
+  EXPECT_EQ(snapshot.frame.depth[1], std::lround(1e4 / (1e4 / 8001 - 0.01)));
+  EXPECT_EQ(content_of(folder.path() / "snapshots" / "000.png"), stored);
+}
+
+TEST(UseSensorMap, ReplacesTheFoldersOwn) {
+  const TemporaryFolder folder;
+  write_contract_scan(folder.path());
+  write_sensor_map(folder.path() / sensor_map_file, map_of(0.01F));
+  write_sensor_map(folder.path() / "other.png", map_of(-0.02F));
+  Scan scan = read_scan(folder.path());
+
+  use_sensor_map(scan, folder.path() / "other.png");
+
+  EXPECT_EQ(read_snapshot(folder.path(), scan, scan.shots[0]).frame.depth[1],
+            std::lround(1e4 / (1e4 / 8001 + 0.02)));
+}
+
+TEST(UseSensorMap, RefusesAMapOfAnotherSize) {
+  const TemporaryFolder folder;
+  Scan scan = write_contract_scan(folder.path());
+  write_sensor_map(folder.path() / sensor_map_file, map_of(0.01F, 5));
+
+  EXPECT_EQ(code_thrown_by([&] { use_sensor_map(scan, folder.path() / sensor_map_file); }),
+            "scan-malformed");
+  EXPECT_EQ(code_thrown_by([&] { read_scan(folder.path()); }), "scan-malformed");
+}
+
+TEST(ReadScan, RefusesASensorMapThatIsDamaged) {
+  const TemporaryFolder folder;
+  write_contract_scan(folder.path());
+  put(folder.path() / sensor_map_file, "no map");
+
+  EXPECT_EQ(code_thrown_by([&] { read_scan(folder.path()); }), "scan-malformed");
+}
+
+TEST(WriteScan, KeepsTheSensorsSerialNumber) {
+  const TemporaryFolder folder;
+  Scan scan = write_contract_scan(folder.path());
+  EXPECT_EQ(scan.sensor_serial, "");
+  scan.sensor_serial = "A00361";
+
+  write_scan(folder.path(), scan);
+
+  EXPECT_EQ(read_scan(folder.path()).sensor_serial, "A00361");
 }
 
 TEST(ReadSnapshot, SaysWhichFileIsMissing) {

@@ -12,53 +12,12 @@
 
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/simulated_scan.hpp"
+#include "core/tsdf/surface_errors.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
-
-/// How far the observed surface is from the true one, each facet by its area, millimetres.
-struct Errors {
-  double mean = 0;
-  double p95 = 0;
-};
-
-Errors errors_of(const std::vector<Facet>& facets, const Shape& truth) {
-  struct Part {
-    double error = 0;
-    double area = 0;
-  };
-  std::vector<Part> parts;
-  double whole = 0;
-  Errors errors;
-  for (const Facet& facet : facets) {
-    const auto corners = facet.corners;
-    const Eigen::Vector3d a = Eigen::Vector3f(corners[0].data()).cast<double>();
-    const Eigen::Vector3d b = Eigen::Vector3f(corners[1].data()).cast<double>();
-    const Eigen::Vector3d c = Eigen::Vector3f(corners[2].data()).cast<double>();
-    const Eigen::Vector3d middle = (a + b + c) / 3;
-    if (facet.attributes == filled_in || middle.z() < 6) {  // the clip box begins at 5
-      continue;
-    }
-    const Part part{.error = std::abs(mm_from_metres(truth(middle / 1000))),
-                    .area = (b - a).cross(c - a).norm() / 2};
-    parts.push_back(part);
-    whole += part.area;
-    errors.mean += part.error * part.area;
-  }
-  errors.mean /= whole;
-  std::ranges::sort(parts, {}, &Part::error);
-  double below = 0;
-  for (const Part& part : parts) {
-    below += part.area;
-    if (below >= 0.95 * whole) {
-      errors.p95 = part.error;
-      break;
-    }
-  }
-  return errors;
-}
 
 // What a reading errs by, millimetres: the root mean square over the platform at 0.65 m of the mean
 // of ten frames, as kinect_noise_test measures it (simulated_kinect.hpp). Conditioning and the

@@ -45,15 +45,17 @@ inline SimulatedObject standing_block(const Eigen::Vector3d& size,
 
 struct SimulatedTurn {
   int snapshots = 8;
-  int frames = 10;     // at each stop, averaged
-  double noise = 1.0;  // times a real Kinect's
+  int frames = 10;       // at each stop, averaged
+  double noise = 1.0;    // times a real Kinect's
+  double pattern = 0.0;  // its fixed error, times a real Kinect's
 };
 
 /// What a simulated Kinect v1 sees of an object in one turn.
 inline std::vector<Snapshot> simulated_scan(const SimulatedObject& object,
                                             const SimulatedTurn& turn = {}) {
   constexpr double cell = 0.001;  // metres: its mesh leaves a ball of 5 mm by 0.05 mm
-  SimulatedKinect kinect(surface_net(object.distance, object.bounds, cell), 1, turn.noise);
+  SimulatedKinect kinect(Scene(surface_net(object.distance, object.bounds, cell)), 1, turn.noise,
+                         turn.pattern);
   std::vector<Snapshot> snapshots;
   std::uint32_t number = 0;
   for (int i = 0; i < turn.snapshots; ++i) {

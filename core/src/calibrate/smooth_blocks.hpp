@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+namespace octurn {
+
+/// Values on a grid, some of them unknown.
+struct BlockValues {
+  int columns = 0;
+  int rows = 0;
+  std::vector<double> values = {};   ///< columns x rows, row by row
+  std::vector<double> weights = {};  ///< the same: 1 where the value is known, else 0
+};
+
+/// Smooths known values with a Gaussian window of unknown ones left out, then adds what the window
+/// took away, smoothed again ("twicing", Tukey 1977): long waves keep their height, short ones go.
+/// Unknown values far from known ones are filled by diffusion (Laplace's equation).
+///
+/// @param sigma  of the window, cells
+/// @return columns x rows values; 0 if none is known
+std::vector<double> smooth_blocks(const BlockValues& blocks, double sigma);
+
+}  // namespace octurn

@@ -1,0 +1,152 @@
+#include "io/grey_png.hpp"
+
+#include <spng.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+namespace octurn {
+namespace {
+
+constexpr std::size_t max_chunk_bytes = 1U << 20U;  // of texts and the like
+
+struct FreeContext {
+  void operator()(spng_ctx* context) const { spng_ctx_free(context); }
+};
+using Context = std::unique_ptr<spng_ctx, FreeContext>;
+
+void check_encoded(int status) {
+  if (status != 0) {
+    throw std::runtime_error(std::string("encode_png: ") + spng_strerror(status));
+  }
+}
+
+/// Bytes that libspng takes from the front.
+struct Input {
+  std::span<const std::byte> bytes;
+  bool ran_out = false;  // libspng itself passes over a missing checksum at the very end
+};
+
+int take(spng_ctx* /*context*/, void* input, void* destination, std::size_t size) noexcept {
+  auto& [bytes, ran_out] = *static_cast<Input*>(input);
+  if (size > bytes.size()) {
+    ran_out = true;
+    return SPNG_IO_EOF;
+  }
+  std::memcpy(destination, bytes.data(), size);
+  bytes = bytes.subspan(size);
+  return 0;
+}
+
+/// The text of that keyword, or nothing.
+std::string find_text(spng_ctx* context, std::string_view keyword) {
+  std::uint32_t count = 0;
+  if (spng_get_text(context, nullptr, &count) != 0) {
+    return {};
+  }
+  std::vector<spng_text> texts(count);
+  if (spng_get_text(context, texts.data(), &count) != 0) {
+    return {};
+  }
+  for (const spng_text& text : texts) {
+    if (keyword == text.keyword) {
+      return {text.text, text.length};
+    }
+  }
+  return {};
+}
+
+void set_text(spng_ctx* context, PngText& text) {
+  if (text.keyword.empty()) {
+    return;
+  }
+  spng_text chunk{};
+  text.keyword.copy(chunk.keyword, sizeof chunk.keyword - 1);
+  chunk.type = SPNG_TEXT;
+  chunk.length = text.text.size();
+  chunk.text = text.text.data();
+  check_encoded(spng_set_text(context, &chunk, 1));
+}
+
+template <typename Sample>
+std::vector<std::byte> encode(int width, int height, std::span<const Sample> samples,
+                              PngText& text) {
+  if (width < 1 || height < 1 ||
+      samples.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw std::invalid_argument("encode_png: there are not width x height samples");
+  }
+  const Context context(spng_ctx_new(SPNG_CTX_ENCODER));
+  spng_ihdr header{};
+  header.width = static_cast<std::uint32_t>(width);
+  header.height = static_cast<std::uint32_t>(height);
+  header.bit_depth = 8 * sizeof(Sample);
+  header.color_type = SPNG_COLOR_TYPE_GRAYSCALE;
+  check_encoded(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
+  check_encoded(spng_set_ihdr(context.get(), &header));
+  set_text(context.get(), text);
+  check_encoded(spng_encode_image(context.get(), samples.data(), samples.size_bytes(), SPNG_FMT_PNG,
+                                  SPNG_ENCODE_FINALIZE));
+  std::size_t size = 0;
+  int status = 0;
+  const std::unique_ptr<void, decltype(&std::free)> png(
+      spng_get_png_buffer(context.get(), &size, &status), &std::free);
+  check_encoded(status);
+  const auto* bytes = static_cast<const std::byte*>(png.get());
+  return {bytes, bytes + size};
+}
+
+}  // namespace
+
+void PngSource::refuse(const std::string& what) const {
+  throw Error(malformed, std::string(name) + ": " + what, std::string(hint));
+}
+
+GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
+                          const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  const auto check = [&](int status) {
+    if (status != 0) {
+      source.refuse(std::string("not a whole PNG: ") + spng_strerror(status));
+    }
+  };
+  Input input{.bytes = source.bytes};
+  const Context context(spng_ctx_new(0));
+  check(spng_set_chunk_limits(context.get(), max_chunk_bytes, max_chunk_bytes));
+  check(spng_set_png_stream(context.get(), take, &input));
+  spng_ihdr header{};
+  check(spng_get_ihdr(context.get(), &header));
+  if (header.bit_depth != 16 || header.color_type != SPNG_COLOR_TYPE_GRAYSCALE) {
+    source.refuse("not a 16-bit greyscale PNG");
+  }
+  expect_size(header.width, header.height);
+  GreyPng image{.width = static_cast<int>(header.width), .height = static_cast<int>(header.height)};
+  image.samples.resize(std::size_t{header.width} * header.height);
+  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(image.samples));
+  check(spng_decode_image(context.get(), bytes.data(), bytes.size(), SPNG_FMT_PNG, 0));
+  check(spng_decode_chunks(context.get()));
+  if (input.ran_out) {
+    source.refuse("not a whole PNG: cut short at its end");
+  }
+  if (!input.bytes.empty()) {
+    source.refuse("not a whole PNG: bytes after its end");
+  }
+  image.text = find_text(context.get(), keyword);
+  return image;
+}
+
+std::vector<std::byte> encode_grey_png(int width, int height,
+                                       std::span<const std::uint16_t> samples, PngText text) {
+  return encode(width, height, samples, text);
+}
+
+std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint8_t> samples,
+                                       PngText text) {
+  return encode(width, height, samples, text);
+}
+
+std::string size_text(std::uint32_t width, std::uint32_t height) {
+  return std::to_string(width) + " x " + std::to_string(height) + " pixels";
+}
+
+}  // namespace octurn

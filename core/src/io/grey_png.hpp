@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+
+/// A text that goes with a picture (a PNG's tEXt chunk).
+struct PngText {
+  std::string keyword = {};  ///< up to 79 characters; empty: there is no text
+  std::string text = {};     ///< ASCII
+};
+
+/// A greyscale picture of 16 bits a sample.
+struct GreyPng {
+  int width = 0;                            ///< pixels
+  int height = 0;                           ///< pixels
+  std::vector<std::uint16_t> samples = {};  ///< width x height, row by row from the top left
+  std::string text = {};                    ///< of the keyword that was asked for; empty if none
+};
+
+/// A PNG to decode, and how it is refused if it is none.
+struct PngSource {
+  std::string_view name = {};  ///< of the file, for messages
+  std::span<const std::byte> bytes = {};
+  ErrorCode malformed = ErrorCode::snapshot_malformed;
+  std::string_view hint = {};
+
+  [[noreturn]] void refuse(const std::string& what) const;
+};
+
+/// Decodes a 16-bit greyscale PNG.
+///
+/// @param keyword      of the text to return
+/// @param expect_size  told the size in pixels before memory is taken for them; throws if it is
+///                     not the one that is allowed
+/// @throws Error "source.malformed"  if it is something else, damaged, cut short, or followed by
+///                                   other bytes
+GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
+                          const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
+
+/// Encodes a greyscale picture of 8 or 16 bits a sample.
+/// @throws std::invalid_argument  if it is empty, or there are not width x height samples
+std::vector<std::byte> encode_grey_png(int width, int height,
+                                       std::span<const std::uint16_t> samples, PngText text);
+std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint8_t> samples,
+                                       PngText text);
+
+/// "640 x 480 pixels"
+std::string size_text(std::uint32_t width, std::uint32_t height);
+
+}  // namespace octurn

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "octurn/depth_frame.hpp"
+#include "octurn/json_object.hpp"
+
+namespace octurn {
+
+/// The key "sensor" of scan.json and wall.json.
+struct SensorJson {
+  std::string name = {};
+  std::string serial = {};  ///< empty if there is none
+  Intrinsics intrinsics = {};
+};
+
+SensorJson sensor_from(const JsonValue& object);
+nlohmann::json to_json(const SensorJson& sensor);
+
+/// A file's name inside a folder. @throws Error  if it is absolute, leads out, or is no name
+/// @param must  completes "... must be"
+std::string file_inside(const JsonValue& value, const std::string& must);
+
+/// The content of a file of a scan or a wall.
+/// @param missing  code of the error if there is none, and what is to be done about it
+/// @param malformed  code of the error if it is too large
+std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std::string_view hint,
+                       ErrorCode malformed);
+
+}  // namespace octurn

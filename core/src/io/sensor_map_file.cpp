@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "io/grey_png.hpp"
+#include "octurn/file.hpp"
+#include "octurn/json_object.hpp"
+#include "octurn/sensor_map.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* keyword = "octurn-sensor-map";
+constexpr ErrorCode malformed = ErrorCode::scan_malformed;
+constexpr const char* hint = "Make it again with `octurn calibrate --wall`.";
+
+constexpr std::uint32_t max_side = 4096;             // pixels
+constexpr std::size_t max_file_bytes = 128U << 20U;  // twice two uncompressed images of that size
+constexpr double step = 1e-5;                        // 1/m, of the samples
+constexpr int zero = 1 << 15;                        // the sample of no error
+constexpr double max_inverse_depth = 100;            // 1/m
+
+/// The samples of a plane of the map.
+void append(std::vector<std::uint16_t>& samples, const std::vector<float>& plane) {
+  for (const float error : plane) {
+    const double rounded = std::round(static_cast<double>(error) / step) + zero;
+    samples.push_back(static_cast<std::uint16_t>(
+        std::clamp(rounded, 0.0, double{std::numeric_limits<std::uint16_t>::max()})));
+  }
+}
+
+std::vector<float> to_plane(std::span<const std::uint16_t> samples) {
+  std::vector<float> plane;
+  plane.reserve(samples.size());
+  for (const std::uint16_t sample : samples) {
+    plane.push_back(static_cast<float>((sample - zero) * step));
+  }
+  return plane;
+}
+
+json to_json(const SensorMap& map) {
+  json inverse_depths{map.near_inverse_depth};
+  if (!map.far.empty()) {
+    inverse_depths.push_back(map.far_inverse_depth);
+  }
+  return {{"version", 1},         {"inverse_depths", std::move(inverse_depths)},
+          {"serial", map.serial}, {"made", map.made},
+          {"before", map.before}, {"after", map.after}};
+}
+
+/// What the text says; the planes are still empty, and `far_inverse_depth` is 0 if there is one.
+SensorMap from_json(const json& document) {
+  JsonObject keys(document, malformed, "");
+  if (const JsonValue version = keys.at("version"); version.number() != 1) {
+    version.refuse("1, which this program reads");
+  }
+  SensorMap map{.serial = keys.at("serial").text(),
+                .made = keys.at("made").text(),
+                .before = keys.at("before").number(0, max_inverse_depth),
+                .after = keys.at("after").number(0, max_inverse_depth)};
+  const JsonValue depths = keys.at("inverse_depths");
+  const std::vector<JsonValue> values = depths.elements();
+  if (values.empty() || values.size() > 2) {
+    depths.refuse("one number, or two");
+  }
+  map.near_inverse_depth = values[0].number(0, max_inverse_depth);
+  if (values.size() == 2) {
+    map.far_inverse_depth = values[1].number(0, max_inverse_depth);
+    if (map.far_inverse_depth >= map.near_inverse_depth) {
+      depths.refuse("the nearer first");
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_sensor_map(const SensorMap& map) {
+  const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+  if (map.near.size() != pixels || (!map.far.empty() && map.far.size() != pixels)) {
+    throw std::invalid_argument("encode_sensor_map: there are not width x height errors");
+  }
+  std::vector<std::uint16_t> samples;
+  append(samples, map.near);
+  append(samples, map.far);
+  return encode_grey_png(
+      map.width, map.far.empty() ? map.height : 2 * map.height,
+      std::span<const std::uint16_t>(samples),
+      {.keyword = keyword,
+       .text = to_json(map).dump(-1, ' ', true, json::error_handler_t::replace)});
+}
+
+SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> png) {
+  const PngSource source{.name = name, .bytes = png, .malformed = malformed, .hint = hint};
+  const GreyPng image =
+      decode_grey16_png(source, keyword, [&](std::uint32_t width, std::uint32_t height) {
+        if (width > max_side || height > 2 * max_side) {
+          source.refuse(size_text(width, height) + ": larger than any sensor's");
+        }
+      });
+  if (image.text.empty()) {
+    source.refuse("a picture, but no map of a sensor");
+  }
+  SensorMap map;
+  try {
+    map = from_json(parse_json(image.text, malformed, "its text"));
+  } catch (const Error& error) {
+    source.refuse(error.what());
+  }
+  const int planes = map.far_inverse_depth > 0 ? 2 : 1;
+  if (image.height % planes != 0) {
+    source.refuse("two maps do not fit in " + std::to_string(image.height) + " rows");
+  }
+  map.width = image.width;
+  map.height = image.height / planes;
+  const std::span<const std::uint16_t> samples(image.samples);
+  const std::size_t pixels = samples.size() / static_cast<std::size_t>(planes);
+  map.near = to_plane(samples.first(pixels));
+  map.far = to_plane(samples.subspan(pixels));
+  return map;
+}
+
+SensorMap read_sensor_map(const std::filesystem::path& file) {
+  std::optional<std::string> bytes;
+  try {
+    bytes = read_regular_file(file, max_file_bytes);
+  } catch (const Error& error) {
+    throw Error(malformed, error.what(), error.hint());
+  }
+  if (!bytes) {
+    throw Error(malformed, file.string() + ": no such file",
+                "Make one with `octurn calibrate --wall`.");
+  }
+  return decode_sensor_map(file.string(), std::as_bytes(std::span(*bytes)));
+}
+
+void write_sensor_map(const std::filesystem::path& file, const SensorMap& map) {
+  const std::vector<std::byte> png = encode_sensor_map(map);
+  std::error_code ignored;  // if the folder cannot be made, opening the file says why
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  AtomicFile target(file);
+  target.write(png);
+  target.commit();
+}
+
+}  // namespace octurn

@@ -1,0 +1,107 @@
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "commands/commands.hpp"
+#include "octurn/error.hpp"
+#include "octurn/sensor_map.hpp"
+#include "octurn/units.hpp"
+#include "signal_stop.hpp"
+#include "standard_output.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
+
+/// The walls' frames, and whose they are.
+struct Looks {
+  std::vector<WallView> views = {};
+  std::string sensor_serial = {};
+};
+
+WallView read_view(const std::filesystem::path& folder, const Wall& wall,
+                   const std::stop_token& stop) {
+  WallView view(wall.intrinsics);
+  for (std::size_t frame = 0; frame < wall.frames.size(); ++frame) {
+    if (stop.stop_requested()) {
+      throw_stopped("no map was written");
+    }
+    view.add(read_wall_frame(folder, wall, frame));
+  }
+  return view;
+}
+
+/// @throws Error "recording-malformed"  also if they are walls of several sensors
+Looks read_looks(const std::vector<std::filesystem::path>& folders, const std::stop_token& stop) {
+  Looks looks;
+  for (const std::filesystem::path& folder : folders) {
+    const Wall wall = read_wall(folder);
+    if (looks.views.empty()) {
+      looks.sensor_serial = wall.sensor_serial;
+    } else if (wall.intrinsics != looks.views.front().intrinsics() ||
+               wall.sensor_serial != looks.sensor_serial) {
+      throw Error(ErrorCode::recording_malformed, folder.string() + ": is of another sensor",
+                  "Make a map from the walls of one sensor.");
+    }
+    looks.views.push_back(read_view(folder, wall, stop));
+  }
+  return looks;
+}
+
+Json to_json(const SensorMapReport& report, const std::string& serial) {
+  Json walls = Json::array();
+  for (const WallReport& wall : report.walls) {
+    walls.push_back({{"distance_m", wall.distance},
+                     {"slant_deg", degrees_from_radians(wall.slant)},
+                     {"coverage", wall.coverage},
+                     {"rms_before", to_units(wall.before)},
+                     {"rms_after", to_units(wall.after)}});
+  }
+  return {{"accepted", report.accepted},
+          {"reason", report.reason},
+          {"serial", serial},
+          {"unit_per_m", disparity_unit},
+          {"rms_before", report.accepted ? Json(to_units(report.map.before)) : Json(nullptr)},
+          {"rms_after", report.accepted ? Json(to_units(report.map.after)) : Json(nullptr)},
+          {"walls", std::move(walls)}};
+}
+
+/// The report as lines for people.
+std::string to_text(const SensorMapReport& report) {
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  if (!report.accepted) {
+    text << "No map was made: " << report.reason << ".\n";
+    return text.str();
+  }
+  for (const WallReport& wall : report.walls) {
+    text << "A wall " << wall.distance << " m away, seen on " << 100 * wall.coverage
+         << " % of the picture: flat within " << to_units(wall.before)
+         << " steps of disparity, with the map within " << to_units(wall.after) << ".\n";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+bool calibrate_wall(const CalibrateWallArguments& arguments) {
+  const SignalStop signal;
+  expect_writable(arguments.output);
+  const Looks looks = read_looks(arguments.walls, signal.token());
+  SensorMapReport report = fit_sensor_map(looks.views);
+  if (report.accepted) {
+    report.map.serial = looks.sensor_serial;
+    report.map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
+    write_sensor_map(arguments.output, report.map);
+  }
+  write_standard_output(arguments.json ? to_json(report, looks.sensor_serial).dump() + "\n"
+                                       : to_text(report));
+  return report.accepted;
+}
+
+}  // namespace octurn

@@ -123,7 +123,7 @@ bool Run::take_snapshots() {
     const Shot shot{.file = shot_file(done()),
                     .angle = radians_from_degrees(angle_deg_at(position, steps))};
     store(folder_, scan_, shot, *frame);
-    add([added = Snapshot{.frame = *std::move(frame),
+    add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
                           .intrinsics = scan_.intrinsics,
                           .object_from_sensor =
                               object_from_sensor(model_pose(scan_), stored_angle(shot.angle))},
@@ -135,9 +135,13 @@ bool Run::take_snapshots() {
 /// What all snapshots of a new scan have in common.
 void Run::begin() {
   scan_ = {.sensor_name = rig_.sensor().name(),
+           .sensor_serial = rig_.sensor().serial(),
            .intrinsics = rig_.sensor().intrinsics(),
            .platform_from_sensor = settings_.platform_from_sensor,
            .clip = settings_.clip};
+  if (const auto map = folder_ / sensor_map_file; std::filesystem::exists(map)) {
+    use_sensor_map(scan_, map);
+  }
 }
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.

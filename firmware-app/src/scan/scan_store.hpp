@@ -57,6 +57,9 @@ class ScanStore {
   void rename(std::string_view id, std::string_view name);
   void remove(std::string_view id);
 
+  /// The data folder.
+  const std::filesystem::path& data() const { return data_; }
+
   /// @param id  that exists
   std::filesystem::path folder(std::string_view id) const;
   std::filesystem::path model_file(std::string_view id) const { return folder(id) / "Scan.stl"; }

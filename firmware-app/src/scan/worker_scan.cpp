@@ -7,6 +7,7 @@
 
 #include "log.hpp"
 #include "octurn/stl.hpp"
+#include "scan/sensor_map_files.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -97,6 +98,9 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 /// closed, so that the next use opens it again.
 void Worker::attempt(const std::stop_token& stop) {
   try {
+    if (job_.snapshots_done == 0) {
+      keep_sensor_map(ports_.store.data(), rig_.sensor().serial(), ports_.store.folder(job_.id));
+    }
     job_.model =
         run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
     job_.state = job_.model ? JobState::finished : JobState::cancelled;

@@ -18,13 +18,15 @@ struct CalibrationTurn {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   /// Of each stop: radians, counter-clockwise seen from above.
   std::vector<double> angles = {};
+  /// Whether the depth images were corrected by a map of the sensor's own errors.
+  bool has_sensor_map = false;
   /// The depth image of a stop, read once; called by several threads at once.
   std::function<DepthFrame(std::size_t stop)> read = {};
 };
 
 /// Something about the rig that a new pose does not cure.
 struct CalibrationFinding {
-  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved"
+  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved", "no-map"
   std::string detail = {};
   std::string hint = {};
   std::optional<int> stop = {};      ///< of a slip, counted from 0

@@ -9,23 +9,18 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
-#include "calibrate/for_each_stop.hpp"
-#include "calibrate/object_view.hpp"
+#include "calibrate/platform_map.hpp"
 #include "calibrate/platform_plane.hpp"
+#include "calibrate/read_turn.hpp"
 #include "calibrate/stop_offsets.hpp"
 #include "calibrate/stop_residuals.hpp"
-#include "depth/depth_limits.hpp"
+#include "calibrate/stop_step.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr int platform_step = 4;         // pixels between readings that the plane is fitted to
-constexpr double readings_wanted = 300;  // of the object at a stop: more cost time and tell little
-constexpr int max_step = 6;              // pixels
-constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
 
 // When a solution is not to be trusted.
 constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
@@ -41,6 +36,8 @@ constexpr double may_worsen = 1.02;   // of the median, which is not what is min
 constexpr double max_shift = 0.040;   // metres
 constexpr double max_tilt_deg = 6;
 constexpr double max_last_step = 0.00001;  // metres
+// Units of disparity. Noise leaves 0.03; of a pattern of 0.8 the fitted plane leaves 0.25.
+constexpr double max_unevenness = 0.15;
 
 // The plane as a prior of the axis's direction: loose, and as good as a platform is true.
 constexpr double loose_direction_deg = 0.2;
@@ -59,56 +56,6 @@ std::string text(const char* format, double value) {
 
 std::string mm_text(double metres) { return text("%.2f mm", mm_from_metres(metres)); }
 std::string deg_text(double radians) { return text("%.2f degrees", degrees_from_radians(radians)); }
-
-/// A coarse grid of pixels of all stops.
-PlatformSamples platform_samples(const CalibrationTurn& turn, int threads) {
-  const Intrinsics& lens = turn.intrinsics;
-  PlatformSamples samples{
-      .columns = static_cast<std::size_t>((lens.width + platform_step - 1) / platform_step),
-      .rays = {},
-      .depths = std::vector<std::vector<float>>(turn.angles.size())};
-  for (int v = 0; v < lens.height; v += platform_step) {
-    for (int u = 0; u < lens.width; u += platform_step) {
-      samples.rays.emplace_back((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
-    }
-  }
-  for_each_stop(turn.angles.size(), threads, [&](std::size_t stop) {
-    const DepthFrame frame = turn.read(stop);
-    check_size(frame, lens, "calibrate");
-    for (int v = 0; v < frame.height; v += platform_step) {
-      for (int u = 0; u < frame.width; u += platform_step) {
-        const auto z = static_cast<float>(
-            frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
-                        static_cast<std::size_t>(u)] *
-            lens.depth_unit);
-        samples.depths[stop].push_back(static_cast<double>(z) > nearest_z ? z : 0.0F);
-      }
-    }
-  });
-  return samples;
-}
-
-TurnViews object_views(const CalibrationTurn& turn, const PlatformPlane& plane,
-                       const Eigen::Isometry3d& levelled, int threads) {
-  const ObjectView::Mask mask{.plane = plane, .axis_point = levelled.inverse().translation()};
-  std::vector<std::optional<ObjectView>> views(turn.angles.size());
-  for_each_stop(views.size(), threads, [&](std::size_t stop) {
-    views[stop].emplace(turn.read(stop), turn.intrinsics, mask);
-  });
-  TurnViews seen{.angles = turn.angles, .pairs = make_stop_pairs(turn.angles)};
-  double pixels = 0;
-  for (auto& view : views) {
-    pixels += view->pixels();
-    seen.views.push_back(*std::move(view));
-  }
-  const double each = pixels / static_cast<double>(std::max<std::size_t>(views.size(), 1));
-  const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
-  seen.correlation = std::max(1.0, correlated_pixels / (step * step));
-  for (const ObjectView& view : seen.views) {
-    seen.readings.push_back(view.readings(step));
-  }
-  return seen;
-}
 
 double mean_object_pixels(const TurnViews& views) {
   double pixels = 0;
@@ -144,6 +91,19 @@ CalibrationFinding to_finding(double wobble) {
           .angle = {}};
 }
 
+/// Adds that flattening the sensor would help, if the platform looks uneven.
+/// @param unevenness  units of disparity
+void add_no_map(CalibrationReport& report, std::optional<double> unevenness) {
+  if (unevenness && *unevenness > max_unevenness) {
+    report.findings.push_back({.code = "no-map",
+                               .detail = "the flat platform looks uneven by " +
+                                         text("%.2f units of the sensor's disparity", *unevenness),
+                               .hint = "Flatten the sensor: record a bare wall, and make its map.",
+                               .stop = {},
+                               .angle = {}});
+  }
+}
+
 /// Solves the axis and looks for what a new pose does not cure.
 std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
                                   const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
@@ -157,7 +117,11 @@ std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& vi
     report.stop_offsets = offsets->offsets;
     report.findings = find_slips(views.angles, *offsets);
   }
-  // A slip tilts the axis, too.
+  const auto step = solve_object_step(views, loose->platform_from_sensor, threads);
+  if (auto move = step ? find_move(*step) : std::nullopt) {
+    report.findings = {*std::move(move)};  // which looks like a slip
+  }
+  // A slip or a move tilts the axis, too.
   if (const double wobble = find_wobble(*loose, plane); wobble > 0 && report.findings.empty()) {
     report.findings.push_back(to_finding(wobble));
     return loose;
@@ -238,16 +202,20 @@ bool CalibrationReport::confirms_told() const {
 
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   CalibrationReport report;
-  const auto plane = fit_platform_plane(platform_samples(turn, threads), turn.platform_from_sensor);
-  if (const std::string reason = refuse_plane(plane); !reason.empty()) {
+  TurnReader reader(turn, threads);
+  if (const std::string reason = refuse_plane(reader.find_platform()); !reason.empty()) {
     return refused(std::move(report), reason);
   }
-  const Eigen::Isometry3d levelled = level(turn.platform_from_sensor, *plane);
-  const TurnViews views = object_views(turn, *plane, levelled, threads);
+  const TurnViews views = reader.read_views();
+  const PlatformPlane& plane = reader.plane();
+  const Eigen::Isometry3d levelled = level(turn.platform_from_sensor, plane);
   if (const std::string reason = refuse_object(views); !reason.empty()) {
     return refused(std::move(report), reason);
   }
-  const auto solution = solve(report, views, *plane, levelled, threads);
+  const auto solution = solve(report, views, plane, levelled, threads);
+  if (!turn.has_sensor_map) {
+    add_no_map(report, measure_platform_map(reader.samples(), plane));
+  }
   if (!solution) {
     return refused(std::move(report), "too little of the object is seen from two stops");
   }

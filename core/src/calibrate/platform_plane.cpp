@@ -109,23 +109,6 @@ bool is_plane_at(const PlatformSamples& samples, const PlatformPlane& plane, std
          std::abs(heights / static_cast<double>(count)) < inlier_height;
 }
 
-/// For each pixel, whether it and its eight neighbours see the plane.
-std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane) {
-  const std::size_t columns = samples.columns;
-  std::vector<bool> seen(samples.rays.size());
-  for (std::size_t pixel = 0; pixel < seen.size(); ++pixel) {
-    seen[pixel] = is_plane_at(samples, plane, pixel);
-  }
-  std::vector<bool> inner(seen.size(), false);
-  for (std::size_t pixel = columns + 1; pixel + columns + 1 < seen.size(); ++pixel) {
-    const auto row = [&](std::size_t middle) {
-      return seen[middle - 1] && seen[middle] && seen[middle + 1];
-    };
-    inner[pixel] = row(pixel - columns) && row(pixel) && row(pixel + columns);
-  }
-  return inner;
-}
-
 /// The lowest of the candidates with much support.
 std::optional<Candidate> find_plane(const std::vector<Vector3d>& points,
                                     const Eigen::Isometry3d& platform_from_sensor) {
@@ -195,6 +178,22 @@ void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {
 
 }  // namespace
 
+std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane) {
+  const std::size_t columns = samples.columns;
+  std::vector<bool> seen(samples.rays.size());
+  for (std::size_t pixel = 0; pixel < seen.size(); ++pixel) {
+    seen[pixel] = is_plane_at(samples, plane, pixel);
+  }
+  std::vector<bool> inner(seen.size(), false);
+  for (std::size_t pixel = columns + 1; pixel + columns + 1 < seen.size(); ++pixel) {
+    const auto row = [&](std::size_t middle) {
+      return seen[middle - 1] && seen[middle] && seen[middle + 1];
+    };
+    inner[pixel] = row(pixel - columns) && row(pixel) && row(pixel + columns);
+  }
+  return inner;
+}
+
 std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
                                                 const Eigen::Isometry3d& platform_from_sensor) {
   const auto near = [&](std::size_t, const Vector3d& point) {
@@ -208,7 +207,17 @@ std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
   if (!found) {
     return std::nullopt;
   }
-  PlatformPlane plane{.normal = found->normal, .offset = found->offset};
+  return refine_platform_plane(samples, platform_from_sensor,
+                               {.normal = found->normal, .offset = found->offset});
+}
+
+PlatformPlane refine_platform_plane(const PlatformSamples& samples,
+                                    const Eigen::Isometry3d& platform_from_sensor,
+                                    const PlatformPlane& nearly) {
+  const auto near = [&](std::size_t, const Vector3d& point) {
+    return may_be_platform(platform_from_sensor * point);
+  };
+  PlatformPlane plane{.normal = nearly.normal, .offset = nearly.offset};
   const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
   const std::vector<Vector3d> fitted =
       spread(samples, fitted_points, [&](std::size_t pixel, const Vector3d& point) {

@@ -35,6 +35,15 @@ struct PlatformSamples {
 std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
                                                 const Eigen::Isometry3d& platform_from_sensor);
 
+/// For each pixel of the grid, whether it and its eight neighbours see the plane, and nothing above
+/// it at any stop.
+std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane);
+
+/// The least-squares part of it: a plane that is nearly right, fitted again.
+PlatformPlane refine_platform_plane(const PlatformSamples& samples,
+                                    const Eigen::Isometry3d& platform_from_sensor,
+                                    const PlatformPlane& nearly);
+
 /// The pose of least rotation from the told one in which the plane is z = 0.
 Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane);
 

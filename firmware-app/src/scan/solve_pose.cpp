@@ -6,6 +6,7 @@ CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, 
   CalibrationTurn turn{.intrinsics = scan.intrinsics,
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},
+                       .has_sensor_map = scan.sensor_map != nullptr,
                        .read = {}};
   for (const Shot& shot : scan.shots) {
     turn.angles.push_back(shot.angle);

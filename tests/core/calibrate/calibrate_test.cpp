@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "core/calibrate/rendered_turn.hpp"
@@ -75,6 +77,85 @@ TEST(Calibrate, NamesTheStopAtWhichThePlatformSlipped) {
   EXPECT_EQ(report.findings[0].code, "slip");
   EXPECT_EQ(report.findings[0].stop, 5);
   EXPECT_NEAR(degrees_from_radians(report.findings[0].angle.value_or(0)), 1.8, 0.3);
+}
+
+/// The shape from a stop on, where it stands elsewhere on the platform.
+CalibrationTurn turn_with_move(std::size_t stops, std::size_t from, const Eigen::Vector3d& by) {
+  CalibrationTurn turn = rendered_turn(figure(), stops);
+  const CalibrationTurn after = rendered_turn(moved(figure(), by), stops);
+  turn.read = [before = turn.read, after = after.read, from](std::size_t stop) {
+    return stop < from ? before(stop) : after(stop);
+  };
+  return turn;
+}
+
+TEST(Calibrate, TellsThatTheObjectMovedAndByHowMuch) {
+  const CalibrationReport report = calibrate(turn_with_move(12, 7, {0.003, -0.002, 0}));
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_EQ(report.findings[0].code, "moved");
+  // 3.6 mm, of which the axis, which was solved as if nothing moved, takes a part and gives it
+  // back.
+  const std::string& detail = report.findings[0].detail;
+  EXPECT_NE(detail.find("between stops 6 and 7"), std::string::npos) << detail;
+  EXPECT_NEAR(std::stod(detail.substr(detail.find(" by ") + 4)), 3.6, 0.5) << detail;
+}
+
+TEST(Calibrate, SeesInOneMoreLookAtTheFirstAngleThatTheObjectMovedAtTheEnd) {
+  CalibrationTurn turn = turn_with_move(12, 12, {0, 0, 0});
+  turn.angles.push_back(turn.angles.front());
+  std::mt19937 random(7);
+  const DepthFrame last = rendered_frame(moved(figure(), {0.004, 0, 0}), 0, random);
+  turn.read = [stops = turn.read, last](std::size_t stop) {
+    return stop < 12 ? stops(stop) : last;
+  };
+  const CalibrationReport report = calibrate(turn);
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_EQ(report.findings[0].code, "moved");
+  EXPECT_NE(report.findings[0].detail.find("between stops 11 and 12"), std::string::npos)
+      << report.findings[0].detail;
+}
+
+/// A turn by a sensor that errs by a smooth pattern of 0.8 units of disparity (root mean square),
+/// whose waves are some 130 pixels long.
+CalibrationTurn turn_with_pattern(std::size_t stops) {
+  CalibrationTurn turn = rendered_turn(figure(), stops);
+  turn.read = [read = turn.read](std::size_t stop) {
+    DepthFrame frame = read(stop);
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      const auto u = static_cast<double>(i % 640);
+      const auto v = static_cast<double>(i / 640);
+      const double error = 0.8 * (std::sin(u / 21 + 1) + std::sin(v / 17 + u / 40));
+      const double depth = frame.depth[i] * 0.0001;
+      frame.depth[i] =
+          frame.depth[i] == 0
+              ? std::uint16_t{0}
+              : static_cast<std::uint16_t>(std::lround(1e4 / (1 / depth + error / 345.489)));
+    }
+    return frame;
+  };
+  return turn;
+}
+
+TEST(Calibrate, AdvisesToFlattenASensorWhosePatternShowsOnThePlatform) {
+  CalibrationTurn turn = turn_with_pattern(8);
+  const auto has_no_map = [](const CalibrationReport& report) {
+    return std::ranges::find(report.findings, "no-map", &CalibrationFinding::code) !=
+           report.findings.end();
+  };
+  EXPECT_TRUE(has_no_map(calibrate(turn)));
+  turn.has_sensor_map = true;
+  EXPECT_FALSE(has_no_map(calibrate(turn)));
+}
+
+TEST(Calibrate, ReadsEachDepthImageOnce) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  std::vector<int> reads(8, 0);
+  turn.read = [&reads, read = turn.read](std::size_t stop) {
+    ++reads[stop];
+    return read(stop);
+  };
+  EXPECT_TRUE(calibrate(turn).accepted);
+  EXPECT_EQ(reads, std::vector<int>(8, 1));
 }
 
 TEST(Calibrate, RefusesAnEmptyPlatform) {

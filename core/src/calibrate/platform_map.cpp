@@ -1,0 +1,64 @@
+#include "calibrate/platform_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace octurn {
+namespace {
+
+constexpr double disparity_unit = 345.489;              // of a Kinect v1: disparity = 345.489 m / z
+constexpr std::size_t block = 8;                        // samples to a side, of 4 pixels each
+constexpr std::size_t min_samples = block * block / 2;  // in a block
+constexpr std::size_t min_blocks = 6;
+
+/// The mean over all stops of what a sample that sees the plane differs from it, units of
+/// disparity.
+double mean_difference(const PlatformSamples& samples, const PlatformPlane& plane,
+                       std::size_t sample) {
+  const double expected = plane.normal.dot(samples.rays[sample]) / plane.offset;
+  double sum = 0;
+  std::size_t count = 0;
+  for (const std::vector<float>& depths : samples.depths) {
+    const auto z = static_cast<double>(depths[sample]);
+    if (z > 0) {
+      sum += 1 / z - expected;
+      ++count;
+    }
+  }
+  return disparity_unit * sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+std::optional<double> measure_platform_map(const PlatformSamples& samples,
+                                           const PlatformPlane& plane) {
+  struct Sum {
+    double differences = 0;
+    std::size_t count = 0;
+  };
+  const std::size_t blocks_in_row = samples.columns / block + 1;
+  std::vector<Sum> sums((samples.rays.size() / samples.columns / block + 1) * blocks_in_row);
+  const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
+  for (std::size_t sample = 0; sample < samples.rays.size(); ++sample) {
+    if (is_plane[sample]) {
+      Sum& sum =
+          sums[sample / samples.columns / block * blocks_in_row + sample % samples.columns / block];
+      sum.differences += mean_difference(samples, plane, sample);
+      ++sum.count;
+    }
+  }
+  double squares = 0;
+  std::size_t blocks = 0;
+  for (const Sum& sum : sums) {
+    if (sum.count >= min_samples) {
+      const double mean = sum.differences / static_cast<double>(sum.count);
+      squares += mean * mean;
+      ++blocks;
+    }
+  }
+  return blocks >= min_blocks ? std::optional(std::sqrt(squares / static_cast<double>(blocks)))
+                              : std::nullopt;
+}
+
+}  // namespace octurn

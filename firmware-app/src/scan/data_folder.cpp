@@ -12,28 +12,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* lock_file = "lock";
-
 // A 16-bit depth image that does not compress at all, and a fine model.
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
 constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// Opens the file that is locked; the folder itself where the disk is read-only and has none.
-FileDescriptor open_lock(const fs::path& data) {
-  const fs::path file = data / lock_file;
-  FileDescriptor lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-  if (!lock.is_open() && errno == EROFS) {
-    lock = FileDescriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  }
-  if (!lock.is_open() && errno == ENOENT) {
-    lock = FileDescriptor(::open(data.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  }
-  if (!lock.is_open()) {
-    throw_data_error(file, "open", last_error());
-  }
-  return lock;
+/// The folder itself is what is locked: it needs no file that a full, read-only or failing disk
+/// would refuse, and that somebody could delete.
+FileDescriptor open_folder(const fs::path& data) {
+  return FileDescriptor(::open(data.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
 }  // namespace
@@ -69,17 +57,23 @@ std::uint64_t free_bytes_in(const fs::path& folder) {
 }
 
 bool is_in_use(const fs::path& data) {
-  const FileDescriptor lock(::open((data / lock_file).c_str(), O_RDONLY | O_CLOEXEC));
+  const FileDescriptor lock = open_folder(data);
   return lock.is_open() && ::flock(lock.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
 FileDescriptor lock_data_folder(const fs::path& data) {
-  FileDescriptor lock = open_lock(data);
-  if (::flock(lock.number(), LOCK_EX | LOCK_NB) != 0) {
-    throw Error(ErrorCode::data_in_use, data.string() + ": another octurn works in this folder",
-                "End it first, or choose another folder with --data.");
+  FileDescriptor lock = open_folder(data);
+  if (!lock.is_open()) {
+    throw_data_error(data, "open", last_error());
   }
-  return lock;
+  if (::flock(lock.number(), LOCK_EX | LOCK_NB) == 0) {
+    return lock;
+  }
+  if (errno != EWOULDBLOCK) {
+    throw_data_error(data, "lock", last_error());
+  }
+  throw Error(ErrorCode::data_in_use, data.string() + ": another octurn works in this folder",
+              "End it first, or choose another folder with --data.");
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {

@@ -11,15 +11,6 @@ namespace {
 constexpr const char* simulation_hint =
     "Check the simulator's settings, and that its mesh is an STL file in millimetres.";
 
-/// OpenNI2's drivers, loaded once and for the whole run: loading them changes the working directory
-/// of the process for a moment.
-struct OpenNi {
-  OpenNi() { expect_ok(openni::OpenNI::initialize(), "load OpenNI2's drivers"); }
-  ~OpenNi() { openni::OpenNI::shutdown(); }
-  OpenNi(const OpenNi&) = delete;
-  OpenNi& operator=(const OpenNi&) = delete;
-};
-
 /// The first sensor that was there when OpenNI2 started, or else any Kinect: it may have been
 /// plugged in since. Simulated sensors that were opened before stay on OpenNI2's list and are
 /// skipped.
@@ -66,7 +57,15 @@ void open_device(openni::Device& device, const std::string& uri) {
               missing_sensor_hint);
 }
 
-void load_sensor_drivers() { static const OpenNi loaded; }
+/// Loading changes the working directory of the process for a moment. The drivers are never
+/// unloaded: PSLink and PS1080, which OpenNI2 brings along, cancel their threads then, and take
+/// away the code that these are still in. That was a SIGSEGV at some of the ends of the program.
+void load_sensor_drivers() {
+  [[maybe_unused]] static const bool loaded = [] {
+    expect_ok(openni::OpenNI::initialize(), "load OpenNI2's drivers");
+    return true;
+  }();
+}
 
 std::string openni_version() {
   const openni::Version version = openni::OpenNI::getVersion();

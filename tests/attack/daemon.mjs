@@ -1,0 +1,180 @@
+// `octurn serve` on the simulated rig, which attacks are aimed at, and what they measure of it.
+
+import {spawn} from 'node:child_process';
+import {once} from 'node:events';
+import {mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {request as httpRequest} from 'node:http';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {createInterface} from 'node:readline';
+
+const running = new Set(); // programs, which end with the attack
+process.on('exit', () => running.forEach((program) => program.kill('SIGKILL')));
+
+const patience = 60_000; // ms: who waits in vain says so
+
+/** Fails the attack. */
+export function require(condition, message) {
+  if (!condition) {
+    throw new Error(message);
+  }
+}
+
+export const sleep = (ms) => new Promise((done) => {
+  setTimeout(done, ms);
+});
+
+/** Waits until a question is answered by something, and gives that. */
+export async function until(ask, what) {
+  const deadline = Date.now() + patience;
+  for (;;) {
+    const answer = await ask();
+    if (answer) {
+      return answer;
+    }
+    require(Date.now() < deadline, `waited in vain until ${what}`);
+    await sleep(5);
+  }
+}
+
+/** A folder that goes when the attack has ended well. With OCTURN_ATTACK_FOLDER it is there, and stays. */
+export function makeFolder() {
+  const parent = process.env.OCTURN_ATTACK_FOLDER ?? tmpdir();
+  const folder = mkdtempSync(join(parent, 'octurn-attack-'));
+  process.on('exit', (code) => {
+    if (code === 0 && !process.env.OCTURN_ATTACK_FOLDER) {
+      rmSync(folder, {recursive: true, force: true});
+    } else {
+      process.stderr.write(`what is left is in ${folder}\n`);
+    }
+  });
+  return folder;
+}
+
+export class Daemon {
+  /**
+   * Starts it, and resolves when it serves.
+   * @param {string} folder  it works in
+   * @param {{more?: string[], env?: Object, port?: number, settings?: Object}} options
+   */
+  static async start(folder, {more = [], env = {}, port = 0, settings = {}} = {}) {
+    const daemon = new Daemon();
+    const config = join(folder, 'octurn.json');
+    writeFileSync(config, JSON.stringify(settings));
+    const web = join(folder, 'web');
+    mkdirSync(web, {recursive: true});
+    writeFileSync(join(web, 'index.html'), '<!doctype html><title>Octurn</title>');
+    daemon.data = join(folder, 'data');
+    daemon.log = '';
+    daemon.program = spawn(process.env.OCTURN_PROGRAM,
+        ['serve', '--simulate', '--simulate-speed', '50', '--config', config, '--listen', '127.0.0.1', '--port', String(port),
+          '--data', daemon.data, '--web', web, ...more], {env: {...process.env, ...env}, stdio: ['ignore', 'pipe', 'pipe']});
+    daemon.program.stderr.setEncoding('utf8').on('data', (text) => {
+      daemon.log = (daemon.log + text).slice(-20_000);
+    });
+    running.add(daemon.program);
+    daemon.ended = once(daemon.program, 'exit').finally(() => running.delete(daemon.program));
+    for await (const line of createInterface({input: daemon.program.stdout})) {
+      const found = /http:\/\/[^ ]*:(\d+)\//.exec(line);
+      if (found) {
+        daemon.port = Number(found[1]);
+        return daemon;
+      }
+    }
+    await daemon.ended;
+    throw new Error(`octurn ended before it served: ${daemon.log}`);
+  }
+
+  get isAlive() {
+    return this.program.exitCode === null && this.program.signalCode === null;
+  }
+
+  /** Ends it. @returns {Promise<[number|null, string|null]>} exit status and signal */
+  async end(signal = 'SIGTERM') {
+    this.program.kill(signal);
+    const late = setTimeout(() => {
+      this.log += `${signal} does not end it`;
+      this.program.kill('SIGABRT');
+    }, patience);
+    const ended = await this.ended;
+    clearTimeout(late);
+    return ended;
+  }
+
+  /**
+   * Sends a request as the page would.
+   * @returns {Promise<{status: number, headers: Object, body: Buffer, json: any}>}
+   */
+  ask(method, path, body = undefined, localAddress = '127.0.0.1') {
+    return new Promise((resolve, reject) => {
+      const headers = method === 'GET' ? {} : {'Content-Type': 'application/json'};
+      const options = {host: '127.0.0.1', port: this.port, method, path, headers, localAddress, agent: false, timeout: patience};
+      const sent = httpRequest(options, (response) => {
+        const parts = [];
+        response.on('data', (part) => parts.push(part)).on('error', reject).on('end', () => {
+          const bytes = Buffer.concat(parts);
+          const isJson = (response.headers['content-type'] ?? '').includes('json');
+          resolve({status: response.statusCode, headers: response.headers, body: bytes, json: isJson ? JSON.parse(bytes) : null});
+        });
+      });
+      sent.on('timeout', () => sent.destroy(new Error(`${method} ${path} was not answered`))).on('error', reject);
+      sent.end(body === undefined ? undefined : JSON.stringify(body));
+    });
+  }
+
+  /** Like `ask`, of a request that must succeed. @returns {Promise<any>} its JSON */
+  async get(path) {
+    const reply = await this.ask('GET', path);
+    require(reply.status === 200, `GET ${path}: ${reply.status} ${reply.body.toString('utf8', 0, 500)}`);
+    return reply.json;
+  }
+
+  /** Starts a scan. @returns {Promise<any>} what it is */
+  async scan(settings) {
+    const reply = await this.ask('POST', '/api/v1/scans', settings);
+    require(reply.status === 202, `POST scans: ${reply.status} ${reply.body}`);
+    return reply.json;
+  }
+
+  /** Waits until a scan is no longer running. @returns {Promise<any>} what it is then */
+  whenDone(id) {
+    return until(async () => {
+      const scan = await this.get(`/api/v1/scans/${id}`);
+      return scan.state === 'running' ? null : scan;
+    }, `scan ${id} ends`);
+  }
+
+  /** Bytes that are resident. */
+  memory() {
+    return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${this.program.pid}/status`, 'utf8'))[1]) * 1024;
+  }
+
+  descriptors() {
+    return readdirSync(`/proc/${this.program.pid}/fd`).length;
+  }
+}
+
+/** All files below a folder, by their paths below it. */
+export function filesBelow(folder) {
+  return readdirSync(folder, {recursive: true, withFileTypes: true}).filter((entry) => !entry.isDirectory())
+      .map((entry) => join(entry.path, entry.name));
+}
+
+/** Fails if a file is there in part, or one that nobody will look for again. */
+export function requireWholeFiles(data) {
+  for (const file of filesBelow(data)) {
+    const name = file.slice(file.lastIndexOf('/') + 1);
+    require(!name.startsWith('.'), `${file} was left behind`);
+    if (name === 'Scan.stl') {
+      const bytes = readFileSync(file);
+      require(bytes.length === 84 + 50 * bytes.readUInt32LE(80), `${file} is a part of a model`);
+    } else if (name.endsWith('.png')) {
+      require(readFileSync(file).subarray(-8, -4).toString('latin1') === 'IEND', `${file} is a part of an image`);
+    } else if (name.endsWith('.json')) {
+      JSON.parse(readFileSync(file, 'utf8'));
+    }
+  }
+}
+
+/** The number that a test was given, on its command line. */
+export const argument = (index, otherwise) => Number(process.argv[2 + index] ?? otherwise);

@@ -1,0 +1,121 @@
+// fuzz_http REQUESTS [SEED]: sends the real daemon requests of every route, changed here and there, while scans run, are
+// resumed and removed. After each batch the daemon lives and tells its status to another address. No answer may be 500, nor JSON
+// that is none.
+
+import {mkdirSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
+import {connect} from 'node:net';
+import {join} from 'node:path';
+
+import {argument, Daemon, makeFolder, require} from './daemon.mjs';
+import {makeRandom} from './random.mjs';
+import {someRequest} from './requests.mjs';
+
+const total = argument(0, 5000);
+const seed = argument(1, 20261123);
+const batch = 500;
+const together = 12; // fewer than the server lets one address hold
+const patience = 45_000; // ms, for a server that drains what was announced and did not come
+
+/** Sends a request. @returns {Promise<Buffer>} what came back until the end */
+function exchange(port, {bytes, parts, ending}) {
+  return new Promise((resolve, reject) => {
+    const received = [];
+    const socket = connect({host: '127.0.0.1', port, allowHalfOpen: true});
+    const slow = setTimeout(() => {
+      socket.destroy();
+      reject(new Error('a request was not answered, and its connection not closed'));
+    }, patience);
+    const size = Math.ceil(bytes.length / parts) || 1;
+    socket.setNoDelay(true);
+    socket.on('connect', async () => {
+      for (let at = 0; at < bytes.length; at += size) {
+        socket.write(bytes.subarray(at, at + size));
+        await new Promise(setImmediate);
+      }
+      if (ending === 'reset') {
+        socket.resetAndDestroy();
+      } else {
+        socket.end();
+      }
+    });
+    socket.on('data', (part) => received.push(part));
+    socket.on('error', () => {}); // the server may have heard enough: what it said counts
+    socket.on('close', () => {
+      clearTimeout(slow);
+      resolve(Buffer.concat(received));
+    });
+    socket.on('end', () => socket.destroy());
+  });
+}
+
+/** The status of an answer, which is looked at. */
+function check(answer) {
+  const end = answer.indexOf('\r\n\r\n');
+  if (end < 0) {
+    return 'none';
+  }
+  const head = answer.toString('latin1', 0, end);
+  const status = Number(head.slice(9, 12));
+  require(/^HTTP\/1\.1 [1-5]\d\d /.test(head), `the answer begins with ${head.slice(0, 40)}`);
+  if (status === 100) {
+    return check(answer.subarray(end + 4));
+  }
+  require(status !== 500, `500: ${answer.toString('utf8', end + 4, end + 500)}`);
+  require(head.includes('Content-Security-Policy: default-src'), `without the policy: ${head}`);
+  const length = Number(/^Content-Length: (\d+)/im.exec(head)?.[1] ?? 0);
+  if (/^Content-Type: application\/(problem\+)?json/im.test(head) && answer.length - end - 4 === length && length > 0) {
+    JSON.parse(answer.toString('utf8', end + 4));
+  }
+  return String(status);
+}
+
+const folder = makeFolder();
+const root = join(folder, 'appliance'); // whose work nobody does but the fuzzer, by removing it
+mkdirSync(join(root, 'requests'), {recursive: true});
+const daemon = await Daemon.start(folder, {more: ['--appliance', root], settings: {memory_limit_mb: 64}});
+const random = makeRandom(seed);
+const statuses = {};
+let sent = 0;
+let recent = [];
+
+/** Sends one request after the other until the batch is through. */
+async function sendSome(known, end) {
+  while (sent < end) {
+    ++sent;
+    const request = someRequest(random, known);
+    recent.push(request.bytes);
+    const status = check(await exchange(daemon.port, request));
+    statuses[status] = (statuses[status] ?? 0) + 1;
+  }
+}
+
+try {
+  const first = await daemon.whenDone((await daemon.scan({snapshots: 2, frames: 1, leaf_size_mm: 4})).id);
+  require(first.state === 'finished', `the first scan is ${JSON.stringify(first)}`);
+  const descriptors = daemon.descriptors();
+  while (sent < total) {
+    recent = [];
+    const ids = (await daemon.get('/api/v1/scans')).scans.map((scan) => scan.id);
+    const end = Math.min(total, sent + batch);
+    await Promise.all(Array.from({length: together}, () => sendSome({ids, port: daemon.port}, end)));
+    require(daemon.isAlive, 'the daemon has ended');
+    const status = await daemon.ask('GET', '/api/v1/status', undefined, '127.0.0.2');
+    require(status.status === 200 && status.json.version, `status says ${status.status}`);
+    for (const id of ids.slice(40)) {
+      await daemon.ask('DELETE', `/api/v1/scans/${id}`);
+    }
+    for (const name of readdirSync(join(root, 'requests'))) {
+      rmSync(join(root, 'requests', name), {force: true});
+    }
+  }
+  const memory = daemon.memory();
+  require(daemon.descriptors() <= descriptors + 20, `${daemon.descriptors()} descriptors are open, and were ${descriptors}`);
+  require(memory < 400e6, `${memory} bytes are resident`);
+  const [status, signal] = await daemon.end();
+  require(status === 0, `SIGTERM ends it with ${status ?? signal}`);
+  console.log(`counted: fuzz_http: ${sent} requests (seed ${seed}), ${Math.round(memory / 1e6)} MB resident, answers ${JSON.stringify(statuses)}`);
+} catch (error) {
+  writeFileSync(join(folder, 'requests.json'), JSON.stringify(recent.map((bytes) => bytes.toString('latin1'))));
+  console.error(`fuzz_http: seed ${seed}, request ${sent}: ${error.message}\n${daemon.log}`);
+  process.exit(1);
+}

@@ -1,0 +1,88 @@
+// many_scans SCANS: a data folder of so many scans, every second one unfinished. The start and each answer take as long for
+// a scan as with a tenth of them, within the machine's moods, and memory stays bounded.
+
+import {cpSync, linkSync, mkdirSync, readdirSync, renameSync, rmSync} from 'node:fs';
+import {join} from 'node:path';
+
+import {argument, Daemon, makeFolder, require} from './daemon.mjs';
+
+const count = argument(0, 2000);
+const folder = makeFolder();
+const slack = 4; // how much slower a scan may be than with a tenth of them, on a busy machine
+const moment = 2000; // ms that any machine may take for anything
+
+/** The time that something takes, ms, the shortest of some. */
+async function time(action, times = 3) {
+  let shortest = Infinity;
+  for (let i = 0; i < times; ++i) {
+    const begin = performance.now();
+    await action();
+    shortest = Math.min(shortest, performance.now() - begin);
+  }
+  return shortest;
+}
+
+/** A scan folder again, under another name: small files copied, large ones shared. */
+function copyScan(from, to) {
+  mkdirSync(join(to, 'snapshots'), {recursive: true});
+  for (const entry of readdirSync(from, {withFileTypes: true, recursive: true})) {
+    const path = join(entry.path, entry.name).slice(from.length);
+    if (entry.isDirectory()) {
+      mkdirSync(join(to, path), {recursive: true});
+    } else if (/\.(png|stl)$/.test(path)) {
+      linkSync(join(from, path), join(to, path));
+    } else {
+      cpSync(join(from, path), join(to, path));
+    }
+  }
+}
+
+function idOf(i) {
+  const time = new Date(Date.UTC(2020, 0, 1) + i * 60_000).toISOString().replace(/[-:]/g, '');
+  return `${time.slice(0, 8)}-${time.slice(9, 15)}-${i.toString(16).padStart(4, '0').slice(-4)}`;
+}
+
+/** What the daemon takes for a folder of so many scans. */
+async function measure() {
+  let daemon;
+  const start = await time(async () => {
+    await daemon?.end();
+    daemon = await Daemon.start(folder);
+  }, 2);
+  const listed = (await daemon.get('/api/v1/scans')).scans.length;
+  const list = await time(() => daemon.get('/api/v1/scans'));
+  const status = await time(() => daemon.get('/api/v1/status'), 5);
+  const memory = daemon.memory();
+  await daemon.end();
+  return {listed, start, list, status, memory};
+}
+
+const daemon = await Daemon.start(folder);
+const finished = await daemon.whenDone((await daemon.scan({snapshots: 2, frames: 1, leaf_size_mm: 4})).id);
+const {id} = await daemon.scan({snapshots: 200, frames: 1, leaf_size_mm: 4});
+await daemon.end('SIGKILL');
+const scans = join(folder, 'data', 'scans');
+const templates = [join(folder, 'finished'), join(folder, 'unfinished')];
+renameSync(join(scans, finished.id), templates[0]);
+renameSync(join(scans, id), templates[1]);
+rmSync(scans, {recursive: true});
+
+const results = [];
+let made = 0;
+for (const target of [count / 10, count]) {
+  for (; made < target; ++made) {
+    copyScan(templates[made % 2], join(scans, idOf(made)));
+  }
+  results.push(await measure());
+}
+const [few, many] = results;
+const shown = ({listed, start, list, status, memory}) =>
+  `${listed} scans: start ${start.toFixed(0)} ms, list ${list.toFixed(0)} ms, status ${status.toFixed(1)} ms, ${Math.round(memory / 1e6)} MB`;
+console.log(`counted: many_scans: ${shown(few)}; ${shown(many)}`);
+require(few.listed === count / 10 && many.listed === count, 'not all are listed');
+for (const what of ['start', 'list']) {
+  require(many[what] < moment + 10 * slack * few[what], `${what} takes longer for each scan where there are more`);
+}
+require(many.status < 50 + 2 * slack * few.status, 'status takes longer where there are more scans');
+// A list of them is built in memory as a JSON document and as its text, some times at once.
+require(many.memory - few.memory < 80_000 * count, 'a scan takes more than 80 kB of memory');

@@ -81,7 +81,7 @@ TEST(RunScan, TakesOneFrameAStopForTheBasicFilter) {
   settings.filter = DepthFilter::basic;
   int frames = 0;
   ASSERT_TRUE(run_scan(settings, {}, folder.path(), rig, {},
-                       {.on_frame = [&](const DepthFrame&, double) { ++frames; }}));
+                       {.on_frame = [&](const DepthFrame&) { ++frames; }}));
   EXPECT_EQ(frames, 3);
 }
 

@@ -129,7 +129,7 @@ TEST_F(CalibrateWallCommand, RefusesWallsOfTwoSensors) {
 }
 
 TEST_F(CalibrateWallCommand, SaysHowItIsUsed) {
-  run(2, {"calibrate"});
+  run(2, {"calibrate", "--apply"});
   run(2, {"calibrate", "--wall", "near"});
   run(2, {"calibrate", "scan", "--wall", "near", "-o", "map.png"});
   run(2, {"calibrate", "scan", "-o", "map.png"});

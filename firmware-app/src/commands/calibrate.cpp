@@ -1,5 +1,6 @@
 #include "octurn/calibrate.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
@@ -7,9 +8,12 @@
 #include "commands/commands.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "progress_bar.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/scan_settings.hpp"
+#include "scan/scanner.hpp"
 #include "scan/solve_pose.hpp"
+#include "sensor/depth_sensor.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 
@@ -47,22 +51,68 @@ std::string to_text(const CalibrationReport& report) {
   return text.str();
 }
 
-}  // namespace
+void write_report(const CalibrationReport& report, const std::vector<double>& angles,
+                  const CalibrateArguments& arguments) {
+  write_standard_output(arguments.json ? to_json(report, angles).dump() + "\n" : to_text(report));
+}
 
-bool calibrate(const CalibrateArguments& arguments) try {
+bool calibrate_from(const std::filesystem::path& folder, const CalibrateArguments& arguments) {
   const SignalStop signal;
-  Scan scan = read_scan(arguments.folder);
+  Scan scan = read_scan(folder);
   if (arguments.sensor_map) {
     use_sensor_map(scan, *arguments.sensor_map);
   }
-  const CalibrationReport report = solve_pose(
-      scan, stored_snapshots(arguments.folder, scan, signal.token()), available_threads());
+  const CalibrationReport report =
+      solve_pose(scan, stored_snapshots(folder, scan, signal.token()), available_threads());
   if (arguments.apply && report.accepted) {
-    write_solved_pose(arguments.folder, to_solved_pose(report));
+    write_solved_pose(folder, to_solved_pose(report));
   }
-  write_standard_output(arguments.json ? to_json(report, stop_angles(scan)).dump() + "\n"
-                                       : to_text(report));
+  write_report(report, stop_angles(scan), arguments);
   return report.accepted;
+}
+
+/// Shows progress until the turn has ended; a signal cancels it.
+CalibrationRun follow(Scanner& scanner, const std::stop_token& stop) {
+  using namespace std::chrono_literals;
+  ProgressBar bar;
+  while (scanner.status().busy()) {
+    const CalibrationRun run = **scanner.calibration_run();
+    bar.show(run.stop, run.stops,
+             run.phase == CalibrationRun::Phase::solving ? "solving" : "turning");
+    if (stop.stop_requested()) {
+      scanner.cancel_calibration();
+    }
+    scanner.wait_until_done(100ms);
+  }
+  return **scanner.calibration_run();
+}
+
+bool calibrate_rig(const CalibrateArguments& arguments) {
+  const Config config = make_config(arguments.config);
+  const RigOptions rig = rig_options(arguments.rig, config.turntable);
+  load_sensor_drivers();  // before the first thread, as it asks
+  const SignalStop signal;
+  ScanStore store(config.data);
+  Scanner scanner(rig, config.limits, store);
+  ScanSettings settings = scanner.calibration().in_force(config.scan);
+  settings.snapshots = arguments.stops;
+  scanner.expect_ready();
+  scanner.calibrate(settings);  // nothing else goes on here
+  const CalibrationRun run = follow(scanner, signal.token());
+  if (run.failure) {
+    throw to_error(*run.failure);
+  }
+  if (!run.report) {
+    throw Stopped{};
+  }
+  write_report(run.report->calibration, run.report->angles, arguments);
+  return run.report->calibration.accepted;
+}
+
+}  // namespace
+
+bool calibrate(const CalibrateArguments& arguments) try {
+  return arguments.folder ? calibrate_from(*arguments.folder, arguments) : calibrate_rig(arguments);
 } catch (const Stopped&) {
   throw_stopped("nothing was solved");
 }

@@ -169,11 +169,20 @@ void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
 void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
                    CalibrateWallArguments& wall_arguments, int& status) {
   CLI::App& command = *program.add_subcommand(
-      "calibrate", "where the sensor stands, as a scan tells; or its own error, as walls tell");
-  CLI::Option* folder = command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json");
+      "calibrate",
+      "where the sensor stands, as a turn or a stored scan tells; or its own error, as walls tell");
+  CLI::Option* folder = command.add_option(
+      "SCAN_DIR", arguments.folder, "folder with a scan.json; without it the platform is turned");
   CLI::Option* apply = command.add_flag(
       "--apply", arguments.apply, "write what is accepted into scan.json, for models to come");
-  CLI::Option* map = add_sensor_map_option(command, arguments.sensor_map);
+  apply->needs(folder);
+  CLI::Option* map = add_sensor_map_option(command, arguments.sensor_map)->needs(folder);
+  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_config_options(command, arguments.config);
+  CLI::Option* stops = command.add_option("--stops", arguments.stops, "stops of the turn (24)")
+                           ->type_name("N")
+                           ->check(CLI::Range(min_calibration_stops, max_calibration_stops))
+                           ->excludes(folder);
   CLI::Option* wall =
       command
           .add_option("--wall", wall_arguments.walls,
@@ -183,7 +192,8 @@ void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
           ->expected(1, 100)
           ->excludes(folder)
           ->excludes(apply)
-          ->excludes(map);
+          ->excludes(map)
+          ->excludes(stops);
   CLI::Option* output =
       command.add_option("-o,--output", wall_arguments.output, "file for the map, a PNG")
           ->type_name("MAP")
@@ -191,14 +201,13 @@ void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
   wall->needs(output);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
   command.footer("It ends with 0 if what it found is accepted, with 1 if it is not.");
-  command.callback([&, folder, wall] {
+  command.callback([&, simulate, wall] {
+    arguments.rig.simulate = simulate->count() > 0;
     if (wall->count() > 0) {
       wall_arguments.json = arguments.json;
       status = calibrate_wall(wall_arguments) ? 0 : 1;
-    } else if (folder->count() > 0) {
-      status = calibrate(arguments) ? 0 : 1;
     } else {
-      throw CLI::RequiredError("SCAN_DIR or --wall");
+      status = calibrate(arguments) ? 0 : 1;
     }
   });
 }

@@ -8,6 +8,7 @@
 
 #include "config.hpp"
 #include "config/config_store.hpp"
+#include "scan/calibration_turn.hpp"
 #include "scan/rig.hpp"
 
 namespace octurn {
@@ -101,13 +102,17 @@ struct ReconstructArguments {
 void reconstruct(const ReconstructArguments& arguments);
 
 struct CalibrateArguments {
-  std::filesystem::path folder = {};
+  std::optional<std::filesystem::path> folder = {};      ///< a stored scan; none: a turn on the rig
   std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
   bool apply = false;  ///< writes what is accepted into the folder's scan.json
   bool json = false;   ///< one line of JSON in place of text
+  RigArguments rig = {};
+  ConfigArguments config = {};
+  int stops = default_calibration_stops;  ///< of the turn
 };
 
-/// `octurn calibrate`: the sensor's pose, from a stored scan.
+/// `octurn calibrate`: the sensor's pose, from a stored scan, or from a turn that is made for it. A
+/// pose that a turn tells is in force from then on.
 /// @return false if what was solved is not to be trusted
 bool calibrate(const CalibrateArguments& arguments);
 

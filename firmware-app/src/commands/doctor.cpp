@@ -11,6 +11,7 @@
 #include "doctor/diagnostics.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "scan/calibration_store.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 #include "zip_archive.hpp"
@@ -79,7 +80,8 @@ SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_t
 
 bool doctor(const DoctorArguments& arguments) {
   const ConfigStore settings = open_config(arguments.config);
-  const Config config = settings.config();
+  Config config = settings.config();
+  config.scan = CalibrationStore(config.data).in_force(config.scan);
   const DoctorInput input{
       .rig = rig_options(arguments.rig, config.turntable),
       .config = config,

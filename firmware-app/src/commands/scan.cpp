@@ -98,7 +98,8 @@ void scan(const ScanArguments& arguments) {
 
   scanner.expect_ready();             // or there would be no more than an empty folder
   const std::optional<Job> started =  // nothing else starts scans here
-      arguments.resume ? scanner.resume(*arguments.resume) : scanner.start(settings);
+      arguments.resume ? scanner.resume(*arguments.resume)
+                       : scanner.start(scanner.calibration().in_force(settings));
   const Job job = follow(scanner, *started, signal.token());
   if (!job.model) {
     explain(job, store.folder(job.id));

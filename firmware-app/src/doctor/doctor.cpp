@@ -6,6 +6,7 @@
 #include "doctor/machine_checks.hpp"
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
+#include "scan/calibration_store.hpp"
 #include "turntable/real_time.hpp"
 
 namespace octurn {
@@ -34,10 +35,24 @@ std::vector<Finding> check_turntable(const DoctorInput& input) {
           check_gpio_permission(input.root), check_real_time(real_time_refusal())};
 }
 
+/// What is wrong with the files that the page's settings and the sensor's pose are kept in.
+std::string stored_trouble(const DoctorInput& input) {
+  const std::string damage = find_damaged_calibration(input.config.data).value_or("");
+  const bool both = !damage.empty() && !input.settings_trouble.empty();
+  return input.settings_trouble + (both ? "; " : "") + damage;
+}
+
+/// The pose of the sensor in metres of its own, without the scale of its depths.
+Eigen::Isometry3d unscaled_pose(const ScanSettings& settings) {
+  Eigen::Isometry3d pose = settings.platform_from_sensor;
+  pose.translation() /= settings.depth_scale;
+  return pose;
+}
+
 std::vector<Finding> check_machine(const DoctorInput& input) {
   const auto& root = input.root;
   return {check_data_folder(input.config.data),
-          check_settings(input.settings_trouble),
+          check_settings(stored_trouble(input)),
           check_disk(free_bytes_in(input.config.data), max_scan_bytes(input.config.scan)),
           check_memory(root, input.config.limits.memory_bytes),
           check_temperature(root),
@@ -50,7 +65,7 @@ std::vector<Finding> check_machine(const DoctorInput& input) {
 
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =
-      check_sensor(reading, input.config.scan.clip, input.config.scan.platform_from_sensor);
+      check_sensor(reading, input.config.scan.clip, unscaled_pose(input.config.scan));
   if (is_on_usb(input.rig.sensor_uri)) {
     findings.push_back(check_usb(input.root));
   }

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/calibration.hpp"
 #include "http/handlers/models.hpp"
 #include "http/handlers/scans.hpp"
 #include "http/handlers/settings.hpp"
@@ -114,6 +115,12 @@ Response Api::dispatch(const Request& request) {
       Route{"GET", "/api/v1/settings/backup", send_backup},
       Route{"POST", "/api/v1/settings/backup", restore_backup},
       Route{"PUT", "/api/v1/settings/password", set_page_password},
+      Route{"GET", "/api/v1/calibration", send_calibration},
+      Route{"PATCH", "/api/v1/calibration", change_calibration},
+      Route{"POST", "/api/v1/calibration", start_calibration, WaitsFor::start},
+      Route{"POST", "/api/v1/calibration/cancel", cancel_calibration},
+      Route{"POST", "/api/v1/calibration/undo", undo_calibration},
+      Route{"GET", "/api/v1/preview/points", send_points, WaitsFor::look},
       Route{"GET", "/api/v1/doctor", send_findings, WaitsFor::look},
       Route{"GET", "/api/v1/diagnostics.zip", send_diagnostics, WaitsFor::look},
       Route{"GET", "/api/v1/preview/depth.png", send_depth_picture, WaitsFor::look},

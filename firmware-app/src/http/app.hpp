@@ -17,9 +17,11 @@ struct App {
   RigOptions rig;                  ///< that the scanner works with
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
 
-  /// This scanner, with the configuration in force.
+  /// This scanner, with the configuration and the sensor's pose in force.
   DoctorInput doctor_input() const {
-    return {.rig = rig, .config = settings.config(), .settings_trouble = settings.trouble()};
+    Config config = settings.config();
+    config.scan = scanner.calibration().in_force(config.scan);
+    return {.rig = rig, .config = config, .settings_trouble = settings.trouble()};
   }
 };
 

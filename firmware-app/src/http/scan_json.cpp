@@ -5,6 +5,7 @@
 
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
+#include "scan/quality_json.hpp"
 
 namespace octurn {
 namespace {
@@ -34,7 +35,8 @@ json to_json(const Model& model, const std::string& id) {
           {"watertight", report.watertight},
           {"volume_cm3", rounded(cm3_from_m3(report.volume))},
           {"size_mm", size_mm},
-          {"seconds", rounded(model.build_time.count())}};
+          {"seconds", rounded(model.build_time.count())},
+          {"quality", model.quality ? to_json(*model.quality) : json()}};
 }
 
 }  // namespace

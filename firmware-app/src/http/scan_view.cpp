@@ -12,7 +12,7 @@ std::vector<Job> all_scans(const App& app) { return app.scanner.list(); }
 
 std::optional<Job> running_scan(const App& app) {
   const Status now = app.scanner.status();
-  return now.busy() ? now.job : std::nullopt;
+  return now.is_scanning() ? now.job : std::nullopt;
 }
 
 nlohmann::json to_json(const App& app, const Job& job) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t camera_rank = 0;
 constexpr std::size_t check_rank = 1;
 constexpr std::size_t rebuild_rank = 2;
-constexpr std::size_t scan_rank = 3;
+constexpr std::size_t scan_rank = 3;  // and of what comes after
 
 std::size_t to_rank(const Command& command) { return std::min(command.index(), scan_rank); }
 

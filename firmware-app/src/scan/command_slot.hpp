@@ -45,12 +45,18 @@ struct ResumeCommand {
   Job job = {};
 };
 
-/// What the worker can be asked to do, the least urgent first.
-using Command =
-    std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, ScanCommand, ResumeCommand>;
+/// Measure the sensor's pose with a turn.
+struct CalibrateCommand {
+  ScanSettings settings = {};  ///< `snapshots` are the stops
+};
 
-/// The one command that waits, and the one that is carried out. A scan ends whatever else is
-/// carried out and takes the place of what waits; nothing else does. Any thread may call anything.
+/// What the worker can be asked to do, the least urgent first.
+using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, ScanCommand,
+                             ResumeCommand, CalibrateCommand>;
+
+/// The one command that waits, and the one that is carried out. A scan, or a turn for the sensor's
+/// pose, ends whatever else is carried out and takes the place of what waits; nothing else does.
+/// Any thread may call anything.
 class CommandSlot {
  public:
   using Clock = std::chrono::steady_clock;
@@ -60,7 +66,8 @@ class CommandSlot {
     std::stop_source stop = {};
   };
 
-  /// Puts a scan there. @return false if one waits or runs, or this has ended
+  /// Puts a scan there, or a turn for the sensor's pose, which is like one. @return false if one
+  /// waits or runs, or this has ended
   bool offer_scan(Command scan);
 
   /// The same for a model. @param stop  that ends it

@@ -9,6 +9,7 @@
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/mesh_report.hpp"
+#include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/scan_settings.hpp"
 
@@ -51,6 +52,7 @@ Failure interruption();
 struct Model {
   ModelReport report = {};
   std::chrono::duration<double> build_time = {};
+  std::optional<Quality> quality = {};  ///< none of a model that an earlier version has made
 };
 
 /// What a scan's own snapshots told of the sensor's pose.

@@ -9,6 +9,7 @@
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
+#include "scan/quality_json.hpp"
 
 namespace octurn {
 namespace {
@@ -34,7 +35,8 @@ json to_json(const Model& model) {
           {"size_mm",
            {rounded(mm_from_metres(report.size.x())), rounded(mm_from_metres(report.size.y())),
             rounded(mm_from_metres(report.size.z()))}},
-          {"seconds", rounded(model.build_time.count())}};
+          {"seconds", rounded(model.build_time.count())},
+          {"quality", model.quality ? to_json(*model.quality) : json()}};
 }
 
 std::uint64_t count(const JsonValue& value) {
@@ -72,6 +74,10 @@ std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& 
                                              : std::optional(to_scan_calibration(*object));
 }
 
+std::optional<Quality> quality_from(const std::optional<JsonValue>& object) {
+  return !object || object->json().is_null() ? std::nullopt : std::optional(to_quality(*object));
+}
+
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
   if (!object || object->json().is_null()) {
     return std::nullopt;
@@ -85,7 +91,8 @@ std::optional<Model> model_from(const std::optional<JsonValue>& object) {
                  .filled_share = number_or_none(keys, "filled_share", 1),
                  .watertight = keys.flag("watertight").value_or(false),
                  .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
-      .build_time = Seconds(keys.at("seconds").number(0, most))};
+      .build_time = Seconds(keys.at("seconds").number(0, most)),
+      .quality = quality_from(keys.value("quality"))};
   const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
   for (int axis = 0; axis < 3; ++axis) {
     model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());

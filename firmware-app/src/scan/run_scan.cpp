@@ -4,13 +4,16 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "octurn/depth_png.hpp"
 #include "octurn/platform_pose.hpp"
+#include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "scan/depth_scale.hpp"
 #include "scan/plan.hpp"
 #include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
@@ -26,7 +29,8 @@ constexpr auto wait_interval = std::chrono::milliseconds(500);
 // A sensor that is well sees about as much at every stop: what turns is a part of the picture.
 constexpr double min_coverage = 0.6;  // of the readings in the scan's first snapshot
 
-// What a calibration holds of each snapshot, beside the reconstruction.
+// What is held of each snapshot beside the reconstruction.
+constexpr std::size_t check_bytes = 100'000;
 constexpr std::size_t calibration_bytes = 350'000;
 
 /// Stores one more snapshot: first its image, then the scan.json that names it.
@@ -48,9 +52,9 @@ std::ptrdiff_t readings_in(const DepthFrame& frame) {
 ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
                                const Limits& limits) {
   ReconstructOptions options = reconstruct_options(settings, limits);
-  if (settings.pose == PoseSource::solved) {
-    options.program_memory += calibration_bytes * static_cast<std::size_t>(settings.snapshots);
-  }
+  const std::size_t each =
+      check_bytes + (settings.pose == PoseSource::solved ? calibration_bytes : 0);
+  options.program_memory += each * static_cast<std::size_t>(settings.snapshots);
   if (!scan.shots.empty()) {
     options.clip = scan.clip;  // which lost nothing by being written in millimetres
   }
@@ -69,18 +73,21 @@ class Run {
         observer_(observer),
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
         options_(options_for(scan_, settings, limits)),
+        check_(options_.clip, static_cast<std::size_t>(settings.snapshots)),
         reconstruction_(make_reconstructor(options_)) {}
 
   /// @return false if stopped first
   bool take_snapshots();
-  void calibrate();
-  std::optional<Model> build(Clock::time_point captured);
+  std::vector<CalibrationFinding> calibrate();
+  std::optional<Model> build(Clock::time_point captured,
+                             const std::vector<CalibrationFinding>& findings);
 
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
   void begin();
   void resume();
   void require_coverage(const DepthFrame& frame);
+  SnapshotSource checked_snapshots();
   void rebuild();
   template <typename Tell>
   void wait_for_added(Tell tell);
@@ -95,10 +102,10 @@ class Run {
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
   ReconstructOptions options_;
+  ScanCheck check_;  // of the snapshots that the reconstruction was given
   std::unique_ptr<Reconstructor> reconstruction_;
-  int added_ = 0;                // snapshots that the reconstruction was given
-  std::atomic<int> reread_ = 0;  // snapshots that it has asked for while it is built again
-  std::future<void> adding_;     // at most one: joined before the next begins, and on every way out
+  int added_ = 0;             // snapshots that the reconstruction was given
+  std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
 };
 
 bool Run::take_snapshots() {
@@ -127,7 +134,10 @@ bool Run::take_snapshots() {
                           .intrinsics = scan_.intrinsics,
                           .object_from_sensor =
                               object_from_sensor(model_pose(scan_), stored_angle(shot.angle))},
-         this](Reconstructor& reconstruction) { reconstruction.add(added, stop_); });
+         index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
+      check_.add(index, added);
+      reconstruction.add(added, stop_);
+    });
   }
   return true;
 }
@@ -136,7 +146,7 @@ bool Run::take_snapshots() {
 void Run::begin() {
   scan_ = {.sensor_name = rig_.sensor().name(),
            .sensor_serial = rig_.sensor().serial(),
-           .intrinsics = rig_.sensor().intrinsics(),
+           .intrinsics = scaled(rig_.sensor().intrinsics(), settings_.depth_scale),
            .platform_from_sensor = settings_.platform_from_sensor,
            .clip = settings_.clip};
   if (const auto map = folder_ / sensor_map_file; std::filesystem::exists(map)) {
@@ -146,12 +156,12 @@ void Run::begin() {
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
 void Run::resume() {
-  if (rig_.sensor().intrinsics() != scan_.intrinsics) {
+  if (scaled(rig_.sensor().intrinsics(), settings_.depth_scale) != scan_.intrinsics) {
     throw Error(ErrorCode::sensor_other,
                 "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
   }
-  const SnapshotSource stored = readable_snapshots(folder_, scan_, stop_);
+  const SnapshotSource stored = checked_snapshots();
   first_readings_ = readings_in(stored.read(0).frame);
   add([stored, this](Reconstructor& reconstruction) { reconstruction.add(stored, stop_); });
 }
@@ -173,9 +183,9 @@ void Run::require_coverage(const DepthFrame& frame) {
 
 /// Solves the sensor's pose from the snapshots. Where that is another than the told one, what was
 /// built is given up.
-void Run::calibrate() {
+std::vector<CalibrationFinding> Run::calibrate() {
   if (settings_.pose == PoseSource::told || scan_.solved) {
-    return;
+    return {};
   }
   observer_.on_progress(Phase::calibrating, done());
   const CalibrationReport report =
@@ -190,19 +200,30 @@ void Run::calibrate() {
     reconstruction_ = make_reconstructor(options_);
     added_ = 0;
   }
+  return report.findings;
+}
+
+/// The stored snapshots; the check looks at each that is read.
+SnapshotSource Run::checked_snapshots() {
+  return {.count = scan_.shots.size(),
+          .read = [this, stored = readable_snapshots(folder_, scan_, stop_)](std::size_t shot) {
+            Snapshot snapshot = stored.read(shot);
+            check_.add(shot, snapshot);
+            return snapshot;
+          }};
 }
 
 /// Adds all snapshots as they are stored.
 void Run::rebuild() {
   observer_.on_progress(Phase::rebuilding, done());
-  const SnapshotSource counted{
-      .count = scan_.shots.size(),
-      .read = [this, stored = readable_snapshots(folder_, scan_, stop_)](std::size_t shot) {
-        ++reread_;
-        return stored.read(shot);
-      }};
+  const auto read = std::make_shared<std::atomic<int>>(0);
+  const SnapshotSource counted{.count = scan_.shots.size(),
+                               .read = [read, stored = checked_snapshots()](std::size_t shot) {
+                                 ++*read;
+                                 return stored.read(shot);
+                               }};
   add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
-  wait_for_added([this] { observer_.on_rebuilt(std::min(reread_.load(), done())); });
+  wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); });
   observer_.on_rebuilt(done());
 }
 
@@ -232,7 +253,9 @@ void Run::add(Add add_to) {
 /// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
 /// again for each part.
 /// @param captured  when the last snapshot was stored
-std::optional<Model> Run::build(Clock::time_point captured) {
+/// @param findings  of the calibration
+std::optional<Model> Run::build(Clock::time_point captured,
+                                const std::vector<CalibrationFinding>& findings) {
   if (added_ < done()) {
     rebuild();
   }
@@ -243,8 +266,12 @@ std::optional<Model> Run::build(Clock::time_point captured) {
   }
   const auto report = write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
                                   folder_ / "Scan.stl", stop_);
-  return report ? std::optional(Model{.report = *report, .build_time = Clock::now() - captured})
-                : std::nullopt;
+  if (!report) {
+    return std::nullopt;
+  }
+  return Model{.report = *report,
+               .build_time = Clock::now() - captured,
+               .quality = judge(check_.figures(options_.threads), *report, findings)};
 }
 
 }  // namespace
@@ -257,8 +284,8 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
     return std::nullopt;
   }
   const Clock::time_point captured = Clock::now();
-  run.calibrate();
-  return run.build(captured);
+  const std::vector<CalibrationFinding> findings = run.calibrate();
+  return run.build(captured, findings);
 } catch (const Stopped&) {
   return std::nullopt;  // while snapshots were added, or the model was made
 }

@@ -14,8 +14,7 @@ struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
   /// Before each move: where to, degrees.
   std::function<void(double angle_deg)> on_turn = [](double) {};
-  std::function<void(const DepthFrame& frame, double depth_unit)> on_frame = [](const DepthFrame&,
-                                                                                double) {};
+  std::function<void(const DepthFrame& frame)> on_frame = [](const DepthFrame&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
   /// What the snapshots tell of the sensor's pose, before anything is done about it.

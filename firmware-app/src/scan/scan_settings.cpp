@@ -145,7 +145,10 @@ std::vector<Field> fields(ScanSettings& s) {
                   .unit = "m",
                   .help = "pose of the sensor: four rows of four numbers",
                   .access = pose(s.platform_from_sensor),
-                  .default_text = "0.62 m before the axis, 0.36 m up, 25 degrees down"}});
+                  .default_text = "0.62 m before the axis, 0.36 m up, 25 degrees down"},
+                 {.key = "depth_scale",
+                  .help = "factor of the sensor's depths, from one length measured with calipers",
+                  .access = number(s.depth_scale, min_depth_scale, max_depth_scale)}});
 }
 
 std::vector<Field> scan_fields(ScanSettings& s) {

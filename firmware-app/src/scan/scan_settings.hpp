@@ -29,6 +29,10 @@ enum class PoseSource {
 /// The source's name in settings: "auto", "told".
 std::string_view to_string(PoseSource source);
 
+/// Range of the factor of a sensor's depths: one that is farther off has another fault.
+inline constexpr double min_depth_scale = 0.97;
+inline constexpr double max_depth_scale = 1.03;
+
 /// What one scan is made with.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
@@ -44,6 +48,7 @@ struct ScanSettings {
   PoseSource pose = PoseSource::solved;
   /// As the rig is told: optical frame to platform frame, metres.
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_sensor();
+  double depth_scale = 1;  ///< factor of the sensor's depths
 };
 
 /// What a reconstruction may use of this machine. No byte of a model depends on it.
@@ -63,7 +68,7 @@ struct Field;
 
 /// Every setting of a scan, with its key, unit and range.
 std::vector<Field> fields(ScanSettings& settings);
-/// Those of `octurn scan`: all but the calibration.
+/// Those of `octurn scan`: all but where the sensor stands.
 std::vector<Field> scan_fields(ScanSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);

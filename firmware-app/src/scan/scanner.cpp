@@ -26,11 +26,11 @@ RigOptions at_angle(RigOptions rig, double angle_deg) {
 }  // namespace
 
 Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store)
-    : store_(store), board_(rig) {
+    : store_(store), calibration_(store.data()), board_(rig) {
   slot_.want_camera(Clock::now() + camera_interest);  // so that the status tells what is there
   worker_ =
       std::jthread([this, limits, rig = at_angle(std::move(rig), store.platform_angle_deg())] {
-        Worker(rig, limits, {store_, board_, slot_, heartbeat_, scans_}).work();
+        Worker(rig, limits, {store_, board_, slot_, heartbeat_, calibration_, scans_}).work();
       });
 }
 
@@ -80,7 +80,7 @@ std::optional<Job> Scanner::hand_over(Job job, Command command) {
 
 bool Scanner::is_running(std::string_view id) const {
   const Status now = status();
-  return now.busy() && now.job->id == id;
+  return now.is_scanning() && now.job->id == id;
 }
 
 bool Scanner::cancel(std::string_view id) {
@@ -116,12 +116,12 @@ void Scanner::rename(std::string_view id, std::string_view name) {
 Job Scanner::find(std::string_view id) const {
   const Job stored = store_.get(id);
   const Status now = status();
-  return now.busy() && now.job->id == id ? *now.job : stored;
+  return now.is_scanning() && now.job->id == id ? *now.job : stored;
 }
 
 std::vector<Job> Scanner::list() const {
   std::vector<Job> jobs = store_.list();
-  if (const Status now = status(); now.busy()) {
+  if (const Status now = status(); now.is_scanning()) {
     for (Job& job : jobs) {
       if (job.id == now.job->id) {
         job = *now.job;
@@ -146,12 +146,12 @@ std::shared_ptr<const CameraFrame> Scanner::camera_frame() {
       ending_.get_token(), camera_patience, [&](const CameraFrame& latest) {
         const auto age = asked - latest.time;
         return rebuilding || (latest.failure ? age < failure_lasts
-                                             : age < fresh || (scanning && latest.depth_unit > 0));
+                                             : age < fresh || (scanning && latest.frame.width > 0));
       });
   if (frame->failure) {
     throw to_error(*frame->failure);
   }
-  if (rebuilding && frame->depth_unit == 0) {
+  if (rebuilding && frame->frame.width == 0) {
     throw Error(ErrorCode::busy, "a model is being made", "Wait for its end.");
   }
   if (!scanning && !rebuilding && asked - frame->time >= fresh) {
@@ -183,6 +183,28 @@ std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
   const auto pipe = std::make_shared<ModelPipe>();
   const RebuildCommand rebuild{.folder = store_.folder(id), .options = options, .pipe = pipe};
   return slot_.offer_rebuild(rebuild, pipe->stop()) ? std::make_unique<ModelStream>(pipe) : nullptr;
+}
+
+bool Scanner::calibrate(const ScanSettings& settings) {
+  const std::lock_guard lock(scans_);
+  if (slot_.has_scan() || slot_.has_ended()) {
+    return false;
+  }
+  board_.set_calibration_run({.stops = settings.snapshots});
+  if (!slot_.offer_scan(CalibrateCommand{settings})) {
+    board_.set_calibration_run({.state = CalibrationRun::State::cancelled});  // this is ending
+    return false;
+  }
+  return true;
+}
+
+bool Scanner::cancel_calibration() {
+  const std::lock_guard lock(scans_);
+  if (!status().is_measuring) {
+    return false;
+  }
+  slot_.stop_scan();
+  return true;
 }
 
 bool Scanner::check_devices(std::function<void(Rig& rig, const std::stop_token& stop)> check) {

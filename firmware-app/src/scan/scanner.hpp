@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "scan/calibration_store.hpp"
 #include "scan/command_slot.hpp"
 #include "scan/heartbeat.hpp"
 #include "scan/scan_store.hpp"
@@ -32,7 +33,7 @@ namespace octurn {
 ///
 ///     any thread --- Scanner --- CommandSlot (one waits, one is carried out) --> Worker
 ///                       |                                                          |
-///                       |   store: scans on the disk, and their list               |  sensor,
+///                       |   stores: scans and poses on the disk, held in memory    |  sensor,
 ///                       turntable,
 ///                       +-- StatusBoard: status, camera frame, mesh preview <------+  octree, the
 ///                       scan
@@ -72,7 +73,7 @@ class Scanner {
 
   Status status() const { return board_.status(); }
 
-  /// Waits until no scan runs, but no longer than `patience`.
+  /// Waits until no scan runs and no turn goes on, but no longer than `patience`.
   Status wait_until_done(std::chrono::milliseconds patience) const;
 
   /// The depth image of now, or, during a scan or while a model is made, the last one.
@@ -82,6 +83,23 @@ class Scanner {
   /// Looks, unless a scan runs, whether a device that failed works again.
   /// @throws Error "sensor-...", "turntable-..."  if it does not
   void expect_ready();
+
+  /// Measures the sensor's pose with a turn, and puts it into force if it is accepted.
+  /// @param settings  with the pose in force; `snapshots` are the stops
+  /// @return false if a scan, or another turn, goes on
+  bool calibrate(const ScanSettings& settings);
+
+  /// Asks the turn to stop. @return false if none goes on
+  bool cancel_calibration();
+
+  /// The turn that goes on, or the last one.
+  std::shared_ptr<const std::optional<CalibrationRun>> calibration_run() const {
+    return board_.calibration_run().get();
+  }
+
+  /// The poses of the sensor.
+  CalibrationStore& calibration() { return calibration_; }
+  const CalibrationStore& calibration() const { return calibration_; }
 
   std::shared_ptr<const MeshPreview> mesh_preview() const { return board_.mesh_preview().get(); }
 
@@ -109,6 +127,7 @@ class Scanner {
   std::optional<Job> hand_over(Job job, Command command);
 
   ScanStore& store_;
+  CalibrationStore calibration_;
   StatusBoard board_;
   CommandSlot slot_;
   Heartbeat heartbeat_;

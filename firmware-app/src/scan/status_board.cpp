@@ -40,7 +40,7 @@ StatusBoard::StatusBoard(const RigOptions& rig) {
 
 Status StatusBoard::status() const {
   Status status = *status_.get();
-  if (status.busy()) {
+  if (status.is_scanning()) {
     const Clock::time_point now = Clock::now();
     status.job->times.elapsed = now - status.job_started;
     if (status.job_end) {
@@ -109,8 +109,14 @@ void StatusBoard::set_turntable_failed(const Failure& failure) {
   status_.update([&](Status& status) { set_failed(status.turntable, failure); });
 }
 
-void StatusBoard::set_camera_frame(const DepthFrame& frame, double depth_unit) {
-  camera_frame_.set({.time = Clock::now(), .frame = frame, .depth_unit = depth_unit});
+void StatusBoard::set_camera_frame(const DepthFrame& frame, const Intrinsics& lens) {
+  camera_frame_.set({.time = Clock::now(), .frame = frame, .lens = lens});
+}
+
+void StatusBoard::set_calibration_run(CalibrationRun run) {
+  const bool is_running = run.state == CalibrationRun::State::running;
+  calibration_run_.set(std::move(run));
+  status_.update([&](Status& status) { status.is_measuring = is_running; });
 }
 
 }  // namespace octurn

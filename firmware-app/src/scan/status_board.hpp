@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "octurn/depth_frame.hpp"
+#include "scan/calibration_turn.hpp"
 #include "scan/job.hpp"
 #include "scan/latest.hpp"
 #include "scan/rig.hpp"
@@ -35,14 +36,17 @@ struct Status {
   Clock::time_point job_started = {};
   std::optional<Clock::time_point> job_end = {};  ///< as expected
 
-  bool busy() const { return job && job->state == JobState::running; }
+  bool is_measuring = false;  ///< the sensor's pose, with a turn
+
+  bool is_scanning() const { return job && job->state == JobState::running; }
+  bool busy() const { return is_scanning() || is_measuring; }
 };
 
 /// The last depth image of the sensor, or why there is none.
 struct CameraFrame {
   std::chrono::steady_clock::time_point time = {};
   DepthFrame frame = {};
-  double depth_unit = 0;  ///< metres
+  Intrinsics lens = {};  ///< of the sensor
   std::optional<Failure> failure = {};
 };
 
@@ -63,6 +67,8 @@ class StatusBoard {
   Status status() const;
   const Latest<Status>& latest_status() const { return status_; }
   const Latest<CameraFrame>& camera_frame() const { return camera_frame_; }
+  /// The turn that goes on, or the last one; nothing if there was none.
+  const Latest<std::optional<CalibrationRun>>& calibration_run() const { return calibration_run_; }
   const Latest<MeshPreview>& mesh_preview() const { return mesh_preview_; }
 
   /// A scan begins or goes on.
@@ -81,12 +87,14 @@ class StatusBoard {
   void set_sensor_failed(const Failure& failure);
   void set_turntable_failed(const Failure& failure);
 
-  void set_camera_frame(const DepthFrame& frame, double depth_unit);
+  void set_camera_frame(const DepthFrame& frame, const Intrinsics& lens);
+  void set_calibration_run(CalibrationRun run);
   void set_mesh_preview(MeshPreview preview) { mesh_preview_.set(std::move(preview)); }
 
  private:
   Latest<Status> status_;
   Latest<CameraFrame> camera_frame_;
+  Latest<std::optional<CalibrationRun>> calibration_run_;
   Latest<MeshPreview> mesh_preview_;
 };
 

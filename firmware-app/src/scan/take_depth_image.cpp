@@ -26,7 +26,7 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
       return {};
     }
     if (timed->time > settled) {
-      observer.on_frame(timed->frame, sensor.intrinsics().depth_unit);
+      observer.on_frame(timed->frame);
       frames.push_back(std::move(timed->frame));
     } else if (++stale > max_stale_frames) {
       throw Error(ErrorCode::sensor_failed,

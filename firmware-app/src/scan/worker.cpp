@@ -53,8 +53,7 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
   try {
     DepthSensor& sensor = rig_.sensor();
     if (const std::optional<TimedFrame> timed = sensor.read(stop.get_token())) {
-      ports_.board.set_sensor_ready(sensor.name());
-      ports_.board.set_camera_frame(timed->frame, sensor.intrinsics().depth_unit);
+      show_frame(timed->frame);
     }
   } catch (...) {
     const Failure failure = current_failure();
@@ -62,6 +61,13 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
     ports_.board.set_sensor_failed(failure);
     ports_.slot.wait_for_command(retry_interval);
   }
+}
+
+void Worker::show_frame(const DepthFrame& frame) {
+  DepthSensor& sensor = rig_.sensor();
+  ports_.heartbeat.beat();
+  ports_.board.set_sensor_ready(sensor.name());
+  ports_.board.set_camera_frame(frame, sensor.intrinsics());
 }
 
 void Worker::carry_out(DeviceCheckCommand& command, const std::stop_source& stop) {

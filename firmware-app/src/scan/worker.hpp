@@ -5,6 +5,8 @@
 #include <optional>
 #include <stop_token>
 
+#include "scan/calibration_store.hpp"
+#include "scan/calibration_turn.hpp"
 #include "scan/command_slot.hpp"
 #include "scan/heartbeat.hpp"
 #include "scan/run_scan.hpp"
@@ -19,6 +21,7 @@ struct WorkerPorts {
   StatusBoard& board;
   CommandSlot& slot;
   Heartbeat& heartbeat;
+  CalibrationStore& calibration;
   std::mutex& scans;  ///< held while the state of a scan changes that others may change, too
 };
 
@@ -40,15 +43,19 @@ class Worker {
   void carry_out(RebuildCommand& command, const std::stop_source& stop);
   void carry_out(ScanCommand& command, const std::stop_source& stop);
   void carry_out(ResumeCommand& command, const std::stop_source& stop);
+  void carry_out(CalibrateCommand& command, const std::stop_source& stop);
 
   void look_for_turntable();
   void run(Job job, const std::stop_token& stop);
   void run_until_it_ends(const std::stop_token& stop);
   void attempt(const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
+  void show_frame(const DepthFrame& frame);
   void show_progress(Phase phase, int snapshots_done);
+  void begin(Phase phase);
   void keep_calibration(const CalibrationReport& report);
   void show_rebuilt(int snapshots);
+  void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void close_device(const Failure& failure);
   void release_rig();
   void save_platform_angle(double angle_deg);

@@ -115,12 +115,7 @@ void Worker::attempt(const std::stop_token& stop) {
 ScanObserver Worker::observer(const std::stop_token& stop) {
   return {.on_progress = [this](Phase phase, int done) { show_progress(phase, done); },
           .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
-          .on_frame =
-              [this](const DepthFrame& frame, double depth_unit) {
-                ports_.heartbeat.beat();
-                ports_.board.set_camera_frame(frame, depth_unit);
-                ports_.board.set_sensor_ready(rig_.sensor().name());
-              },
+          .on_frame = [this](const DepthFrame& frame) { show_frame(frame); },
           .on_added =
               [this, stop, id = job_.id](const Reconstructor& reconstruction, int snapshots) {
                 if (MeshPreview preview = make_preview(id, reconstruction, snapshots, stop);
@@ -149,6 +144,11 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
     expected_end = now + each * (job_.settings.snapshots - snapshots_done);
   }
   ports_.board.set_job(job_, expected_end);
+  begin(phase);
+}
+
+/// What every phase of a scan or a turn begins with.
+void Worker::begin(Phase phase) {
   if (phase == Phase::capturing) {  // the platform has turned
     turntable_is_ready_ = true;
     ports_.board.set_turntable_ready();
@@ -158,13 +158,17 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   }
 }
 
-/// Saved at once: a scan that is resumed while its model is built again is not solved once more.
+/// Saved at once, for a scan that is killed while its model is built again. The next scan is told
+/// the pose that this one has solved.
 void Worker::keep_calibration(const CalibrationReport& report) {
   job_.calibration = to_scan_calibration(report);
   log::info("scanner", "scan " + job_.id + ": " + to_text(report));
   ports_.board.set_job(job_);
   try {
     ports_.store.save(job_);
+    if (report.accepted && !report.confirms_told()) {
+      ports_.calibration.set(to_record(report, PoseOrigin::scan, job_.settings.depth_scale));
+    }
   } catch (...) {
     log::warning("scanner", current_failure().detail);
   }

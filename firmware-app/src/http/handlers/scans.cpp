@@ -17,7 +17,8 @@ using nlohmann::json;
 constexpr std::size_t max_name = 100;  // of a scan, bytes
 
 [[noreturn]] void throw_busy() {
-  throw Error(ErrorCode::busy, "a scan is running", "Wait for its end, or cancel it.");
+  throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
+              "Wait for its end, or cancel it.");
 }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
@@ -33,7 +34,8 @@ Response list_scans(App& app) {
 }
 
 Response start_scan(App& app, const Request& request) {
-  const ScanSettings settings = settings_from(parse_body(request), app.settings.config().scan);
+  const ScanSettings settings = settings_from(
+      parse_body(request), app.scanner.calibration().in_force(app.settings.config().scan));
   expect_no_update(app);
   app.scanner.expect_ready();
   const std::optional<Job> job = app.scanner.start(settings);

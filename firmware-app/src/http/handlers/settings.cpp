@@ -49,7 +49,7 @@ json settings_in(const json& backup) {
 
 Response send_settings(App& app) {
   const Config config = app.settings.config();
-  ScanSettings defaults = config.scan;
+  ScanSettings defaults = app.scanner.calibration().in_force(config.scan);
   const std::vector<Field> scan = fields(defaults);
   return json_response({{"defaults", to_json(scan)},
                         {"schema", to_schema(scan)},

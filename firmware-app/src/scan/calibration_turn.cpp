@@ -1,0 +1,144 @@
+#include "scan/calibration_turn.hpp"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "octurn/platform_pose.hpp"
+#include "octurn/units.hpp"
+#include "scan/calibration_json.hpp"
+#include "scan/depth_scale.hpp"
+#include "scan/plan.hpp"
+#include "scan/take_depth_image.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+// The part of space that a slice shows, metres: what stands on a platform.
+constexpr double slice_half_thickness = 0.001;
+constexpr double slice_radius = 0.17;
+constexpr double slice_bottom = -0.02;
+constexpr double slice_top = 0.4;
+constexpr std::size_t max_slice_points = 3000;  // what a picture of some hundred pixels shows
+
+bool is_in_slice(const Eigen::Vector3d& point) {
+  return std::abs(point.y()) <= slice_half_thickness && std::abs(point.x()) <= slice_radius &&
+         point.z() >= slice_bottom && point.z() <= slice_top;
+}
+
+/// Adds the readings of one depth image that lie in the slice.
+void add_to_slice(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
+                  const Eigen::Isometry3d& object_from_sensor) {
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      const double z =
+          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(u)] *
+          lens.depth_unit;
+      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+      const Eigen::Vector3d point = object_from_sensor * (z * ray);
+      if (z > 0 && is_in_slice(point)) {
+        slice.emplace_back(point.x(), point.z());
+      }
+    }
+  }
+}
+
+/// Every so many points that a picture is full.
+Slice thinned(const Slice& slice) {
+  const std::size_t step = slice.size() / max_slice_points + 1;
+  Slice some;
+  for (std::size_t i = 0; i < slice.size(); i += step) {
+    some.push_back(slice[i]);
+  }
+  return some;
+}
+
+Slice make_slice(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor) {
+  Slice slice;
+  for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+    add_to_slice(slice, turn.read(stop), turn.intrinsics,
+                 object_from_sensor(platform_from_sensor, turn.angles[stop]));
+  }
+  return thinned(slice);
+}
+
+json to_json(const Slice& slice) {
+  json points = json::array();
+  for (const Eigen::Vector2d& point : slice) {
+    points.push_back({std::round(mm_from_metres(point.x()) * 100) / 100,
+                      std::round(mm_from_metres(point.y()) * 100) / 100});
+  }
+  return points;
+}
+
+json to_json(const TurnReport& report) {
+  json object = to_json(report.calibration, report.angles);
+  object["slice_mm"] = {{"before", to_json(report.before)}, {"after", to_json(report.after)}};
+  return object;
+}
+
+}  // namespace
+
+json to_json(const CalibrationRun& run) {
+  constexpr std::array<std::string_view, 1> kinds{"turn"};
+  constexpr std::array<std::string_view, 5> states{"running", "done", "refused", "failed",
+                                                   "cancelled"};
+  constexpr std::array<std::string_view, 2> phases{"turning", "solving"};
+  json object{{"kind", kinds[static_cast<std::size_t>(run.kind)]},
+              {"state", states[static_cast<std::size_t>(run.state)]},
+              {"phase", phases[static_cast<std::size_t>(run.phase)]},
+              {"stop", run.stop},
+              {"stops", run.stops},
+              {"report", run.report ? to_json(*run.report) : json()},
+              {"error", nullptr}};
+  if (run.failure) {
+    object["error"] = {{"code", to_string(run.failure->code)},
+                       {"detail", run.failure->detail},
+                       {"hint", run.failure->hint}};
+  }
+  return object;
+}
+
+std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
+                                       int threads, Rig& rig, const std::stop_token& stop,
+                                       const ScanObserver& observer) {
+  Turntable& turntable = rig.turntable();
+  const int steps = turntable.steps_per_turn();
+  CalibrationTurn turn{.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
+                       .platform_from_sensor = settings.platform_from_sensor,
+                       .has_sensor_map = map != nullptr};
+  std::vector<DepthFrame> frames;
+  for (const std::int64_t position :
+       stop_positions(turntable.position(), steps, settings.snapshots)) {
+    std::optional<DepthFrame> frame =
+        take_depth_image(rig, {.index = static_cast<int>(frames.size()), .position = position},
+                         settings, stop, observer);
+    if (!frame) {
+      return std::nullopt;
+    }
+    frames.push_back(map != nullptr ? corrected(*std::move(frame), *map, turn.intrinsics.depth_unit)
+                                    : *std::move(frame));
+    turn.angles.push_back(radians_from_degrees(angle_deg_at(position, steps)));
+  }
+  observer.on_progress(Phase::calibrating, settings.snapshots);
+  turn.read = [&](std::size_t index) {
+    throw_if_stopped(stop);
+    return frames[index];
+  };
+  try {
+    TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
+    report.before = make_slice(turn, turn.platform_from_sensor);
+    if (report.calibration.accepted) {
+      report.after = make_slice(turn, report.calibration.platform_from_sensor);
+    }
+    return report;
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace octurn

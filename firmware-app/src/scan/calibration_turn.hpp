@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <vector>
+
+#include "failure.hpp"
+#include "octurn/calibrate.hpp"
+#include "octurn/sensor_map.hpp"
+#include "scan/rig.hpp"
+#include "scan/scan_observer.hpp"
+
+namespace octurn {
+
+/// Stops of a turn that is made for the sensor's pose: with fewer the object is seen from too few
+/// sides, more take memory for their depth images, 0.6 MB each.
+inline constexpr int min_calibration_stops = 4;
+inline constexpr int max_calibration_stops = 72;
+inline constexpr int default_calibration_stops = 24;
+
+/// What all stops saw within 1 mm of the object's plane y = 0: metres, x and z.
+using Slice = std::vector<Eigen::Vector2d>;
+
+/// What a turn told of the sensor's pose.
+struct TurnReport {
+  CalibrationReport calibration = {};
+  std::vector<double> angles = {};  ///< of the stops as told, radians
+  Slice before = {};                ///< with the told pose
+  Slice after = {};                 ///< with the solved one; empty if that is refused
+};
+
+/// A measurement of the rig, as it goes on.
+struct CalibrationRun {
+  enum class Kind { turn };
+  enum class State { running, done, refused, failed, cancelled };
+  enum class Phase { turning, solving };
+
+  Kind kind = Kind::turn;
+  State state = State::running;
+  Phase phase = Phase::turning;
+  int stop = 0;  ///< that are done
+  int stops = 0;
+  std::optional<TurnReport> report = {};
+  std::optional<Failure> failure = {};
+};
+
+/// A run as the API has it.
+nlohmann::json to_json(const CalibrationRun& run);
+
+/// Takes the depth images of one turn, and solves the sensor's pose from them. Nothing is stored.
+///
+/// @param settings  `snapshots` are the stops; the told pose is theirs
+/// @param map       of the sensor's own error, by which the depth images are corrected; may be null
+/// @return nothing if stopped first
+/// @throws Error "sensor-...", "turntable-..."
+std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
+                                       int threads, Rig& rig, const std::stop_token& stop,
+                                       const ScanObserver& observer);
+
+}  // namespace octurn

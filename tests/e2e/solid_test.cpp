@@ -61,6 +61,27 @@ class SolidCommand : public ::testing::Test {
   fs::path output_ = folder_.path() / "Scan.stl";
 };
 
+TEST_F(SolidCommand, CallsAModelGoodThatShowsTheWholeObject) {
+  write_ball_scan(scan_, 8);
+  const auto quality = report_of({"--leaf-size-mm", "2"})["quality"];
+  EXPECT_EQ(quality["verdict"], "good");
+  EXPECT_EQ(quality["reasons"], nlohmann::json::array());
+}
+
+TEST_F(SolidCommand, SaysWhyAModelIsNotGood) {
+  write_ball_scan(scan_, 8);
+  // The ball's middle is 6 cm up: the box cuts it 1 cm above that.
+  Program program(command(
+      {"--leaf-size-mm", "2", "--clip-mm", "-140", "-140", "2", "140", "140", "70", "--json"}));
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_EQ(program.errors().find("Look at the model: "), 0U) << program.errors();
+  const auto quality = nlohmann::json::parse(program.output())["quality"];
+  EXPECT_EQ(quality["verdict"], "look");
+  EXPECT_TRUE(std::ranges::any_of(quality["reasons"], [](const nlohmann::json& reason) {
+    return reason["code"] == "cut-by-box" && !reason["detail"].empty() && !reason["hint"].empty();
+  })) << quality;
+}
+
 TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {
   write_ball_scan(scan_, 8);
   const auto report = report_of({"--leaf-size-mm", "2"});

@@ -53,6 +53,20 @@ TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots)
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "scans"), {}), 1);
 }
 
+TEST(ScanStore, ClearsAwayWhatADeadProcessWasWritingBesideTheScansAndNothingElse) {
+  const TemporaryFolder folder;
+  const fs::path data = folder.path();
+  put(data / ".platform.json.1234-0", "half a file");
+  put(data / ".settings.json.99-12", "");
+  put(data / ".somebodys.json.swp", "");
+  put(data / ".profile", "");
+  const ScanStore store(data);
+  EXPECT_FALSE(fs::exists(data / ".platform.json.1234-0"));
+  EXPECT_FALSE(fs::exists(data / ".settings.json.99-12"));
+  EXPECT_TRUE(fs::exists(data / ".somebodys.json.swp"));
+  EXPECT_TRUE(fs::exists(data / ".profile"));
+}
+
 TEST(ScanStore, ListsAScanWhoseRecordIsDamagedAsFailed) {
   const TemporaryFolder folder;
   const Job job = ScanStore(folder.path()).create({});

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 
 #include <cerrno>
+#include <string_view>
 
 #include "octurn/error.hpp"
 
@@ -22,6 +23,14 @@ std::error_code last_error() { return {errno, std::generic_category()}; }
 /// would refuse, and that somebody could delete.
 FileDescriptor open_folder(const fs::path& data) {
   return FileDescriptor(::open(data.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+}
+
+/// Whether this is a name that `temporary_name` makes of a JSON file: ".platform.json.1234-0".
+bool is_unfinished_json(std::string_view name) {
+  constexpr std::string_view ending = ".json.";
+  const std::size_t numbers = name.rfind(ending);
+  return name.starts_with('.') && numbers != name.npos &&
+         name.substr(numbers + ending.size()).find_first_not_of("0123456789-") == name.npos;
 }
 
 }  // namespace
@@ -92,6 +101,15 @@ void clear_unfinished(const fs::path& folder) {
   for (const std::string& name : names_in(folder)) {
     if (name.starts_with('.')) {
       fs::remove_all(folder / name, ignored);
+    }
+  }
+}
+
+void clear_unfinished_json(const fs::path& data) {
+  std::error_code ignored;
+  for (const std::string& name : names_in(data)) {
+    if (is_unfinished_json(name)) {
+      fs::remove(data / name, ignored);
     }
   }
 }

@@ -34,6 +34,10 @@ std::vector<std::string> names_in(const std::filesystem::path& folder);
 /// Removes what begins with a dot: temporary files, and folders that were not finished.
 void clear_unfinished(const std::filesystem::path& folder);
 
+/// Removes what `write_file` began and did not finish of the JSON files beside the scans. What else
+/// begins with a dot there stays: the folder may be somebody's home.
+void clear_unfinished_json(const std::filesystem::path& data);
+
 /// @throws Error "disk-full" or "data-failed", always
 [[noreturn]] void throw_data_error(const std::filesystem::path& path, const std::string& doing,
                                    std::error_code reason);

@@ -96,6 +96,7 @@ ScanStore::ScanStore(fs::path data)
     throw_data_error(scans_, "make the folder", error);
   }
   lock_ = lock_data_folder(data_);
+  clear_unfinished_json(data_);
   clear_unfinished(scans_);
   for (const std::string& id : names_in(scans_)) {
     std::error_code unknown;

@@ -27,9 +27,8 @@ import {json, sending} from './api.js';
  * @property {{before: number[][], after: number[][]}} [slice_mm]
  *
  * @typedef {Object} CalibrationRun
- * @property {'turn' | 'wall'} kind
  * @property {'running' | 'done' | 'refused' | 'failed' | 'cancelled'} state
- * @property {'turning' | 'solving' | 'looking'} phase
+ * @property {'turning' | 'solving'} phase
  * @property {number} stop
  * @property {number} stops
  * @property {TurnReport | null} report
@@ -37,7 +36,6 @@ import {json, sending} from './api.js';
  *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
- *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
  *   history: PoseRecord[], run: CalibrationRun | null}} Calibration
  *
  * @typedef {{sensor: import('./overlay.js').Sensor, points_mm: import('./pose.js').Point[]}} Points  in the optical frame
@@ -49,8 +47,8 @@ export const points = () => json('preview/points');
 /** @returns {Promise<Calibration>} */
 export const calibration = () => json('calibration');
 
-/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number}} what */
-export const measure = (what) => json('calibration', sending('POST', what));
+/** Begins a turn. @param {number} stops */
+export const measureTurn = (stops) => json('calibration', sending('POST', {kind: 'turn', stops}));
 
 export const cancel = () => json('calibration/cancel', sending('POST'));
 

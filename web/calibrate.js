@@ -15,7 +15,6 @@ import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPo
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 
 const turnStops = 24;
-const wallFrames = 25;
 
 /** @type {Calibration | null} */
 let calibration = null;
@@ -95,14 +94,6 @@ function scale(event) {
   }
 }
 
-const isWallReady = () => [...element('wall-ready').querySelectorAll('input')].every((box) => box.checked);
-
-function measureWall() {
-  if (isWallReady()) {
-    act('The look at the wall did not start', () => requests.measure({kind: 'wall', frames: wallFrames}));
-  }
-}
-
 async function lookAtCalibration() {
   const before = actions;
   try {
@@ -121,7 +112,7 @@ async function lookAtPicture() {
     const [png, seen] = await Promise.all([api.preview(), requests.points()]);
     await showPicture(png);
     showPoints(seen);
-    return 250;
+    return calibration?.run?.state === 'running' ? 1500 : 500;  // a turn needs the machine
   } catch (error) {
     const {detail, title, hint} = problemOf(error);
     showNoPicture([detail || title, hint].map(sentence).join(' '));
@@ -141,14 +132,11 @@ async function watch(look) {
 
 function listen() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
-  click('measure-turn', () => act('The turn did not start', () => requests.measure({kind: 'turn', stops: turnStops})));
+  click('measure-turn', () => act('The turn did not start', () => requests.measureTurn(turnStops)));
   click('turn-cancel', () => act('The turn was not cancelled', requests.cancel));
-  click('measure-wall', measureWall);
-  click('wall-cancel', () => act('The look was not cancelled', requests.cancel));
   click('undo', () => act('Nothing was undone', requests.undo));
   click('unscale', () => act('The scale was not changed', () => requests.change({scale: 1})));
   element('known').addEventListener('submit', scale);
-  element('wall-ready').addEventListener('change', () => element('measure-wall').setAttribute('aria-disabled', String(!isWallReady())));
 }
 
 /** Called once, when the page is there. */

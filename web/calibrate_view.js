@@ -29,16 +29,15 @@ function swap(id, other) {
   }
 }
 
-/** @param {Calibration} calibration @param {'turn' | 'wall'} kind */
-function showRun(calibration, kind) {
-  const progress = texts.progressOf(calibration, kind);
-  const idle = kind === 'turn' ? 'turn-idle' : 'wall-ready';
-  progress ? swap(idle, `${kind}-going`) : swap(`${kind}-going`, idle);
+/** @param {Calibration} calibration */
+function showRun(calibration) {
+  const progress = texts.progressOf(calibration);
+  progress ? swap('turn-idle', 'turn-going') : swap('turn-going', 'turn-idle');
   if (progress) {
-    setText(element(`${kind}-text`), progress.text);
-    element(`${kind}-progress`).value = progress.share;
+    setText(element('turn-text'), progress.text);
+    element('turn-progress').value = progress.share;
   }
-  showNotice(`${kind}-outcome`, texts.outcomeOf(calibration, kind));
+  showNotice('turn-outcome', texts.outcomeOf(calibration));
 }
 
 /** @type {object | null} the report that is drawn */
@@ -90,7 +89,7 @@ function showReport({run}) {
 function showHistory(calibration) {
   const poses = texts.historyOf(calibration);
   show(element('no-poses'), poses.length === 0);
-  show(element('undo'), poses.length > 0);
+  show(element('undo'), poses.length > 0 || texts.isCalibrated(calibration));  // the settings' pose is below all
   list(element('poses'), poses, ({key}) => key, 'earlier-pose', (item, {title, text}) => {
     setText(part(item, '.pose-title'), title);
     setText(part(item, '.muted'), text);
@@ -100,14 +99,11 @@ function showHistory(calibration) {
 /** @param {Calibration} calibration */
 export function showCalibration(calibration) {
   const summary = texts.summaryOf(calibration);
-  const isNews = texts.outcomeOf(calibration, 'turn')?.tone === 'good';  // which says it already
+  const isNews = texts.outcomeOf(calibration)?.tone === 'good';  // which says it already
   showNotice('pose-summary', isNews ? null : {...summary, detail: summary.text});
-  showRun(calibration, 'turn');
-  showRun(calibration, 'wall');
+  showRun(calibration);
   showReport(calibration);
   showHistory(calibration);
-  const map = texts.mapText(calibration);
-  setText(element('wall-map'), map.text);
   setText(element('scale-text'), texts.scaleText(calibration.scale));
   show(element('unscale'), calibration.scale !== 1);
 }

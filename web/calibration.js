@@ -48,27 +48,17 @@ export function summaryOf(calibration) {
   return {tone: sigma_mm === null ? 'idle' : 'good', title: sourceOf(calibration), text};
 }
 
-/** @param {CalibrationRun} run */
-function phaseOf({kind, phase, stop, stops}) {
-  if (phase === 'solving') {
-    return kind === 'wall' ? 'Working out the map' : 'Working out where the sensor stands';
-  }
-  return kind === 'wall' ? `Looking at the wall, ${stop} of ${stops}` : `Stop ${Math.min(stop + 1, stops)} of ${stops}`;
-}
-
-/** A turn or wall that is measured now, or null. @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind */
-export function progressOf(calibration, kind) {
-  const run = calibration?.run;
-  if (!run || run.kind !== kind || run.state !== 'running') {
+/** How far a turn is that is measured now, or null. @param {Calibration} calibration */
+export function progressOf({run}) {
+  if (run?.state !== 'running') {
     return null;
   }
-  return {text: phaseOf(run), share: run.phase === 'solving' ? 0.95 : 0.92 * run.stop / Math.max(run.stops, 1)};
+  const {phase, stop, stops} = run;
+  return phase === 'solving' ? {text: 'Working out where the sensor stands', share: 0.95} :
+    {text: `Stop ${Math.min(stop + 1, stops)} of ${stops}`, share: 0.92 * stop / Math.max(stops, 1)};
 }
 
-const hints = {
-  turn: 'Put an object of 4 cm or more near the middle of the platform, keep hands and cables out of the picture, and measure again.',
-  wall: 'Point the sensor at a plain, flat wall that fills the whole picture, and measure again.',
-};
+const refusedHint = 'Put an object of 4 cm or more near the middle of the platform, keep hands and cables out of the picture, and measure again.';
 
 /** @param {TurnReport} report */
 function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
@@ -80,24 +70,21 @@ function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
 }
 
 /**
- * What came of the last turn or wall, or null while there is nothing to say.
- * @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind
+ * What came of the last turn, or null while there is nothing to say.
+ * @param {Calibration} calibration
  * @returns {{tone: string, title: string, detail: string, hint: string} | null}
  */
-export function outcomeOf(calibration, kind) {
-  const run = calibration?.run;
-  if (!run || run.kind !== kind || run.state === 'running') {
+export function outcomeOf({run}) {
+  if (!run || run.state === 'running') {
     return null;
   }
   const detail = sentence(run.error?.detail || run.report?.reason || '');
-  const hint = sentence(run.error?.hint || hints[kind]);
+  const hint = sentence(run.error?.hint || refusedHint);
   switch (run.state) {
     case 'cancelled': return {tone: 'idle', title: 'Cancelled', detail: 'Nothing was changed.', hint: ''};
     case 'refused': return {tone: 'warn', title: 'Nothing was changed', detail, hint};
     case 'failed': return {tone: 'bad', title: 'The measurement did not end', detail, hint: sentence(run.error?.hint ?? '')};
-    default:
-      return kind === 'turn' && run.report ? {tone: 'good', hint: '', ...acceptedText(run.report)} :
-        {tone: 'good', title: 'The sensor is flattened', detail: 'Every scan from now on uses the new map.', hint: ''};
+    default: return run.report && {tone: 'good', hint: '', ...acceptedText(run.report)};
   }
 }
 
@@ -123,15 +110,6 @@ export const historyOf = ({history}) => history.map((pose, index) => ({
     pose.before_mm !== null && pose.after_mm !== null ? `${millimetres(pose.before_mm)} → ${millimetres(pose.after_mm)}` : '',
     pose.scale === 1 ? '' : `scale ${pose.scale.toFixed(4)}`].filter(Boolean).join(', '),
 }));
-
-/** @param {Calibration} calibration */
-export function mapText({sensor_map: map}) {
-  if (!map) {
-    return {tone: 'idle', text: 'Not done for this sensor.'};
-  }
-  const share = map.rms_before > 0 ? map.rms_after / map.rms_before : 1;
-  return {tone: 'good', text: `Done on ${when(map.at)} for sensor ${map.serial}: ${Math.round(100 * (1 - share))} % of its unevenness is taken out.`};
-}
 
 /**
  * The scale that a length asks for, on top of the one that the model was made with.

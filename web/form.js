@@ -5,7 +5,7 @@ import {explain, formOf, leafChoices, settingsOf, stepText} from './settings.js'
 
 /** @typedef {import('./api.js').Settings} Settings */
 
-const clipFields = () => /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll('[data-clip]')])
+const clipFields = () => /** @type {HTMLInputElement[]} */ ([...element('form').querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
 
 const chosenMethod = () => part(element('methods'), 'input:checked').value;

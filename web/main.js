@@ -3,7 +3,7 @@
 import * as api from './api.js';
 import {seeStatus, watchAppliance} from './appliance.js';
 import {watchCamera} from './camera.js';
-import {seeNewest, seeReport} from './checklist.js';
+import {seeNewest, seeReport, watchSteps} from './checklist.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import {chosenSettings, prepareForm} from './form.js';
@@ -174,3 +174,4 @@ prepareDoctor(seeReport);
 watch();
 watchCamera();
 watchAppliance();
+watchSteps();

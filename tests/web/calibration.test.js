@@ -5,8 +5,8 @@ import * as texts from '../../web/calibration.js';
 import {distanceOf, distanceText} from '../../web/depth.js';
 import {calibration, turnReport} from './examples.js';
 
-const run = {kind: 'turn', state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};
-const after = (changes) => texts.outcomeOf({...calibration, run: {...run, ...changes}}, 'turn');
+const run = {state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};
+const after = (changes) => texts.outcomeOf({...calibration, run: {...run, ...changes}});
 
 test('a rig that nobody measured is not called calibrated', () => {
   const summary = texts.summaryOf(calibration);
@@ -26,13 +26,11 @@ test('a pose set by hand has no figures', () => {
   assert.match(summary.text, /only a turn/);
 });
 
-test('progress is of the kind that runs, grows, and never ends before the end', () => {
-  const shares = [0, 3, 24].map((stop) => texts.progressOf({...calibration, run: {...run, stop}}, 'turn').share);
+test('progress grows, and never ends before the end', () => {
+  const shares = [0, 3, 24].map((stop) => texts.progressOf({...calibration, run: {...run, stop}}).share);
   assert.ok(shares[0] < shares[1] && shares[1] < shares[2] && shares[2] < 0.95);
-  assert.equal(texts.progressOf({...calibration, run}, 'turn').text, 'Stop 4 of 24');
-  assert.equal(texts.progressOf({...calibration, run}, 'wall'), null);
-  assert.equal(texts.progressOf({...calibration, run: {...run, state: 'done'}}, 'turn'), null);
-  assert.equal(texts.progressOf({...calibration, run: {...run, kind: 'wall', phase: 'looking'}}, 'wall').text, 'Looking at the wall, 3 of 24');
+  assert.equal(texts.progressOf({...calibration, run}).text, 'Stop 4 of 24');
+  assert.equal(texts.progressOf({...calibration, run: {...run, state: 'done'}}), null);
 });
 
 test('an accepted turn says what was wrong and how well it is now', () => {

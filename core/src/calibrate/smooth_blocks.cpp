@@ -60,7 +60,36 @@ std::vector<double> convolve(const BlockValues& grid, const std::vector<double>&
   return sums;
 }
 
-/// Makes each unknown cell the mean of its neighbours, until nothing changes any more.
+double mean_of_neighbours(const BlockValues& grid, const std::vector<double>& values, int column,
+                          int row) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+    if (column + dx >= 0 && column + dx < grid.columns && row + dy >= 0 && row + dy < grid.rows) {
+      sum += values[index(grid, column + dx, row + dy)];
+      ++count;
+    }
+  }
+  return sum / std::max(count, 1);
+}
+
+/// Makes each unknown cell the mean of its neighbours, one after the other.
+/// @return the largest change
+double sweep_unknown(const BlockValues& grid, std::vector<double>& values,
+                     const std::vector<bool>& is_known) {
+  double change = 0;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      if (const std::size_t at = index(grid, column, row); !is_known[at]) {
+        const double mean = mean_of_neighbours(grid, values, column, row);
+        change = std::max(change, std::abs(mean - values[at]));
+        values[at] = mean;
+      }
+    }
+  }
+  return change;
+}
+
 void diffuse(const BlockValues& grid, std::vector<double>& values,
              const std::vector<bool>& is_known) {
   double largest = 0;
@@ -68,28 +97,7 @@ void diffuse(const BlockValues& grid, std::vector<double>& values,
     largest = std::max(largest, std::abs(value));
   }
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
-    double change = 0;
-    for (int row = 0; row < grid.rows; ++row) {
-      for (int column = 0; column < grid.columns; ++column) {
-        const std::size_t at = index(grid, column, row);
-        if (is_known[at]) {
-          continue;
-        }
-        double sum = 0;
-        int count = 0;
-        for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
-          if (column + dx >= 0 && column + dx < grid.columns && row + dy >= 0 &&
-              row + dy < grid.rows) {
-            sum += values[index(grid, column + dx, row + dy)];
-            ++count;
-          }
-        }
-        const double mean = sum / std::max(count, 1);
-        change = std::max(change, std::abs(mean - values[at]));
-        values[at] = mean;
-      }
-    }
-    if (change <= settled * largest) {
+    if (sweep_unknown(grid, values, is_known) <= settled * largest) {
       return;
     }
   }
@@ -113,6 +121,7 @@ std::vector<double> smooth_blocks(const BlockValues& blocks, double sigma) {
     }
   }
   std::vector<bool> is_known;
+  is_known.reserve(weight.size());
   for (const double known : weight) {
     is_known.push_back(known >= min_weight);
   }

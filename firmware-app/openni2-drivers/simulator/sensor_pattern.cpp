@@ -45,6 +45,7 @@ std::vector<float> smooth_field(std::uint32_t seed) {
     squares += value * value / static_cast<double>(sum.size());
   }
   std::vector<float> field;
+  field.reserve(sum.size());
   for (const double value : sum) {
     field.push_back(static_cast<float>(value / std::sqrt(squares)));
   }

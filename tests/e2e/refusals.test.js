@@ -41,7 +41,7 @@ test('settings that make no sense are not sent', async (t) => {
   const {settings} = (await ask(scanner, 'scans')).scans[0];
   assert.deepEqual({...settings, platform_from_sensor: undefined}, {
     snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, method: 'intersection', max_error_mm: 0.04,
-    threshold_m2: 0.0004, root_size_mm: 1000, clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
+    threshold_m2: 0.0004, root_size_mm: 1000, calibrate: 'auto', depth_scale: 1, clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
   });
   assert.deepEqual(faults, []);
 });

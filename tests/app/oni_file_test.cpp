@@ -57,8 +57,8 @@ void record_oni(const std::filesystem::path& file, int frames) {
   counter.wait_for(frames);
   recorder.stop();
   recorder.destroy();
+  stream.removeNewFrameListener(&counter);  // while frames come: it may be waiting for one
   stream.stop();
-  stream.removeNewFrameListener(&counter);
   stream.destroy();
   device.close();
 }

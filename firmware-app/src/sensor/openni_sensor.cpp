@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "log.hpp"
@@ -26,6 +27,8 @@ constexpr std::chrono::milliseconds poll_interval = std::chrono::milliseconds(33
 /// By the sensor's clock. A file has no clock: what takes longer than that is a player that hangs.
 constexpr std::chrono::milliseconds longest_silence = std::chrono::milliseconds(2000);
 constexpr std::chrono::milliseconds longest_file_read = std::chrono::seconds(30);
+/// Of OpenNI2's player of files, while it has no stream to serve.
+constexpr std::chrono::milliseconds player_pause = std::chrono::milliseconds(10);
 
 /// Depth formats that Octurn reads, the finest first, with their units in metres.
 struct DepthFormat {
@@ -185,7 +188,13 @@ void OpenNiSensor::prepare_file() {
   }
 }
 
+/// The player of files looks through its list of streams without a lock, again and again after the
+/// last frame. Once no stream is started it sleeps 10 ms between two looks: the stream goes then.
 void OpenNiSensor::close() {
+  if (device_.isFile()) {
+    stream_.stop();
+    std::this_thread::sleep_for(player_pause / 2);
+  }
   stream_.destroy();
   device_.close();
 }

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr int thinning = 2;               // every other row and column is kept
+constexpr int thinning = 2;  // every other row and column is kept
+constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // that is kept
 constexpr int block = 4;                  // of these rows and columns to a side
 constexpr double readings_wanted = 400;   // of a stop, to compare
 constexpr double platform_radius = 0.13;  // metres, in which heights are counted
@@ -215,15 +216,13 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
   nearest_in_block = nearest_in_blocks(points, block_lens);
   const auto count_cut = [&](const Vector3d& inside, int u, int v, double z) {
     const double depth = points.depth(u, v);
+    const Vector3d other = points.at(u, v);
     if (!(depth > nearest_z) || std::abs(depth - z) > max_cut_step ||
-        inside.z() < clip.min.z() + min_cut_height) {
+        inside.z() < clip.min.z() + min_cut_height || contains(clip, other)) {
       return;
     }
-    const Vector3d other = points.at(u, v);
-    if (!contains(clip, other)) {
-      const std::size_t side = side_between(clip, other);
-      cut[std::min<std::size_t>(side, cut.size() - 1)] += side < cut.size() ? thinning : 0;
-    }
+    const std::size_t side = side_between(clip, other);
+    cut[std::min<std::size_t>(side, cut.size() - 1)] += side < cut.size() ? thinning : 0;
   };
   for (int v = 1; v + 1 < thin.frame.height; ++v) {
     for (int u = 1; u + 1 < thin.frame.width; ++u) {
@@ -236,8 +235,8 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
         ++heights[static_cast<std::size_t>((point.z() + highest) / height_step)];
       }
       if (contains(clip, point)) {
-        object_pixels += thinning * thinning;
-        depths += z * thinning * thinning;
+        object_pixels += pixels_for_one;
+        depths += z * static_cast<double>(pixels_for_one);
         count_cut(point, u - 1, v, z);
         count_cut(point, u + 1, v, z);
         count_cut(point, u, v - 1, z);

@@ -62,7 +62,8 @@ std::optional<double> find_platform(const Stops& stops) {
 
 }  // namespace
 
-ScanCheck::ScanCheck(const Box& clip, std::size_t stops) : clip_(clip), stops_(stops) {}
+ScanCheck::ScanCheck(const Box& clip, std::size_t stops)
+    : clip_{.min = clip.min, .max = clip.max}, stops_(stops) {}
 
 ScanCheck::~ScanCheck() = default;
 

@@ -15,7 +15,7 @@ function explainFields() {
   setText(element('snapshots-step'), snapshots > 0 ? stepText(snapshots) : '');
   setText(element('method-text'), explain(chosenMethod()));
   setText(element('filter-text'), explain(element('filter').value));
-  setText(element('calibrate-text'), explain(element('calibrate').value));
+  setText(element('calibrate-text'), explain(element('pose-of').value));
   element('gap').disabled = chosenMethod() === 'solid';
   element('frames').disabled = element('filter').value === 'basic';
 }
@@ -28,7 +28,7 @@ function fill(settings) {
   element('filter').value = form.filter;
   element('frames').value = form.frames;
   element('gap').value = form.gap_mm;
-  element('calibrate').value = form.calibrate;
+  element('pose-of').value = form.calibrate;
   clipFields().forEach((field, index) => {
     field.value = String(form.clip_mm[index]);
   });
@@ -69,7 +69,7 @@ export const chosenSettings = () => settingsOf({
   filter: element('filter').value,
   frames: Number(element('frames').value),
   gap_mm: Number(element('gap').value),
-  calibrate: element('calibrate').value,
+  calibrate: element('pose-of').value,
   clip_mm: clipFields().map((field) => Number(field.value)),
 });
 

@@ -53,9 +53,15 @@ async function arrive(place) {
   }
 }
 
-/** Shows the part that the address names. */
+let shown = first;
+
+/** Shows the part that the address names, another one from its top on. */
 export function showPlace() {
   const place = here();
+  if (place !== shown) {
+    shown = place;
+    window.scrollTo(0, 0);
+  }
   for (const main of document.querySelectorAll('main')) {
     show(main, main.dataset.place === place);
   }

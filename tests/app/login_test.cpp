@@ -25,7 +25,7 @@ class LoginTest : public ::testing::Test {
 
   /// A nonce as a client gets it.
   std::string nonce(Login::Time now = start) {
-    const auto answer = login.refusal({}, now);
+    const auto answer = login_.refusal({}, now);
     return quoted_field(challenge_of(answer), "nonce");
   }
 
@@ -34,7 +34,7 @@ class LoginTest : public ::testing::Test {
              Login::Time now = start) {
     LoginAttempt attempt = like;
     attempt.authorization = authorization;
-    last_ = login.refusal(attempt, now);
+    last_ = login_.refusal(attempt, now);
     return last_ ? last_->status : 200;
   }
 
@@ -52,9 +52,7 @@ class LoginTest : public ::testing::Test {
  private:
   TemporaryFolder folder_ = {};
   std::optional<Response> last_ = {};
-
- protected:
-  Login login{file()};
+  Login login_{file()};
 };
 
 TEST_F(LoginTest, LetsInWhoKnowsThePassword) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "calibrate/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -33,14 +33,8 @@ constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
 constexpr double max_dropped = 0.01;  // of the model's volume
 constexpr double min_dropped = 2e-7;  // cubic metres
 
-std::string text(const char* format, double value) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
-}
-
-std::string mm_text(double metres) { return text("%.1f mm", mm_from_metres(metres)); }
-std::string percent_text(double share) { return text("%.0f %%", 100 * share); }
+std::string mm_text(double metres) { return number_text("%.1f mm", mm_from_metres(metres)); }
+std::string percent_text(double share) { return number_text("%.0f %%", 100 * share); }
 
 /// Collects reasons; the worst of them is the verdict.
 class Judgement {
@@ -114,7 +108,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
         scan.widest_gap > radians_from_degrees(bad_gap_deg) ? Verdict::bad : Verdict::look,
         {.code = "little-seen",
          .detail = "the platform turned by " +
-                   text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
+                   number_text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
                    " without a stop: nobody saw that side of the object",
          .hint = "Scan a whole turn."});
   } else if (model.unseen_share > look_unseen) {
@@ -142,11 +136,12 @@ void judge_box(Judgement& judgement, const ScanFigures& scan) {
 
 void judge_parts(Judgement& judgement, const ModelReport& model) {
   if (model.dropped_volume > min_dropped && model.dropped_volume > max_dropped * model.volume) {
-    judgement.add(model.dropped_volume > model.volume ? Verdict::bad : Verdict::look,
-                  {.code = "parts-dropped",
-                   .detail = text("parts of %.1f cm3 in all", cm3_from_m3(model.dropped_volume)) +
-                             " were not joined to the model, and were dropped",
-                   .hint = "Scan one object at a time."});
+    judgement.add(
+        model.dropped_volume > model.volume ? Verdict::bad : Verdict::look,
+        {.code = "parts-dropped",
+         .detail = number_text("parts of %.1f cm3 in all", cm3_from_m3(model.dropped_volume)) +
+                   " were not joined to the model, and were dropped",
+         .hint = "Scan one object at a time."});
   }
 }
 

@@ -1,14 +1,13 @@
 #include "octurn/calibrate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
+#include "calibrate/number_text.hpp"
 #include "calibrate/platform_map.hpp"
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/read_turn.hpp"
@@ -48,14 +47,10 @@ constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
 constexpr double agreeing_sigmas = 3;
 
-std::string text(const char* format, double value) {
-  std::array<char, 96> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
+std::string mm_text(double metres) { return number_text("%.2f mm", mm_from_metres(metres)); }
+std::string deg_text(double radians) {
+  return number_text("%.2f degrees", degrees_from_radians(radians));
 }
-
-std::string mm_text(double metres) { return text("%.2f mm", mm_from_metres(metres)); }
-std::string deg_text(double radians) { return text("%.2f degrees", degrees_from_radians(radians)); }
 
 double mean_object_pixels(const TurnViews& views) {
   double pixels = 0;
@@ -95,12 +90,13 @@ CalibrationFinding to_finding(double wobble) {
 /// @param unevenness  units of disparity
 void add_no_map(CalibrationReport& report, std::optional<double> unevenness) {
   if (unevenness && *unevenness > max_unevenness) {
-    report.findings.push_back({.code = "no-map",
-                               .detail = "the flat platform looks uneven by " +
-                                         text("%.2f units of the sensor's disparity", *unevenness),
-                               .hint = "Flatten the sensor: record a bare wall, and make its map.",
-                               .stop = {},
-                               .angle = {}});
+    report.findings.push_back(
+        {.code = "no-map",
+         .detail = "the flat platform looks uneven by " +
+                   number_text("%.2f units of the sensor's disparity", *unevenness),
+         .hint = "Flatten the sensor: record a bare wall, and make its map.",
+         .stop = {},
+         .angle = {}});
   }
 }
 

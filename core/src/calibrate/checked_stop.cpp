@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calibrate/for_each_stop.hpp"
+#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
 #include "octurn/units.hpp"
 
@@ -282,11 +284,7 @@ StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, i
     all.contradicted.push_back(static_cast<double>(stop.contradicted) /
                                static_cast<double>(std::max<std::size_t>(stop.readings, 1)));
   }
-  if (!distances.empty()) {
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::ranges::nth_element(distances, middle);
-    all.disagreement = static_cast<double>(*middle);
-  }
+  all.disagreement = median(std::move(distances));
   return all;
 }
 

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "octurn/sensor_map.hpp"
+
 namespace octurn {
 namespace {
 
-constexpr double disparity_unit = 345.489;              // of a Kinect v1: disparity = 345.489 m / z
 constexpr std::size_t block = 8;                        // samples to a side, of 4 pixels each
 constexpr std::size_t min_samples = block * block / 2;  // in a block
 constexpr std::size_t min_blocks = 6;
@@ -26,7 +27,7 @@ double mean_difference(const PlatformSamples& samples, const PlatformPlane& plan
       ++count;
     }
   }
-  return disparity_unit * sum / static_cast<double>(count);
+  return sum / (disparity_unit * static_cast<double>(count));
 }
 
 }  // namespace

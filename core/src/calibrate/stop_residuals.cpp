@@ -1,9 +1,10 @@
 #include "calibrate/stop_residuals.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calibrate/for_each_stop.hpp"
+#include "calibrate/median.hpp"
 
 namespace octurn {
 
@@ -20,12 +21,7 @@ double median_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
   for (const std::vector<float>& some : of_stops) {
     all.insert(all.end(), some.begin(), some.end());
   }
-  if (all.empty()) {
-    return 0;
-  }
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::ranges::nth_element(all, middle);
-  return static_cast<double>(*middle);
+  return median(std::move(all));
 }
 
 }  // namespace octurn

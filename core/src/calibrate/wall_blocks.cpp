@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
 
 namespace octurn {
@@ -13,15 +14,6 @@ namespace {
 constexpr int plane_iterations = 20;
 constexpr double min_scale = 3 * disparity_unit;
 constexpr double scale_of_median = 1.5;
-
-double median(std::vector<double> values) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 WallBlock make_block(const WallView& view, int first_u, int first_v, int& pixels) {
   const Intrinsics& lens = view.intrinsics();

@@ -1,11 +1,10 @@
 #include "calibrate/wall_checks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "calibrate/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -20,17 +19,7 @@ constexpr double max_far_off = 0.05;  // share of the blocks
 constexpr double step = 3;            // units between cells of 8 pixels that are 16 pixels apart
 constexpr double max_steps = 0.005;   // share of such pairs
 
-std::string percent(double share) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.0f %%", 100 * share);
-  return text.data();
-}
-
-std::string number_text(const char* format, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
+std::string percent(double share) { return number_text("%.0f %%", 100 * share); }
 
 /// Share of the known blocks that lie off the plane.
 double far_off_share(const BlockValues& residuals) {

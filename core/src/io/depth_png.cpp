@@ -1,9 +1,6 @@
 #include "octurn/depth_png.hpp"
 
-#include <system_error>
-
 #include "io/grey_png.hpp"
-#include "octurn/file.hpp"
 
 namespace octurn {
 
@@ -34,12 +31,7 @@ DepthFrame decode_depth_png(std::string_view name, std::span<const std::byte> pn
 }
 
 void write_depth_png(const std::filesystem::path& file, const DepthFrame& frame) {
-  const std::vector<std::byte> png = encode_depth_png(frame);
-  std::error_code ignored;  // if the folder cannot be made, opening the file says why
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  AtomicFile target(file);
-  target.write(png);
-  target.commit();
+  write_png(file, encode_depth_png(frame));
 }
 
 }  // namespace octurn

@@ -6,6 +6,9 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
+
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {
@@ -143,6 +146,14 @@ std::vector<std::byte> encode_grey_png(int width, int height,
 std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint8_t> samples,
                                        PngText text) {
   return encode(width, height, samples, text);
+}
+
+void write_png(const std::filesystem::path& file, std::span<const std::byte> png) {
+  std::error_code ignored;  // if the folder cannot be made, opening the file says why
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  AtomicFile target(file);
+  target.write(png);
+  target.commit();
 }
 
 std::string size_text(std::uint32_t width, std::uint32_t height) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -52,6 +53,10 @@ std::vector<std::byte> encode_grey_png(int width, int height,
                                        std::span<const std::uint16_t> samples, PngText text);
 std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint8_t> samples,
                                        PngText text);
+
+/// Writes an encoded picture, whole or not at all. Makes the file's folder where it is missing.
+/// @throws Error "disk-full", "write-failed"
+void write_png(const std::filesystem::path& file, std::span<const std::byte> png);
 
 /// "640 x 480 pixels"
 std::string size_text(std::uint32_t width, std::uint32_t height);

@@ -3,7 +3,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "io/grey_png.hpp"
@@ -141,12 +140,7 @@ SensorMap read_sensor_map(const std::filesystem::path& file) {
 }
 
 void write_sensor_map(const std::filesystem::path& file, const SensorMap& map) {
-  const std::vector<std::byte> png = encode_sensor_map(map);
-  std::error_code ignored;  // if the folder cannot be made, opening the file says why
-  std::filesystem::create_directories(file.parent_path(), ignored);
-  AtomicFile target(file);
-  target.write(png);
-  target.commit();
+  write_png(file, encode_sensor_map(map));
 }
 
 }  // namespace octurn

@@ -49,8 +49,8 @@ inline Shape figure() {
 /// Depth of an object turned by `angle` on a disc of 30 cm, with noise that is uniform in
 /// disparity, as a Kinect's is, of 0.3 of its steps.
 inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random) {
-  constexpr double disparity_unit = 345.489;  // of a Kinect v1: disparity = 345.489 m / z
-  constexpr double noise = 0.5;               // steps, half the uniform distribution's width
+  constexpr double steps_per_inverse_metre = 345.489;  // of a Kinect v1's disparity
+  constexpr double noise = 0.5;  // steps, half the uniform distribution's width
   const Intrinsics lens;
   const Eigen::Isometry3d pose = true_platform_from_sensor();
   const Eigen::AngleAxisd back(-angle, Eigen::Vector3d::UnitZ());
@@ -69,7 +69,7 @@ inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937
         z += gap / ray.norm();
       }
       const double error = noise * (2 * static_cast<double>(random()) / 4294967295.0 - 1);
-      const double read = 1 / (1 / std::min(z, end) + error / disparity_unit);
+      const double read = 1 / (1 / std::min(z, end) + error / steps_per_inverse_metre);
       const bool is_read = on_disc || z < end;
       frame.depth.push_back(
           static_cast<std::uint16_t>(is_read ? std::lround(read / lens.depth_unit) : 0));

@@ -5,6 +5,7 @@
 
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
+#include "scan/failure_json.hpp"
 #include "scan/quality_json.hpp"
 
 namespace octurn {
@@ -14,10 +15,6 @@ using nlohmann::json;
 
 /// Thousandths, as people and the page read them.
 double rounded(double value) { return std::round(value * 1000) / 1000; }
-
-json to_json(const Failure& failure) {
-  return {{"code", to_string(failure.code)}, {"detail", failure.detail}, {"hint", failure.hint}};
-}
 
 json to_json(const Model& model, const std::string& id) {
   const ModelReport& report = model.report;

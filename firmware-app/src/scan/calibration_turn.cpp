@@ -9,6 +9,7 @@
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/depth_scale.hpp"
+#include "scan/failure_json.hpp"
 #include "scan/plan.hpp"
 #include "scan/take_depth_image.hpp"
 
@@ -38,9 +39,12 @@ void add_to_slice(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
           frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
                       static_cast<std::size_t>(u)] *
           lens.depth_unit;
+      if (!(z > 0)) {
+        continue;
+      }
       const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
       const Eigen::Vector3d point = object_from_sensor * (z * ray);
-      if (z > 0 && is_in_slice(point)) {
+      if (is_in_slice(point)) {
         slice.emplace_back(point.x(), point.z());
       }
     }
@@ -88,19 +92,13 @@ json to_json(const CalibrationRun& run) {
   constexpr std::array<std::string_view, 5> states{"running", "done", "refused", "failed",
                                                    "cancelled"};
   constexpr std::array<std::string_view, 2> phases{"turning", "solving"};
-  json object{{"kind", kinds[static_cast<std::size_t>(run.kind)]},
-              {"state", states[static_cast<std::size_t>(run.state)]},
-              {"phase", phases[static_cast<std::size_t>(run.phase)]},
-              {"stop", run.stop},
-              {"stops", run.stops},
-              {"report", run.report ? to_json(*run.report) : json()},
-              {"error", nullptr}};
-  if (run.failure) {
-    object["error"] = {{"code", to_string(run.failure->code)},
-                       {"detail", run.failure->detail},
-                       {"hint", run.failure->hint}};
-  }
-  return object;
+  return {{"kind", kinds[static_cast<std::size_t>(run.kind)]},
+          {"state", states[static_cast<std::size_t>(run.state)]},
+          {"phase", phases[static_cast<std::size_t>(run.phase)]},
+          {"stop", run.stop},
+          {"stops", run.stops},
+          {"report", run.report ? to_json(*run.report) : json()},
+          {"error", run.failure ? to_json(*run.failure) : json()}};
 }
 
 std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,

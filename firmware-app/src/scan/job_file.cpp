@@ -9,6 +9,7 @@
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
+#include "scan/failure_json.hpp"
 #include "scan/quality_json.hpp"
 
 namespace octurn {
@@ -117,9 +118,7 @@ json to_job_json(const Job& job) {
               {"calibration", nullptr},
               {"model", nullptr}};
   if (job.failure) {
-    object["error"] = {{"code", to_string(job.failure->code)},
-                       {"detail", job.failure->detail},
-                       {"hint", job.failure->hint}};
+    object["error"] = to_json(*job.failure);
   }
   if (job.calibration) {
     object["calibration"] = to_json(*job.calibration);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "app/leave_behind.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/job_file.hpp"
@@ -15,12 +16,6 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of scans, as a process that was killed would leave it when `leave` returns.
-void leave_behind(const fs::path& data, const std::function<void(ScanStore&)>& leave) {
-  ScanStore store(data);
-  leave(store);
-}
 
 TEST(ScanStore, CallsWhatADeadProcessLeftRunningInterruptedAndKeepsItsSnapshots) {
   const TemporaryFolder folder;

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "app/leave_behind.hpp"
 #include "scan/job_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -13,12 +13,6 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of scans, as a process that was killed would leave it when `leave` returns.
-void leave_behind(const fs::path& data, const std::function<void(ScanStore&)>& leave) {
-  ScanStore store(data);
-  leave(store);
-}
 
 TEST(ScanId, HasOneFormOnly) {
   EXPECT_TRUE(is_scan_id("20261121-081500-3f2a"));

@@ -2,17 +2,28 @@
 
 import * as api from './api.js';
 import {element, setText, show} from './dom.js';
+import {awaitFragment} from './fragment.js';
 import {isUpdating, prepareUpdate, showScanning, showUpdate, showUpdateAway, updateAway} from './update.js';
 import {isJoining, prepareWifi, showWifi, wifiAway} from './wifi.js';
 
 const usual = {title: 'The scanner does not answer.', text: 'Trying again until it does. A scan goes on without this page.'};
 
 let isAppliance = false;
+let isPrepared = false;  // its part of the page is there
 
 /** @param {import('./api.js').Status} status */
 export function seeStatus({appliance, scan}) {
   isAppliance = appliance;
-  showScanning(scan !== null);
+  if (isPrepared) {
+    showScanning(scan !== null);
+  }
+}
+
+async function prepare() {
+  await awaitFragment(element('appliance'), 'appliance.html');
+  prepareUpdate();
+  prepareWifi();
+  isPrepared = true;
 }
 
 /** What the banner says when the scanner does not answer: that may be as it should. */
@@ -37,13 +48,12 @@ async function look() {
 
 /** Looks again and again, for as long as the page is open. */
 export async function watchAppliance() {
-  prepareUpdate();
-  prepareWifi();
   for (;;) {
     if (isAppliance && !document.hidden) {
+      await (isPrepared || prepare());
       await look();
     }
-    const pause = isAppliance && !isUpdating() && !isJoining() ? 3000 : 1000;
+    const pause = isPrepared && !isUpdating() && !isJoining() ? 3000 : 1000;
     await new Promise((done) => {
       setTimeout(done, pause);
     });

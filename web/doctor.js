@@ -2,6 +2,7 @@
 
 import * as api from './api.js';
 import {element, list, part, setText, show} from './dom.js';
+import {awaitFragment} from './fragment.js';
 import {count, sentence} from './format.js';
 
 /** @typedef {import('./api.js').Finding} Finding */
@@ -94,6 +95,7 @@ async function examine(onReport) {
 }
 
 /** @param {(report: import('./api.js').Report) => void} onReport  told of each check */
-export function prepareDoctor(onReport) {
+export async function prepareDoctor(onReport) {
+  await awaitFragment(element('doctor'), 'doctor.html');
   element('examine').addEventListener('click', () => examine(onReport));
 }

@@ -170,8 +170,7 @@ follow();
 listen();
 preparePlaces();
 prepareStage();
-prepareDoctor(seeReport);
 watch();
 watchCamera();
 watchAppliance();
-watchSteps();
+prepareDoctor(seeReport).then(watchSteps);  // the first step is a check

@@ -2,6 +2,7 @@
 // together with its module when somebody first goes there.
 
 import {element, setText, show} from './dom.js';
+import {fetchFragment} from './fragment.js';
 
 const first = 'scan';
 
@@ -28,24 +29,14 @@ const mainOf = (/** @type {string} */ place) => /** @type {HTMLElement} */ (docu
 const begun = new Set([first]);
 
 /** @param {string} place */
-async function fetchPart(place) {
-  const [response, module] = await Promise.all([fetch(`${place}.html`, {cache: 'no-cache'}), others[place].load()]);
-  if (!response.ok) {
-    throw new Error(`${response.status}`);
-  }
-  const parsed = new DOMParser().parseFromString(await response.text(), 'text/html');
-  mainOf(place).replaceChildren(...parsed.body.childNodes);
-  module.prepare();
-}
-
-/** @param {string} place */
 async function arrive(place) {
   if (begun.has(place)) {
     return;
   }
   begun.add(place);
   try {
-    await fetchPart(place);
+    const [module] = await Promise.all([others[place].load(), fetchFragment(mainOf(place), `${place}.html`)]);
+    module.prepare();
   } catch {
     begun.delete(place);
     setText(mainOf(place), 'This part of the page has not arrived yet. Trying again.');

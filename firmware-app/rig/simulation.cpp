@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t longest_uri = 255;  // ONI_MAX_STR - 1
 constexpr double max_noise = 100;
 constexpr double max_pattern = 10;
+constexpr double max_misalignment = 10;
 constexpr double nearest_wall = 0.3;  // metres
 constexpr double farthest_wall = 6;
 constexpr double max_speed = 1000;
@@ -19,8 +20,8 @@ constexpr double max_speed = 1000;
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(
       ErrorCode::bad_simulation, "simulator: " + what,
-      "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&pattern=X&wall=X&speed=X"
-      "&silent-after=N&lost-after=N].");
+      "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&pattern=X&misalignment=X"
+      "&wall=X&speed=X&silent-after=N&lost-after=N].");
 }
 
 template <typename Number>
@@ -77,6 +78,8 @@ void set(Simulation& simulation, std::string_view key, std::string_view value) {
     simulation.noise = number_of(key, value, 0.0, max_noise);
   } else if (key == "pattern") {
     simulation.pattern = number_of(key, value, 0.0, max_pattern);
+  } else if (key == "misalignment") {
+    simulation.misalignment = number_of(key, value, 0.0, max_misalignment);
   } else if (key == "wall") {
     simulation.wall = number_of(key, value, nearest_wall, farthest_wall);
   } else if (key == "speed") {
@@ -112,6 +115,9 @@ std::string simulation_uri(const Simulation& simulation) {
   }
   if (simulation.pattern != usual.pattern) {
     add("pattern", to_text(simulation.pattern));
+  }
+  if (simulation.misalignment != usual.misalignment) {
+    add("misalignment", to_text(simulation.misalignment));
   }
   if (simulation.wall) {
     add("wall", to_text(*simulation.wall));

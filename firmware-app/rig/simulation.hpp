@@ -12,13 +12,15 @@
 namespace octurn {
 
 /// Settings of a simulated Kinect. They travel as the URI by which OpenNI2 opens it:
-/// `octurn-simulator://[MESH][?key=value&...]`, with the keys `seed`, `noise`, `pattern`, `wall`,
-/// `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?` are written `%25` and `%3F`.
+/// `octurn-simulator://[MESH][?key=value&...]`, with the keys `seed`, `noise`, `pattern`,
+/// `misalignment`, `wall`, `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?` are
+/// written `%25` and `%3F`.
 struct Simulation {
   std::string mesh_file = {};       ///< STL in millimetres, Z up; empty: the simulator's own object
   std::uint32_t seed = 1;           ///< of noise and pattern: same seed, same frames
   double noise = 1.0;               ///< times a real Kinect's; 0 leaves quantisation and shadow
-  double pattern = 0.0;             ///< its own, fixed error, times a real Kinect's; 0: it has none
+  double pattern = 1.0;             ///< its own, fixed error, times a real Kinect's; 0: it has none
+  double misalignment = 1.0;        ///< of its true pose, times 5 mm and 1 degree off the told one
   std::optional<double> wall = {};  ///< metres: it looks at a wall, and at no platform
   double speed = 1.0;               ///< times 30 frames a second, as far as the processor keeps up
   std::optional<int> silent_after = {};  ///< frames, then none, as if the sensor had hung

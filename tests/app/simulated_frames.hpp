@@ -76,8 +76,11 @@ class BoxesOnPlatform {
   }
 
   std::string uri(double noise = 0, double speed = 1) const {
-    return simulation_uri(
-        {.mesh_file = folder_.path() / "boxes.stl", .noise = noise, .pattern = 0, .speed = speed});
+    return simulation_uri({.mesh_file = folder_.path() / "boxes.stl",
+                           .noise = noise,
+                           .pattern = 0,
+                           .misalignment = 0,
+                           .speed = speed});
   }
 
  private:

@@ -15,7 +15,7 @@ namespace octurn {
 namespace {
 
 constexpr double half_step = 0.5 + 0.03;  // readings; depths come in tenths of a millimetre
-constexpr const char* ideal = "octurn-simulator://?noise=0";
+constexpr const char* ideal = "octurn-simulator://?noise=0&pattern=0&misalignment=0";
 
 TEST(Simulator, GivesOnlyDepthsOfWholeReadings) {
   const KinectFrame frame = frame_of("octurn-simulator://");

@@ -9,15 +9,15 @@ import {ask, scan, startScanner} from './scanner.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
 
-// From the simulated one, which stands as in the drawing: its axis by 2 cm, its direction by 2 degrees.
+// From where the simulated one stands: its axis by 2 cm, its direction by 2 degrees.
 const crooked = {x_mm: 12, y_mm: -604, z_mm: 356, tilt_deg: 26.8, roll_deg: 0.9, yaw_deg: 0};
 
 // The built-in object as its drawing has it, millimetres: the flag's end, and the top of the aerial's knob.
 const flagEnd = 91;
 const knobTop = 155.5;
 
-// What the leaves of 1 mm and the sensor's noise leave unsure: two leaves.
-const tolerance = 2;
+// What the leaves of 1 mm, the sensor's noise and its own error of 1 mm leave unsure.
+const tolerance = 3;
 
 /** @returns {Promise<import('./scanner.js').Scanner>} on a rig that was told the crooked pose */
 async function startCrooked(t) {
@@ -175,6 +175,7 @@ async function walk(scanner, browser, screen, colorScheme) {
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `calibrate-${name}-${screen}-${colorScheme}`);
   }
+  await page.unrouteAll({behavior: 'ignoreErrors'});  // an answer may be under way
   await page.context().close();
 }
 

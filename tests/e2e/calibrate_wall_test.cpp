@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A simulated Kinect with a pattern like a real one's, which looks at a wall or at its platform.
-constexpr const char* at_platform = "octurn-simulator://?pattern=1&speed=20";
+// A simulated Kinect, which looks at a wall or at its platform.
+constexpr const char* at_platform = "octurn-simulator://?speed=20";
 
 class CalibrateWallCommand : public ::testing::Test {
  protected:
@@ -32,9 +32,8 @@ class CalibrateWallCommand : public ::testing::Test {
   /// Records what the sensor sees of a wall so far away.
   fs::path wall_at(const std::string& distance) const {
     const fs::path wall = folder_.path() / ("wall-" + distance);
-    run(0, {"record", "--simulate", "--sensor",
-            "octurn-simulator://?pattern=1&speed=20&wall=" + distance, "--wall", wall.string(),
-            "--frames", "8"});
+    run(0, {"record", "--simulate", "--sensor", "octurn-simulator://?speed=20&wall=" + distance,
+            "--wall", wall.string(), "--frames", "8"});
     return wall;
   }
 
@@ -119,9 +118,8 @@ TEST_F(CalibrateWallCommand, CorrectsAScanWithItsMapAlone) {
 
 TEST_F(CalibrateWallCommand, RefusesWallsOfTwoSensors) {
   const fs::path other = folder_.path() / "other";
-  run(0, {"record", "--simulate", "--sensor",
-          "octurn-simulator://?seed=2&pattern=1&speed=20&wall=0.66", "--wall", other.string(),
-          "--frames", "1"});
+  run(0, {"record", "--simulate", "--sensor", "octurn-simulator://?seed=2&speed=20&wall=0.66",
+          "--wall", other.string(), "--frames", "1"});
   EXPECT_NE(
       run(1, {"calibrate", "--wall", wall_at("0.66").string(), other.string(), "-o", map_.string()})
           .find("another sensor"),

@@ -11,7 +11,7 @@ namespace octurn {
 
 /// What a simulated Kinect sees.
 inline DepthFrame simulated_frame() {
-  const auto sensor = open_sensor("octurn-simulator://?noise=0");
+  const auto sensor = open_sensor("octurn-simulator://?noise=0&pattern=0&misalignment=0");
   return sensor->read({}).value().frame;
 }
 

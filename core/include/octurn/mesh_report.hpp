@@ -22,8 +22,8 @@ class MeshCheck {
 
   /// Whether every directed edge is met by its opposite, corners compared bit by bit.
   ///
-  /// Each directed edge adds a 64-bit hash whose sign its opposite has turned round, so that the
-  /// two cancel; an open surface leaves 0 with a chance of 2^-64.
+  /// Each directed edge (a, b) adds a 64-bit hash h(a, b) - h(b, a), so that a pair of opposites
+  /// cancels; an open surface leaves 0 with a chance of 2^-64.
   bool closed() const { return facets_ > 0 && edges_ == 0; }
 
   /// Cubic millimetres, by the divergence theorem; right only if the surface is closed.

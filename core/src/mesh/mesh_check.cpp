@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace octurn {
 namespace {
 
-constexpr float base_thickness_mm = 0.1F;  // what the simplifier may leave of a flat base
+constexpr double base_thickness_mm = 0.1;  // what the simplifier may leave of a flat base
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
 std::uint64_t mixed(std::uint64_t bits) {
@@ -18,17 +19,16 @@ std::uint64_t mixed(std::uint64_t bits) {
   return bits ^ bits >> 31;
 }
 
-/// Linear in the coordinates' bits: the edges' hash mixes it.
 std::uint64_t hash_of(const std::array<float, 3>& corner) {
   const auto bits = [&](std::size_t axis) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(corner[axis] + 0.0F)};  // folds -0 into 0
   };
-  return bits(0) * 0x9e3779b97f4a7c15U + bits(1) * 0xd1342543de82ef95U +
-         bits(2) * 0xda942042e4dd58b5U;
+  return mixed((bits(0) << 32 | bits(1)) + mixed(bits(2) + 1));
 }
 
-/// Changes its sign when the edge is turned round.
-std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) { return (a - b) * mixed(a + b); }
+std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
+  return mixed(a + std::rotl(b, 32)) - mixed(b + std::rotl(a, 32));
+}
 
 }  // namespace
 
@@ -38,8 +38,6 @@ void MeshCheck::add(std::span<const Facet> facets) {
                   .max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity())};
   }
   facets_ += facets.size();
-  Eigen::Array3f min = bounds_mm_.min.cast<float>();  // exact: they are coordinates of corners
-  Eigen::Array3f max = bounds_mm_.max.cast<float>();
   for (const Facet& facet : facets) {
     const auto corners = facet.corners;
     const std::array hashes{hash_of(corners[0]), hash_of(corners[1]), hash_of(corners[2])};
@@ -47,26 +45,23 @@ void MeshCheck::add(std::span<const Facet> facets) {
               hash_of_edge(hashes[2], hashes[0]);
 
     std::array<Eigen::Vector3d, 3> points;
-    bool in_base = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const Eigen::Array3f corner(corners[i].data());
-      min = min.min(corner);
-      max = max.max(corner);
-      in_base = in_base && std::abs(corners[i][2]) < base_thickness_mm;
-      points[i] = corner.cast<double>();
+      points[i] = Eigen::Vector3f(corners[i].data()).cast<double>();
+      bounds_mm_.min = bounds_mm_.min.cwiseMin(points[i]);
+      bounds_mm_.max = bounds_mm_.max.cwiseMax(points[i]);
     }
-    const Eigen::Vector3d normal = (points[1] - points[0]).cross(points[2] - points[0]);
-    six_volumes_ += points[0].dot(normal);
-    const double area = normal.norm();
-    const double filled_area = facet.attributes == filled_in ? area : 0;
+    const double area = (points[1] - points[0]).cross(points[2] - points[0]).norm();
     area_ += area;
+    const double filled_area = facet.attributes == filled_in ? area : 0;
     filled_area_ += filled_area;
-    if (in_base) {
+    if (std::ranges::all_of(points, [](const Eigen::Vector3d& point) {
+          return std::abs(point.z()) < base_thickness_mm;
+        })) {
       base_area_ += area;
       filled_base_area_ += filled_area;
     }
+    six_volumes_ += points[0].dot(points[1].cross(points[2]));
   }
-  bounds_mm_ = {.min = min.matrix().cast<double>(), .max = max.matrix().cast<double>()};
 }
 
 }  // namespace octurn

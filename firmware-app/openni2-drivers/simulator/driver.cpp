@@ -8,6 +8,7 @@
 
 #include "depth_driver.hpp"
 #include "property.hpp"
+#include "rig/misaligned_pose.hpp"
 #include "rig/simulation.hpp"
 #include "simulator/mesh_file.hpp"
 #include "simulator/simulated_kinect.hpp"
@@ -21,12 +22,13 @@ Scene make_scene(const Simulation& simulation) {
   if (simulation.wall) {
     return Scene::of_wall(*simulation.wall);
   }
+  const Eigen::Isometry3d pose = misaligned_platform_from_sensor(simulation.misalignment);
   if (simulation.mesh_file.empty()) {
-    return Scene(simulator_object());
+    return Scene(simulator_object(), pose);
   }
   Mesh mesh = read_mesh(simulation.mesh_file);
   stand_on_platform(mesh);
-  return Scene(std::move(mesh));
+  return Scene(std::move(mesh), pose);
 }
 
 /// A sensor with another pattern is another sensor.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace octurn {
 namespace {
@@ -10,7 +9,6 @@ namespace {
 constexpr int window_width = 9;   // pixels; the correlation of real frames ends there along a row
 constexpr int window_height = 3;  // and there along a column
 constexpr int picture_width = 640;
-constexpr int picture_height = 480;
 
 /// Share of the variance that is independent of the neighbours.
 constexpr double own_share = 0.15;
@@ -68,27 +66,6 @@ std::span<const std::int8_t> NoiseField::row(std::uint32_t part, int v) const {
   const auto aside = static_cast<int>(part % places);
   const int first = (v + down) % height * width + aside;
   return std::span(values_).subspan(static_cast<std::size_t>(first), picture_width);
-}
-
-std::vector<float> leftover_distortion(std::uint32_t seed) {
-  constexpr std::uint32_t waves = 4;
-  constexpr double amplitude = 0.3 * std::numbers::sqrt2 / 2;  // of each, so that variances add up
-  const auto even = [seed](std::uint32_t number) { return mixed(seed, number) / 4294967296.0; };
-  std::vector<float> readings(std::size_t{picture_width} * picture_height, 0.0F);
-  for (std::uint32_t wave = 0; wave < waves; ++wave) {
-    const double heading = 2 * std::numbers::pi * even(3 * wave);
-    const double length = 120 + 180 * even(3 * wave + 1);  // pixels
-    const double start = 2 * std::numbers::pi * even(3 * wave + 2);
-    const double along_u = 2 * std::numbers::pi * std::cos(heading) / length;
-    const double along_v = 2 * std::numbers::pi * std::sin(heading) / length;
-    for (int v = 0; v < picture_height; ++v) {
-      for (int u = 0; u < picture_width; ++u) {
-        readings[static_cast<std::size_t>(v * picture_width + u)] +=
-            static_cast<float>(amplitude * std::sin(start + along_u * u + along_v * v));
-      }
-    }
-  }
-  return readings;
 }
 
 }  // namespace octurn

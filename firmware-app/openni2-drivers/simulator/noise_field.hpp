@@ -27,11 +27,6 @@ class NoiseField {
   std::vector<std::int8_t> values_;
 };
 
-/// The lens distortion that calibration leaves: a few long waves over a picture of 640 x 480, 0.3
-/// readings in all. In real frames, planes of 100 x 100 pixels fit worse by that much than planes
-/// of 40 x 40.
-std::vector<float> leftover_distortion(std::uint32_t seed);
-
 /// A well mixed number for each pair, to draw parts by (the finaliser of Murmur3).
 std::uint32_t mixed(std::uint32_t seed, std::uint32_t number);
 

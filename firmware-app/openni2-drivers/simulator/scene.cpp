@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "octurn/units.hpp"
-#include "rig/nominal_pose.hpp"
 #include "simulator/camera.hpp"
 
 namespace octurn {
@@ -77,21 +76,19 @@ bool is_lit(const float* projector_row, int u, float inverse_depth) {
 
 }  // namespace
 
-Scene::Scene(Mesh object) : Scene(std::move(object), surroundings()) {}
+Scene::Scene(Mesh object, const Eigen::Isometry3d& platform_from_sensor)
+    : Scene(std::move(object), surroundings(), platform_from_sensor) {}
 
 Scene Scene::of_wall(double distance) {
   const auto z = static_cast<float>(distance);
   Mesh wall;
   add_rectangle(wall, {-2 * z, -2 * z, z}, {4 * z, 0, 0}, {0, 4 * z, 0});
-  for (Eigen::Vector3f& vertex : wall.vertices) {
-    vertex = nominal_platform_from_sensor().cast<float>() * vertex;
-  }
-  return {{}, wall};
+  return {{}, wall, Eigen::Isometry3d::Identity()};
 }
 
-Scene::Scene(Mesh object, const Mesh& around)
+Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor)
     : object_(std::move(object)),
-      camera_from_platform_(nominal_platform_from_sensor().inverse()),
+      camera_from_platform_(platform_from_sensor.inverse()),
       projector_from_platform_(Eigen::Translation3d(-baseline, 0, 0) * camera_from_platform_),
       camera_background_(pixels(camera), 0.0F),
       projector_background_(pixels(projector), 0.0F) {

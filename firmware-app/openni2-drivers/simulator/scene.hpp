@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "octurn/depth_frame.hpp"
+#include "rig/nominal_pose.hpp"
 #include "simulator/mesh.hpp"
 #include "simulator/rasterise.hpp"
 
@@ -15,7 +16,9 @@ namespace octurn {
 class Scene {
  public:
   /// @param object  in the platform's frame at angle 0, metres
-  explicit Scene(Mesh object);
+  /// @param platform_from_sensor  where the sensor stands in truth
+  explicit Scene(Mesh object,
+                 const Eigen::Isometry3d& platform_from_sensor = nominal_platform_from_sensor());
 
   /// A wall instead, and nothing else. @param distance  metres; the sensor looks squarely at it
   static Scene of_wall(double distance);
@@ -26,7 +29,7 @@ class Scene {
 
  private:
   /// @param around  what does not turn, in the platform's frame
-  Scene(Mesh object, const Mesh& around);
+  Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor);
 
   Mesh object_;
   Eigen::Isometry3d camera_from_platform_;

@@ -53,7 +53,6 @@ SimulatedKinect::SimulatedKinect(Scene scene, std::uint32_t seed, double noise, 
       seed_(seed),
       noise_(static_cast<float>(noise)),
       field_(seed),
-      distortion_(leftover_distortion(seed)),
       pattern_(seed, pattern),
       depth_table_(depth_of_readings()),
       lit_(scene_.lit_at(angle_)),
@@ -161,8 +160,7 @@ SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int
       static_cast<float>(field_.row(mixed(seed_, loss_part), v)[static_cast<std::size_t>(u)]);
   const float fixed = std::sqrt(fixed_share);
   const float fresh = std::sqrt(1 - fixed_share);
-  return {.reading = ideal + noise_ * distortion_[index(u, v)] +
-                     pattern_.error(index(u, v), surface.inverse_depth) +
+  return {.reading = ideal + pattern_.error(index(u, v), surface.inverse_depth) +
                      fixed * spread * pattern / NoiseField::one,
           .spread = fresh * spread / NoiseField::one,
           .patience = (NoiseField::one * patience_of(surface) / noise_ - fixed * loss) / fresh};

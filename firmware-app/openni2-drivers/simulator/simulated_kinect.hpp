@@ -14,18 +14,17 @@ namespace octurn {
 /// A Kinect v1 that looks at a scene: 11-bit readings, their noise, lost edges and grazing
 /// surfaces, and no depth in the last 8 columns.
 ///
-/// Its errors have four parts: one that is new in every frame; one that belongs to the place of the
-/// projector's pattern that falls on a surface, so that it stays as long as the scene does; and
-/// what calibration leaves of a lens's distortion, which stays for ever; and the sensor's own
-/// pattern, which stays, too, and changes with distance.
+/// Its errors have three parts: one that is new in every frame; one that belongs to the place of
+/// the projector's light that falls on a surface, so that it stays as long as the scene does; and
+/// the sensor's own pattern, which stays for ever, and changes with distance.
 ///
 /// Planes of 40 x 40 pixels in eight frames of a real Kinect v1 and in simulated ones
 /// (kinect_noise_test compares them):
 ///
 ///                                                  real                    simulated
-///     residual at 0.65, 0.75, 0.85 m, readings     0.85 0.81 0.71          0.86 0.80 0.77
-///     correlation 1, 2, 4, 6 pixels along rows     0.72 0.59 0.40 0.23     0.66 0.57 0.40 0.23
-///     and along columns                            0.50 0.26 0.01 -0.08    0.48 0.22 -0.03 -0.03
+///     residual at 0.65, 0.75, 0.85 m, readings     0.85 0.81 0.71          0.88 0.81 0.78
+///     correlation 1, 2, 4, 6 pixels along rows     0.72 0.59 0.40 0.23     0.66 0.58 0.40 0.23
+///     and along columns                            0.50 0.26 0.01 -0.08    0.49 0.24 -0.01 -0.01
 ///     share of upper edges that lose no pixel      0.89                    0.83
 ///
 /// Every depth lies on the steps of 11-bit readings. On the platform at 0.65 m one frame errs by
@@ -69,7 +68,6 @@ class SimulatedKinect {
   std::uint32_t seed_;
   float noise_;
   NoiseField field_;
-  std::vector<float> distortion_;  // readings
   SensorPattern pattern_;
   std::vector<std::uint16_t> depth_table_;  // of readings
   double angle_ = 0;

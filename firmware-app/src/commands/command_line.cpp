@@ -24,6 +24,11 @@ CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
       ->check(CLI::Range(0.1, 1000.0))
       ->needs(simulate);
   command
+      .add_flag("--simulate-perfect", rig.perfect,
+                "the simulated rig stands where it is told to, and its sensor has no error of its "
+                "own but noise")
+      ->needs(simulate);
+  command
       .add_option("--simulate-wall", rig.wall,
                   "the simulated sensor looks squarely at a wall so far away, as for a map of its "
                   "own error")

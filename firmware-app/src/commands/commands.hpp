@@ -17,6 +17,7 @@ namespace octurn {
 struct RigArguments {
   bool simulate = false;
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
+  bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
   std::optional<double> wall = {};  ///< metres: the simulated sensor looks at a wall
   double speed = 1.0;               ///< of the simulated rig, relative to life
   std::string sensor_uri = {};      ///< of a DepthSensor; empty: the default one

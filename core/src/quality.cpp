@@ -55,7 +55,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
     judgement.add(scan.disagreement > bad_disagreement * scale ? Verdict::bad : Verdict::look,
                   {.code = "stops-disagree",
                    .detail = "two stops disagree about the object by " + mm_text(scan.disagreement),
-                   .hint = "Calibrate the rig; look that object and sensor stand firm."});
+                   .hint = "Calibrate the rig; look that object and sensor stand firm.",
+                   .places = scan.disagreeing_places});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
   if (odd != scan.contradicted.end() && *odd > max_contradicted) {
@@ -64,7 +65,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
         {.code = "moved",
          .detail = "at stop " + std::to_string(odd - scan.contradicted.begin()) + " " +
                    percent_text(*odd) + " of what was seen is empty space as other stops saw it",
-         .hint = "Keep hands out of the picture, and look that nothing moves."});
+         .hint = "Keep hands out of the picture, and look that nothing moves.",
+         .places = scan.contradicted_places});
   }
 }
 
@@ -110,14 +112,16 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
          .detail = "the platform turned by " +
                    number_text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
                    " without a stop: nobody saw that side of the object",
-         .hint = "Scan a whole turn."});
+         .hint = "Scan a whole turn.",
+         .places = model.unseen_places});
   } else if (model.unseen_share > look_unseen) {
     judgement.add(model.unseen_share > bad_unseen ? Verdict::bad : Verdict::look,
                   {.code = "little-seen",
                    .detail = percent_text(model.unseen_share) +
                              " of the surface above the base was not seen, and is filled in",
                    .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
-                           "object another way, and scan it again."});
+                           "object another way, and scan it again.",
+                   .places = model.unseen_places});
   }
 }
 
@@ -130,7 +134,8 @@ void judge_box(Judgement& judgement, const ScanFigures& scan) {
     judgement.add(Verdict::look, {.code = "cut-by-box",
                                   .detail = "the object reaches through " +
                                             std::string(sides[side]) + " of the scanned space",
-                                  .hint = "Make the scanned space larger, or move the object."});
+                                  .hint = "Make the scanned space larger, or move the object.",
+                                  .places = scan.cut_places[side]});
   }
 }
 

@@ -24,6 +24,7 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
           .parts = count.parts,
           .filled_share = check.filled_share(),
           .unseen_share = check.unseen_share(),
+          .unseen_places = check.unseen_places(),
           .watertight = check.closed(),
           .volume = volume,
           .dropped_volume = volume * static_cast<double>(count.dropped_leaves) /

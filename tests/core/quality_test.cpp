@@ -91,9 +91,11 @@ TEST(Judge, LooksForASideThatNobodySaw) {
 TEST(Judge, NamesTheSideOfTheBoxThatCutsTheObject) {
   ScanFigures scan = right_scan();
   scan.cut_pixels = {0, 0, 0, 0, 30};
+  scan.cut_places[4] = {{0.01, 0.02, 0.09}};
   const Quality quality = judge(scan, right_model());
   ASSERT_EQ(codes(quality), Codes{"cut-by-box"});
   EXPECT_NE(quality.reasons[0].detail.find("the top"), std::string::npos);
+  EXPECT_EQ(quality.reasons[0].places, scan.cut_places[4]);
 }
 
 TEST(Judge, TellsOfPartsThatWereDropped) {

@@ -1,17 +1,45 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "octurn/box.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/stl.hpp"
 
 namespace octurn {
+
+/// Where in space something is, coarsely: the cells of a grid that hold points. Their side begins
+/// with 4 mm, and doubles when there are more of them than `max_count`. The order of the points has
+/// no influence.
+class Places {
+ public:
+  static constexpr std::size_t max_count = 300;
+
+  /// @param point  metres
+  void add(const Eigen::Vector3d& point);
+
+  /// Points of a facet of any size, spread so that none of its cells is left out by much.
+  /// @param corners  metres
+  void add(const std::array<Eigen::Vector3d, 3>& corners);
+
+  /// Metres, in the order of x, then y, then z.
+  std::vector<Eigen::Vector3d> centres() const;
+
+ private:
+  using Cell = std::array<int, 3>;
+
+  double side_ = 0.004;  // metres
+  std::set<Cell> cells_ = {};
+};
 
 /// Checks and measures a surface while it streams by, in constant memory.
 class MeshCheck {
@@ -37,6 +65,9 @@ class MeshCheck {
     return area_ > base_area_ ? (filled_area_ - filled_base_area_) / (area_ - base_area_) : 0;
   }
 
+  /// Metres: where the surface above the base is filled in.
+  std::vector<Eigen::Vector3d> unseen_places() const { return unseen_places_.centres(); }
+
   /// The bounding box of all corners, millimetres.
   const Box& bounds_mm() const { return bounds_mm_; }
 
@@ -48,6 +79,7 @@ class MeshCheck {
   double filled_area_ = 0;
   double base_area_ = 0;
   double filled_base_area_ = 0;
+  Places unseen_places_ = {};
   Box bounds_mm_ = {};
 };
 
@@ -55,12 +87,13 @@ class MeshCheck {
 struct ModelReport {
   std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t triangles = 0;
-  std::uint64_t bytes = 0;      ///< of the STL
-  std::uint64_t parts = 0;      ///< connected components; 0: not counted
-  double filled_share = 0;      ///< of the area, made by hole filling, 0 to 1
-  double unseen_share = 0;      ///< the same of the area above the base
-  bool watertight = false;      ///< as `MeshCheck::closed`
-  double volume = 0.0;          ///< cubic metres
+  std::uint64_t bytes = 0;                          ///< of the STL
+  std::uint64_t parts = 0;                          ///< connected components; 0: not counted
+  double filled_share = 0;                          ///< of the area, made by hole filling, 0 to 1
+  double unseen_share = 0;                          ///< the same of the area above the base
+  std::vector<Eigen::Vector3d> unseen_places = {};  ///< metres: where that area is
+  bool watertight = false;                          ///< as `MeshCheck::closed`
+  double volume = 0.0;                              ///< cubic metres
   double dropped_volume = 0.0;  ///< cubic metres of components that are not in the model
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
   double bottom = 0.0;                             ///< metres, of that box, above z = 0

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -33,6 +34,8 @@ struct QualityReason {
   std::string code = {};
   std::string detail = {};  ///< what was found and its size, for people
   std::string hint = {};    ///< what to do about it
+  /// Metres, model's frame: where that is, at most `Places::max_count`; none if it is everywhere.
+  std::vector<Eigen::Vector3d> places = {};
 
   bool operator==(const QualityReason&) const = default;
 };
@@ -53,11 +56,16 @@ struct ScanFigures {
   /// Pixels of a depth image, on average, at which the box cuts through a surface: at its sides
   /// towards -x, +x, -y, +y, and at its top.
   std::array<double, 5> cut_pixels = {};
+  std::array<std::vector<Eigen::Vector3d>, 5> cut_places = {};  ///< metres, object's frame
   /// Metres: how high the platform's surface is seen above z = 0; nothing if it is not seen.
   std::optional<double> platform_height = {};
   double disagreement = 0;  ///< metres: median distance between what two stops saw of the object
+  std::vector<Eigen::Vector3d> disagreeing_places =
+      {};  ///< metres: where it is far more than noise
   /// Of each stop: the share of what it saw of the object that is empty space as others saw it.
   std::vector<double> contradicted = {};
+  /// Metres: where that is, at the stop with the largest share.
+  std::vector<Eigen::Vector3d> contradicted_places = {};
 };
 
 /// Checks the depth images of a scan while they are read for its model.

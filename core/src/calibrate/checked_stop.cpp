@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include "calibrate/for_each_stop.hpp"
-#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
-#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -16,7 +12,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr int thinning = 2;  // every other row and column is kept
+constexpr int thinning = ScanCheck::Stop::thinning;
 constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // that is kept
 constexpr int block = 4;                  // of these rows and columns to a side
 constexpr double readings_wanted = 400;   // of a stop, to compare
@@ -24,14 +20,6 @@ constexpr double platform_radius = 0.13;  // metres, in which heights are counte
 constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
 constexpr double min_cut_height =
     0.01;  // metres above the box's bottom: the platform's rim is lower
-
-// Stops that are compared. Near ones tell little of a wrong axis, far ones see other surfaces.
-constexpr double min_apart_deg = 20;
-constexpr double max_apart_deg = 50;
-constexpr double max_neighbour_deg = 100;  // where there are no stops so near
-
-constexpr double max_distance = 0.02;          // metres: what is farther off is another surface
-constexpr double confirming_distance = 0.006;  // metres
 
 /// Of the image whose pixels are blocks of `size` x `size` pixels of another.
 Intrinsics merged(Intrinsics lens, int size) {
@@ -133,77 +121,6 @@ std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& len
   return nearest;
 }
 
-/// The turn between two stops, radians.
-double turn_between(const ScanCheck::Stop& a, const ScanCheck::Stop& b) {
-  return Eigen::AngleAxisd(a.object_from_sensor.linear().transpose() *
-                           b.object_from_sensor.linear())
-      .angle();
-}
-
-std::vector<std::size_t> partners_of(const std::vector<const ScanCheck::Stop*>& stops,
-                                     std::size_t from, double min_deg, double max_deg) {
-  std::vector<std::size_t> partners;
-  for (std::size_t to = 0; to < stops.size(); ++to) {
-    const double apart = to == from ? 0 : turn_between(*stops[from], *stops[to]);
-    if (to != from && apart > radians_from_degrees(min_deg) &&
-        apart < radians_from_degrees(max_deg)) {
-      partners.push_back(to);
-    }
-  }
-  return partners;
-}
-
-/// How one stop's readings compare with the others'.
-struct Comparison {
-  std::vector<float> distances = {};
-  std::size_t readings = 0;
-  std::size_t contradicted = 0;
-};
-
-enum class Agreement { unknown, confirmed, contradicted };
-
-/// @param point  of the object's frame, and its normal
-Agreement compare(const ScanCheck::Stop& to, const Vector3d& point, const Vector3d& normal,
-                  Comparison& comparison) {
-  constexpr double min_agreement = 0.7;  // cosine between the two normals
-  const Vector3d seen_from = to.object_from_sensor.inverse() * point;
-  if (to.empty_depth(seen_from) > seen_from.z() + max_distance) {
-    return Agreement::contradicted;
-  }
-  const auto surface = to.view.look_up(seen_from);
-  if (!surface) {
-    return Agreement::unknown;
-  }
-  const Vector3d other = to.object_from_sensor.linear() * surface->normal;
-  const double distance = other.dot(point - to.object_from_sensor * surface->point);
-  if (std::abs(distance) < max_distance && other.dot(normal) > min_agreement) {
-    comparison.distances.push_back(static_cast<float>(std::abs(distance)));
-  }
-  return std::abs(distance) < confirming_distance ? Agreement::confirmed : Agreement::unknown;
-}
-
-Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::size_t from) {
-  auto partners = partners_of(stops, from, min_apart_deg, max_apart_deg);
-  if (partners.empty()) {
-    partners = partners_of(stops, from, 0, max_neighbour_deg);
-  }
-  Comparison comparison;
-  for (const SurfaceReading& reading : stops[from]->readings) {
-    const Vector3d point = stops[from]->object_from_sensor * reading.point;
-    const Vector3d normal = stops[from]->object_from_sensor.linear() * reading.normal;
-    bool is_confirmed = false;
-    bool is_contradicted = false;
-    for (const std::size_t to : partners) {
-      const Agreement agreement = compare(*stops[to], point, normal, comparison);
-      is_confirmed |= agreement == Agreement::confirmed;
-      is_contradicted |= agreement == Agreement::contradicted;
-    }
-    ++comparison.readings;
-    comparison.contradicted += is_contradicted && !is_confirmed ? 1 : 0;
-  }
-  return comparison;
-}
-
 }  // namespace
 
 ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
@@ -224,7 +141,9 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
       return;
     }
     const std::size_t side = side_between(clip, other);
-    cut[std::min<std::size_t>(side, cut.size() - 1)] += side < cut.size() ? thinning : 0;
+    if (side < cut.size()) {
+      cut[side].emplace_back(inside.cast<float>());
+    }
   };
   for (int v = 1; v + 1 < thin.frame.height; ++v) {
     for (int u = 1; u + 1 < thin.frame.width; ++u) {
@@ -271,21 +190,6 @@ double ScanCheck::Stop::empty_depth(const Vector3d& point) const {
     }
   }
   return static_cast<double>(nearest);
-}
-
-StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads) {
-  std::vector<Comparison> of_stops(stops.size());
-  for_each_stop(stops.size(), threads,
-                [&](std::size_t stop) { of_stops[stop] = compare_stop(stops, stop); });
-  StopComparison all;
-  std::vector<float> distances;
-  for (const Comparison& stop : of_stops) {
-    distances.insert(distances.end(), stop.distances.begin(), stop.distances.end());
-    all.contradicted.push_back(static_cast<double>(stop.contradicted) /
-                               static_cast<double>(std::max<std::size_t>(stop.readings, 1)));
-  }
-  all.disagreement = median(std::move(distances));
-  return all;
 }
 
 }  // namespace octurn

@@ -16,6 +16,7 @@ namespace octurn {
 struct ScanCheck::Stop {
   Stop(const Snapshot& snapshot, const Box& clip);
 
+  static constexpr int thinning = 2;       ///< every other row and column is kept
   static constexpr double highest = 0.03;  ///< metres, of `heights`; as far down, too
   static constexpr double height_step = 0.001;
 
@@ -31,8 +32,9 @@ struct ScanCheck::Stop {
   std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
   std::size_t object_pixels = 0;              ///< inside the box
   double depths = 0;                          ///< metres, the sum of theirs
-  std::array<std::size_t, 5> cut = {};        ///< as in `ScanFigures::cut_pixels`
-  std::vector<std::size_t> heights;           ///< of readings near z = 0, a count for each step
+  /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
+  std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
+  std::vector<std::size_t> heights;  ///< of readings near z = 0, a count for each step
 
  private:
   Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);
@@ -40,8 +42,11 @@ struct ScanCheck::Stop {
 
 /// What comparing the stops gives.
 struct StopComparison {
-  double disagreement = 0;                ///< metres: the median of the distances
-  std::vector<double> contradicted = {};  ///< as in `ScanFigures`
+  double disagreement = 0;  ///< metres: the median of the distances
+  /// As in `ScanFigures`.
+  std::vector<Eigen::Vector3d> disagreeing_places = {};
+  std::vector<double> contradicted = {};
+  std::vector<Eigen::Vector3d> contradicted_places = {};
 };
 
 /// Compares what each stop saw of the object with what the stops some way around it saw.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -84,19 +85,27 @@ ScanFigures ScanCheck::figures(int threads) const {
   }
   const auto count = static_cast<double>(stops.size());
   double depths = 0;
+  std::array<Places, 5> cut;
   for (const Stop* stop : stops) {
     figures.object_pixels += static_cast<double>(stop->object_pixels) / count;
     depths += stop->depths / count;
     for (std::size_t side = 0; side < figures.cut_pixels.size(); ++side) {
-      figures.cut_pixels[side] += static_cast<double>(stop->cut[side]) / count;
+      figures.cut_pixels[side] +=
+          static_cast<double>(Stop::thinning) * static_cast<double>(stop->cut[side].size()) / count;
+      for (const Eigen::Vector3f& point : stop->cut[side]) {
+        cut[side].add(point.cast<double>());
+      }
     }
   }
+  std::ranges::transform(cut, figures.cut_places.begin(), &Places::centres);
   figures.distance = figures.object_pixels > 0 ? depths / figures.object_pixels : 0;
   figures.widest_gap = find_widest_gap(stops);
   figures.platform_height = find_platform(stops);
   StopComparison comparison = compare_stops(stops, threads);
   figures.disagreement = comparison.disagreement;
+  figures.disagreeing_places = std::move(comparison.disagreeing_places);
   figures.contradicted = std::move(comparison.contradicted);
+  figures.contradicted_places = std::move(comparison.contradicted_places);
   return figures;
 }
 

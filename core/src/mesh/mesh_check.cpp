@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "octurn/mesh_report.hpp"
+#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -59,6 +60,12 @@ void MeshCheck::add(std::span<const Facet> facets) {
         })) {
       base_area_ += area;
       filled_base_area_ += filled_area;
+    } else if (filled_area > 0) {
+      std::array<Eigen::Vector3d, 3> metres;
+      std::ranges::transform(points, metres.begin(), [](const Eigen::Vector3d& point) {
+        return Eigen::Vector3d(point.unaryExpr(&metres_from_mm));
+      });
+      unseen_places_.add(metres);
     }
     six_volumes_ += points[0].dot(points[1].cross(points[2]));
   }

@@ -17,6 +17,7 @@
 #include "octurn/units.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
+#include "scan/quality_json.hpp"
 #include "scan/solve_pose.hpp"
 #include "settings/field.hpp"
 #include "signal_stop.hpp"
@@ -77,14 +78,6 @@ Json to_json(ModelSettings settings) {
     }
   }
   return json;
-}
-
-Json to_json(const Quality& quality) {
-  Json reasons = Json::array();
-  for (const QualityReason& reason : quality.reasons) {
-    reasons.push_back({{"code", reason.code}, {"detail", reason.detail}, {"hint", reason.hint}});
-  }
-  return {{"verdict", to_string(quality.verdict)}, {"reasons", std::move(reasons)}};
 }
 
 /// One line for people, if the model is not good.

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -11,6 +15,26 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array verdicts{Verdict::good, Verdict::look, Verdict::bad};
+
+/// Whole millimetres.
+json to_places_mm(const std::vector<Eigen::Vector3d>& places) {
+  json rows = json::array();
+  for (const Eigen::Vector3d& place : places) {
+    rows.push_back({std::lround(mm_from_metres(place.x())), std::lround(mm_from_metres(place.y())),
+                    std::lround(mm_from_metres(place.z()))});
+  }
+  return rows;
+}
+
+std::vector<Eigen::Vector3d> to_places(const JsonValue& rows) {
+  std::vector<Eigen::Vector3d> places;
+  for (const JsonValue& row : rows.elements()) {
+    const std::vector<JsonValue> place = row.elements(3);
+    places.emplace_back(metres_from_mm(place[0].number()), metres_from_mm(place[1].number()),
+                        metres_from_mm(place[2].number()));
+  }
+  return places;
+}
 
 Verdict to_verdict(const JsonValue& name) {
   const std::string text = name.text();
@@ -28,6 +52,9 @@ json to_json(const Quality& quality) {
   json reasons = json::array();
   for (const QualityReason& reason : quality.reasons) {
     reasons.push_back({{"code", reason.code}, {"detail", reason.detail}, {"hint", reason.hint}});
+    if (!reason.places.empty()) {
+      reasons.back()["places_mm"] = to_places_mm(reason.places);
+    }
   }
   return {{"verdict", to_string(quality.verdict)}, {"reasons", reasons}};
 }
@@ -37,9 +64,12 @@ Quality to_quality(const JsonValue& object) {
   Quality quality{.verdict = to_verdict(keys.at("verdict"))};
   for (const JsonValue& reason : keys.at("reasons").elements()) {
     JsonObject of_reason(reason);
-    quality.reasons.push_back({.code = of_reason.at("code").text(),
-                               .detail = of_reason.at("detail").text(),
-                               .hint = of_reason.at("hint").text()});
+    const auto places = of_reason.value("places_mm");
+    quality.reasons.push_back(
+        {.code = of_reason.at("code").text(),
+         .detail = of_reason.at("detail").text(),
+         .hint = of_reason.at("hint").text(),
+         .places = places ? to_places(*places) : std::vector<Eigen::Vector3d>{}});
   }
   return quality;
 }

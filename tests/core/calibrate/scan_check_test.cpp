@@ -50,6 +50,7 @@ TEST(ScanCheck, SeesThatStopsDisagreeWithARigTwoDegreesOff) {
   // The top, 12 cm up, is 4 mm from the axis, at which stops of 45 degrees see it 3 mm apart.
   EXPECT_GT(figures(turn).disagreement, 2 * right);
   EXPECT_GT(figures(turn).disagreement, 0.0011);
+  EXPECT_FALSE(figures(turn).disagreeing_places.empty());
 }
 
 TEST(ScanCheck, MeasuresHowFarThePlatformIsFromWhereItShouldBe) {
@@ -63,11 +64,17 @@ TEST(ScanCheck, MeasuresHowFarThePlatformIsFromWhereItShouldBe) {
 TEST(ScanCheck, SeesABoxThatIsTooLowCutTheHeadOff) {
   const CalibrationTurn turn = rendered_turn(figure(), 4);
   const Box low{.min = roomy.min, .max = {0.14, 0.14, 0.09}};
-  const auto cut = figures(turn, low).cut_pixels;
+  const ScanFigures scan = figures(turn, low);
+  const auto cut = scan.cut_pixels;
   // The ball of 7 cm is cut 5 mm above its middle: 60 pixels of 1.1 mm.
   EXPECT_GT(cut[4], 20);
   EXPECT_LT(cut[4], 120);
   EXPECT_EQ(cut[0] + cut[1] + cut[2] + cut[3], 0);
+  ASSERT_FALSE(scan.cut_places[4].empty());
+  for (const Eigen::Vector3d& place : scan.cut_places[4]) {
+    EXPECT_NEAR(place.z(), 0.09, 0.008);  // a cell, and a pixel
+    EXPECT_NEAR((place - Eigen::Vector3d(0.02, 0.01, 0.085)).norm(), 0.035, 0.008);  // the ball
+  }
 }
 
 TEST(ScanCheck, NamesTheSideThatCuts) {
@@ -93,9 +100,15 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   turn.read = [hand, others = turn.read](std::size_t stop) {
     return stop == 3 ? hand : others(stop);
   };
-  const auto contradicted = figures(turn).contradicted;
+  const ScanFigures scan = figures(turn);
+  const auto& contradicted = scan.contradicted;
   EXPECT_EQ(std::ranges::max_element(contradicted) - contradicted.begin(), 3);
   EXPECT_GT(contradicted[3], 0.1);
+  ASSERT_FALSE(scan.contradicted_places.empty());
+  for (const Eigen::Vector3d& place : scan.contradicted_places) {
+    // The hand's ball, and half the diagonal of a cell.
+    EXPECT_LT((place - Eigen::Vector3d(-0.075, 0.075, 0.05)).norm(), 0.03 + 0.0035 + 0.002);
+  }
 }
 
 TEST(ScanCheck, CountsNextToNothingOnAnEmptyPlatform) {

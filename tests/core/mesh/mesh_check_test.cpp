@@ -75,6 +75,19 @@ TEST(MeshCheck, SeesACornerMovedByOneBit) {
   EXPECT_FALSE(check_of(facets).closed());
 }
 
+TEST(MeshCheck, TellsWhereTheSurfaceAboveTheBaseIsFilledIn) {
+  std::vector<Facet> facets = cube();
+  for (const std::size_t base_and_top : {0, 2}) {
+    facets[base_and_top].attributes = filled_in;
+  }
+  const MeshCheck check = check_of(facets);
+  EXPECT_DOUBLE_EQ(check.unseen_share(), 0.1);
+  ASSERT_FALSE(check.unseen_places().empty());
+  for (const Eigen::Vector3d& place : check.unseen_places()) {
+    EXPECT_NEAR(place.z(), 0.010, 0.0021);  // of the top, and half a cell
+  }
+}
+
 TEST(MeshCheck, CallsNothingNotClosed) { EXPECT_FALSE(MeshCheck{}.closed()); }
 
 }  // namespace

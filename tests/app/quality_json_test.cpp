@@ -1,0 +1,36 @@
+#include "scan/quality_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// Cut at the top, in two places, and little seen nowhere in particular.
+Quality quality_with_places() {
+  return {.verdict = Verdict::look,
+          .reasons = {{.code = "cut-by-box",
+                       .detail = "the object reaches through the top",
+                       .hint = "Make the scanned space larger.",
+                       .places = {{0.010, -0.020, 0.090}, {0.014, -0.020, 0.090}}},
+                      {.code = "little-seen", .detail = "30 %", .hint = "Scan again."}}};
+}
+
+TEST(QualityJson, GivesPlacesInMillimetresAndNoneWhereThereAreNone) {
+  const json written = to_json(quality_with_places());
+  EXPECT_EQ(written["verdict"], "look");
+  EXPECT_EQ(written["reasons"][0]["places_mm"], json::parse("[[10, -20, 90], [14, -20, 90]]"));
+  EXPECT_FALSE(written["reasons"][1].contains("places_mm"));
+}
+
+TEST(QualityJson, ReadsBackWhatItWrote) {
+  const json written = to_json(quality_with_places());
+  EXPECT_EQ(to_quality(JsonValue(written, "quality", ErrorCode::job_malformed)),
+            quality_with_places());
+}
+
+}  // namespace
+}  // namespace octurn

@@ -56,7 +56,8 @@
  * @property {number} late_pulses  of the motor
  * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
  * @property {Model | null} model
- * @property {{accepted: boolean, reason: string, solved: {after_mm: number} | null} | null} [calibration]  by the scan itself
+ * @property {{accepted: boolean, reason: string, solved: {after_mm: number} | null,
+ *   findings?: {code: string, detail: string, hint: string}[]} | null} [calibration]  by the scan itself
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device

@@ -26,16 +26,21 @@ import {json, sending} from './api.js';
  * @property {{code: string, detail: string, hint: string, stop?: number}[]} findings
  * @property {{before: number[][], after: number[][]}} [slice_mm]
  *
+ * @typedef {{accepted: boolean, reason: string, rms_before: number | null, rms_after: number | null, walls: {distance_m: number}[]}} WallReport
+ *
  * @typedef {Object} CalibrationRun
+ * @property {'turn' | 'wall'} kind
  * @property {'running' | 'done' | 'refused' | 'failed' | 'cancelled'} state
- * @property {'turning' | 'solving'} phase
+ * @property {'turning' | 'solving' | 'looking'} phase
  * @property {number} stop
  * @property {number} stops
- * @property {TurnReport | null} report
+ * @property {TurnReport | WallReport | null} report  of its kind
  * @property {{code: string, detail: string, hint: string} | null} error
  *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
+ *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
+ *   sensor_on_s: number | null,
  *   history: PoseRecord[], run: CalibrationRun | null}} Calibration
  *
  * @typedef {{sensor: import('./overlay.js').Sensor, points_mm: import('./pose.js').Point[]}} Points  in the optical frame
@@ -47,13 +52,16 @@ export const points = () => json('preview/points');
 /** @returns {Promise<Calibration>} */
 export const calibration = () => json('calibration');
 
-/** Begins a turn. @param {number} stops */
-export const measureTurn = (stops) => json('calibration', sending('POST', {kind: 'turn', stops}));
+/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number}} what */
+export const measure = (what) => json('calibration', sending('POST', what));
+
+/** @returns {Promise<import('./map_picture.js').MapPicture>} */
+export const sensorMap = () => json('calibration/sensor-map');
 
 export const cancel = () => json('calibration/cancel', sending('POST'));
 
 /** Brings back the pose before the one in force. */
 export const undo = () => json('calibration/undo', sending('POST'));
 
-/** @param {{platform_from_sensor?: number[][] | null, scale?: number}} wanted */
+/** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null}} wanted */
 export const change = (wanted) => json('calibration', sending('PATCH', wanted));

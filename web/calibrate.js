@@ -3,7 +3,7 @@
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
-import {showCalibration, showNotice} from './calibrate_view.js';
+import {showCalibration, showMap, showNotice} from './calibrate_view.js';
 import {scaleOf} from './calibration.js';
 import {chosenSpace, discardSpace, prepareSpace, showSpace} from './clip_form.js';
 import {element, setText} from './dom.js';
@@ -15,11 +15,14 @@ import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPo
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 
 const turnStops = 24;
+const wallFrames = 25;
 
 /** @type {Calibration | null} */
 let calibration = null;
 let actions = 0;  // asked of the scanner so far: an answer from before one is old news after it
 let isPending = false;
+/** @type {string | null} the map whose picture is shown */
+let pictured = null;
 
 const isWatched = () => here() === 'calibrate' && !document.hidden;
 
@@ -94,12 +97,30 @@ function scale(event) {
   }
 }
 
+const isWallReady = () => [...element('wall-ready').querySelectorAll('input')].every((box) => box.checked);
+
+function measureWall() {
+  if (isWallReady()) {
+    act('The look at the wall did not start', () => requests.measure({kind: 'wall', frames: wallFrames}));
+  }
+}
+
+/** Asks for the picture of a map that is not shown yet. @param {Calibration} calibration */
+async function lookAtMap({sensor_map: map}) {
+  const mark = map && `${map.serial} ${map.at}`;
+  if (mark !== pictured) {
+    showMap(map && await requests.sensorMap());
+    pictured = mark;
+  }
+}
+
 async function lookAtCalibration() {
   const before = actions;
   try {
     const news = await requests.calibration();
     if (before === actions && !isPending) {
       see(news);
+      await lookAtMap(news);
     }
   } catch {
     return 2000;
@@ -132,11 +153,15 @@ async function watch(look) {
 
 function listen() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
-  click('measure-turn', () => act('The turn did not start', () => requests.measureTurn(turnStops)));
+  click('measure-turn', () => act('The turn did not start', () => requests.measure({kind: 'turn', stops: turnStops})));
   click('turn-cancel', () => act('The turn was not cancelled', requests.cancel));
+  click('measure-wall', measureWall);
+  click('wall-cancel', () => act('The look was not cancelled', requests.cancel));
+  click('forget-map', () => act('The map was not removed', () => requests.change({sensor_map: null})));
   click('undo', () => act('Nothing was undone', requests.undo));
   click('unscale', () => act('The scale was not changed', () => requests.change({scale: 1})));
   element('known').addEventListener('submit', scale);
+  element('wall-ready').addEventListener('change', () => element('measure-wall').setAttribute('aria-disabled', String(!isWallReady())));
 }
 
 /** Called once, when the page is there. */

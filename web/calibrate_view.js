@@ -3,6 +3,7 @@
 import * as texts from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
+import {drawMap} from './map_picture.js';
 import {drawSlice} from './plans.js';
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
@@ -29,15 +30,16 @@ function swap(id, other) {
   }
 }
 
-/** @param {Calibration} calibration */
-function showRun(calibration) {
-  const progress = texts.progressOf(calibration);
-  progress ? swap('turn-idle', 'turn-going') : swap('turn-going', 'turn-idle');
+/** @param {Calibration} calibration @param {'turn' | 'wall'} kind */
+function showRun(calibration, kind) {
+  const progress = texts.progressOf(calibration, kind);
+  const idle = kind === 'turn' ? 'turn-idle' : 'wall-ready';
+  progress ? swap(idle, `${kind}-going`) : swap(`${kind}-going`, idle);
   if (progress) {
-    setText(element('turn-text'), progress.text);
-    element('turn-progress').value = progress.share;
+    setText(element(`${kind}-text`), progress.text);
+    element(`${kind}-progress`).value = progress.share;
   }
-  showNotice('turn-outcome', texts.outcomeOf(calibration));
+  showNotice(`${kind}-outcome`, texts.outcomeOf(calibration, kind));
 }
 
 /** @type {object | null} the report that is drawn */
@@ -64,7 +66,7 @@ function drawReport(report) {
 
 /** @param {Calibration} calibration */
 function showReport({run}) {
-  const report = run && texts.hasFound(run) ? run.report : null;
+  const report = texts.foundBy(run);
   show(element('found'), report !== null);
   if (!report) {
     drawn = null;
@@ -85,6 +87,12 @@ function showReport({run}) {
   }
 }
 
+/** @param {import('./map_picture.js').MapPicture | null} map */
+export function showMap(map) {
+  show(element('wall-picture'), map !== null);
+  map && drawMap(element('wall-errors'), map);
+}
+
 /** @param {Calibration} calibration */
 function showHistory(calibration) {
   const poses = texts.historyOf(calibration);
@@ -99,11 +107,16 @@ function showHistory(calibration) {
 /** @param {Calibration} calibration */
 export function showCalibration(calibration) {
   const summary = texts.summaryOf(calibration);
-  const isNews = texts.outcomeOf(calibration)?.tone === 'good';  // which says it already
+  const isNews = texts.outcomeOf(calibration, 'turn')?.tone === 'good';  // which says it already
   showNotice('pose-summary', isNews ? null : {...summary, detail: summary.text});
-  showRun(calibration);
+  showRun(calibration, 'turn');
+  showRun(calibration, 'wall');
   showReport(calibration);
   showHistory(calibration);
+  setText(element('wall-map'), texts.mapText(calibration));
+  setText(element('wall-warm'), texts.warmText(calibration.sensor_on_s));
+  show(element('wall-simulated'), !element('simulated').hidden);
+  show(element('forget-map'), calibration.sensor_map !== null && calibration.run?.state !== 'running');
   setText(element('scale-text'), texts.scaleText(calibration.scale));
   show(element('unscale'), calibration.scale !== 1);
 }

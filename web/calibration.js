@@ -5,6 +5,7 @@ import {count, sentence, when} from './format.js';
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 /** @typedef {import('./api_calibration.js').PoseRecord} PoseRecord */
 /** @typedef {import('./api_calibration.js').TurnReport} TurnReport */
+/** @typedef {import('./api_calibration.js').WallReport} WallReport */
 /** @typedef {import('./api_calibration.js').CalibrationRun} CalibrationRun */
 
 const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // less is no change: docs/calibration.md
@@ -48,17 +49,27 @@ export function summaryOf(calibration) {
   return {tone: sigma_mm === null ? 'idle' : 'good', title: sourceOf(calibration), text};
 }
 
-/** How far a turn is that is measured now, or null. @param {Calibration} calibration */
-export function progressOf({run}) {
-  if (run?.state !== 'running') {
-    return null;
+/** @param {CalibrationRun} run */
+function phaseOf({kind, phase, stop, stops}) {
+  if (phase === 'solving') {
+    return kind === 'wall' ? 'Working out the map' : 'Working out where the sensor stands';
   }
-  const {phase, stop, stops} = run;
-  return phase === 'solving' ? {text: 'Working out where the sensor stands', share: 0.95} :
-    {text: `Stop ${Math.min(stop + 1, stops)} of ${stops}`, share: 0.92 * stop / Math.max(stops, 1)};
+  return kind === 'wall' ? `Looking at the wall, ${stop} of ${stops}` : `Stop ${Math.min(stop + 1, stops)} of ${stops}`;
 }
 
-const refusedHint = 'Put an object of 4 cm or more near the middle of the platform, keep hands and cables out of the picture, and measure again.';
+/** A turn or wall that is measured now, or null. @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind */
+export function progressOf(calibration, kind) {
+  const run = calibration?.run;
+  if (!run || run.kind !== kind || run.state !== 'running') {
+    return null;
+  }
+  return {text: phaseOf(run), share: run.phase === 'solving' ? 0.95 : 0.92 * run.stop / Math.max(run.stops, 1)};
+}
+
+const hints = {
+  turn: 'Put an object of 4 cm or more near the middle of the platform, keep hands and cables out of the picture, and measure again.',
+  wall: 'Have the sensor look straight at a bare, matt wall that fills the whole picture, and look again.',
+};
 
 /** @param {TurnReport} report */
 function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
@@ -69,28 +80,43 @@ function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
     {title: `The axis was ${millimetres(shift)} and ${degrees(tilt)} off`, detail: `${agree}, before they were ${millimetres(before)} apart. The next scan uses the new pose.`};
 }
 
+/** @param {WallReport} report */
+function flattenedText({rms_before, rms_after, walls}) {
+  const [before, after] = [rms_before ?? 0, rms_after ?? 0];
+  return {
+    title: 'The sensor is flattened',
+    detail: `It saw the wall uneven by ${before.toFixed(2)} steps of disparity, and sees it within ${after.toFixed(2)} now. The next scan uses the map. Measure the pose with a turn again.`,
+    hint: walls.length > 1 ? '' : 'A second look from 0.85 to 0.95 m away tells how the error changes with distance, and makes the map better.',
+  };
+}
+
 /**
- * What came of the last turn, or null while there is nothing to say.
- * @param {Calibration} calibration
+ * What came of the last turn or wall, or null while there is nothing to say.
+ * @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind
  * @returns {{tone: string, title: string, detail: string, hint: string} | null}
  */
-export function outcomeOf({run}) {
-  if (!run || run.state === 'running') {
+export function outcomeOf(calibration, kind) {
+  const run = calibration?.run;
+  if (!run || run.kind !== kind || run.state === 'running') {
     return null;
   }
   const detail = sentence(run.error?.detail || run.report?.reason || '');
-  const hint = sentence(run.error?.hint || refusedHint);
+  const hint = sentence(run.error?.hint || hints[kind]);
   switch (run.state) {
     case 'cancelled': return {tone: 'idle', title: 'Cancelled', detail: 'Nothing was changed.', hint: ''};
     case 'refused': return {tone: 'warn', title: 'Nothing was changed', detail, hint};
     case 'failed': return {tone: 'bad', title: 'The measurement did not end', detail, hint: sentence(run.error?.hint ?? '')};
-    default: return run.report && {tone: 'good', hint: '', ...acceptedText(run.report)};
+    default:
+      return run.report && (kind === 'turn' ? {tone: 'good', hint: '', ...acceptedText(/** @type {TurnReport} */ (run.report))} :
+        {tone: 'good', ...flattenedText(/** @type {WallReport} */ (run.report))});
   }
 }
 
-/** Whether the last turn found anything worth a picture. @param {CalibrationRun} run */
-export const hasFound = ({state, report}) => state !== 'running' && report !== null &&
-  (report.accepted || report.stops.length > 0 || report.findings.length > 0);
+/** What the last turn found, if it is worth a picture. @param {CalibrationRun | null} run @returns {TurnReport | null} */
+export function foundBy(run) {
+  const report = run?.kind === 'turn' && run.state !== 'running' ? /** @type {TurnReport | null} */ (run.report) : null;
+  return report && (report.accepted || report.stops.length > 0 || report.findings.length > 0) ? report : null;
+}
 
 /** @param {TurnReport} report @returns {{label: string, text: string}[]} none where nothing was accepted */
 export function figuresOf({accepted, shift_mm, tilt_deg, sigma_mm, sigma_deg, before_mm, after_mm}) {
@@ -110,6 +136,21 @@ export const historyOf = ({history}) => history.map((pose, index) => ({
     pose.before_mm !== null && pose.after_mm !== null ? `${millimetres(pose.before_mm)} → ${millimetres(pose.after_mm)}` : '',
     pose.scale === 1 ? '' : `scale ${pose.scale.toFixed(4)}`].filter(Boolean).join(', '),
 }));
+
+/** @param {Calibration} calibration */
+export const mapText = ({sensor_map: map}) => map ?
+  `Done on ${when(map.at)} for sensor ${map.serial}: ${map.rms_before.toFixed(2)} → ${map.rms_after.toFixed(2)} steps of disparity.` :
+  'Not done for this sensor.';
+
+/** For how long the sensor has warmed up. @param {number | null} seconds */
+export function warmText(seconds) {
+  if (seconds === null) {
+    return '';
+  }
+  const minutes = Math.floor(seconds / 60);
+  const so = minutes < 1 ? 'for less than a minute' : `for ${count(minutes, 'minute')}`;
+  return `It has been on ${so}${minutes < 10 ? '; this page keeps it on' : ''}.`;
+}
 
 /**
  * The scale that a length asks for, on top of the one that the model was made with.

@@ -1,8 +1,9 @@
-// The scanned space: dragged in the plans, or typed, and kept as the scanner's setting.
+// The scanned space: dragged in the plans and in the live picture, or typed, and kept as the scanner's setting.
 
 import {cursorOf, edgesAt, withSide} from './clip_edges.js';
+import {draggedTo, handlesOf} from './clip_handles.js';
 import {element, show} from './dom.js';
-import {plansShown} from './pose_picture.js';
+import {plansShown, rigShown} from './pose_picture.js';
 
 const reach = {mouse: 7, pen: 10, touch: 16};  // pixels
 
@@ -112,10 +113,43 @@ function makeDraggable({canvas, side, planNow}) {
   }, {passive: false});
 }
 
+/** Lets a pointer drag the handles of the space in the live picture. */
+function makeHandlesDraggable() {
+  const overlay = element('overlay');
+  /** @type {{rig: NonNullable<ReturnType<typeof rigShown>>, handle: import('./clip_handles.js').Handle} | null} */
+  let held = null;
+  overlay.addEventListener('pointerdown', (/** @type {any} */ event) => {
+    const rig = rigShown();
+    const handle = rig && handlesOf(rig).find(({index}) => String(index) === event.target.dataset.side);
+    held = rig && handle ? {rig, handle} : null;
+    if (held) {
+      event.target.setPointerCapture(event.pointerId);
+    }
+  });
+  overlay.addEventListener('pointermove', (/** @type {PointerEvent} */ event) => {
+    const space = draft ?? inForce;
+    if (held && space) {
+      const {left, top, width, height} = overlay.getBoundingClientRect();
+      const {rig, handle} = held;
+      const value = draggedTo(rig, handle, (event.clientX - left) / width * rig.sensor.width, (event.clientY - top) / height * rig.sensor.height);
+      value !== null && set(withSide(space, handle.index, value), true);
+    }
+  });
+  for (const end of ['pointerup', 'pointercancel']) {
+    overlay.addEventListener(end, () => {
+      if (held && draft) {
+        onSpace(draft, false);
+      }
+      held = null;
+    });
+  }
+}
+
 /** @param {{onChange: (clip_mm: number[], isDragged: boolean) => void, onKeep: () => void}} events */
 export function prepareSpace({onChange, onKeep}) {
   onSpace = onChange;
   plansShown().forEach(makeDraggable);
+  makeHandlesDraggable();
   const form = element('space');
   form.addEventListener('input', type);
   element('space-discard').addEventListener('click', discardSpace);

@@ -1,6 +1,7 @@
 // The live depth picture with the rig drawn in by a pose, the distance under the pointer, and the readings from the side
 // and from above.
 
+import {handlesOf} from './clip_handles.js';
 import {distanceOf, distanceText, drawDepth} from './depth.js';
 import {element, part, setText, show} from './dom.js';
 import {overlayOf} from './overlay.js';
@@ -25,6 +26,20 @@ let picture = null;
 let pointed = null;
 let isDue = false;
 
+/** What the live picture shows: a pose, what looks from there, and the space; null before there is a picture. */
+export const rigShown = () => shown.pose && shown.seen ? {pose: shown.pose, sensor: shown.seen.sensor, clip_mm: shown.clip_mm} : null;
+
+function drawHandles() {
+  const rig = rigShown();
+  const handles = rig ? handlesOf(rig) : [];
+  for (const circle of element('overlay').querySelectorAll('circle')) {
+    const handle = handles.find(({index}) => index === Number(circle.dataset.side));
+    show(circle, handle !== undefined);
+    circle.setAttribute('cx', String(handle?.x ?? 0));
+    circle.setAttribute('cy', String(handle?.y ?? 0));
+  }
+}
+
 function drawOverlay() {
   if (shown.pose && shown.seen) {
     const {sensor} = shown.seen;
@@ -32,6 +47,7 @@ function drawOverlay() {
     for (const [line, path] of Object.entries(overlayOf({pose: shown.pose, sensor, clip_mm: shown.clip_mm, radius_mm}))) {
       part(element('overlay'), `[data-line=${line}]`).setAttribute('d', path);
     }
+    drawHandles();
   }
 }
 

@@ -9,6 +9,7 @@ import {sentence} from './format.js';
 
 const calibrate = {text: 'Calibrate', href: '#calibrate'};
 const space = {text: 'Change the scanned space', href: '#calibrate'};
+const flatten = {text: 'Flatten the sensor', href: '#calibrate'};
 const again = {text: 'Scan again', href: '#'};
 
 /** @type {Record<string, Action>} */
@@ -16,6 +17,7 @@ const actions = {
   'stops-disagree': calibrate,
   'floats': calibrate,
   'sunk': calibrate,
+  'no-map': flatten,
   'cut-by-box': space,
   'empty': again,
   'model-empty': again,
@@ -36,8 +38,11 @@ const verdicts = {
 /** @param {Model} model @returns {{tone: string, text: string} | null} null for a model that was never judged */
 export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: verdicts[quality.verdict].badge} : null;
 
-/** @param {Model} model */
-export function verdictOf({quality, watertight}) {
+/**
+ * @param {Model} model
+ * @param {Reason[]} findings  of the scan's calibration: what makes no model bad, and could make the next one better
+ */
+export function verdictOf({quality, watertight}, findings = []) {
   if (!quality) {
     return null;
   }
@@ -48,7 +53,7 @@ export function verdictOf({quality, watertight}) {
     title,
     text: quality.verdict !== 'good' ? '' :
       watertight ? 'Nothing speaks against it: ready to slice.' : 'Nothing speaks against it, but it has open edges.',
-    reasons: quality.reasons.map(({code, detail, hint}) => (
+    reasons: [...quality.reasons, ...findings.filter(({code}) => code === 'no-map')].map(({code, detail, hint}) => (
       {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code)})),
   };
 }

@@ -152,7 +152,7 @@ const detailsOf = (scan) => ({
   id: scan.id,
   name: nameOf(scan),
   trouble: troubleOf(scan),
-  verdict: scan.model && verdictOf(scan.model),
+  verdict: scan.model && verdictOf(scan.model, scan.calibration?.findings),
   size: scan.model ? format.size(scan.model.size_mm) : '',
   facts: factsOf(scan),
   canResume: scan.state === 'paused' || scan.state === 'interrupted',

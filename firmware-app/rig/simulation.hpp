@@ -34,6 +34,10 @@ inline constexpr std::string_view simulator_scheme = "octurn-simulator://";
 /// counter-clockwise seen from above. No other device of OpenNI2 has a property of this number.
 inline constexpr int platform_angle_property = 0x4F430001;
 
+/// Property of type double, written by the program: the sensor is turned to a wall so many metres
+/// away, or with 0 back. A sensor that a URI has look at a wall keeps to that.
+inline constexpr int wall_property = 0x4F430003;
+
 /// Property of type double: the time by the simulated sensor's own clock, seconds. It advances by
 /// 1/30 s with each frame that was sent or, from `silent_after` on, left out. So a machine that is
 /// too busy to render in time slows this clock down, and only a simulated fault is a silence.

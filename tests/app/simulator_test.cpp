@@ -30,6 +30,20 @@ TEST(Simulator, GivesOnlyDepthsOfWholeReadings) {
   EXPECT_GT(compared, 250000);
 }
 
+TEST(Simulator, TurnsToAWallAndBack) {
+  const auto sensor = open_sensor(ideal);
+  const KinectFrame before = frame_at(*sensor, 0);
+  sensor->show_wall(0.7);
+  const KinectFrame wall = frame_at(*sensor, 0);
+  for (int v = 0; v < 480; v += 7) {
+    for (int u = 0; u < 632; u += 7) {
+      ASSERT_NEAR(reading_of_depth(wall.depth(u, v)), reading_of_depth(0.7), half_step);
+    }
+  }
+  sensor->show_wall(std::nullopt);
+  EXPECT_TRUE(frame_at(*sensor, 0).frame.depth == before.frame.depth);
+}
+
 TEST(Simulator, SeesNothingInTheLastEightColumns) {
   const KinectFrame frame = frame_of(ideal);
   int seen = 0;

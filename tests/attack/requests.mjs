@@ -49,7 +49,8 @@ const routes = [
   [2, 'PATCH', '/api/v1/settings', settings], [2, 'GET', '/api/v1/settings/backup'], [2, 'GET', '/api/v1/calibration'],
   [1, 'POST', '/api/v1/calibration', {kind: ['turn', 'wall'], stops: [8, 24, -1], frames: [5]}],
   [2, 'POST', '/api/v1/calibration/cancel', {}], [1, 'POST', '/api/v1/calibration/undo', {}],
-  [1, 'PATCH', '/api/v1/calibration', {platform_from_sensor: settings.platform_from_sensor, scale: [1, 0, -1]}],
+  [1, 'PATCH', '/api/v1/calibration', {platform_from_sensor: settings.platform_from_sensor, scale: [1, 0, -1], sensor_map: [null, 1]}],
+  [1, 'GET', '/api/v1/calibration/sensor-map'],
   [2, 'GET', '/api/v1/preview/points'], [2, 'GET', '/api/v1/turntable'],
   [1, 'POST', '/api/v1/turntable', {jog_deg: [10, 1e9], test: [true], stop: [true]}],
 ];

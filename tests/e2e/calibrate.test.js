@@ -121,6 +121,26 @@ async function dragSpace(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
+/** Drags the right side of the scanned space inwards in the live picture, and puts it back. */
+async function dragHandle(scanner, browser) {
+  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
+  const right = page.getByLabel('Space to the right, to');
+  const handle = page.locator('#overlay [data-side="3"]');
+  await page.waitForFunction(() => document.querySelector('#space [data-clip="3"]')?.value === '140');
+  await handle.waitFor();
+  await handle.scrollIntoViewIfNeeded();
+  const {x, y, width, height} = await handle.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 - 25, y + height / 2, {steps: 4});
+  await page.mouse.up();
+  const dragged = Number(await right.inputValue());
+  assert.ok(dragged < 135 && dragged > 60, `dragged to ${dragged}`);
+  await page.locator('#space-discard').click();
+  assert.equal(await right.inputValue(), '140');
+  assert.deepEqual(faults, []);
+}
+
 /** One known length sets the scale, and a wrong one says why not. */
 async function setScale(scanner, browser) {
   const {page} = await openPage(browser, `${scanner.url}#calibrate`);
@@ -139,7 +159,39 @@ test('pose, space and scale are set on the page', async (t) => {
   const browser = await openBrowser(t);
   await t.test('the pose by hand and keyboard, with the lines in the picture', () => setByHand(scanner, browser));
   await t.test('the scanned space by dragging its sides', () => dragSpace(scanner, browser));
+  await t.test('the scanned space by its handles in the live picture', () => dragHandle(scanner, browser));
   await t.test('the scale by one known length', () => setScale(scanner, browser));
+});
+
+const hasFinding = (scan) => scan.calibration.findings.some(({code}) => code === 'no-map');
+
+test('the sensor is flattened on the page, and the next scan sees evenly', async (t) => {
+  const scanner = await startScanner(t);
+  const first = await scan(scanner, {...draft, snapshots: 12});
+  assert.ok(hasFinding(first));
+  const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${first.id}`);
+  await page.locator('#verdict').getByRole('link', {name: 'Flatten the sensor'}).click();
+
+  const look = page.getByRole('button', {name: 'Look at the wall'});
+  await page.getByText('Not done for this sensor.').waitFor();
+  await page.getByText(/It has been on for/).waitFor();
+  await look.click({force: true});  // does nothing before both are ticked
+  for (const box of await page.locator('#wall-ready').getByRole('checkbox').all()) {
+    await box.check();
+  }
+  assert.equal((await ask(scanner, 'calibration')).run, null);
+  await look.click();
+  await page.getByText('The sensor is flattened').waitFor();
+  await page.getByRole('img', {name: 'Where the sensor sees too near, and where too far'}).waitFor();
+  await picture(page, 'flattened');
+  assert.deepEqual(await complaints(page), []);
+
+  const second = await scan(scanner, {...draft, snapshots: 12});
+  assert.ok(!hasFinding(second));
+  await page.getByRole('button', {name: 'Remove the map'}).click();
+  await page.getByText('Not done for this sensor.').waitFor();
+  assert.equal((await ask(scanner, 'calibration')).sensor_map, null);
+  assert.deepEqual(faults, []);
 });
 
 const slipped = {
@@ -159,6 +211,7 @@ const runs = {
   refused: [{...run, state: 'refused', report: {...slipped, accepted: false, reason: 'too little of an object was seen', stops: [], findings: [], slice_mm: undefined}},
     'Too little of an object was seen.'],
   cancelled: [{...run, state: 'cancelled'}, 'Cancelled'],
+  wall: [{...run, kind: 'wall', phase: 'looking', stops: 25}, 'Looking at the wall, 7 of 25'],
 };
 
 /** Goes through all runs on one screen. */

@@ -3,10 +3,11 @@ import {test} from 'node:test';
 
 import * as texts from '../../web/calibration.js';
 import {distanceOf, distanceText} from '../../web/depth.js';
+import {errorColour} from '../../web/map_picture.js';
 import {calibration, turnReport} from './examples.js';
 
-const run = {state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};
-const after = (changes) => texts.outcomeOf({...calibration, run: {...run, ...changes}});
+const run = {kind: 'turn', state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};
+const after = (changes) => texts.outcomeOf({...calibration, run: {...run, ...changes}}, 'turn');
 
 test('a rig that nobody measured is not called calibrated', () => {
   const summary = texts.summaryOf(calibration);
@@ -26,11 +27,13 @@ test('a pose set by hand has no figures', () => {
   assert.match(summary.text, /only a turn/);
 });
 
-test('progress grows, and never ends before the end', () => {
-  const shares = [0, 3, 24].map((stop) => texts.progressOf({...calibration, run: {...run, stop}}).share);
+test('progress is of the kind that runs, grows, and never ends before the end', () => {
+  const shares = [0, 3, 24].map((stop) => texts.progressOf({...calibration, run: {...run, stop}}, 'turn').share);
   assert.ok(shares[0] < shares[1] && shares[1] < shares[2] && shares[2] < 0.95);
-  assert.equal(texts.progressOf({...calibration, run}).text, 'Stop 4 of 24');
-  assert.equal(texts.progressOf({...calibration, run: {...run, state: 'done'}}), null);
+  assert.equal(texts.progressOf({...calibration, run}, 'turn').text, 'Stop 4 of 24');
+  assert.equal(texts.progressOf({...calibration, run}, 'wall'), null);
+  assert.equal(texts.progressOf({...calibration, run: {...run, state: 'done'}}, 'turn'), null);
+  assert.equal(texts.progressOf({...calibration, run: {...run, kind: 'wall', phase: 'looking'}}, 'wall').text, 'Looking at the wall, 3 of 24');
 });
 
 test('an accepted turn says what was wrong and how well it is now', () => {
@@ -107,11 +110,51 @@ test('only what was found with this rig counts as calibrated', () => {
       ['page', 'turn', 'scan']);
 });
 
-test('of a refused turn only what it found is shown', () => {
+test('of a refused turn only what it found is shown, and nothing of a wall', () => {
   const refused = {...turnReport, accepted: false, stops: [], findings: []};
+  const slipped = {...refused, findings: [{code: 'moved', detail: '', hint: ''}]};
   assert.deepEqual(texts.figuresOf(refused), []);
-  assert.equal(texts.hasFound({...run, state: 'refused', report: refused}), false);
-  assert.equal(texts.hasFound({...run, state: 'refused', report: {...refused, findings: [{code: 'moved', detail: '', hint: ''}]}}), true);
-  assert.equal(texts.hasFound({...run, state: 'done', report: turnReport}), true);
-  assert.equal(texts.hasFound({...run, state: 'failed', report: null}), false);
+  assert.equal(texts.foundBy(null), null);
+  assert.equal(texts.foundBy({...run, state: 'refused', report: refused}), null);
+  assert.equal(texts.foundBy({...run, state: 'refused', report: slipped}), slipped);
+  assert.equal(texts.foundBy({...run, state: 'done', report: turnReport}), turnReport);
+  assert.equal(texts.foundBy({...run, state: 'failed', report: null}), null);
+  assert.equal(texts.foundBy({...run, kind: 'wall', state: 'done', report: wallReport}), null);
+});
+
+const wallReport = {accepted: true, reason: '', rms_before: 0.812, rms_after: 0.214, walls: [{distance_m: 0.65}]};
+const looked = (changes) => texts.outcomeOf({...calibration, run: {...run, kind: 'wall', phase: 'looking', ...changes}}, 'wall');
+
+test('a look at a wall says what it took out, and asks for a second one once', () => {
+  const first = looked({state: 'done', report: wallReport});
+  assert.equal(first.title, 'The sensor is flattened');
+  assert.match(first.detail, /0\.81 steps .* within 0\.21/);
+  assert.match(first.hint, /second look/);
+  assert.equal(looked({state: 'done', report: {...wallReport, walls: [{distance_m: 0.9}, {distance_m: 0.65}]}}).hint, '');
+  assert.equal(texts.outcomeOf({...calibration, run: {...run, kind: 'wall', state: 'done', report: wallReport}}, 'turn'), null);
+});
+
+test('a wall that is none is told in the scanner\'s words', () => {
+  const refused = looked({state: 'refused', report: {...wallReport, accepted: false, reason: 'that is no flat wall: 30 % of the picture lies off its plane'}});
+  assert.deepEqual([refused.tone, refused.detail], ['warn', 'That is no flat wall: 30 % of the picture lies off its plane.']);
+  assert.match(refused.hint, /bare, matt wall/);
+});
+
+test('a map is told with its date, its sensor and what it did', () => {
+  assert.match(texts.mapText(calibration), /^Not done/);
+  const map = {serial: 'A00361', at: '2026-11-21T08:15:00Z', rms_before: 0.812, rms_after: 0.214};
+  assert.match(texts.mapText({...calibration, sensor_map: map}), /^Done on .*21.* for sensor A00361: 0\.81 → 0\.21 steps/);
+});
+
+test('how long the sensor has been on is told where it is known', () => {
+  assert.equal(texts.warmText(null), '');
+  assert.match(texts.warmText(20), /less than a minute; this page keeps it on\.$/);
+  assert.match(texts.warmText(65), /for 1 minute;/);
+  assert.equal(texts.warmText(725), 'It has been on for 12 minutes.');
+});
+
+test('an error of the sensor is blue where too far, amber where too near, and pale at none', () => {
+  const [far, none, near] = [-2, 0, 5].map(errorColour);
+  assert.ok(far[2] > far[0] && near[0] > near[2]);
+  assert.ok(Math.min(...none) > 230);
 });

@@ -24,3 +24,10 @@ test('a reason leads to its cure', () => {
   assert.deepEqual(['stops-disagree', 'cut-by-box', 'little-seen', 'something-new', undefined].map(href),
       ['#calibrate', '#calibrate', '#', null, null]);
 });
+
+test('a good model of an uneven sensor leads to the wall, and stays good', () => {
+  const findings = [{code: 'no-map', detail: 'the flat platform looks uneven', hint: 'flatten the sensor'}, {code: 'slip', detail: '', hint: ''}];
+  const {tone, reasons} = verdictOf(judged('good'), findings);
+  assert.equal(tone, 'good');
+  assert.deepEqual(reasons.map(({detail, action}) => [detail, action.text]), [['The flat platform looks uneven.', 'Flatten the sensor']]);
+});

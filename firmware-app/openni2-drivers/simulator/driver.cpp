@@ -45,7 +45,8 @@ class Device final : public DepthDevice {
 
   OniBool isPropertySupported(int property) override {
     return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property ||
-                   property == sensor_time_property || property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
+                   property == wall_property || property == sensor_time_property ||
+                   property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
                ? TRUE
                : FALSE;
   }
@@ -69,15 +70,20 @@ class Device final : public DepthDevice {
   }
 
   OniStatus setProperty(int property, const void* data, int size) override {
-    if (property != platform_angle_property) {
+    if (property != platform_angle_property && property != wall_property) {
       return ONI_STATUS_NOT_SUPPORTED;
     }
-    double angle = 0;
-    const OniStatus status = take_property(angle, data, size);
-    if (status != ONI_STATUS_OK || !std::isfinite(angle)) {
+    double value = 0;
+    const OniStatus status = take_property(value, data, size);
+    if (status != ONI_STATUS_OK || !std::isfinite(value) ||
+        (property == wall_property && value < 0)) {
       return ONI_STATUS_BAD_PARAMETER;
     }
-    state_.angle = angle;
+    if (property == platform_angle_property) {
+      state_.angle = value;
+    } else if (!simulation_.wall) {
+      state_.wall = value;
+    }
     return ONI_STATUS_OK;
   }
 

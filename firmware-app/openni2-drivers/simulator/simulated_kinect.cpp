@@ -63,7 +63,8 @@ SimulatedKinect::SimulatedKinect(Scene scene, std::uint32_t seed, double noise, 
 void SimulatedKinect::expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth) {
   assert(depth.size() == pixels(camera));
   if (angle != angle_) {
-    turn_to(angle);
+    angle_ = angle;
+    look_again();
   }
   const std::uint32_t noise_part = mixed(seed_, parts + 2 * frame);
   const std::uint32_t lost_part = mixed(seed_, parts + 2 * frame + 1);
@@ -82,9 +83,16 @@ void SimulatedKinect::expose(double angle, std::uint32_t frame, std::span<std::u
   }
 }
 
-void SimulatedKinect::turn_to(double angle) {
-  const InverseDepth before = std::exchange(lit_, scene_.lit_at(angle));
-  angle_ = angle;
+void SimulatedKinect::turn_to_wall(double distance) {
+  if (distance != wall_) {
+    wall_ = distance;
+    look_again();
+  }
+}
+
+void SimulatedKinect::look_again() {
+  const InverseDepth before =
+      std::exchange(lit_, wall_ > 0 ? Scene::of_wall(wall_).lit_at(0) : scene_.lit_at(angle_));
   hold_still(changed_from(before));
 }
 

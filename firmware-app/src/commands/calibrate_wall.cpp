@@ -5,15 +5,13 @@
 #include "commands/commands.hpp"
 #include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
-#include "octurn/units.hpp"
+#include "scan/sensor_map_json.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 #include "utc.hpp"
 
 namespace octurn {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
 
@@ -52,24 +50,6 @@ Looks read_looks(const std::vector<std::filesystem::path>& folders, const std::s
   return looks;
 }
 
-Json to_json(const SensorMapReport& report, const std::string& serial) {
-  Json walls = Json::array();
-  for (const WallReport& wall : report.walls) {
-    walls.push_back({{"distance_m", wall.distance},
-                     {"slant_deg", degrees_from_radians(wall.slant)},
-                     {"coverage", wall.coverage},
-                     {"rms_before", to_units(wall.before)},
-                     {"rms_after", to_units(wall.after)}});
-  }
-  return {{"accepted", report.accepted},
-          {"reason", report.reason},
-          {"serial", serial},
-          {"unit_per_m", disparity_unit},
-          {"rms_before", report.accepted ? Json(to_units(report.map.before)) : Json(nullptr)},
-          {"rms_after", report.accepted ? Json(to_units(report.map.after)) : Json(nullptr)},
-          {"walls", std::move(walls)}};
-}
-
 /// The report as lines for people.
 std::string to_text(const SensorMapReport& report) {
   std::ostringstream text;
@@ -94,13 +74,12 @@ bool calibrate_wall(const CalibrateWallArguments& arguments) {
   expect_writable(arguments.output);
   const Looks looks = read_looks(arguments.walls, signal.token());
   SensorMapReport report = fit_sensor_map(looks.views);
+  report.map.serial = looks.sensor_serial;
   if (report.accepted) {
-    report.map.serial = looks.sensor_serial;
     report.map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
     write_sensor_map(arguments.output, report.map);
   }
-  write_standard_output(arguments.json ? to_json(report, looks.sensor_serial).dump() + "\n"
-                                       : to_text(report));
+  write_standard_output(arguments.json ? to_json(report).dump() + "\n" : to_text(report));
   return report.accepted;
 }
 

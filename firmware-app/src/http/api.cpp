@@ -118,6 +118,7 @@ Response Api::dispatch(const Request& request) {
       Route{"GET", "/api/v1/calibration", send_calibration},
       Route{"PATCH", "/api/v1/calibration", change_calibration},
       Route{"POST", "/api/v1/calibration", start_calibration, WaitsFor::start},
+      Route{"GET", "/api/v1/calibration/sensor-map", send_sensor_map},
       Route{"POST", "/api/v1/calibration/cancel", cancel_calibration},
       Route{"POST", "/api/v1/calibration/undo", undo_calibration},
       Route{"GET", "/api/v1/preview/points", send_points, WaitsFor::look},

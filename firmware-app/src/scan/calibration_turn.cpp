@@ -11,6 +11,7 @@
 #include "scan/depth_scale.hpp"
 #include "scan/failure_json.hpp"
 #include "scan/plan.hpp"
+#include "scan/sensor_map_json.hpp"
 #include "scan/take_depth_image.hpp"
 
 namespace octurn {
@@ -88,16 +89,17 @@ json to_json(const TurnReport& report) {
 }  // namespace
 
 json to_json(const CalibrationRun& run) {
-  constexpr std::array<std::string_view, 1> kinds{"turn"};
+  constexpr std::array<std::string_view, 2> kinds{"turn", "wall"};
   constexpr std::array<std::string_view, 5> states{"running", "done", "refused", "failed",
                                                    "cancelled"};
-  constexpr std::array<std::string_view, 2> phases{"turning", "solving"};
+  constexpr std::array<std::string_view, 3> phases{"turning", "solving", "looking"};
+  const json wall = run.wall ? to_json(*run.wall) : json();
   return {{"kind", kinds[static_cast<std::size_t>(run.kind)]},
           {"state", states[static_cast<std::size_t>(run.state)]},
           {"phase", phases[static_cast<std::size_t>(run.phase)]},
           {"stop", run.stop},
           {"stops", run.stops},
-          {"report", run.report ? to_json(*run.report) : json()},
+          {"report", run.report ? to_json(*run.report) : wall},
           {"error", run.failure ? to_json(*run.failure) : json()}};
 }
 

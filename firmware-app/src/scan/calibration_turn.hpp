@@ -34,16 +34,17 @@ struct TurnReport {
 
 /// A measurement of the rig, as it goes on.
 struct CalibrationRun {
-  enum class Kind { turn };
+  enum class Kind { turn, wall };
   enum class State { running, done, refused, failed, cancelled };
-  enum class Phase { turning, solving };
+  enum class Phase { turning, solving, looking };
 
   Kind kind = Kind::turn;
   State state = State::running;
   Phase phase = Phase::turning;
-  int stop = 0;  ///< that are done
+  int stop = 0;  ///< that are done; of a wall, frames
   int stops = 0;
-  std::optional<TurnReport> report = {};
+  std::optional<TurnReport> report = {};     ///< of a turn
+  std::optional<SensorMapReport> wall = {};  ///< of a wall; its map has no pixels here
   std::optional<Failure> failure = {};
 };
 

@@ -50,12 +50,17 @@ struct CalibrateCommand {
   ScanSettings settings = {};  ///< `snapshots` are the stops
 };
 
+/// Look at a wall for the map of the sensor's own error.
+struct WallCommand {
+  int frames = 0;
+};
+
 /// What the worker can be asked to do, the least urgent first.
 using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, ScanCommand,
-                             ResumeCommand, CalibrateCommand>;
+                             ResumeCommand, CalibrateCommand, WallCommand>;
 
-/// The one command that waits, and the one that is carried out. A scan, or a turn for the sensor's
-/// pose, ends whatever else is carried out and takes the place of what waits; nothing else does.
+/// The one command that waits, and the one that is carried out. A scan, or a measurement of the
+/// rig, ends whatever else is carried out and takes the place of what waits; nothing else does.
 /// Any thread may call anything.
 class CommandSlot {
  public:
@@ -66,7 +71,7 @@ class CommandSlot {
     std::stop_source stop = {};
   };
 
-  /// Puts a scan there, or a turn for the sensor's pose, which is like one. @return false if one
+  /// Puts a scan there, or a measurement of the rig, which is like one. @return false if one
   /// waits or runs, or this has ended
   bool offer_scan(Command scan);
 

@@ -16,6 +16,7 @@ Rig::~Rig() = default;
 DepthSensor& Rig::sensor() {
   if (!sensor_) {
     sensor_ = options_.open_sensor(options_.sensor_uri);
+    sensor_since_ = std::chrono::steady_clock::now();
     sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
   }
   return *sensor_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -38,6 +39,11 @@ class Rig {
   /// Closes the sensor, which switches its projector off; the next use opens it again.
   void close_sensor() { sensor_.reset(); }
 
+  /// Since when the sensor is open, and warms up; nothing while it is closed.
+  std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
+    return sensor_ ? std::optional(sensor_since_) : std::nullopt;
+  }
+
   /// Opens the turntable if it is closed.
   /// @throws Error "turntable-missing" or "turntable-failed"
   Turntable& turntable();
@@ -61,6 +67,7 @@ class Rig {
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;
   std::unique_ptr<DepthSensor> sensor_;
+  std::chrono::steady_clock::time_point sensor_since_ = {};
 };
 
 }  // namespace octurn

@@ -186,15 +186,41 @@ std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
 }
 
 bool Scanner::calibrate(const ScanSettings& settings) {
+  return begin({.stops = settings.snapshots}, CalibrateCommand{settings});
+}
+
+bool Scanner::look_at_wall(int frames) {
+  return begin({.kind = CalibrationRun::Kind::wall,
+                .phase = CalibrationRun::Phase::looking,
+                .stops = frames},
+               WallCommand{frames});
+}
+
+bool Scanner::begin(CalibrationRun run, Command command) {
   const std::lock_guard lock(scans_);
   if (slot_.has_scan() || slot_.has_ended()) {
     return false;
   }
-  board_.set_calibration_run({.stops = settings.snapshots});
-  if (!slot_.offer_scan(CalibrateCommand{settings})) {
-    board_.set_calibration_run({.state = CalibrationRun::State::cancelled});  // this is ending
+  board_.set_calibration_run(run);
+  if (!slot_.offer_scan(std::move(command))) {
+    run.state = CalibrationRun::State::cancelled;  // this is ending
+    board_.set_calibration_run(std::move(run));
     return false;
   }
+  return true;
+}
+
+bool Scanner::forget_sensor_map() {
+  const std::lock_guard lock(scans_);
+  if (slot_.has_scan()) {
+    return false;
+  }
+  const auto sensor = known_sensor();
+  if (!sensor->map) {
+    throw Error(ErrorCode::not_found, "this sensor has no map", "There is nothing to remove.");
+  }
+  remove_sensor_map(store_.data(), sensor->serial);
+  board_.clear_sensor_map();
   return true;
 }
 

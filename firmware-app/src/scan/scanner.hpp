@@ -89,10 +89,23 @@ class Scanner {
   /// @return false if a scan, or another turn, goes on
   bool calibrate(const ScanSettings& settings);
 
-  /// Asks the turn to stop. @return false if none goes on
+  /// Has the sensor look at a wall, and makes the map of its own error of that and the looks
+  /// before.
+  /// @return false if a scan, or another measurement, goes on
+  bool look_at_wall(int frames);
+
+  /// Removes the map of the sensor that was opened last, and the looks that it was made of.
+  /// @return false if a scan, or a measurement, goes on
+  /// @throws Error "not-found"  if it has none; "write-failed"
+  bool forget_sensor_map();
+
+  /// The sensor that is open, or was last.
+  std::shared_ptr<const KnownSensor> known_sensor() const { return board_.known_sensor().get(); }
+
+  /// Asks the turn, or the look, to stop. @return false if none goes on
   bool cancel_calibration();
 
-  /// The turn that goes on, or the last one.
+  /// The measurement that goes on, or the last one.
   std::shared_ptr<const std::optional<CalibrationRun>> calibration_run() const {
     return board_.calibration_run().get();
   }
@@ -125,6 +138,7 @@ class Scanner {
  private:
   bool is_running(std::string_view id) const;
   std::optional<Job> hand_over(Job job, Command command);
+  bool begin(CalibrationRun run, Command command);
 
   ScanStore& store_;
   CalibrationStore calibration_;

@@ -1,9 +1,10 @@
 #include "scan/sensor_map_files.hpp"
 
 #include <cstddef>
-#include <optional>
-#include <string>
+#include <numeric>
+#include <system_error>
 
+#include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/scan_folder.hpp"
 
@@ -11,6 +12,7 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t max_map_bytes = 16U << 20U;
+constexpr int block = 8;  // pixels to a side: a pattern's waves are some 50 long
 
 constexpr std::string_view allowed =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
@@ -23,6 +25,52 @@ std::filesystem::path sensor_map_of(const std::filesystem::path& data, std::stri
     letter = allowed.find(letter) == allowed.npos ? '_' : letter;
   }
   return data / "sensor-maps" / (name + ".png");
+}
+
+std::filesystem::path wall_looks_of(const std::filesystem::path& data, std::string_view serial) {
+  return sensor_map_of(data, serial).replace_extension();
+}
+
+void remove_sensor_map(const std::filesystem::path& data, std::string_view serial) {
+  const std::filesystem::path map = sensor_map_of(data, serial);
+  std::error_code failed_map;
+  std::error_code failed_looks;
+  std::filesystem::remove(map, failed_map);
+  std::filesystem::remove_all(wall_looks_of(data, serial), failed_looks);
+  if (const std::error_code& failed = failed_map ? failed_map : failed_looks) {
+    throw Error(ErrorCode::write_failed, map.string() + ": cannot be removed: " + failed.message(),
+                "Look at the disk.");
+  }
+}
+
+SensorMapSummary summarise(const SensorMap& map) {
+  SensorMapSummary summary{.serial = map.serial,
+                           .made = map.made,
+                           .before = map.before,
+                           .after = map.after,
+                           .columns = map.width / block,
+                           .rows = map.height / block,
+                           .errors = {}};
+  for (int row = 0; row < summary.rows; ++row) {
+    for (int column = 0; column < summary.columns; ++column) {
+      float sum = 0;
+      for (int v = row * block; v < (row + 1) * block; ++v) {
+        const auto first =
+            map.near.begin() + std::ptrdiff_t{v} * map.width + std::ptrdiff_t{column} * block;
+        sum = std::accumulate(first, first + block, sum);
+      }
+      summary.errors.push_back(sum / (block * block));
+    }
+  }
+  return summary;
+}
+
+std::optional<SensorMapSummary> find_map_summary(const std::filesystem::path& data,
+                                                 std::string_view serial) {
+  const std::filesystem::path file = sensor_map_of(data, serial);
+  return serial.empty() || !std::filesystem::exists(file)
+             ? std::nullopt
+             : std::optional(summarise(read_sensor_map(file)));
 }
 
 void keep_sensor_map(const std::filesystem::path& data, std::string_view serial,

@@ -113,6 +113,14 @@ void StatusBoard::set_camera_frame(const DepthFrame& frame, const Intrinsics& le
   camera_frame_.set({.time = Clock::now(), .frame = frame, .lens = lens});
 }
 
+void StatusBoard::set_sensor_closed() {
+  known_sensor_.update([](KnownSensor& sensor) { sensor.since.reset(); });
+}
+
+void StatusBoard::clear_sensor_map() {
+  known_sensor_.update([](KnownSensor& sensor) { sensor.map.reset(); });
+}
+
 void StatusBoard::set_calibration_run(CalibrationRun run) {
   const bool is_running = run.state == CalibrationRun::State::running;
   calibration_run_.set(std::move(run));

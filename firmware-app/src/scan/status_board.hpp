@@ -11,6 +11,7 @@
 #include "scan/job.hpp"
 #include "scan/latest.hpp"
 #include "scan/rig.hpp"
+#include "scan/sensor_map_files.hpp"
 
 namespace octurn {
 
@@ -36,7 +37,7 @@ struct Status {
   Clock::time_point job_started = {};
   std::optional<Clock::time_point> job_end = {};  ///< as expected
 
-  bool is_measuring = false;  ///< the sensor's pose, with a turn
+  bool is_measuring = false;  ///< the rig, with a turn or a wall
 
   bool is_scanning() const { return job && job->state == JobState::running; }
   bool busy() const { return is_scanning() || is_measuring; }
@@ -48,6 +49,14 @@ struct CameraFrame {
   DepthFrame frame = {};
   Intrinsics lens = {};  ///< of the sensor
   std::optional<Failure> failure = {};
+};
+
+/// The sensor that is open, or was last.
+struct KnownSensor {
+  std::string serial = {};  ///< empty before one was opened, or where it tells none
+  std::optional<std::chrono::steady_clock::time_point> since =
+      {};                                    ///< when it opened; none: closed
+  std::optional<SensorMapSummary> map = {};  ///< none: this machine has none of it
 };
 
 /// A coarse mesh of the snapshots so far of the scan that was started last.
@@ -67,9 +76,10 @@ class StatusBoard {
   Status status() const;
   const Latest<Status>& latest_status() const { return status_; }
   const Latest<CameraFrame>& camera_frame() const { return camera_frame_; }
-  /// The turn that goes on, or the last one; nothing if there was none.
+  /// The measurement that goes on, or the last one; nothing if there was none.
   const Latest<std::optional<CalibrationRun>>& calibration_run() const { return calibration_run_; }
   const Latest<MeshPreview>& mesh_preview() const { return mesh_preview_; }
+  const Latest<KnownSensor>& known_sensor() const { return known_sensor_; }
 
   /// A scan begins or goes on.
   void begin_scan(const Job& job, Status::Clock::time_point started);
@@ -89,6 +99,9 @@ class StatusBoard {
 
   void set_camera_frame(const DepthFrame& frame, const Intrinsics& lens);
   void set_calibration_run(CalibrationRun run);
+  void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
+  void set_sensor_closed();
+  void clear_sensor_map();
   void set_mesh_preview(MeshPreview preview) { mesh_preview_.set(std::move(preview)); }
 
  private:
@@ -96,6 +109,7 @@ class StatusBoard {
   Latest<CameraFrame> camera_frame_;
   Latest<std::optional<CalibrationRun>> calibration_run_;
   Latest<MeshPreview> mesh_preview_;
+  Latest<KnownSensor> known_sensor_;
 };
 
 }  // namespace octurn

@@ -32,6 +32,7 @@ void Worker::work() {
       return;
     } else if (Clock::now() - last_use >= open_without_use) {
       rig_.close_sensor();
+      ports_.board.set_sensor_closed();
     }
   }
 }
@@ -58,6 +59,7 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
   } catch (...) {
     const Failure failure = current_failure();
     rig_.close_sensor();
+    ports_.board.set_sensor_closed();
     ports_.board.set_sensor_failed(failure);
     ports_.slot.wait_for_command(retry_interval);
   }
@@ -67,6 +69,7 @@ void Worker::show_frame(const DepthFrame& frame) {
   DepthSensor& sensor = rig_.sensor();
   ports_.heartbeat.beat();
   ports_.board.set_sensor_ready(sensor.name());
+  introduce_sensor();
   ports_.board.set_camera_frame(frame, sensor.intrinsics());
 }
 

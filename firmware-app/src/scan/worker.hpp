@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -44,6 +45,7 @@ class Worker {
   void carry_out(ScanCommand& command, const std::stop_source& stop);
   void carry_out(ResumeCommand& command, const std::stop_source& stop);
   void carry_out(CalibrateCommand& command, const std::stop_source& stop);
+  void carry_out(WallCommand& command, const std::stop_source& stop);
 
   void look_for_turntable();
   void run(Job job, const std::stop_token& stop);
@@ -56,6 +58,9 @@ class Worker {
   void keep_calibration(const CalibrationReport& report);
   void show_rebuilt(int snapshots);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
+  void flatten(CalibrationRun& run, const std::stop_token& stop);
+  void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
+  void introduce_sensor();
   void close_device(const Failure& failure);
   void release_rig();
   void save_platform_angle(double angle_deg);
@@ -67,7 +72,8 @@ class Worker {
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs
   Clock::time_point job_started_ = {};
-  Clock::time_point rebuild_started_ = {};  // of its model
+  Clock::time_point rebuild_started_ = {};            // of its model
+  std::optional<Clock::time_point> introduced_ = {};  // when the sensor opened that is on the board
   bool turntable_is_ready_ = false;
 };
 

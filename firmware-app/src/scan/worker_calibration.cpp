@@ -1,10 +1,12 @@
-// How the worker measures the sensor's pose with a turn.
+// How the worker measures the rig: the sensor's pose with a turn, its own error with a wall.
 
 #include <utility>
 
 #include "log.hpp"
+#include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
 #include "scan/sensor_map_files.hpp"
+#include "scan/wall_looks.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -32,13 +34,43 @@ std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std:
                                                               : std::nullopt;
 }
 
+/// For the log.
+std::string outcome_of(const CalibrationRun& run) {
+  const std::string reason = run.report ? run.report->calibration.reason
+                             : run.wall ? run.wall->reason
+                                        : "";
+  switch (run.state) {
+    case CalibrationRun::State::done:
+      return "accepted";
+    case CalibrationRun::State::refused:
+      return "refused: " + reason;
+    default:
+      return "cancelled";
+  }
+}
+
 }  // namespace
 
 void Worker::carry_out(CalibrateCommand& command, const std::stop_source& stop) {
-  CalibrationRun run{.stops = command.settings.snapshots};
-  log::info("calibration", "turn started, stops=" + std::to_string(run.stops));
+  carry_out({.kind = CalibrationRun::Kind::turn, .stops = command.settings.snapshots},
+            [&](CalibrationRun& run) { measure(run, command.settings, stop.get_token()); });
+}
+
+void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
+  carry_out({.kind = CalibrationRun::Kind::wall,
+             .phase = CalibrationRun::Phase::looking,
+             .stops = command.frames},
+            [&](CalibrationRun& run) { flatten(run, stop.get_token()); });
+}
+
+/// @param measurement  tells its outcome in `run`
+void Worker::carry_out(CalibrationRun run,
+                       const std::function<void(CalibrationRun& run)>& measurement) {
+  const std::string name = run.kind == CalibrationRun::Kind::turn ? "turn" : "wall";
+  log::info("calibration", name + " started, of=" + std::to_string(run.stops));
   try {
-    measure(run, command.settings, stop.get_token());
+    measurement(run);
+    log::info("calibration", name + " " + outcome_of(run));
   } catch (...) {
     run.failure = current_failure();
     run.state = CalibrationRun::State::failed;
@@ -70,7 +102,6 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
   run.report = measure_turn(settings, map ? &*map : nullptr, limits_.threads, rig_, stop, observer);
   if (!run.report) {
     run.state = CalibrationRun::State::cancelled;
-    log::info("calibration", "turn cancelled");
     return;
   }
   const CalibrationReport& report = run.report->calibration;
@@ -78,7 +109,53 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
     ports_.calibration.set(to_record(report, settings));
   }
   run.state = report.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
-  log::info("calibration", report.accepted ? "turn accepted" : "turn refused: " + report.reason);
+}
+
+/// Looks at a wall, and keeps the sensor's map if it is accepted.
+void Worker::flatten(CalibrationRun& run, const std::stop_token& stop) {
+  ports_.heartbeat.suspend();  // a look lasts for as long as its frames
+  DepthSensor& sensor = rig_.sensor();
+  const std::string serial = sensor.serial();
+  if (serial.empty()) {
+    throw Error(
+        ErrorCode::bad_settings, sensor.name() + ": tells no serial number",
+        "A map belongs to one sensor. Make it of a recording with octurn calibrate --wall.");
+  }
+  const auto show = [&](const DepthFrame& frame, int frames) {
+    run.stop = frames;
+    ports_.board.set_calibration_run(run);
+    show_frame(frame);
+    ports_.heartbeat.suspend();
+  };
+  const std::filesystem::path data = ports_.store.data();
+  const std::optional<WallView> view =
+      look_at_wall(sensor, run.stops, next_wall(data, serial), stop, show);
+  if (!view) {
+    run.state = CalibrationRun::State::cancelled;
+    return;
+  }
+  run.phase = CalibrationRun::Phase::solving;
+  ports_.board.set_calibration_run(run);
+  run.wall = add_wall(data, serial, *view);
+  run.state = run.wall->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
+  introduced_.reset();
+  introduce_sensor();
+}
+
+/// Tells the board whose sensor is open, and which map it has; nothing if it has done so already.
+void Worker::introduce_sensor() {
+  const auto since = rig_.sensor_since();
+  if (!since || since == introduced_) {
+    return;
+  }
+  introduced_ = since;
+  KnownSensor known{.serial = rig_.sensor().serial(), .since = since};
+  try {
+    known.map = find_map_summary(ports_.store.data(), known.serial);
+  } catch (...) {
+    log::warning("calibration", current_failure().detail);
+  }
+  ports_.board.set_known_sensor(std::move(known));
 }
 
 }  // namespace octurn

@@ -190,6 +190,7 @@ void Worker::close_device(const Failure& failure) {
   if (failure.device() == Device::sensor) {
     ports_.board.set_sensor_failed(failure);
     rig_.close_sensor();
+    ports_.board.set_sensor_closed();
   } else if (failure.device() == Device::turntable) {
     turntable_is_ready_ = false;
     ports_.board.set_turntable_failed(failure);

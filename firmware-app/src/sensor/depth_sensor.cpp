@@ -13,6 +13,8 @@ std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
                                                         : open_openni_sensor(uri);
 }
 
+void DepthSensor::show_wall(std::optional<double> /*distance*/) {}
+
 bool is_simulated_sensor(const std::string& uri) { return uri.starts_with(simulator_scheme); }
 
 }  // namespace octurn

@@ -50,6 +50,11 @@ class DepthSensor {
   /// first frame of that angle again. Other sensors ignore it.
   /// @param angle  radians, counter-clockwise seen from above
   virtual void show_angle(double angle) = 0;
+
+  /// Turns a simulated sensor to a wall, and back again. Other sensors ignore it: a person turns
+  /// them.
+  /// @param distance  metres; nothing: back to the platform
+  virtual void show_wall(std::optional<double> distance);
 };
 
 /// Opens a sensor and starts its depth stream.

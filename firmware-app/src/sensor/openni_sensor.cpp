@@ -139,9 +139,13 @@ class OpenNiSensor final : public DepthSensor {
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<int> damaged_frames() const override;
-  void show_angle(double angle) override;
+  void show_angle(double angle) override { simulate(platform_angle_property, angle); }
+  void show_wall(std::optional<double> distance) override {
+    simulate(wall_property, distance.value_or(0));
+  }
 
  private:
+  void simulate(int property, double value);
   void open_stream();
   void prepare_file();
   void close();
@@ -280,9 +284,9 @@ std::optional<int> OpenNiSensor::damaged_frames() const {
   return property_of<int>(device_, damaged_frames_property);
 }
 
-void OpenNiSensor::show_angle(double angle) {
+void OpenNiSensor::simulate(int property, double value) {
   if (is_simulated_) {
-    expect_ok(device_.setProperty(platform_angle_property, angle), "turn what it simulates");
+    expect_ok(device_.setProperty(property, value), "change what it simulates");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "http/handlers/calibration.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +11,8 @@
 #include "octurn/units.hpp"
 #include "scan/depth_scale.hpp"
 #include "scan/pose_json.hpp"
+#include "scan/sensor_map_json.hpp"
+#include "scan/wall_looks.hpp"
 
 namespace octurn {
 namespace {
@@ -27,25 +30,27 @@ Response send_calibration(App& app, int status) {
   }
   const auto run = app.scanner.calibration_run();
   body["history"] = std::move(history);
-  body["sensor_map"] = nullptr;
+  const auto sensor = app.scanner.known_sensor();
+  const std::chrono::duration<double> open =
+      std::chrono::steady_clock::now() - sensor->since.value_or(std::chrono::steady_clock::now());
+  body["sensor_map"] = sensor->map ? to_json(*sensor->map) : json();
+  body["sensor_on_s"] = sensor->since ? json(std::floor(open.count())) : json();
   body["run"] = *run ? to_json(**run) : json();
   return json_response(body, status);
 }
 
+[[noreturn]] void refuse_busy() {
+  throw Error(ErrorCode::busy, "the scanner works already", "Wait for its end, or cancel it.");
+}
+
 /// @throws Error "bad-settings"
-PoseChange to_change(const json& body) {
-  JsonObject keys(body, ErrorCode::bad_settings, "");
+PoseChange to_change(JsonObject& keys) {
   PoseChange change{.scale = keys.number("scale", min_depth_scale, max_depth_scale)};
   if (const auto pose = keys.value("platform_from_sensor")) {
     change.is_settings_pose = pose->json().is_null();
     if (!change.is_settings_pose) {
       change.platform_from_sensor = to_pose(*pose);
     }
-  }
-  keys.refuse_unread();
-  if (!change.scale && !change.platform_from_sensor && !change.is_settings_pose) {
-    throw Error(ErrorCode::bad_settings, "the body changes nothing",
-                "It takes platform_from_sensor and scale.");
   }
   return change;
 }
@@ -58,8 +63,26 @@ void start_turn(App& app, JsonObject& keys) {
   expect_no_update(app);
   app.scanner.expect_ready();
   if (!app.scanner.calibrate(settings)) {
-    throw Error(ErrorCode::busy, "the scanner works already", "Wait for its end, or cancel it.");
+    refuse_busy();
   }
+}
+
+void start_wall(App& app, JsonObject& keys) {
+  const int frames = keys.whole_number("frames", 1, max_wall_frames).value_or(default_wall_frames);
+  keys.refuse_unread();
+  expect_no_update(app);
+  if (!app.scanner.look_at_wall(frames)) {
+    refuse_busy();
+  }
+}
+
+/// @return whether the body asks for the sensor's map to be removed
+bool is_without_map(JsonObject& keys) {
+  const auto map = keys.value("sensor_map");
+  if (map && !map->json().is_null()) {
+    map->refuse("null, which removes it");
+  }
+  return map.has_value();
 }
 
 }  // namespace
@@ -67,7 +90,22 @@ void start_turn(App& app, JsonObject& keys) {
 Response send_calibration(App& app) { return send_calibration(app, 200); }
 
 Response change_calibration(App& app, const Request& request) {
-  app.scanner.calibration().change(to_change(parse_body(request)), app.settings.config().scan);
+  const json body = parse_body(request);
+  JsonObject keys(body, ErrorCode::bad_settings, "");
+  const PoseChange change = to_change(keys);
+  const bool forget_map = is_without_map(keys);
+  keys.refuse_unread();
+  const bool is_change = change.scale || change.platform_from_sensor || change.is_settings_pose;
+  if (!is_change && !forget_map) {
+    throw Error(ErrorCode::bad_settings, "the body changes nothing",
+                "It takes platform_from_sensor, scale and sensor_map.");
+  }
+  if (forget_map && !app.scanner.forget_sensor_map()) {
+    refuse_busy();
+  }
+  if (is_change) {
+    app.scanner.calibration().change(change, app.settings.config().scan);
+  }
   return send_calibration(app);
 }
 
@@ -77,8 +115,10 @@ Response start_calibration(App& app, const Request& request) {
   const JsonValue kind = keys.at("kind");
   if (kind.text() == "turn") {
     start_turn(app, keys);
+  } else if (kind.text() == "wall") {
+    start_wall(app, keys);
   } else {
-    kind.refuse("\"turn\"");
+    kind.refuse("\"turn\" or \"wall\"");
   }
   return send_calibration(app, 202);
 }
@@ -94,6 +134,15 @@ Response cancel_calibration(App& app) {
 Response undo_calibration(App& app) {
   app.scanner.calibration().undo();
   return send_calibration(app);
+}
+
+Response send_sensor_map(App& app) {
+  const auto sensor = app.scanner.known_sensor();
+  if (!sensor->map) {
+    throw Error(ErrorCode::not_found, "this sensor has no map",
+                "POST /api/v1/calibration with the kind \"wall\" makes one.");
+  }
+  return json_response(to_picture(*sensor->map));
 }
 
 Response send_points(App& app) {

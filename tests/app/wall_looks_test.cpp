@@ -1,0 +1,111 @@
+#include "scan/wall_looks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "octurn/depth_png.hpp"
+#include "scan/sensor_map_files.hpp"
+#include "simulator/simulated_kinect.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A look of a simulated Kinect at a wall. @param distance  metres
+WallView look_at(double distance) {
+  SimulatedKinect kinect(Scene::of_wall(distance), 1, 1, 1);
+  DepthFrame frame{.width = 640, .height = 480, .depth = std::vector<std::uint16_t>(640U * 480U)};
+  WallView view(Intrinsics{});
+  for (std::uint32_t number = 1; number <= 6; ++number) {
+    kinect.expose(0, number, frame.depth);
+    view.add(frame);
+  }
+  return view;
+}
+
+class WallLooks : public ::testing::Test {
+ protected:
+  SensorMapReport add(double distance) { return add_wall(data_.path(), "A1", look_at(distance)); }
+  SensorMap map() const { return read_sensor_map(sensor_map_of(data_.path(), "A1")); }
+
+  TemporaryFolder data_;
+};
+
+TEST_F(WallLooks, MakeAMapThatIsKept) {
+  const SensorMapReport report = add(0.65);
+  ASSERT_TRUE(report.accepted) << report.reason;
+  EXPECT_EQ(report.map.serial, "A1");
+  EXPECT_TRUE(report.map.near.empty());
+  EXPECT_EQ(map().serial, "A1");
+  EXPECT_EQ(map().made, report.map.made);
+  EXPECT_LT(map().after, 0.6 * map().before);  // it takes the pattern out, and leaves the speckle
+  EXPECT_TRUE(map().far.empty());
+}
+
+// The map is the same as of the looks themselves: means are kept to 0.05 mm, which is 0.04 steps of
+// disparity.
+TEST_F(WallLooks, AreKeptAsTheirMean) {
+  add(0.65);
+  const std::vector<WallView> views{look_at(0.9), look_at(0.65)};
+  const SensorMapReport expected = fit_sensor_map(views);
+  const SensorMapReport report = add(0.9);
+  ASSERT_TRUE(report.accepted) << report.reason;
+  ASSERT_EQ(report.walls.size(), 2U);
+  const SensorMap found = map();
+  ASSERT_EQ(found.far.size(), expected.map.far.size());
+  for (std::size_t i = 0; i < found.far.size(); i += 97) {
+    ASSERT_NEAR(found.near[i], expected.map.near[i], 0.04 * disparity_unit);
+    ASSERT_NEAR(found.far[i], expected.map.far[i], 0.04 * disparity_unit);
+  }
+}
+
+TEST_F(WallLooks, GiveWayToOneAtTheirDistance) {
+  EXPECT_EQ(next_wall(data_.path(), "A1"), 0.65);
+  add(0.65);
+  EXPECT_EQ(next_wall(data_.path(), "A1"), 0.9);
+  EXPECT_EQ(next_wall(data_.path(), "A2"), 0.65);
+  add(0.9);
+  const SensorMapReport again = add(0.7);
+  ASSERT_EQ(again.walls.size(), 2U);
+  EXPECT_NEAR(again.walls[0].distance, 0.7, 0.005);
+  EXPECT_NEAR(again.walls[1].distance, 0.9, 0.005);
+}
+
+TEST_F(WallLooks, ChangeNothingWhereTheWallIsRefused) {
+  add(0.65);
+  const std::string before = content_of(sensor_map_of(data_.path(), "A1"));
+  const SensorMapReport report = add(2.5);
+  EXPECT_FALSE(report.accepted);
+  EXPECT_NE(report.reason.find("2.5 m away"), std::string::npos) << report.reason;
+  EXPECT_TRUE(content_of(sensor_map_of(data_.path(), "A1")) == before);
+  EXPECT_EQ(next_wall(data_.path(), "A1"), 0.9);
+}
+
+TEST_F(WallLooks, GoWithTheirMap) {
+  add(0.65);
+  put(sensor_map_of(data_.path(), "A2"), "another sensor's");
+  ASSERT_TRUE(find_map_summary(data_.path(), "A1"));
+  remove_sensor_map(data_.path(), "A1");
+  EXPECT_FALSE(find_map_summary(data_.path(), "A1"));
+  EXPECT_EQ(next_wall(data_.path(), "A1"), 0.65);
+  EXPECT_EQ(content_of(sensor_map_of(data_.path(), "A2")), "another sensor's");
+}
+
+TEST(SensorMapSummary, HasTheMeansOfBlocks) {
+  SensorMap map{.width = 16, .height = 8, .near = std::vector<float>(128, 1.0F)};
+  for (std::size_t row = 0; row < 8; ++row) {
+    for (std::size_t column = 8; column < 16; ++column) {
+      map.near[row * 16 + column] = static_cast<float>(row);
+    }
+  }
+  const SensorMapSummary summary = summarise(map);
+  EXPECT_EQ(summary.columns, 2);
+  EXPECT_EQ(summary.rows, 1);
+  EXPECT_EQ(summary.errors, (std::vector<float>{1.0F, 3.5F}));
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,64 @@
+// Handles of the scanned space in the live picture: one on each side, which is dragged along its axis. Pure.
+
+import {pixelOf} from './overlay.js';
+import {toPlatform, toSensor} from './pose.js';
+
+/** @typedef {import('./pose.js').Matrix} Matrix */
+/** @typedef {import('./pose.js').Point} Point */
+/** @typedef {import('./overlay.js').Sensor} Sensor */
+
+/** @typedef {{index: number, x: number, y: number, at_mm: Point}} Handle  index into clip_mm; x and y in the picture; at_mm on the side */
+
+const nearest = 0.05;  // metres before the sensor
+const margin = 14;     // pixels from the edge of the picture, so that a handle is seen whole
+const places = [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92];  // along a side, its middle first
+const along = 0.1;     // sine of the angle between view and axis, below which a pixel says little of the axis
+
+const metres = (/** @type {Point} */ point) => /** @type {Point} */ (point.map((value) => value / 1000));
+
+/**
+ * Where a side is taken hold of: as near its middle as the picture shows it.
+ * @param {Matrix} pose @param {Sensor} sensor @param {number[]} clip_mm @param {number} index @returns {Handle | null}
+ */
+function handleOf(pose, sensor, clip_mm, index) {
+  const [first, second] = [0, 1, 2].filter((axis) => axis !== index % 3);
+  for (const share of places) {
+    for (const other of places) {
+      const at_mm = /** @type {Point} */ ([0, 0, 0]);
+      at_mm[index % 3] = clip_mm[index];
+      at_mm[first] = clip_mm[first] + share * (clip_mm[first + 3] - clip_mm[first]);
+      at_mm[second] = clip_mm[second] + other * (clip_mm[second + 3] - clip_mm[second]);
+      const seen = toSensor(pose, metres(at_mm));
+      const [x, y] = pixelOf(sensor, seen);
+      if (seen[2] > nearest && x >= margin && y >= margin && x <= sensor.width - margin && y <= sensor.height - margin) {
+        return {index, x, y, at_mm};
+      }
+    }
+  }
+  return null;
+}
+
+/** @param {{pose: Matrix, sensor: Sensor, clip_mm: number[]}} rig @returns {Handle[]} of the sides that are in the picture */
+export const handlesOf = ({pose, sensor, clip_mm}) => [0, 1, 2, 3, 4, 5]
+    .map((index) => handleOf(pose, sensor, clip_mm, index)).filter((handle) => handle !== null);
+
+/**
+ * How far along its axis a handle is dragged: the point of that line which is nearest to the ray of a pixel.
+ * @param {{pose: Matrix, sensor: Sensor}} rig @param {Handle} handle  where it was taken hold of
+ * @param {number} x @param {number} y  pixel
+ * @returns {number | null} millimetres, for clip_mm; null where the view goes along the axis
+ */
+export function draggedTo({pose, sensor}, {index, at_mm}, x, y) {
+  const eye = toPlatform(pose, [0, 0, 0]);
+  const far = toPlatform(pose, [(x - sensor.cx) / sensor.fx, (y - sensor.cy) / sensor.fy, 1]);
+  const ray = far.map((value, axis) => value - eye[axis]);
+  const axis = index % 3;
+  const length = ray.reduce((sum, value) => sum + value * value, 0);
+  const sineSquared = 1 - ray[axis] * ray[axis] / length;
+  if (sineSquared < along * along) {
+    return null;
+  }
+  const from = metres(at_mm).map((value, one) => value - eye[one]);
+  const share = from.reduce((sum, value, one) => sum + value * ray[one], 0) / length;
+  return at_mm[axis] + 1000 * (share * ray[axis] - from[axis]) / sineSquared;
+}

@@ -11,24 +11,6 @@
  * @property {'auto' | 'told'} calibrate  whether a scan solves the sensor's pose itself
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
- * @typedef {Object} SettingSchema  of one setting
- * @property {string} type
- * @property {string} description
- * @property {string} [x-unit]
- * @property {number} [minimum]
- * @property {number} [maximum]
- * @property {number} [minItems]
- * @property {(string | number)[]} [enum]
- *
- * @typedef {Object} Configuration
- * @property {any} settings  in force, every key
- * @property {any} preset  what they are where the page has set nothing
- * @property {any} stored  what the page has set
- * @property {any} settings_schema
- * @property {string[]} restart_needed  keys that are not in force yet
- * @property {string} trouble  with the stored ones, or empty
- * @property {'everybody' | 'page' | 'octurn.json'} password
- *
  * @typedef {Object} Model
  * @property {string} url
  * @property {number} bytes
@@ -199,18 +181,6 @@ export const scans = async () => (await json('scans')).scans;
 
 /** @returns {Promise<Settings>} what a scan uses unless told otherwise */
 export const defaults = async () => (await json('settings')).defaults;
-
-/** @returns {Promise<Configuration>} */
-export const configuration = () => json('settings');
-
-/** @param {Object} change  null takes back what was set @returns {Promise<Configuration>} */
-export const changeSettings = (change) => json('settings', sending('PATCH', change));
-
-/** @param {string} backup  the text of its file @returns {Promise<Configuration>} */
-export const restoreSettings = (backup) => json('settings/backup', {...sending('POST'), body: backup});
-
-/** @param {string | null} password  null lets everybody in @returns {Promise<Configuration>} */
-export const setPassword = (password) => json('settings/password', sending('PUT', {password}));
 
 /**
  * @param {Partial<Settings>} settings

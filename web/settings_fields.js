@@ -3,7 +3,7 @@
 import {copyOf, part, setText, show} from './dom.js';
 import {choiceName, complaintOf, helpOf, nameOf, valueText, wordsOf} from './settings_form.js';
 
-/** @typedef {import('./api.js').SettingSchema} SettingSchema */
+/** @typedef {import('./api_settings.js').SettingSchema} SettingSchema */
 
 /**
  * @typedef {Object} Editor

@@ -1,6 +1,6 @@
 // The settings of the scanner as values, and as what is said of them. Pure.
 
-/** @typedef {import('./api.js').SettingSchema} SettingSchema */
+/** @typedef {import('./api_settings.js').SettingSchema} SettingSchema */
 
 /** Names for people, by key. */
 const names = {
@@ -10,6 +10,7 @@ const names = {
   'scan.filter': 'Depth filter',
   'scan.frames': 'Depth pictures a stop',
   'scan.max_error_mm': 'Simplification',
+  'scan.calibrate': 'Check of the pose',
   'scan.clip_mm': 'Scanned space',
   'turntable.gear_ratio': 'Gear ratio',
   'turntable.full_steps': 'Full steps',
@@ -35,6 +36,7 @@ const names = {
 /** Help where the schema's is for programs. @type {Record<string, string>} */
 const help = {
   'scan.filter': 'Basic takes one depth picture, average the mean of several, and with discard only where each of them saw something.',
+  'scan.calibrate': 'A scan solves where the sensor stands by itself, and builds its model again if that is better.',
   'turntable.reversed': 'On if the platform turns clockwise, seen from above.',
   'turntable.take_up_steps': 'Against the play of gears: so far the platform goes back too far, and comes forward again. 0 for none.',
 };
@@ -42,6 +44,7 @@ const help = {
 /** @type {Record<string, string>} */
 const choices = {
   'basic': 'Basic', 'average': 'Average', 'average-discard': 'Average, discard',
+  'auto': 'By each scan', 'told': 'None',
   'solid': 'Solid', 'intersection': 'Intersection',
 };
 

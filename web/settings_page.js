@@ -1,12 +1,15 @@
 // "Settings": what the scanner is told to last, on cards of which each is saved by itself.
 
-import * as api from './api.js';
+import {Problem, status} from './api.js';
+import * as api from './api_settings.js';
 import {copyOf, element, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
 import {makeField} from './settings_fields.js';
 import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
+import {prepareMachine} from './machine.js';
+import {prepareTurntable} from './turntable.js';
 
-/** @typedef {import('./api.js').Configuration} Configuration */
+/** @typedef {import('./api_settings.js').Configuration} Configuration */
 /** @typedef {import('./settings_fields.js').SettingField} SettingField */
 
 const pauseUntilRestarted = 500;  // milliseconds between looks
@@ -24,10 +27,10 @@ const valueOf = (key) => valueAt(told.stored, key) ?? valueAt(told.preset, key);
 /** @param {SettingField} field */
 const isChanged = (field) => !areEqual(field.read(), valueOf(field.key));
 
-/** @param {unknown} error @returns {api.Problem} */
-const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
+/** @param {unknown} error @returns {Problem} */
+const problemOf = (error) => error instanceof Problem ? error : new Problem('page', String(error));
 
-/** @param {api.Problem} problem */
+/** @param {Problem} problem */
 const wordsOf = ({detail, title, hint}) => [detail || title, hint].map(sentence).join(' ').trim();
 
 /** @param {Card} card */
@@ -63,7 +66,7 @@ function showNews() {
 }
 
 async function showRestart() {
-  const isScanning = told.restart_needed.length > 0 && (await api.status()).scan !== null;
+  const isScanning = told.restart_needed.length > 0 && (await status()).scan !== null;
   const text = restartText(told.restart_needed, isScanning);
   setText(part(element('settings-restart'), 'p'), text);
   show(element('settings-restart'), text !== '');
@@ -103,7 +106,7 @@ function take(news) {
   followRestart();
 }
 
-/** @param {Card} card @param {api.Problem} problem */
+/** @param {Card} card @param {Problem} problem */
 function showProblem({fields, saved}, problem) {
   const key = keyOf(problem.detail);
   const field = fields.find((one) => one.key === key);
@@ -116,7 +119,7 @@ function showProblem({fields, saved}, problem) {
   saved.dataset.tone = field ? '' : 'bad';
 }
 
-/** @param {Card} card @param {Object} change */
+/** @param {Card} card @param {Object} change @returns {Promise<boolean>} whether it is stored */
 async function save(card, change) {
   setText(card.saved, '');
   try {
@@ -125,8 +128,10 @@ async function save(card, change) {
     showChanged(card);
     card.saved.dataset.tone = 'good';
     setText(card.saved, 'Saved.');
+    return true;
   } catch (error) {
     showProblem(card, problemOf(error));
+    return false;
   }
 }
 
@@ -173,6 +178,17 @@ function makeCard(form) {
   writeCard(card);
   showChanged(card);
   return card;
+}
+
+/** Sets what a test of the turntable advises. @param {Object} set @returns {Promise<boolean>} whether it is stored */
+async function setTurntable(set) {
+  while (isFollowing) {
+    await new Promise((done) => {
+      setTimeout(done, pauseUntilRestarted);
+    });
+  }
+  const card = cards.find(({fields}) => fields.some(({key}) => key.startsWith('turntable.')));
+  return card !== undefined && save(card, {turntable: set});
 }
 
 /** @param {string | null} password */
@@ -231,12 +247,14 @@ async function begin() {
     cards.push(makeCard(form));
   }
   show(element('cards'), true);
+  prepareTurntable(setTurntable);
   take(told);
 }
 
 /** Makes the part of the page work that settings.html is. */
 export function prepare() {
   preparePassword();
+  prepareMachine();
   element('restore-file').addEventListener('change', restore);
   begin();
 }

@@ -55,6 +55,23 @@ FileDescriptor begun_upload(const Daemon& daemon, std::size_t bytes, const std::
   return socket;
 }
 
+TEST_F(Appliances, HandANameAndATimeZoneToRoot) {
+  const Daemon scanner = daemon();
+  answer("machine", "name = octurn\ntime_zone = Etc/UTC\nerror = \n");
+  const std::string path = "/api/v1/machine";
+  EXPECT_EQ(parsed(scanner.get(path)),
+            json({{"name", "octurn"}, {"time_zone", "Etc/UTC"}, {"error", ""}}));
+  const auto patch = [&](const char* body) { return request(scanner.port(), "PATCH", path, body); };
+  for (const char* const wrong :
+       {"{}", R"({"name": "my scanner"})", R"({"name": "-a"})", R"({"name": 5})",
+        R"({"time_zone": "Europe/Berlin\nrig = simulated"})", R"({"rig": "simulated"})"}) {
+    EXPECT_EQ(parsed(patch(wrong))["code"], "bad-settings") << wrong;
+  }
+  EXPECT_FALSE(fs::exists(requests() / "machine"));
+  EXPECT_EQ(patch(R"({"name": "Shed-2", "time_zone": "Europe/Berlin"})").status, 202);
+  EXPECT_EQ(content_of(requests() / "machine"), "name = shed-2\ntime_zone = Europe/Berlin\n");
+}
+
 TEST_F(Appliances, HandAnUpdateToRoot) {
   const Daemon scanner = daemon();
   answer("update", "slot = a\nstate = none\n");

@@ -96,6 +96,23 @@ async function fits(scanner, browser, screen, colorScheme) {
   assert.deepEqual(faults, []);
 }
 
+test('a test of the turntable tells what is set wrongly, and sets it', async (t) => {
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '20', '--simulate-gear', '1.5', '--simulate-reversed']});
+  const browser = await openBrowser(t, {hasWebGl: false});
+  const {page, faults} = await openSettings(browser, scanner);
+  await page.getByRole('button', {name: '10 degrees counter-clockwise'}).click();
+  await page.getByRole('button', {name: 'Test a turn'}).and(page.locator('[aria-disabled=false]')).click();
+  await page.getByText('The turntable does not do what it is told.').waitFor();
+  await picture(page, 'settings-turn');
+  await page.getByRole('button', {name: /^Set Gear ratio to 1\.(5|49|50)/}).click();
+  await page.getByRole('button', {name: 'Set Turn the other way to on'}).click();
+  await page.getByText('It is set. Test again.').nth(1).waitFor();
+  const {settings} = await settled(scanner);
+  assert.ok(Math.abs(settings.turntable.gear_ratio - 1.5) < 0.01, `${settings.turntable.gear_ratio}`);
+  assert.ok(settings.turntable.reversed);
+  assert.deepEqual(faults.filter((fault) => !/Failed to load|ERR_/.test(fault)), []);  // it started again
+});
+
 test('settings are set on the page and last', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t, {hasWebGl: false});

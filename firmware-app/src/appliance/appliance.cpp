@@ -156,6 +156,17 @@ WifiState Appliance::wifi() const {
   return wifi;
 }
 
+MachineState Appliance::machine() const {
+  const Settings answer = settings_in(folder_ / "machine");
+  return {.name = value_in(answer, "name"),
+          .time_zone = value_in(answer, "time_zone"),
+          .error = value_in(answer, "error")};
+}
+
+void Appliance::ask_for_machine(const MachineRequest& machine) {
+  write_file(request("machine"), to_text(machine), for_root_alone);
+}
+
 std::string Appliance::errors() const { return read_end(folder_ / "errors"); }
 
 void Appliance::ask_for_wifi(const WifiRequest& wifi) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/machine_request.hpp"
 #include "appliance/wifi_networks.hpp"
 #include "appliance/wifi_request.hpp"
 #include "octurn/file.hpp"
@@ -57,6 +58,11 @@ class Appliance {
 
   /// Whether an update is being received or installed: the machine may restart at any moment.
   bool is_updating() const;
+
+  MachineState machine() const;
+
+  /// Asks root for another name or time zone. @throws Error  if the request cannot be written
+  void ask_for_machine(const MachineRequest& request);
 
   /// Asks root to join a WiFi. @throws Error  if the request cannot be written
   void ask_for_wifi(const WifiRequest& request);

@@ -10,39 +10,6 @@
 namespace octurn {
 namespace {
 
-/// @return the option --simulate, whose value is optional
-CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
-  CLI::Option* simulate =
-      command
-          .add_option("--simulate", rig.mesh_file,
-                      "scan with a simulated rig; MESH (STL, millimetres) stands on it")
-          ->type_name("[=MESH]")
-          ->expected(0, 1);
-  command
-      .add_option("--simulate-speed", rig.speed, "how much faster than life the simulated rig is")
-      ->type_name("FACTOR")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->needs(simulate);
-  command
-      .add_flag("--simulate-perfect", rig.perfect,
-                "the simulated rig stands where it is told to, and its sensor has no error of its "
-                "own but noise")
-      ->needs(simulate);
-  command
-      .add_option("--simulate-wall", rig.wall,
-                  "the simulated sensor looks squarely at a wall so far away, as for a map of its "
-                  "own error")
-      ->type_name("METRES")
-      ->check(CLI::Range(0.3, 6.0))
-      ->needs(simulate);
-  command
-      .add_option("--sensor", rig.sensor_uri,
-                  "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
-                  "folder of `octurn record`")
-      ->type_name("URI");
-  return simulate;
-}
-
 void add_config_option(CLI::App& command, ConfigArguments& config) {
   command
       .add_option("--config", config.file,
@@ -132,13 +99,16 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   const CLI::Option* simulate = add_rig_options(command, arguments.rig);
   add_config_options(command, arguments.config);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of the table");
+  command.add_flag("--turn", arguments.turn,
+                   "also turn the platform with an object on it, and see how it moves");
   command
       .add_option("--zip", arguments.zip,
                   "also write versions, settings, findings and the system's state to this file, to "
                   "be sent to who helps")
       ->type_name("FILE");
   command.footer(
-      "It never moves the motor. It ends with 0 if there is no fault, with 1 if one is.");
+      "Without --turn it never moves the motor. It ends with 0 if there is no fault, with 1 if one "
+      "is.");
   command.callback([&arguments, &status, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
     status = doctor(arguments) ? 0 : 1;
@@ -217,6 +187,18 @@ void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
   });
 }
 
+void add_set(CLI::App& program, SetArguments& arguments) {
+  CLI::App& command =
+      *program.add_subcommand("set", "sets keys of octurn.json, or of a file like it");
+  command.add_option("FILE", arguments.file, "made if it is not there")->required();
+  command
+      .add_option("SETTING", arguments.assignments,
+                  "KEY=VALUE, such as port=80 or turntable.gear_ratio=4")
+      ->required();
+  command.footer("All are set, or none: what is wrong is named.");
+  command.callback([&arguments] { set(arguments); });
+}
+
 void add_password(CLI::App& program, std::filesystem::path& file) {
   CLI::App& command = *program.add_subcommand("password", "gives the page a password");
   command
@@ -254,6 +236,7 @@ int run(int argc, char** argv) {
   ReconstructArguments reconstruct_arguments;
   CalibrateArguments calibrate_arguments;
   CalibrateWallArguments calibrate_wall_arguments;
+  SetArguments set_arguments;
   std::filesystem::path password_file;
   std::filesystem::path update_file;
   int status = 0;
@@ -263,6 +246,7 @@ int run(int argc, char** argv) {
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
   add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
+  add_set(program, set_arguments);
   add_password(program, password_file);
   add_update(program, update_file);
 

@@ -18,13 +18,16 @@ struct RigArguments {
   bool simulate = false;
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
-  std::optional<double> wall = {};  ///< metres: the simulated sensor looks at a wall
-  double speed = 1.0;               ///< of the simulated rig, relative to life
-  std::string sensor_uri = {};      ///< of a DepthSensor; empty: the default one
+  std::optional<double> wall = {};        ///< metres: the simulated sensor looks at a wall
+  double speed = 1.0;                     ///< of the simulated rig, relative to life
+  std::optional<double> gear_ratio = {};  ///< of the simulated turntable; none: as it is set
+  bool reversed = false;                  ///< the simulated motor is wired the other way
+  double play_deg = 0;                    ///< of the simulated gears
+  std::string sensor_uri = {};            ///< of a DepthSensor; empty: the default one
 };
 
 /// The rig that the options select.
-/// @param stepper  settings of the real turntable, used without --simulate
+/// @param stepper  settings of the turntable. A simulated one obeys gear_ratio and reversed
 RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
 
 /// Options of the configuration.
@@ -84,10 +87,12 @@ struct DoctorArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
   bool json = false;                              ///< one line of JSON in place of the table
+  bool turn = false;                              ///< also turns the platform, and looks
   std::optional<std::filesystem::path> zip = {};  ///< also writes an archive for remote support
 };
 
-/// `octurn doctor`: checks the scanner and says what to do about each fault. Never moves the motor.
+/// `octurn doctor`: checks the scanner and says what to do about each fault. Moves the motor only
+/// to measure a turn.
 /// @return false if there is a fault
 bool doctor(const DoctorArguments& arguments);
 
@@ -126,6 +131,15 @@ struct CalibrateWallArguments {
 /// `octurn calibrate --wall`: the map of a sensor's own error, from looks at flat walls.
 /// @return false if they are no walls
 bool calibrate_wall(const CalibrateWallArguments& arguments);
+
+struct SetArguments {
+  std::filesystem::path file = {};
+  std::vector<std::string> assignments = {};  ///< "turntable.gear_ratio=4"
+};
+
+/// `octurn set`: sets keys of a file such as octurn.json, all of them or none.
+/// @throws Error  that names the wrong key
+void set(const SetArguments& arguments);
 
 /// `octurn password`: reads a line from standard input, and writes it as a password file for
 /// `password_file` of the configuration.

@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "commands/commands.hpp"
 #include "doctor/diagnostics.hpp"
+#include "doctor/turn_checks.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/snapshot.hpp"
 #include "scan/calibration_store.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
@@ -76,6 +79,31 @@ SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_t
   return read_sensor(rig, stop);
 }
 
+/// What a turn of the platform shows.
+std::vector<Finding> check_motion(const DoctorInput& input, const std::stop_token& stop) {
+  constexpr Check turn{"turn", "Turn"};
+  if (input.lines == LineOwner::this_program && input.rig.stepper) {
+    return {turn.unknown("not made: the Octurn that is running here has the turntable",
+                         "Open its page and choose Settings, Turntable.")};
+  }
+  try {
+    Rig rig(input.rig);
+    const ScanSettings& scan = input.config.scan;
+    const TurnMeasurement measured =
+        measure_turn(rig, scan.platform_from_sensor, scan.clip, stop, [](double) {});
+    rig.release_turntable();
+    std::vector<Finding> findings;
+    for (TurnFinding& one : check_turn(measured, input.config.turntable)) {
+      findings.push_back(std::move(one.finding));
+    }
+    return findings;
+  } catch (const Error& error) {
+    return {turn.fault(error.what(), error.hint())};
+  } catch (const Stopped&) {
+    throw_stopped();
+  }
+}
+
 }  // namespace
 
 bool doctor(const DoctorArguments& arguments) {
@@ -93,7 +121,10 @@ bool doctor(const DoctorArguments& arguments) {
   if (signal.token().stop_requested()) {
     throw_stopped();
   }
-  const std::vector<Finding> findings = run_checks(input, reading);
+  std::vector<Finding> findings = run_checks(input, reading);
+  if (arguments.turn) {
+    std::ranges::move(check_motion(input, signal.token()), std::back_inserter(findings));
+  }
   if (arguments.zip) {
     write_file(*arguments.zip,
                make_zip(machine_diagnostics(config, findings), std::chrono::system_clock::now()));

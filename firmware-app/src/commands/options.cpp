@@ -74,6 +74,51 @@ void add_options(CLI::App& command, const std::vector<Field>& fields, json& give
   }
 }
 
+CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
+  CLI::Option* simulate =
+      command
+          .add_option("--simulate", rig.mesh_file,
+                      "scan with a simulated rig; MESH (STL, millimetres) stands on it")
+          ->type_name("[=MESH]")
+          ->expected(0, 1);
+  command
+      .add_option("--simulate-speed", rig.speed, "how much faster than life the simulated rig is")
+      ->type_name("FACTOR")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->needs(simulate);
+  command
+      .add_flag("--simulate-perfect", rig.perfect,
+                "the simulated rig stands where it is told to, and its sensor has no error of its "
+                "own but noise")
+      ->needs(simulate);
+  command
+      .add_option("--simulate-wall", rig.wall,
+                  "the simulated sensor looks squarely at a wall so far away, as for a map of its "
+                  "own error")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.3, 6.0))
+      ->needs(simulate);
+  command
+      .add_option("--simulate-gear", rig.gear_ratio,
+                  "gear ratio of the simulated turntable, where it is not what is set")
+      ->type_name("RATIO")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->needs(simulate);
+  command
+      .add_flag("--simulate-reversed", rig.reversed, "the simulated motor is wired the other way")
+      ->needs(simulate);
+  command.add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(0.0, 10.0))
+      ->needs(simulate);
+  command
+      .add_option("--sensor", rig.sensor_uri,
+                  "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
+                  "folder of `octurn record`")
+      ->type_name("URI");
+  return simulate;
+}
+
 Config make_config(const ConfigArguments& arguments) { return open_config(arguments).config(); }
 
 ConfigStore open_config(const ConfigArguments& arguments) {

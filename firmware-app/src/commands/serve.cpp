@@ -42,21 +42,29 @@ struct Machine {
   int port = 0;  ///< of the first start; 0: it has not come yet
 };
 
+/// What runs between two restarts.
+struct Daemon {
+  const ConfigStore& settings;
+  const Scanner& scanner;
+  const TurntableRunner& turntable;
+};
+
 /// Whether settings wait for a restart, and it disturbs nobody.
-bool is_restart_due(const Machine& machine, const ConfigStore& settings, const Scanner& scanner) {
-  return !settings.restart_needed().empty() && !scanner.status().busy() &&
+bool is_restart_due(const Machine& machine, const Daemon& daemon) {
+  return !daemon.settings.restart_needed().empty() && !daemon.scanner.status().busy() &&
+         daemon.turntable.state().doing == TurntableState::Doing::nothing &&
          !(machine.appliance && machine.appliance->is_updating());
 }
 
 /// Waits for SIGINT or SIGTERM, or for settings that need a restart. Meanwhile it notifies
 /// systemd's watchdog as long as the scanner's worker is alive.
-Outcome wait(const Machine& machine, const ConfigStore& settings, const Scanner& scanner) {
+Outcome wait(const Machine& machine, const Daemon& daemon) {
   const auto watchdog = watchdog_interval();
   const std::chrono::microseconds interval =
       watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, look_interval) : look_interval;
   bool was_due = false;
   while (!wait_for_signal(interval)) {
-    const bool is_due = is_restart_due(machine, settings, scanner);
+    const bool is_due = is_restart_due(machine, daemon);
     if (is_due && was_due) {
       return Outcome::restart;
     }
@@ -64,7 +72,7 @@ Outcome wait(const Machine& machine, const ConfigStore& settings, const Scanner&
     if (!watchdog) {
       continue;
     }
-    if (scanner.is_alive()) {
+    if (daemon.scanner.is_alive()) {
       notify_alive();
     } else {
       log::error("octurn", "the scanner's worker has stopped working");
@@ -92,17 +100,20 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   const RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
+  TurntableRunner turntable(scanner, store);
   Api api({.scanner = scanner,
            .store = store,
            .page = machine.page,
            .settings = settings,
+           .turntable = turntable,
            .rig = rig,
            .appliance = machine.appliance ? &*machine.appliance : nullptr});
   const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
 
   settings.keep_as_good();
   announce(machine, config.http, server.port());
-  const Outcome outcome = wait(machine, settings, scanner);
+  const Outcome outcome =
+      wait(machine, {.settings = settings, .scanner = scanner, .turntable = turntable});
   log::info("octurn", outcome == Outcome::end ? "ending" : "starting again with other settings");
   if (outcome == Outcome::end) {
     notify_stopping();

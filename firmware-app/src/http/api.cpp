@@ -11,6 +11,7 @@
 #include "http/handlers/scans.hpp"
 #include "http/handlers/settings.hpp"
 #include "http/handlers/system.hpp"
+#include "http/handlers/turntable.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
 #include "log.hpp"
@@ -80,6 +81,14 @@ class Place {
   std::counting_semaphore<>& places_;
 };
 
+Response wrong_method(const Request& request, const std::string& allowed) {
+  Response response = problem({.code = ErrorCode::wrong_method,
+                               .detail = request.method + " is not for " + request.path,
+                               .hint = "It takes " + allowed + "."});
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
 }  // namespace
 
 struct Api::Route {
@@ -122,6 +131,8 @@ Response Api::dispatch(const Request& request) {
       Route{"POST", "/api/v1/calibration/cancel", cancel_calibration},
       Route{"POST", "/api/v1/calibration/undo", undo_calibration},
       Route{"GET", "/api/v1/preview/points", send_points, WaitsFor::look},
+      Route{"GET", "/api/v1/turntable", send_turntable},
+      Route{"POST", "/api/v1/turntable", move_turntable},
       Route{"GET", "/api/v1/doctor", send_findings, WaitsFor::look},
       Route{"GET", "/api/v1/diagnostics.zip", send_diagnostics, WaitsFor::look},
       Route{"GET", "/api/v1/preview/depth.png", send_depth_picture, WaitsFor::look},
@@ -136,6 +147,8 @@ Response Api::dispatch(const Request& request) {
       Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
       Route{"GET", update_path, send_update_state},
       Route{"PUT", update_path, take_update},
+      Route{"GET", "/api/v1/machine", send_machine},
+      Route{"PATCH", "/api/v1/machine", change_machine},
       Route{"GET", "/api/v1/wifi", send_wifi_state},
       Route{"PUT", "/api/v1/wifi", join_wifi},
   };
@@ -158,11 +171,7 @@ Response Api::dispatch(const Request& request) {
     throw Error(ErrorCode::not_found, "there is no " + request.path,
                 "web/API.md lists what there is.");
   }
-  Response response = problem({.code = ErrorCode::wrong_method,
-                               .detail = request.method + " is not for " + request.path,
-                               .hint = "It takes " + allowed + "."});
-  response.headers.emplace_back("Allow", allowed);
-  return response;
+  return wrong_method(request, allowed);
 }
 
 Response Api::call(const Route& route, const Request& request, std::string_view id) {

@@ -3,6 +3,7 @@
 #include "appliance/appliance.hpp"
 #include "config/config_store.hpp"
 #include "doctor/doctor.hpp"
+#include "doctor/turntable_runner.hpp"
 #include "http/page.hpp"
 #include "scan/scanner.hpp"
 
@@ -14,6 +15,7 @@ struct App {
   const ScanStore& store;
   const Page& page;
   ConfigStore& settings;
+  TurntableRunner& turntable;
   RigOptions rig;                  ///< that the scanner works with
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
 

@@ -74,6 +74,7 @@ void Worker::show_frame(const DepthFrame& frame) {
 }
 
 void Worker::carry_out(DeviceCheckCommand& command, const std::stop_source& stop) {
+  ports_.heartbeat.suspend();  // a slow turntable takes minutes for a turn
   command.check(rig_, stop.get_token());
 }
 

@@ -108,6 +108,20 @@ Response take_update(App& app, const Request& request) {
   return json_response(to_json(machine.update()), 202);
 }
 
+Response send_machine(App& app) {
+  const MachineState machine = expect_appliance(app).machine();
+  return json_response(
+      {{"name", machine.name}, {"time_zone", machine.time_zone}, {"error", machine.error}});
+}
+
+Response change_machine(App& app, const Request& request) {
+  expect_appliance(app).ask_for_machine(machine_request_from(parse_body(request)));
+  log::info("appliance", "another name or time zone is asked for");
+  Response response = send_machine(app);
+  response.status = 202;
+  return response;
+}
+
 Response send_wifi_state(App& app) { return json_response(to_json(expect_appliance(app).wifi())); }
 
 Response join_wifi(App& app, const Request& request) {

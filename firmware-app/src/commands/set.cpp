@@ -1,0 +1,56 @@
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "commands/commands.hpp"
+#include "config/stored_settings.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;
+constexpr unsigned for_all_to_read = 0644;
+
+/// A value as JSON has it; text that is none is text.
+json to_value(const std::string& text) {
+  json value = json::parse(text, nullptr, false);
+  return value.is_discarded() || value.is_structured() ? json(text) : value;
+}
+
+/// `turntable.gear_ratio=4` as an object in an object. @throws Error "bad-settings"
+json to_change(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    throw Error(ErrorCode::bad_settings, "\"" + assignment + "\" is no setting: must be KEY=VALUE");
+  }
+  const std::string key = assignment.substr(0, equals);
+  const json value = to_value(assignment.substr(equals + 1));
+  const std::size_t dot = key.find('.');
+  return dot == std::string::npos ? json{{key, value}}
+                                  : json{{key.substr(0, dot), {{key.substr(dot + 1), value}}}};
+}
+
+json read_object(const std::filesystem::path& file) {
+  const std::optional<std::string> text = read_regular_file(file, max_file_bytes);
+  return text ? parse_json(*text, ErrorCode::bad_config, file.string()) : json::object();
+}
+
+}  // namespace
+
+void set(const SetArguments& arguments) {
+  json values = read_object(arguments.file);
+  for (const std::string& assignment : arguments.assignments) {
+    values = merged(std::move(values), to_change(assignment));
+  }
+  json checked = values;
+  checked.erase("data");
+  checked.erase("password_file");
+  with_settings({}, checked);  // or the wrong key is named
+  write_file(arguments.file, values.dump(2) + "\n", for_all_to_read);
+}
+
+}  // namespace octurn

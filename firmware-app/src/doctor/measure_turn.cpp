@@ -1,0 +1,244 @@
+#include "doctor/measure_turn.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "octurn/error.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int frames_at_look = 6;
+constexpr int max_stale_frames = 100;
+
+// That the motor is told at first, until the platform is seen to turn: with gears of 1, 4 or 12
+// times what is set.
+constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
+constexpr double seen_move_deg = 10;  // that the platform should make at each move after that
+constexpr int few_moves = 4;          // of which two may be seen wrongly
+constexpr int more_moves = 8;         // their median is right to some percent
+constexpr double widest_deg = 40;     // a first move with a gear that is six times another
+constexpr double expected_deg = 6;    // about what is expected
+constexpr double still_deg = 1;       // at a first move
+constexpr double closing_deg = 32;    // nine percent of a turn
+constexpr double settled_deg = 2;     // so near, a comparison does not depend on the pose
+constexpr int closing_looks = 3;
+constexpr double approach_deg = 15;  // more than any gears' play
+// Comparisons are of looks so far apart: what is the same in all of them, the sensor's own pattern,
+// draws those that are nearer together.
+constexpr double apart_deg = 8;
+constexpr double min_sharpness = 0.08;
+constexpr int looks = 2 * few_moves + more_moves + closing_looks + 5;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+[[noreturn]] void throw_unseen(const std::string& what) {
+  throw Error(ErrorCode::sensor_blind, what,
+              "Put an object with corners on the middle of the platform, such as a shoe.");
+}
+
+AngleRange around(double deg, double half_width_deg) {
+  return {.min_deg = deg - half_width_deg, .max_deg = deg + half_width_deg};
+}
+
+/// Moves by told angles from where the platform stands at first, and compares looks.
+class TurnMeter {
+ public:
+  TurnMeter(Rig& rig, View view, const std::stop_token& stop,
+            const std::function<void(double)>& on_progress)
+      : rig_(rig),
+        view_(std::move(view)),
+        stop_(stop),
+        on_progress_(on_progress),
+        start_(rig.turntable().position()) {}
+
+  TurnMeasurement measure();
+
+ private:
+  void move_to(double told_deg);
+  DepthFrame look();
+  DepthFrame look_at(double told_deg);
+  DepthFrame look_from_below(double told_deg, double rate);
+  double seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range);
+  double median_rate(int moves, double move_deg, const AngleRange& range);
+  double measure_rate();
+  double measure_whole(double rate);
+  double measure_play(double rate);
+  double measure_return(double rate);
+
+  Rig& rig_;
+  View view_;
+  const std::stop_token& stop_;
+  const std::function<void(double)>& on_progress_;
+  std::int64_t start_;
+  double told_deg_ = 0;
+  DepthFrame first_look_ = {};
+  std::vector<double> sharpness_ = {};
+  int looks_done_ = 0;
+};
+
+void TurnMeter::move_to(double told_deg) {
+  Turntable& turntable = rig_.turntable();
+  const double steps = told_deg / 360 * turntable.steps_per_turn();
+  told_deg_ = told_deg;
+  if (!turntable.move_to(start_ + std::llround(steps), stop_)) {
+    throw Stopped{};
+  }
+}
+
+/// The mean of some frames of the platform at rest.
+DepthFrame TurnMeter::look() {
+  DepthSensor& sensor = rig_.sensor();
+  const Clock::time_point settled = Clock::now();
+  std::vector<DepthFrame> frames;
+  for (int taken = 0; frames.size() < frames_at_look; ++taken) {
+    std::optional<TimedFrame> timed = sensor.read(stop_);
+    if (!timed) {
+      throw Stopped{};
+    }
+    if (timed->time > settled) {
+      frames.push_back(std::move(timed->frame));
+    } else if (taken > max_stale_frames) {
+      throw Error(ErrorCode::sensor_failed,
+                  sensor.name() + ": its frames are older than they may be",
+                  "Unplug the sensor, and plug it in again.");
+    }
+  }
+  on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));
+  return merge_frames(frames, DepthFilter::average);
+}
+
+DepthFrame TurnMeter::look_at(double told_deg) {
+  move_to(told_deg);
+  return look();
+}
+
+/// Looks at a told angle that the motor comes to forwards, with its gears in touch.
+DepthFrame TurnMeter::look_from_below(double told_deg, double rate) {
+  if (told_deg <= told_deg_) {
+    move_to(told_deg - approach_deg / std::abs(rate));
+  }
+  return look_at(told_deg);
+}
+
+double TurnMeter::seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range) {
+  const auto rotation = seen_rotation(view_, from, to, range);
+  if (!rotation) {
+    throw_unseen("there is no object on the platform whose turn could be seen");
+  }
+  sharpness_.push_back(rotation->sharpness);
+  return rotation->deg;
+}
+
+/// Moves forwards, all alike. @return degrees that the platform turns for one that the motor is
+/// told
+double TurnMeter::median_rate(int moves, double move_deg, const AngleRange& range) {
+  std::vector<double> rates;
+  DepthFrame before = look();
+  for (int move = 0; move < moves; ++move) {
+    DepthFrame now = look_at(told_deg_ + move_deg);
+    rates.push_back(seen(before, now, range) / move_deg);
+    before = std::move(now);
+  }
+  return median(std::move(rates));
+}
+
+/// The same by moves that are found to be of a good size. @return 0 if the platform stands still
+double TurnMeter::measure_rate() {
+  for (const double move_deg : first_moves_deg) {
+    const double first = median_rate(few_moves, move_deg, around(0, widest_deg));
+    if (std::abs(first * move_deg) < still_deg) {
+      continue;
+    }
+    const double second =
+        median_rate(few_moves, seen_move_deg / std::abs(first), around(0, widest_deg));
+    const double sign = second > 0 ? 1 : -1;
+    return second == 0 ? 0
+                       : median_rate(more_moves, seen_move_deg / std::abs(second),
+                                     around(sign * seen_move_deg, expected_deg));
+  }
+  return 0;
+}
+
+/// Goes to where the platform should look nearly as at the beginning, and corrects that by what it
+/// sees. @return the rate over that whole turn
+double TurnMeter::measure_whole(double rate) {
+  const double sign = rate > 0 ? 1 : -1;
+  double range_deg = closing_deg;
+  for (int count = 0; count < closing_looks; ++count) {
+    const double told_deg = sign * (360 + apart_deg) / rate;
+    const DepthFrame now = look_from_below(told_deg, rate);
+    const double seen_deg = seen(first_look_, now, around(sign * apart_deg, range_deg));
+    rate = (sign * 360 + seen_deg) / told_deg;
+    if (std::abs(seen_deg - sign * apart_deg) < settled_deg) {
+      break;
+    }
+    range_deg = expected_deg;
+  }
+  return rate;
+}
+
+/// Goes on and back, and compares where it was and is with a place a little further on.
+/// @return by how much a move back falls short, degrees
+double TurnMeter::measure_play(double rate) {
+  const double there_deg = told_deg_;
+  const double on_deg = apart_deg / std::abs(rate);
+  const DepthFrame before = look();
+  const DepthFrame further = look_at(there_deg + on_deg);
+  move_to(there_deg + approach_deg / std::abs(rate));
+  const DepthFrame after = look_at(there_deg);
+  const AngleRange range = around(0, approach_deg);
+  const double short_deg = seen(before, further, range) - seen(after, further, range);
+  return rate > 0 ? short_deg : -short_deg;
+}
+
+/// @return how far from where it began the platform stands where the motor is told to be back
+double TurnMeter::measure_return(double rate) {
+  const double on_deg = apart_deg / std::abs(rate);
+  const DepthFrame now = look_from_below(on_deg, rate);
+  const double off_deg =
+      seen(first_look_, now, around(rate * on_deg, approach_deg)) - rate * on_deg;
+  move_to(0);
+  return off_deg;
+}
+
+TurnMeasurement TurnMeter::measure() {
+  move_to(-approach_deg);
+  first_look_ = look_at(0);
+  const double rate = measure_rate();
+  if (median(sharpness_) < min_sharpness) {
+    throw_unseen("the object on the platform looks the same from all sides");
+  }
+  if (rate == 0) {
+    return {};
+  }
+  const double whole_rate = measure_whole(rate);
+  const double play_deg = measure_play(whole_rate);
+  return {.turn_deg = 360 * whole_rate,
+          .play_deg = std::max(play_deg, 0.0),
+          .return_deg = measure_return(whole_rate)};
+}
+
+}  // namespace
+
+TurnMeasurement measure_turn(Rig& rig, const Eigen::Isometry3d& platform_from_sensor,
+                             const Box& clip, const std::stop_token& stop,
+                             const std::function<void(double done)>& on_progress) {
+  const View view{.intrinsics = rig.sensor().intrinsics(),
+                  .platform_from_sensor = platform_from_sensor,
+                  .clip = clip};
+  return TurnMeter(rig, view, stop, on_progress).measure();
+}
+
+}  // namespace octurn

@@ -1,0 +1,212 @@
+#include "doctor/seen_rotation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+constexpr int smooth_radius = 4;         // pixels
+constexpr double max_step = 0.008;       // metres
+constexpr int pixel_step = 2;            // in both directions: thousands of readings are enough
+constexpr std::size_t min_points = 150;  // a thing of 2 cm at 0.7 m has as many
+constexpr double half_fit = 0.005;       // metres: three of the steps of depth of a Kinect at 0.7 m
+// Below it lies the platform, which looks the same from all sides and stands still, with its noise
+// and where the pose is some degrees off.
+constexpr double min_height = 0.02;  // metres
+constexpr double coarse_step_deg = 1;
+constexpr double min_step_deg = 0.02;
+constexpr double beside_deg = 4;
+
+/// A frame without the steps of depth in which a sensor counts: they stand still, and would hold
+/// the object. Each reading becomes the mean of those around it on the same surface.
+DepthFrame smoothed(const DepthFrame& frame, double depth_unit) {
+  const auto same_surface = static_cast<int>(max_step / depth_unit);
+  const auto at = [&](int u, int v) {
+    return static_cast<int>(
+        frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                    static_cast<std::size_t>(u)]);
+  };
+  DepthFrame smooth{.width = frame.width, .height = frame.height};
+  smooth.depth.reserve(frame.depth.size());
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      const int centre = at(u, v);
+      int sum = 0;
+      int count = 0;
+      for (int y = std::max(v - smooth_radius, 0);
+           centre > 0 && y <= std::min(v + smooth_radius, frame.height - 1); ++y) {
+        for (int x = std::max(u - smooth_radius, 0);
+             x <= std::min(u + smooth_radius, frame.width - 1); ++x) {
+          const int other = at(x, y);
+          const bool is_near = other > 0 && std::abs(other - centre) <= same_surface;
+          sum += is_near ? other - centre : 0;
+          count += is_near ? 1 : 0;
+        }
+      }
+      smooth.depth.push_back(static_cast<std::uint16_t>(count > 0 ? centre + sum / count : 0));
+    }
+  }
+  return smooth;
+}
+
+/// Readings inside the clip box, in the platform's frame.
+Points points_in(const View& view, const DepthFrame& frame) {
+  const Intrinsics& lens = view.intrinsics;
+  Points points;
+  for (int v = 0; v < frame.height; v += pixel_step) {
+    for (int u = 0; u < frame.width; u += pixel_step) {
+      const double z =
+          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(u)] *
+          lens.depth_unit;
+      const Eigen::Vector3d point =
+          view.platform_from_sensor *
+          Eigen::Vector3d((u - lens.cx) * z / lens.fx, (v - lens.cy) * z / lens.fy, z);
+      if (z > 0 && point.z() >= min_height && (point.array() >= view.clip.min.array()).all() &&
+          (point.array() <= view.clip.max.array()).all()) {
+        points.push_back(point);
+      }
+    }
+  }
+  return points;
+}
+
+/// How badly a point of the optical frame fits the surface that a frame sees there, from 0 to 1
+/// (Geman and McClure 1985). Near 0 it is a square, so that the sensor's steps of depth, which
+/// stand still, do not hold the object.
+double misfit(const Intrinsics& lens, const DepthFrame& frame, const Eigen::Vector3d& point) {
+  const double u = std::round(lens.cx + lens.fx * point.x() / point.z());
+  const double v = std::round(lens.cy + lens.fy * point.y() / point.z());
+  if (!(point.z() > 0 && u >= 0 && v >= 0 && u < frame.width && v < frame.height)) {
+    return 1;
+  }
+  const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                            static_cast<std::size_t>(u);
+  const double seen = frame.depth[pixel] * lens.depth_unit;
+  const double square = (point.z() - seen) * (point.z() - seen);
+  return seen > 0 ? square / (square + half_fit * half_fit) : 1;
+}
+
+/// A motion of the platform: a rotation about the axis of `View`, and a shift that makes it one
+/// about the true axis.
+struct PlanarMotion {
+  double deg = 0;
+  double x = 0;  ///< metres
+  double y = 0;
+};
+
+Eigen::Isometry3d to_isometry(const PlanarMotion& motion) {
+  Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
+  moved.linear() =
+      Eigen::AngleAxisd(radians_from_degrees(motion.deg), Eigen::Vector3d::UnitZ()).matrix();
+  moved.translation() << motion.x, motion.y, 0;
+  return moved;
+}
+
+/// Mean misfit of moved points to what a frame sees.
+double mean_misfit(const View& view, const Points& points, const DepthFrame& frame,
+                   const Eigen::Isometry3d& motion) {
+  const Eigen::Isometry3d moved = view.platform_from_sensor.inverse() * motion;
+  double sum = 0;
+  for (const Eigen::Vector3d& point : points) {
+    sum += misfit(view.intrinsics, frame, moved * point);
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// The two looks, and how badly they agree for a motion from the first to the second.
+class Looks {
+ public:
+  Looks(const View& view, const DepthFrame& from, const DepthFrame& to)
+      : view_(view),
+        from_(smoothed(from, view.intrinsics.depth_unit)),
+        to_(smoothed(to, view.intrinsics.depth_unit)),
+        points_from_(points_in(view, from_)),
+        points_to_(points_in(view, to_)) {}
+
+  bool see_an_object() const {
+    return std::min(points_from_.size(), points_to_.size()) >= min_points;
+  }
+
+  double disagreement(const PlanarMotion& motion) const {
+    const Eigen::Isometry3d there = to_isometry(motion);
+    return (mean_misfit(view_, points_from_, to_, there) +
+            mean_misfit(view_, points_to_, from_, there.inverse())) /
+           2;
+  }
+
+ private:
+  const View& view_;
+  DepthFrame from_;
+  DepthFrame to_;
+  Points points_from_;
+  Points points_to_;
+};
+
+/// A motion, and how badly the looks agree for it.
+struct Candidate {
+  PlanarMotion motion = {};
+  double disagreement = 0;
+};
+
+Candidate best_rotation(const Looks& looks, const AngleRange& range) {
+  Candidate best{.disagreement = 1};
+  for (double deg = range.min_deg; deg <= range.max_deg; deg += coarse_step_deg) {
+    const PlanarMotion motion{.deg = deg};
+    if (const double value = looks.disagreement(motion); value < best.disagreement) {
+      best = {.motion = motion, .disagreement = value};
+    }
+  }
+  return best;
+}
+
+/// Pattern search (Hooke and Jeeves 1961) from a candidate on, in angle and shift.
+Candidate refined(const Looks& looks, Candidate best) {
+  PlanarMotion step{.deg = 2, .x = 0.004, .y = 0.004};
+  while (step.deg > min_step_deg) {
+    bool is_better = false;
+    for (const double sign : {-1.0, 1.0}) {
+      for (const PlanarMotion& along :
+           {PlanarMotion{.deg = step.deg}, PlanarMotion{.x = step.x}, PlanarMotion{.y = step.y}}) {
+        const PlanarMotion motion{.deg = best.motion.deg + sign * along.deg,
+                                  .x = best.motion.x + sign * along.x,
+                                  .y = best.motion.y + sign * along.y};
+        if (const double value = looks.disagreement(motion); value < best.disagreement) {
+          best = {.motion = motion, .disagreement = value};
+          is_better = true;
+        }
+      }
+    }
+    if (!is_better) {
+      step = {.deg = step.deg / 2, .x = step.x / 2, .y = step.y / 2};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<SeenRotation> seen_rotation(const View& view, const DepthFrame& from,
+                                          const DepthFrame& to, const AngleRange& range) {
+  const Looks looks(view, from, to);
+  if (!looks.see_an_object()) {
+    return std::nullopt;
+  }
+  const Candidate best = refined(looks, best_rotation(looks, range));
+  const auto beside = [&](double deg) {
+    PlanarMotion motion = best.motion;
+    motion.deg += deg;
+    return looks.disagreement(motion);
+  };
+  const double mean_beside = (beside(-beside_deg) + beside(beside_deg)) / 2;
+  return SeenRotation{.deg = best.motion.deg,
+                      .sharpness = (mean_beside - best.disagreement) / best.disagreement};
+}
+
+}  // namespace octurn

@@ -1,0 +1,51 @@
+#include "sensor/simulated_mechanism.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace octurn {
+namespace {
+
+class SensorOnMechanism final : public DepthSensor {
+ public:
+  SensorOnMechanism(std::unique_ptr<DepthSensor> sensor, const SimulatedMechanism& mechanism)
+      : sensor_(std::move(sensor)), mechanism_(mechanism) {}
+
+  const std::string& name() const override { return sensor_->name(); }
+  const Intrinsics& intrinsics() const override { return sensor_->intrinsics(); }
+  std::optional<TimedFrame> read(const std::stop_token& stop) override {
+    return sensor_->read(stop);
+  }
+  std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
+  std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
+
+  void show_wall(std::optional<double> distance) override { sensor_->show_wall(distance); }
+
+  void show_angle(double angle) override {
+    // Told angles may be wrapped: between two of them there is never half a turn.
+    motor_ += mechanism_.rate * std::remainder(angle - told_, 2 * std::numbers::pi);
+    told_ = angle;
+    // A wheel that turns on pushes the platform at once, one that turns back only after its play.
+    const double behind = mechanism_.rate < 0 ? -mechanism_.play : 0;
+    platform_ = std::clamp(platform_, motor_ + behind, motor_ + behind + mechanism_.play);
+    sensor_->show_angle(platform_);
+  }
+
+ private:
+  std::unique_ptr<DepthSensor> sensor_;
+  SimulatedMechanism mechanism_;
+  double told_ = 0;  // radians, as all of these
+  double motor_ = 0;
+  double platform_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DepthSensor> on_mechanism(std::unique_ptr<DepthSensor> sensor,
+                                          const SimulatedMechanism& mechanism) {
+  return std::make_unique<SensorOnMechanism>(std::move(sensor), mechanism);
+}
+
+}  // namespace octurn

@@ -1,0 +1,73 @@
+#include "doctor/turn_checks.hpp"
+
+#include <gtest/gtest.h>
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+using State = Finding::State;
+
+TurnFinding finding_of(const char* check, const TurnMeasurement& turn,
+                       const StepperSettings& settings = {}) {
+  for (TurnFinding& one : check_turn(turn, settings)) {
+    if (one.finding.check == check) {
+      return one;
+    }
+  }
+  ADD_FAILURE() << "no finding " << check;
+  return {};
+}
+
+TEST(CheckTurn, FindsNothingWrongWithinWhatTheSensorIsWrongBy) {
+  for (const TurnFinding& one :
+       check_turn({.turn_deg = 361, .play_deg = 0.4, .return_deg = -0.4}, {})) {
+    EXPECT_EQ(one.finding.state, State::ok) << one.finding.name;
+    EXPECT_EQ(one.set, json::object()) << one.finding.name;
+  }
+}
+
+TEST(CheckTurn, TellsTheGearThatMakesATurnWhole) {
+  const TurnFinding turn = finding_of("turn-whole", {.turn_deg = 270});
+  EXPECT_EQ(turn.finding.state, State::fault);
+  EXPECT_EQ(turn.finding.measured, "came out as 270.0 degrees");
+  EXPECT_EQ(turn.finding.advice, "Set gear_ratio to 1.333.");
+  EXPECT_EQ(turn.set, json({{"gear_ratio", 1.333}}));
+  // Nearly four, so four: a wheel has whole teeth.
+  EXPECT_EQ(finding_of("turn-whole", {.turn_deg = 269.7}, {.gear_ratio = 3}).set,
+            json({{"gear_ratio", 4}}));
+}
+
+TEST(CheckTurn, BlamesTheMicrostepsForAPowerOfTwo) {
+  // Set to 4 where the driver makes 16: a quarter of a turn.
+  EXPECT_EQ(finding_of("turn-whole", {.turn_deg = 90.2}).set, json({{"microsteps", 16}}));
+  EXPECT_EQ(finding_of("turn-whole", {.turn_deg = -720.5}).set, json({{"microsteps", 2}}));
+}
+
+TEST(CheckTurn, TurnsTheDirectionRound) {
+  EXPECT_EQ(finding_of("turn-direction", {.turn_deg = -360}).set, json({{"reversed", true}}));
+  EXPECT_EQ(finding_of("turn-direction", {.turn_deg = -360}, {.reversed = true}).set,
+            json({{"reversed", false}}));
+}
+
+TEST(CheckTurn, TakesUpMoreThanThePlay) {
+  const TurnFinding play = finding_of("turn-play", {.turn_deg = 360, .play_deg = 1.8});
+  EXPECT_EQ(play.finding.state, State::warning);
+  EXPECT_EQ(play.set, json({{"take_up_steps", 6}}));  // 1.8 degrees are 4 of 800 steps
+  EXPECT_EQ(finding_of("turn-play", {.turn_deg = 360, .play_deg = 1.8}, {.take_up_steps = 5}).set,
+            json({{"take_up_steps", 11}}));
+}
+
+TEST(CheckTurn, TellsOfLostSteps) {
+  EXPECT_EQ(finding_of("turn-return", {.turn_deg = 360, .return_deg = -3}).finding.state,
+            State::fault);
+}
+
+TEST(CheckTurn, TellsOfAPlatformThatStandsStill) {
+  const auto findings = check_turn({}, {});
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].finding.measured, "the platform stands still");
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,98 @@
+// "Name and time" on the settings page, where it is the appliance's.
+
+import {Problem, status} from './api.js';
+import * as api from './api_settings.js';
+import {element, setText, show} from './dom.js';
+import {sentence} from './format.js';
+
+/** @typedef {import('./api_settings.js').Machine} Machine */
+
+const pause = 500;  // milliseconds between looks
+const patience = 20;  // looks until it counts as not done
+
+/** Why a name is none, or nothing. Pure. @param {string} name */
+export const nameComplaint = (name) => /^[a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?$/i.test(name) ? '' :
+  'A name has letters, digits and hyphens between them, at most 63.';
+
+/** What differs from how it is, as the scanner takes it. Pure. @param {Machine} machine @param {string} name @param {string} zone */
+export function changeOf({name: present, time_zone}, name, zone) {
+  const wanted = name.toLowerCase();
+  return {...(wanted === present ? {} : {name: wanted}), ...(zone === time_zone ? {} : {time_zone: zone})};
+}
+
+/** Whether the scanner has done what was asked, or says why not. Pure. @param {Machine} machine @param {{name?: string, time_zone?: string}} wanted */
+export const isAnswered = (machine, wanted) => machine.error !== '' ||
+  (wanted.name ?? machine.name) === machine.name && (wanted.time_zone ?? machine.time_zone) === machine.time_zone;
+
+/** @type {Machine} */
+let machine = {name: '', time_zone: '', error: ''};
+
+const wanted = () => changeOf(machine, element('machine-name').value.trim(), element('machine-zone').value);
+
+function showChanged() {
+  show(element('machine-save'), Object.keys(wanted()).length > 0);
+  setText(element('machine-address'), `The page is at http://${element('machine-name').value.trim().toLowerCase()}.local`);
+}
+
+function offerZones() {
+  const zones = Intl.supportedValuesOf('timeZone');
+  const all = zones.includes(machine.time_zone) ? zones : [machine.time_zone, ...zones];
+  element('machine-zone').replaceChildren(...all.map((zone) => new Option(zone || 'UTC', zone)));
+}
+
+function fill() {
+  element('machine-name').value = machine.name;
+  offerZones();
+  element('machine-zone').value = machine.time_zone;
+  showChanged();
+}
+
+/** @param {unknown} error */
+function complain(error) {
+  const {title, detail, hint} = error instanceof Problem ? error : new Problem('page', String(error));
+  setText(element('machine-complaint'), [detail || title, hint].map(sentence).join(' '));
+}
+
+/** Root does it, and answers later. @param {{name?: string, time_zone?: string}} change */
+async function save(change) {
+  await api.changeMachine(change);
+  for (let look = 0; look < patience; ++look) {
+    await new Promise((done) => {
+      setTimeout(done, pause);
+    });
+    machine = await api.machine();
+    if (isAnswered(machine, change)) {
+      break;
+    }
+  }
+  setText(element('machine-complaint'), sentence(machine.error));
+  setText(element('machine-saved'), machine.error ? '' : 'Saved.');
+  fill();
+}
+
+/** Shows the card where this is the appliance. */
+export async function prepareMachine() {
+  const card = element('machine-card');
+  card.addEventListener('input', () => {
+    setText(element('machine-saved'), '');
+    showChanged();
+  });
+  card.addEventListener('submit', async (/** @type {Event} */ event) => {
+    event.preventDefault();
+    const complaint = nameComplaint(element('machine-name').value.trim());
+    setText(element('machine-complaint'), complaint);
+    if (!complaint) {
+      await save(wanted()).catch(complain);
+    }
+  });
+  if (!(await status().catch(() => null))?.appliance) {
+    return;
+  }
+  try {
+    machine = await api.machine();
+    fill();
+    show(card, true);
+  } catch (error) {
+    complain(error);
+  }
+}

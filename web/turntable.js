@@ -1,0 +1,120 @@
+// "Move the turntable" on the settings page: jogs it, tests it, and offers the settings that cure what a test finds.
+
+import {Problem} from './api.js';
+import * as api from './api_settings.js';
+import {copyOf, element, part, setText, show} from './dom.js';
+import {sentence} from './format.js';
+import {nameOf, valueText} from './settings_form.js';
+
+/** @typedef {import('./api_settings.js').TurntableState} TurntableState */
+/** @typedef {import('./api_settings.js').TurnFinding} TurnFinding */
+
+const pause = 400;  // milliseconds between looks while it moves
+
+/** What is said of the turntable. Pure. @param {TurntableState} now */
+export function shownOf({state, error, test}) {
+  const failure = error ?? (state === 'idle' ? test?.error ?? null : null);
+  const isDone = state !== 'testing' && test?.state === 'done';
+  const faults = isDone ? test.findings.filter((finding) => finding.state !== 'ok').length : 0;
+  const outcome = faults === 0 ? 'The turntable does what it is told.' : 'The turntable does not do what it is told.';
+  return {
+    isMoving: state !== 'idle',
+    progress: state === 'testing' ? test?.done ?? 0 : null,
+    summary: state === 'testing' ? 'Turning and looking…' : state === 'jogging' ? 'Turning…' : isDone ? outcome :
+      test?.state === 'cancelled' ? 'The test was stopped.' : '',
+    trouble: failure ? [failure.detail, failure.hint].map(sentence).join(' ') : '',
+    findings: isDone ? test.findings : [],
+  };
+}
+
+/** What the button of a cure says, or nothing. Pure. @param {TurnFinding['set']} set */
+export function cureText(set) {
+  const [cure] = Object.entries(set);
+  return cure ? `Set ${nameOf(`turntable.${cure[0]}`)} to ${valueText(cure[1])}` : '';
+}
+
+let isFollowing = false;
+
+/** @param {TurnFinding} finding @param {(set: Object) => Promise<boolean>} onSet */
+function itemOf(finding, onSet) {
+  const item = copyOf('turn-check');
+  item.dataset.state = finding.state;
+  part(item, 'use').setAttribute('href', `icons/symbols.svg#${finding.state}`);
+  setText(part(item, '.turn-name'), finding.name);
+  setText(part(item, '.turn-measured'), sentence(finding.measured));
+  setText(part(item, '.turn-advice'), sentence(finding.advice));
+  const cure = part(item, 'button');
+  show(cure, cureText(finding.set) !== '');
+  setText(cure, cureText(finding.set));
+  cure.addEventListener('click', async () => {
+    if (await onSet(finding.set)) {
+      show(cure, false);
+      setText(part(item, '.turn-advice'), 'It is set. Test again.');
+    }
+  });
+  return item;
+}
+
+/** @param {TurntableState} now @param {(set: Object) => Promise<boolean>} onSet */
+function render(now, onSet) {
+  const {isMoving, progress, summary, trouble, findings} = shownOf(now);
+  setText(element('turn-summary'), summary);
+  setText(element('turn-trouble'), trouble);
+  for (const button of element('turn-moves').querySelectorAll('button')) {
+    button.setAttribute('aria-disabled', String(isMoving));
+  }
+  show(element('turn-stop'), isMoving);
+  show(element('turn-done'), progress !== null);
+  element('turn-done').value = progress ?? 0;
+  element('turn-checks').replaceChildren(...findings.map((finding) => itemOf(finding, onSet)));
+}
+
+/** @param {unknown} error */
+function showError(error) {
+  const {title, detail, hint} = error instanceof Problem ? error : new Problem('page', String(error));
+  setText(element('turn-trouble'), [detail || title, hint].map(sentence).join(' '));
+}
+
+/** Looks until it stands still. @param {TurntableState} now @param {(set: Object) => Promise<boolean>} onSet */
+async function follow(now, onSet) {
+  render(now, onSet);
+  if (isFollowing) {
+    return;
+  }
+  isFollowing = true;
+  while (now.state !== 'idle') {
+    await new Promise((done) => {
+      setTimeout(done, pause);
+    });
+    try {
+      now = await api.turntable();
+      render(now, onSet);
+    } catch (error) {
+      showError(error);
+    }
+  }
+  isFollowing = false;
+}
+
+/** @param {(set: Object) => Promise<boolean>} onSet  somebody wants these settings of the turntable */
+export async function prepareTurntable(onSet) {
+  const ask = async (/** @type {Object} */ what) => {
+    try {
+      follow(await api.moveTurntable(what), onSet);
+    } catch (error) {
+      showError(error);
+    }
+  };
+  element('turn-moves').addEventListener('click', (/** @type {any} */ {target}) => {
+    const button = target.closest('button');
+    if (button && button.getAttribute('aria-disabled') !== 'true') {
+      ask(button.dataset.jog ? {jog_deg: Number(button.dataset.jog)} : {test: true});
+    }
+  });
+  element('turn-stop').addEventListener('click', () => ask({stop: true}));
+  try {
+    follow(await api.turntable(), onSet);
+  } catch (error) {
+    showError(error);
+  }
+}

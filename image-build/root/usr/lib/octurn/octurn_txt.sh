@@ -52,6 +52,10 @@ read_line() {
     ssh_key) ssh_keys="$ssh_keys${value:+$value
 }" ;;
     rig) rig=$value ;;
+    turntable.* | scan.* | memory_limit_mb | threads)
+      settings="$settings$trimmed=$value
+"
+      ;;
     *[!A-Za-z_-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     *) "$1" "line $number: there is no setting $trimmed" ;;
   esac
@@ -61,7 +65,7 @@ read_line() {
 # Without any other program, of which each takes its time while a machine starts.
 # shellcheck disable=SC2034
 read_settings() {
-  name='' page_password='' wifi_name='' wifi_password='' wifi_country='' time_zone='' ssh_keys='' rig=''
+  name='' page_password='' wifi_name='' wifi_password='' wifi_country='' time_zone='' ssh_keys='' rig='' settings=''
   number=0
   while IFS= read -r line || [ -n "$line" ]; do
     number=$((number + 1))

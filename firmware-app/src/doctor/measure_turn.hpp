@@ -17,8 +17,10 @@ struct TurnMeasurement {
 
 /// Turns the platform once and looks: small moves first, which tell how far a move goes and in
 /// which direction, then one to where it should look as at the beginning; then one there and back,
-/// for the play; and back to the beginning. The pose may be some centimetres and degrees off, as
-/// each comparison finds the axis itself.
+/// for the play; and back to the beginning. Each comparison finds the axis itself: with a pose that
+/// is 15 mm and 2 degrees off, and a sensor with a Kinect's fixed pattern, a turn of 270 degrees is
+/// found to half a degree, and the play to one. From 20 mm or 3 degrees on it can be any: then
+/// calibrate first.
 ///
 /// @param platform_from_sensor  and clip box: where to look for the object
 /// @param on_progress           told how much is done, from 0 to 1

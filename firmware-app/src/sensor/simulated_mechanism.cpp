@@ -15,6 +15,7 @@ class SensorOnMechanism final : public DepthSensor {
 
   const std::string& name() const override { return sensor_->name(); }
   const Intrinsics& intrinsics() const override { return sensor_->intrinsics(); }
+  std::string serial() const override { return sensor_->serial(); }
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     return sensor_->read(stop);
   }

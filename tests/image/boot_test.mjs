@@ -6,6 +6,7 @@ import {readFile} from 'node:fs/promises';
 import {measure} from '../web/mesh_file.js';
 import {patience as patienceOfVirt, require, runTest, until} from './checks.mjs';
 import {Guest, readCard, secondsSince} from './guest.mjs';
+import {requireKept, setWhatIsKept} from './kept.mjs';
 import {cutPower} from './power_cuts.mjs';
 
 const [machine, card, cuts] = process.argv.slice(2);
@@ -67,6 +68,15 @@ async function testSystem(guest) {
   say(`data partition of ${size} MiB, no failed units, errors in the journal: ${errors || 'none'}`);
 }
 
+/** Before the plug is pulled: the tests of power cuts and updates look for them again. */
+async function testKept(guest) {
+  await setWhatIsKept(guest);
+  await guest.run('systemctl restart octurn', patience);
+  await guest.page(patience);
+  await requireKept(guest);
+  say('setting, pose and sensor map are kept when the daemon starts again');
+}
+
 /** Waits for a file on the card, which is not there before it is complete. */
 const cardHas = (name) => until(`${name} on the card`, () => readCard(card, name).catch(() => ''), patience);
 
@@ -91,15 +101,21 @@ async function test(guest) {
   await testScan(guest);
   await testDoctor(guest);
   await testSystem(guest);
+  await testKept(guest);
   await cardHas('octurn-status.txt');
   await guest.run('sync');
   await guest.cutPower();
   await testCard(version);
 }
 
-const guest = await Guest.start(machine, card);
+let guest = await Guest.start(machine, card);
 await runTest('boot-test', () => guest, async () => {
   await test(guest);
+  guest = await Guest.start(machine, card);
+  await guest.page(patience);
+  await requireKept(guest);
+  await guest.cutPower();
+  say('setting, pose and sensor map are kept when the plug is pulled');
   if (Number(cuts) > 0) {
     await cutPower(machine, card, Number(cuts), patience, say);
   }

@@ -3,6 +3,7 @@
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {Guest, readCard, secondsSince} from './guest.mjs';
+import {requireKept} from './kept.mjs';
 
 // As octurn-wifi.service does when there is a password, but again and again. What is written is what was there.
 const writeSettings = `{ unshare --mount sh -ec '. /usr/lib/octurn/card.sh; cd /run/octurn-settings; cp octurn.txt written;
@@ -53,6 +54,7 @@ export async function cutPower(machine, card, cuts, patience, say) {
           throw new Error(`${snapshots} snapshots were stored, and the scan is ${JSON.stringify(scan)}`);
         }
       }
+      await requireKept(guest);
       const errors = await guest.run('journalctl -b -k -o cat | grep -iE "(EXT4-fs|FAT-fs|SQUASHFS|I/O).*error"');
       if (errors) {
         throw new Error(`file systems: ${errors}`);

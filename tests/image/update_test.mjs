@@ -6,6 +6,7 @@ import {setTimeout as sleep} from 'node:timers/promises';
 
 import {patience, require, runTest, until} from './checks.mjs';
 import {Guest, secondsSince} from './guest.mjs';
+import {requireKept} from './kept.mjs';
 
 const [machine, card, updates] = process.argv.slice(2);
 
@@ -41,6 +42,7 @@ const isOn = async (slot) => {
   const line = await guest.run('cat /proc/cmdline; cat /proc/sys/kernel/hostname');
   require(line.includes(`octurn.slot=${slot}`) && line.endsWith('boot-test'), `the system that runs is: ${line}`);
   require(await storedScans() === scans, `the scans were ${scans}, and are ${await storedScans()}`);
+  await requireKept(guest);
 };
 
 const refuses = async (name, reason) => {

@@ -29,11 +29,16 @@ export const nameOf = (scan) => scan.name || `Scan of ${format.when(scan.created
 /** @param {Scan} scan */
 const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
 
+const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'building', 'done']);
+
 /** @param {Scan} scan */
 function phaseText(scan) {
   const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
   if (scan.error) {
     return `Trying ${stop} again`;
+  }
+  if (scan.snapshots_done === scan.snapshots_total && !phasesAfterTheTurn.has(scan.phase)) {
+    return 'Looking once more at the first stop';
   }
   switch (scan.phase) {
     case 'starting': return 'Getting ready';
@@ -44,8 +49,6 @@ function phaseText(scan) {
     default: return 'Building the model';
   }
 }
-
-const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'building', 'done']);
 
 /** @param {Scan} scan */
 const isBuilding = ({phase}) => phasesAfterTheTurn.has(phase);

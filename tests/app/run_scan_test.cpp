@@ -82,7 +82,7 @@ TEST(RunScan, TakesOneFrameAStopForTheBasicFilter) {
   int frames = 0;
   ASSERT_TRUE(run_scan(settings, {}, folder.path(), rig, {},
                        {.on_frame = [&](const DepthFrame&) { ++frames; }}));
-  EXPECT_EQ(frames, 3);
+  EXPECT_EQ(frames, 4);  // the last of them at the first stop again
 }
 
 TEST(RunScan, GoesThroughItsPhasesInOrder) {
@@ -96,6 +96,8 @@ TEST(RunScan, GoesThroughItsPhasesInOrder) {
                                                       {Phase::capturing, 0},
                                                       {Phase::turning, 1},
                                                       {Phase::capturing, 1},
+                                                      {Phase::turning, 2},
+                                                      {Phase::capturing, 2},
                                                       {Phase::calibrating, 2},
                                                       {Phase::building, 2}}));
 }
@@ -116,6 +118,8 @@ TEST(RunScan, HasASnapshotOnTheDiskBeforeThePlatformMovesOn) {
 TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
   for (const auto& moment : {std::pair{Phase::turning, 1},
                              {Phase::capturing, 1},
+                             {Phase::turning, 3},
+                             {Phase::capturing, 3},
                              {Phase::calibrating, 3},
                              {Phase::building, 3}}) {
     const TemporaryFolder folder;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "octurn/object_move.hpp"
 #include "support/ball_scan.hpp"
 #include "support/program.hpp"
 #include "support/stl.hpp"
@@ -81,6 +82,20 @@ TEST_F(SolidCommand, SaysWhyAModelIsNotGood) {
     return reason["code"] == "cut-by-box" && !reason["detail"].empty() && !reason["hint"].empty() &&
            std::abs(reason["places_mm"].at(0).at(2).get<double>() - 70) < 8;  // a cell, and a pixel
   })) << quality;
+}
+
+TEST_F(SolidCommand, TellsOfTheMoveThatTheLastLookSawAndMakesTheSameModel) {
+  write_ball_scan(scan_, 8);
+  report_of({"--leaf-size-mm", "2"});
+  const std::string model = content_of(output_);
+  write_object_move(scan_, {.shift = 0.0021, .shift_sigma = 0.0001});
+  const auto quality = report_of({"--leaf-size-mm", "2"})["quality"];
+  ASSERT_EQ(quality["reasons"].size(), 1U) << quality;
+  EXPECT_EQ(quality["reasons"][0]["code"], "moved");
+  EXPECT_NE(quality["reasons"][0]["detail"].get<std::string>().find("moved by 2.1 mm"),
+            std::string::npos)
+      << quality;
+  EXPECT_TRUE(content_of(output_) == model);
 }
 
 TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {

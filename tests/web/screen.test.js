@@ -40,8 +40,8 @@ test('the last stop is not the end: the model is still to be built', () => {
   assert.equal(title, 'Building · Octurn');
 });
 
-test('after the last snapshot the stop shown is never beyond the last', () => {
-  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Turning to stop 36 of 36');
+test('after the last snapshot the scanner looks once more at the first stop', () => {
+  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Looking once more at the first stop');
 });
 
 test('a finished scan shows its size, its facts and its download', () => {

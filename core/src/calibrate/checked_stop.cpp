@@ -58,14 +58,6 @@ Snapshot thinned(const Snapshot& snapshot) {
   return thin;
 }
 
-/// Readings above the plane z = 0 and near the axis x = y = 0 of the object's frame.
-ObjectView::Mask mask_of(const Isometry3d& object_from_sensor) {
-  const Isometry3d sensor_from_object = object_from_sensor.inverse();
-  const Vector3d normal = sensor_from_object.linear() * Vector3d::UnitZ();
-  return {.plane = {.normal = normal, .offset = normal.dot(sensor_from_object.translation())},
-          .axis_point = sensor_from_object.translation()};
-}
-
 bool contains(const Box& box, const Vector3d& point) {
   return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
 }
@@ -124,7 +116,7 @@ std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& len
 }  // namespace
 
 ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
-    : Stop(thinned(snapshot), clip, mask_of(snapshot.object_from_sensor)) {}
+    : Stop(thinned(snapshot), clip, make_mask(snapshot.object_from_sensor)) {}
 
 ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask)
     : object_from_sensor(thin.object_from_sensor),

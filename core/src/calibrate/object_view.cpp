@@ -1,6 +1,5 @@
 #include "calibrate/object_view.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -132,6 +131,13 @@ std::vector<SurfaceReading> ObjectView::readings(int step) const {
     }
   }
   return readings;
+}
+
+ObjectView::Mask make_mask(const Eigen::Isometry3d& platform_from_sensor) {
+  const Eigen::Isometry3d sensor_from_platform = platform_from_sensor.inverse();
+  const Vector3d normal = sensor_from_platform.linear() * Vector3d::UnitZ();
+  return {.plane = {.normal = normal, .offset = normal.dot(sensor_from_platform.translation())},
+          .axis_point = sensor_from_platform.translation()};
 }
 
 }  // namespace octurn

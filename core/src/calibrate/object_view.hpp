@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -54,5 +54,9 @@ class ObjectView {
   int pixels_ = 0;
   std::vector<float> inverse_depth_ = {};  // 1/metres, row by row; 0 is no reading
 };
+
+/// Readings above the plane z = 0 and near the axis x = y = 0 of a pose's frame.
+/// @param platform_from_sensor  metres; or the object's frame, whose plane and axis are the same
+ObjectView::Mask make_mask(const Eigen::Isometry3d& platform_from_sensor);
 
 }  // namespace octurn

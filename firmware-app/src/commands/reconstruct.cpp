@@ -17,6 +17,7 @@
 #include "octurn/units.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
+#include "scan/last_look.hpp"
 #include "scan/quality_json.hpp"
 #include "scan/solve_pose.hpp"
 #include "settings/field.hpp"
@@ -159,7 +160,7 @@ SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& 
           }};
 }
 
-/// A scan with the pose that its model is made with, and what solving it found.
+/// A scan with the pose that its model is made with, and what solving it and its last look found.
 struct PosedScan {
   Scan scan = {};
   std::vector<CalibrationFinding> findings = {};
@@ -179,6 +180,7 @@ PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelS
     }
     posed.findings = std::move(report.findings);
   }
+  add_stored_move(folder, posed.findings);
   return posed;
 }
 

@@ -14,6 +14,7 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "scan/depth_scale.hpp"
+#include "scan/last_look.hpp"
 #include "scan/plan.hpp"
 #include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
@@ -76,6 +77,7 @@ class Run {
         check_(options_.clip, static_cast<std::size_t>(settings.snapshots)),
         reconstruction_(make_reconstructor(options_)) {}
 
+  bool has_all_snapshots() const { return done() == settings_.snapshots; }
   /// @return false if stopped first
   bool take_snapshots();
   std::vector<CalibrationFinding> calibrate();
@@ -109,9 +111,6 @@ class Run {
 };
 
 bool Run::take_snapshots() {
-  if (done() == settings_.snapshots) {
-    return true;  // before the model: it is built of what is stored
-  }
   Turntable& turntable = rig_.turntable();
   if (done() == 0) {
     begin();
@@ -280,11 +279,18 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
                               const std::filesystem::path& folder, Rig& rig,
                               const std::stop_token& stop, const ScanObserver& observer) try {
   Run run(settings, limits, folder, rig, stop, observer);
-  if (!run.take_snapshots()) {
+  const bool is_unfinished = !run.has_all_snapshots();
+  if (is_unfinished && !run.take_snapshots()) {
     return std::nullopt;
   }
+  const auto again =
+      is_unfinished ? look_again(rig, settings, stop, observer) : std::optional<DepthFrame>();
   const Clock::time_point captured = Clock::now();
-  const std::vector<CalibrationFinding> findings = run.calibrate();
+  std::vector<CalibrationFinding> findings = run.calibrate();
+  if (again) {
+    keep_move(folder, *again);
+  }
+  add_stored_move(folder, findings);
   return run.build(captured, findings);
 } catch (const Stopped&) {
   return std::nullopt;  // while snapshots were added, or the model was made

@@ -20,6 +20,9 @@ namespace octurn {
 /// A pose that is accepted and does not merely confirm the told one is stored beside it in
 /// scan.json, and the model is built again from the stored snapshots.
 ///
+/// After the last stop the platform turns on to the first one's angle, for one more look. It is in
+/// no model: scan.json keeps how the object moved meanwhile, and the verdict tells it.
+///
 /// @return the model, or nothing if stopped first
 /// @throws Error  if the sensor, the turntable or the disk fails, or there is no surface
 std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,

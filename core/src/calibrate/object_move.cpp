@@ -1,0 +1,212 @@
+#include "octurn/object_move.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "calibrate/number_text.hpp"
+#include "calibrate/object_view.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Readings = std::vector<SurfaceReading>;
+
+constexpr double min_object_pixels = 120;  // 2 cm at 0.7 m
+constexpr double readings_wanted = 2000;
+constexpr int max_step = 6;  // pixels
+// What two looks at the same scene differ by is alike in some 7 x 7 pixels: all longer errors are
+// the same in both.
+constexpr double correlated_pixels = 50;
+constexpr double min_agreement = 0.7;    // cosine between the two normals
+constexpr double min_found_again = 0.3;  // of the readings: else there is another object, or none
+
+// What is expected where the object's shape does not tell: a ball's turn, a wall's sideways shift.
+constexpr double expected_noise = 0.001;  // metres
+constexpr double min_noise = 0.0003;      // metres: residuals of so few readings may be less
+constexpr double expected_shift = 0.003;
+constexpr double expected_turn = 0.1;  // radians
+
+constexpr double min_shift = 0.001;  // metres
+constexpr double min_turn_deg = 0.6;
+constexpr double certain_sigmas = 3;
+
+/// What is compared in one iteration.
+struct Limits {
+  double max_distance = 0;  ///< metres: what is farther off is another surface
+  double cauchy_scale = 0;  ///< metres
+};
+
+constexpr std::array<Limits, 10> schedule{{{max_measured_shift, 0.004},
+                                           {max_measured_shift, 0.004},
+                                           {max_measured_shift, 0.004},
+                                           {max_measured_shift, 0.004},
+                                           {0.01, 0.002},
+                                           {0.01, 0.002},
+                                           {0.01, 0.002},
+                                           {0.005, 0.002},
+                                           {0.005, 0.002},
+                                           {0.005, 0.002}}};
+
+/// A motion along the platform.
+struct Motion {
+  Vector3d middle = Vector3d::Zero();  ///< that it turns about, platform's frame
+  Vector2d shift = Vector2d::Zero();   ///< metres
+  double turn = 0;                     ///< radians
+
+  Vector3d operator()(const Vector3d& point) const {
+    const Eigen::AngleAxisd rotation(turn, Vector3d::UnitZ());
+    return rotation * (point - middle) + middle + Vector3d(shift.x(), shift.y(), 0);
+  }
+};
+
+/// The least-squares problem for small changes of a motion.
+struct Equations {
+  Matrix3d normal_matrix = Matrix3d::Zero();  ///< of shift x, shift y and turn
+  Vector3d right = Vector3d::Zero();
+  double weight = 0;
+  double squares = 0;
+  std::size_t count = 0;
+};
+
+/// Readings inside the box, in the platform's frame.
+Readings readings_in(const ObjectView& view, const Isometry3d& platform_from_sensor,
+                     const Box& clip) {
+  const int step =
+      std::clamp(static_cast<int>(std::sqrt(view.pixels() / readings_wanted)), 1, max_step);
+  Readings inside;
+  for (const SurfaceReading& reading : view.readings(step)) {
+    const Vector3d point = platform_from_sensor * reading.point;
+    if ((point.array() >= clip.min.array()).all() && (point.array() <= clip.max.array()).all()) {
+      inside.push_back({.point = point, .normal = platform_from_sensor.linear() * reading.normal});
+    }
+  }
+  return inside;
+}
+
+/// The sigma of a shift's length: how many of them the shift is from none is its Mahalanobis
+/// distance, which one direction that the shape does not tell does not hide.
+double sigma_along(const Vector2d& shift, const Eigen::Matrix2d& covariance) {
+  const double distance = std::sqrt(shift.dot(covariance.inverse() * shift));
+  return distance > 0 ? shift.norm() / distance : std::sqrt(covariance.diagonal().maxCoeff());
+}
+
+Vector3d middle_of(const Readings& readings) {
+  Vector3d sum = Vector3d::Zero();
+  for (const SurfaceReading& reading : readings) {
+    sum += reading.point;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(readings.size(), 1));
+}
+
+Equations equations(const Readings& readings, const ObjectView& again,
+                    const Isometry3d& platform_from_sensor, const Motion& motion,
+                    const Limits& limits) {
+  const Isometry3d sensor_from_platform = platform_from_sensor.inverse();
+  const Eigen::AngleAxisd rotation(motion.turn, Vector3d::UnitZ());
+  Equations all;
+  for (const SurfaceReading& reading : readings) {
+    const Vector3d point = motion(reading.point);
+    const auto surface = again.look_up(sensor_from_platform * point);
+    if (!surface) {
+      continue;
+    }
+    const Vector3d normal = platform_from_sensor.linear() * surface->normal;
+    const double distance = normal.dot(point - platform_from_sensor * surface->point);
+    if (std::abs(distance) > limits.max_distance ||
+        normal.dot(rotation * reading.normal) < min_agreement) {
+      continue;
+    }
+    const Vector3d turning =
+        Vector3d::UnitZ().cross(Vector3d(rotation * (reading.point - motion.middle)));
+    const Vector3d row(normal.x(), normal.y(), normal.dot(turning));
+    const double ratio = distance / limits.cauchy_scale;
+    const double weight = 1 / (1 + ratio * ratio);
+    all.normal_matrix += weight * row * row.transpose();
+    all.right -= weight * distance * row;
+    all.weight += weight;
+    all.squares += weight * distance * distance;
+    ++all.count;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<ObjectMove> measure_move(const Snapshot& first, const DepthFrame& again,
+                                       const Box& clip) {
+  const Isometry3d& pose = first.object_from_sensor;
+  const ObjectView::Mask mask = make_mask(pose);
+  const ObjectView before(first.frame, first.intrinsics, mask);
+  const ObjectView after(again, first.intrinsics, mask);
+  const Readings readings = readings_in(before, pose, clip);
+  if (before.pixels() < min_object_pixels || readings.empty()) {
+    return std::nullopt;
+  }
+  // Readings of one surface, in units of those that are independent of each other.
+  const double correlation =
+      std::max(1.0, correlated_pixels * static_cast<double>(readings.size()) / before.pixels());
+  const double noise = correlation * expected_noise * expected_noise;
+  const Vector3d prior(noise / (expected_shift * expected_shift),
+                       noise / (expected_shift * expected_shift),
+                       noise / (expected_turn * expected_turn));
+  Motion motion{.middle = middle_of(readings)};
+  ObjectMove move;
+  for (const Limits& limits : schedule) {
+    const Equations all = equations(readings, after, pose, motion, limits);
+    if (static_cast<double>(all.count) < min_found_again * static_cast<double>(readings.size())) {
+      return ObjectMove{.shift = max_measured_shift};
+    }
+    const Matrix3d normal_matrix = all.normal_matrix + Matrix3d(prior.asDiagonal());
+    const Vector3d state(motion.shift.x(), motion.shift.y(), motion.turn);
+    const Eigen::LDLT<Matrix3d> factors(normal_matrix);
+    const Vector3d change = factors.solve(all.right - prior.cwiseProduct(state));
+    motion.shift += change.head<2>();
+    motion.turn += change.z();
+    const double variance = std::max(all.squares / all.weight, min_noise * min_noise) * correlation;
+    const Matrix3d covariance = variance * factors.solve(Matrix3d::Identity());
+    move = {.shift = motion.shift.norm(),
+            .shift_sigma = sigma_along(motion.shift, covariance.topLeftCorner<2, 2>()),
+            .turn = motion.turn,
+            .turn_sigma = std::sqrt(covariance(2, 2))};
+  }
+  return move;
+}
+
+void add_move(std::vector<CalibrationFinding>& findings, const ObjectMove& move) {
+  constexpr std::array<std::string_view, 3> explanations{"moved", "slip", "turn-not-whole"};
+  const bool is_explained = std::ranges::any_of(findings, [&](const CalibrationFinding& finding) {
+    return std::ranges::find(explanations, finding.code) != explanations.end();
+  });
+  const bool has_shifted = move.shift > std::max(min_shift, certain_sigmas * move.shift_sigma);
+  const bool has_turned = std::abs(move.turn) > std::max(radians_from_degrees(min_turn_deg),
+                                                         certain_sigmas * move.turn_sigma);
+  if (is_explained || !(has_shifted || has_turned)) {
+    return;
+  }
+  const bool is_far = move.shift >= max_measured_shift;
+  std::string detail = "one more look at the first stop: the object ";
+  if (has_shifted) {
+    detail += std::string("moved by ") + (is_far ? "more than " : "") +
+              number_text("%.1f mm", mm_from_metres(move.shift));
+  }
+  if (has_turned) {
+    detail += std::string(has_shifted ? " and " : "") + "turned by " +
+              number_text("%.1f degrees", degrees_from_radians(std::abs(move.turn)));
+  }
+  findings.push_back({.code = "moved",
+                      .detail = std::move(detail),
+                      .hint = "Fix the object to the platform, or turn more slowly.",
+                      .stop = {},
+                      .angle = {}});
+}
+
+}  // namespace octurn

@@ -21,7 +21,7 @@ constexpr double look_error_deg = 0.5;
 
 TurnMeasurement measured(const SimulatedMechanism& mechanism,
                          const Eigen::Isometry3d& pose = nominal_platform_from_sensor(),
-                         const std::string& uri = simulation_uri({.speed = 20})) {
+                         const std::string& uri = simulation_uri({.pattern = 1, .speed = 20})) {
   Rig rig({.sensor_uri = uri, .speed = 20, .open_sensor = [&](const std::string& opened) {
              return on_mechanism(open_sensor(opened), mechanism);
            }});
@@ -48,6 +48,8 @@ TEST(MeasureTurn, SeesPlayThatIsNotTakenUp) {
 }
 
 TEST(MeasureTurn, NeedsAPoseThatIsRoughlyRight) {
+  const std::string askew = simulation_uri({.pattern = 1, .misalignment = 1, .speed = 20});
+  EXPECT_NEAR(measured({}, nominal_platform_from_sensor(), askew).turn_deg, 360, turn_error_deg);
   Eigen::Isometry3d off = nominal_platform_from_sensor();
   off.prerotate(Eigen::AngleAxisd(radians_from_degrees(1), Eigen::Vector3d::UnitX()));
   off.pretranslate(Eigen::Vector3d(0.008, -0.004, 0));

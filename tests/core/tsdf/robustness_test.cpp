@@ -22,7 +22,7 @@ namespace {
 // What a reading errs by, millimetres: the root mean square over the platform at 0.65 m of the mean
 // of ten frames, as kinect_noise_test measures it (simulated_kinect.hpp). Conditioning and the
 // average over snapshots only make it less.
-constexpr double reading_sigma_mm = 0.60;
+constexpr double reading_sigma_mm = 0.57;
 
 /// Fails unless the model is one closed part whose observed surface errs no more than single
 /// readings of normal noise do: on average sqrt(2 / pi) sigma, in 95 of 100 places 1.96 sigma.

@@ -18,6 +18,7 @@ using Eigen::Vector4d;
 
 constexpr int max_iterations = 14;
 constexpr double max_motion = 0.03;    // radians or metres in one iteration
+constexpr double near_step = 1e-4;     // metres: the end is near
 constexpr double settled_step = 5e-6;  // metres
 constexpr std::size_t min_residuals = 60;
 constexpr double lever = 0.05;  // metres above the platform, where positions are judged
@@ -31,6 +32,8 @@ constexpr std::array schedule = {
     ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
     ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
 };
+
+constexpr std::size_t last_stage = schedule.size() - 1;
 
 /// The normal equations, and what weighs them.
 struct Sums {
@@ -132,8 +135,9 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
                                        const Eigen::Isometry3d& start, double direction_sigma,
                                        int threads) {
   AxisSolution solution{.platform_from_sensor = start};
+  std::size_t stage = 0;
   for (int i = 0; i < max_iterations; ++i) {
-    const auto& limits = schedule[std::min(static_cast<std::size_t>(i), schedule.size() - 1)];
+    const ResidualLimits& limits = schedule[stage];
     const Sums sums = sums_of_turn(turn, solution.platform_from_sensor, limits, threads);
     if (sums.count < min_residuals) {
       return std::nullopt;
@@ -153,9 +157,10 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
     solution.platform_from_sensor =
         with_origin_on(plane, moved(solution.platform_from_sensor, motion));
     solution.last_step = step_of(motion);
-    if (i + 1 >= static_cast<int>(schedule.size()) && solution.last_step < settled_step) {
+    if (stage == last_stage && solution.last_step < settled_step) {
       break;
     }
+    stage = solution.last_step < near_step ? last_stage : std::min(stage + 1, last_stage);
   }
   return solution;
 }

@@ -11,11 +11,12 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t plane_stops = 6;   // tell the plane well enough to find the object
-constexpr int platform_step = 4;         // pixels between readings that the plane is fitted to
-constexpr double readings_wanted = 300;  // of the object at a stop: more cost time and tell little
-constexpr int max_step = 6;              // pixels
-constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
+constexpr std::size_t plane_stops = 6;    // tell the plane well enough to find the object
+constexpr int platform_step = 4;          // pixels between readings that the plane is fitted to
+constexpr double readings_wanted = 300;   // of the object at a stop: more cost time and tell little
+constexpr int max_step = 6;               // pixels
+constexpr double correlated_pixels = 50;  // the sensor's errors are alike in some 7 x 7 pixels
+constexpr double uses = 8;                // comparisons that share a reading and its error
 
 /// A coarse grid of pixels.
 PlatformSamples make_samples(const Intrinsics& lens, std::size_t stops) {
@@ -100,7 +101,7 @@ TurnViews TurnReader::read_views() {
   }
   const double each = pixels / static_cast<double>(std::max<std::size_t>(views.size(), 1));
   const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
-  seen.correlation = std::max(1.0, correlated_pixels / (step * step));
+  seen.correlation = uses + correlated_pixels / (step * step);
   for (const ObjectView& view : seen.views) {
     seen.readings.push_back(view.readings(step));
   }

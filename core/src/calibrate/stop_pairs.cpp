@@ -13,9 +13,10 @@ namespace octurn {
 namespace {
 
 // Small angles see much of the same surface; large ones tell the axis better.
-constexpr std::array apart_deg = {15.0, 30.0, 45.0, 75.0};
+constexpr std::array apart_deg = {15.0, 30.0, 45.0, 75.0, 90.0};
 constexpr double tolerance_deg = 7.6;  // stops of a turn are rarely just so far apart
 constexpr double max_neighbour_deg = 100;
+constexpr std::size_t few_stops = 12;  // have time, and need, for the largest angle
 
 /// From `a` to `b`, from -pi to pi.
 double turn_between(double a, double b) { return std::remainder(b - a, 2 * std::numbers::pi); }
@@ -61,7 +62,8 @@ std::vector<StopPair> pairs_at(const std::vector<double>& angles, std::span<cons
 std::vector<StopPair> make_stop_pairs(const std::vector<double>& angles) {
   std::array<double, apart_deg.size()> turns{};
   std::ranges::transform(apart_deg, turns.begin(), radians_from_degrees);
-  auto pairs = pairs_at(angles, turns, radians_from_degrees(tolerance_deg));
+  const std::size_t used = angles.size() <= few_stops ? turns.size() : turns.size() - 1;
+  auto pairs = pairs_at(angles, std::span(turns).first(used), radians_from_degrees(tolerance_deg));
   if (pairs.empty()) {
     const std::array half = {radians_from_degrees(max_neighbour_deg / 2)};
     pairs = pairs_at(angles, half, half.front());

@@ -14,8 +14,8 @@ struct TurnViews {
   std::vector<ObjectView> views = {};
   std::vector<std::vector<SurfaceReading>> readings = {};
   std::vector<StopPair> pairs = {};
-  /// Readings for each that is independent of the others: the sensor's errors are alike in
-  /// neighbouring pixels.
+  /// Residuals for each that is independent of the others: the sensor's errors are alike in
+  /// neighbouring pixels, and a reading is compared with several stops.
   double correlation = 1;
 };
 

@@ -23,15 +23,17 @@ TEST(StopOffsets, AreTheAnglesThatThePlatformStoodFurtherOn) {
 
   ASSERT_TRUE(solved);
   for (std::size_t stop = 0; stop < offsets.size(); ++stop) {
-    // 0.4 mm of noise over some hundred readings, 40 mm from the axis, is 0.05 degrees.
+    // 0.4 mm of noise over some hundred readings, 40 mm from the axis, is 0.05 degrees, and as much
+    // at the first stop: three sigma.
     EXPECT_NEAR(degrees_from_radians(solved->offsets[stop]), degrees_from_radians(offsets[stop]),
-                0.15)
+                0.21)
         << stop;
   }
 }
 
 TEST(StopOffsets, AreUnknownOfAnObjectThatLooksTheSameFromAllSides) {
-  const TurnViews views = views_of(rendered_turn(ball({0, 0, 0.06}, 0.055), 12));
+  TurnViews views = views_of(rendered_turn(ball({0, 0, 0.06}, 0.055), 12));
+  views.correlation = 10;  // as of a turn that is read with this step
   EXPECT_FALSE(solve_stop_offsets(views, true_platform_from_sensor(), 1));
 }
 

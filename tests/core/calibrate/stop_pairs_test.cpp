@@ -32,7 +32,8 @@ std::set<long> apart_deg(const std::vector<double>& angles) {
 
 TEST(StopPairs, AreThoseApartByAnglesThatTellTheAxis) {
   EXPECT_EQ(apart_deg(even_angles(24)), (std::set<long>{15, 30, 45, 75}));
-  EXPECT_EQ(apart_deg(even_angles(8)), (std::set<long>{45}));
+  EXPECT_EQ(apart_deg(even_angles(12)), (std::set<long>{30, 90}));
+  EXPECT_EQ(apart_deg(even_angles(8)), (std::set<long>{45, 90}));
 }
 
 TEST(StopPairs, AreNeighboursWhereThereAreFewStops) {

@@ -101,12 +101,18 @@ ScanSettings CalibrationStore::in_force(ScanSettings told) const {
 
 void CalibrationStore::set(const PoseRecord& record) {
   const std::lock_guard writing(writing_);
+  add(record);
+}
+
+/// `writing_` is held.
+void CalibrationStore::add(const PoseRecord& record) {
   std::vector<PoseRecord> all = records();
   all.insert(all.begin(), record);
   write(std::move(all));
 }
 
 void CalibrationStore::change(const PoseChange& change, const ScanSettings& told) {
+  const std::lock_guard writing(writing_);  // from here on: the record that is changed stays
   PoseRecord record = change.is_settings_pose ? to_record(told) : records(told).front();
   record.at = utc_text(std::chrono::system_clock::now(), rfc3339);
   if (change.platform_from_sensor || change.scale) {
@@ -119,7 +125,7 @@ void CalibrationStore::change(const PoseChange& change, const ScanSettings& told
   if (change.platform_from_sensor) {
     record.platform_from_sensor = *change.platform_from_sensor;
   }
-  set(record);
+  add(record);
 }
 
 void CalibrationStore::undo() {

@@ -49,6 +49,7 @@ class CalibrationStore {
 
  private:
   std::vector<PoseRecord> records() const;
+  void add(const PoseRecord& record);
   void write(std::vector<PoseRecord> records);
 
   std::filesystem::path data_;

@@ -1,0 +1,37 @@
+// The pose of the sensor, changed by several at once.
+
+#include <gtest/gtest.h>
+
+#include <barrier>
+#include <thread>
+
+#include "scan/calibration_store.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+TEST(CalibrationStore, KeepsBothOfTwoChangesAtOnce) {
+  constexpr int rounds = 20;  // one is lost in most rounds, where a change is read too early
+  for (int round = 0; round < rounds; ++round) {
+    const TemporaryFolder folder;
+    CalibrationStore store(folder.path());
+    Eigen::Isometry3d turned = nominal_platform_from_sensor();
+    turned.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()));
+    std::barrier begin(2);
+    std::thread scaling([&] {
+      begin.arrive_and_wait();
+      store.change({.scale = 1.01}, {});
+    });
+    begin.arrive_and_wait();
+    store.change({.platform_from_sensor = turned}, {});
+    scaling.join();
+
+    const ScanSettings now = store.in_force({});
+    EXPECT_EQ(now.depth_scale, 1.01);
+    EXPECT_EQ(now.platform_from_sensor.linear(), turned.linear());
+  }
+}
+
+}  // namespace
+}  // namespace octurn

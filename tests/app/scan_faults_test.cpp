@@ -173,13 +173,13 @@ TEST_F(PausedScan, GoesOnWithItsOwnSensorOnly) {
 TEST_F(PausedScan, CountsTheLatePulsesOfAllItsParts) {
   rig_.set_pulse_delay(2ms);
   const Job job = pause();
-  const int late = job.late_pulses;
+  const int late = job.times.late_pulses;
   EXPECT_GT(late, FaultyRig::steps / 2 - 10);  // to stop 2, of 4
   rig_.mend();
   ASSERT_TRUE(scanner_.resume(job.id));
   const Job done = ended(scanner_);
-  EXPECT_GT(done.late_pulses, late + FaultyRig::steps / 4 - 10);
-  EXPECT_EQ(store_.find(job.id)->late_pulses, done.late_pulses);
+  EXPECT_GT(done.times.late_pulses, late + FaultyRig::steps / 4 - 10);
+  EXPECT_EQ(store_.find(job.id)->times.late_pulses, done.times.late_pulses);
 }
 
 TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {

@@ -1,11 +1,13 @@
 #include "http/api.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 #include <variant>
 
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/builds.hpp"
 #include "http/handlers/calibration.hpp"
 #include "http/handlers/models.hpp"
 #include "http/handlers/scans.hpp"
@@ -21,42 +23,69 @@ namespace {
 
 constexpr std::string_view update_path = "/api/v1/update";
 
-/// Whether a path is as a route has it; `{id}` stands for any one part.
-/// @return the part, empty if the route has none; nothing if they differ
-std::optional<std::string_view> match(std::string_view route, std::string_view path) {
-  constexpr std::string_view id = "{id}";
-  const std::size_t at = route.find(id);
-  if (at == std::string_view::npos) {
-    return route == path ? std::optional<std::string_view>("") : std::nullopt;
-  }
-  const std::string_view rest = route.substr(at + id.size());
-  if (path.size() <= at || path.substr(0, at) != route.substr(0, at)) {
-    return std::nullopt;
-  }
-  const std::string_view part = path.substr(at, path.find('/', at) - at);
-  return path.substr(at + part.size()) == rest ? std::optional(part) : std::nullopt;
+/// The parts of a path for which its route has `{id}` and `{build}`; empty if it has not.
+struct PathParts {
+  std::string_view id = {};
+  std::string_view build = {};
+};
+
+/// Takes a path's first part, up to the next slash, which goes with it.
+std::string_view take_part(std::string_view& path) {
+  const std::string_view part = path.substr(0, path.find('/'));
+  path.remove_prefix(std::min(part.size() + 1, path.size()));
+  return part;
 }
 
-/// A handler takes what it needs of the request and the `{id}` of its path.
-using Handler = std::variant<Response (*)(App&), Response (*)(App&, const Request&),
-                             Response (*)(App&, std::string_view id),
-                             Response (*)(App&, const Request&, std::string_view id)>;
+/// Whether a path is as a route has it; `{id}` and `{build}` stand for any one part each.
+std::optional<PathParts> match(std::string_view route, std::string_view path) {
+  if (std::ranges::count(route, '/') != std::ranges::count(path, '/')) {
+    return std::nullopt;
+  }
+  PathParts parts;
+  while (!route.empty() || !path.empty()) {
+    const std::string_view wanted = take_part(route);
+    const std::string_view given = take_part(path);
+    if (wanted == "{id}") {
+      parts.id = given;
+    } else if (wanted == "{build}") {
+      parts.build = given;
+    } else if (wanted != given) {
+      return std::nullopt;
+    }
+  }
+  return parts;
+}
+
+/// A handler takes what it needs of the request and of the parts of its path.
+using Handler =
+    std::variant<Response (*)(App&), Response (*)(App&, const Request&),
+                 Response (*)(App&, std::string_view id),
+                 Response (*)(App&, const Request&, std::string_view id),
+                 Response (*)(App&, std::string_view id, std::string_view build),
+                 Response (*)(App&, const Request&, std::string_view id, std::string_view build)>;
 
 /// Calls any of the handlers.
 struct Call {
   App& app;
   const Request& request;
-  std::string_view id;
+  PathParts parts;
 
   Response operator()(Response (*handler)(App&)) const { return handler(app); }
   Response operator()(Response (*handler)(App&, const Request&)) const {
     return handler(app, request);
   }
   Response operator()(Response (*handler)(App&, std::string_view)) const {
-    return handler(app, id);
+    return handler(app, parts.id);
   }
   Response operator()(Response (*handler)(App&, const Request&, std::string_view)) const {
-    return handler(app, request, id);
+    return handler(app, request, parts.id);
+  }
+  Response operator()(Response (*handler)(App&, std::string_view, std::string_view)) const {
+    return handler(app, parts.id, parts.build);
+  }
+  Response operator()(Response (*handler)(App&, const Request&, std::string_view,
+                                          std::string_view)) const {
+    return handler(app, request, parts.id, parts.build);
   }
 };
 
@@ -115,8 +144,8 @@ Response Api::answer(const Request& request) {
   }
 }
 
-Response Api::dispatch(const Request& request) {
-  static const std::array routes{
+std::span<const Api::Route> Api::routes() {
+  static const std::array all{
       Route{"GET", "/Scan.stl", send_newest_model},
       Route{"GET", "/api/v1/status", send_status},
       Route{"GET", "/api/v1/settings", send_settings},
@@ -145,6 +174,13 @@ Response Api::dispatch(const Request& request) {
       Route{"POST", "/api/v1/scans/{id}/resume", resume_scan, WaitsFor::start},
       Route{"GET", "/api/v1/scans/{id}/Scan.stl", send_model},
       Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
+      Route{"GET", "/api/v1/scans/{id}/builds", list_builds},
+      Route{"POST", "/api/v1/scans/{id}/builds", start_build},
+      Route{"GET", "/api/v1/scans/{id}/builds/{build}", send_build},
+      Route{"DELETE", "/api/v1/scans/{id}/builds/{build}", remove_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{build}/cancel", cancel_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{build}/choose", choose_build},
+      Route{"GET", "/api/v1/scans/{id}/builds/{build}/Scan.stl", send_build_model},
       Route{"GET", update_path, send_update_state},
       Route{"PUT", update_path, take_update},
       Route{"GET", "/api/v1/machine", send_machine},
@@ -152,14 +188,22 @@ Response Api::dispatch(const Request& request) {
       Route{"GET", "/api/v1/wifi", send_wifi_state},
       Route{"PUT", "/api/v1/wifi", join_wifi},
   };
+  return all;
+}
+
+Response Api::dispatch(const Request& request) {
   const std::string_view method = request.is_read() ? std::string_view("GET") : request.method;
   std::string allowed;
-  for (const Route& route : routes) {
-    const auto id = match(route.path, request.path);
-    if (id && route.method == method) {
-      return call(route, request, *id);
+  for (const Route& route : routes()) {
+    const auto parts = match(route.path, request.path);
+    if (parts && route.method == method) {
+      std::optional<Place> place;
+      if (route.waits_for != WaitsFor::nothing) {
+        place.emplace(route.waits_for == WaitsFor::look ? looks_ : starts_);
+      }
+      return std::visit(Call{app_, request, *parts}, route.handler);
     }
-    if (id) {
+    if (parts) {
       allowed.append(allowed.empty() ? "" : ", ").append(route.method);
       allowed.append(route.method == "GET" ? ", HEAD" : "");
     }
@@ -172,14 +216,6 @@ Response Api::dispatch(const Request& request) {
                 "web/API.md lists what there is.");
   }
   return wrong_method(request, allowed);
-}
-
-Response Api::call(const Route& route, const Request& request, std::string_view id) {
-  std::optional<Place> place;
-  if (route.waits_for != WaitsFor::nothing) {
-    place.emplace(route.waits_for == WaitsFor::look ? looks_ : starts_);
-  }
-  return std::visit(Call{app_, request, id}, route.handler);
 }
 
 }  // namespace octurn

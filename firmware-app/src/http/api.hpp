@@ -1,7 +1,7 @@
 #pragma once
 
 #include <semaphore>
-#include <string_view>
+#include <span>
 
 #include "http/app.hpp"
 #include "http/message.hpp"
@@ -20,8 +20,8 @@ class Api {
  private:
   struct Route;
 
+  static std::span<const Route> routes();
   Response dispatch(const Request& request);
-  Response call(const Route& route, const Request& request, std::string_view id);
 
   App app_;
   // Who waits for a device holds one of the server's threads. These few never hold all of them.

@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
-#include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
-#include "scan/quality_json.hpp"
+#include "scan/model_json.hpp"
 
 namespace octurn {
 namespace {
@@ -16,29 +17,22 @@ using nlohmann::json;
 /// Thousandths, as people and the page read them.
 double rounded(double value) { return std::round(value * 1000) / 1000; }
 
-json to_json(const Model& model, const std::string& id) {
-  const ModelReport& report = model.report;
-  const bool counted = report.parts > 0;
-  json size_mm = json::array();
-  for (const double side : report.size) {
-    size_mm.push_back(rounded(mm_from_metres(side)));
-  }
-  return {{"url", "/api/v1/scans/" + id + "/Scan.stl"},
-          {"bytes", report.bytes},
-          {"triangles", report.triangles},
-          {"leaves", report.leaves},
-          {"parts", counted ? json(report.parts) : json()},
-          {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
-          {"watertight", report.watertight},
-          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
-          {"size_mm", size_mm},
-          {"seconds", rounded(model.build_time.count())},
-          {"quality", model.quality ? to_json(*model.quality) : json()}};
+std::string path_to(const std::string& id) { return "/api/v1/scans/" + id; }
+
+json with_url(const Model& model, std::string url) {
+  json object = to_json(model);
+  object["url"] = std::move(url);
+  return object;
+}
+
+json to_json(const std::optional<ScanCalibration>& calibration) {
+  return calibration ? to_json(*calibration) : json();
 }
 
 }  // namespace
 
 json to_json(const Job& job) {
+  const Model* const model = chosen_model(job);
   return {{"id", job.id},
           {"name", job.name},
           {"state", to_string(job.state)},
@@ -48,11 +42,67 @@ json to_json(const Job& job) {
           {"snapshots_total", job.settings.snapshots},
           {"seconds_elapsed", rounded(job.times.elapsed.count())},
           {"seconds_left", job.times.left ? json(rounded(job.times.left->count())) : json()},
-          {"late_pulses", job.late_pulses},
+          {"late_pulses", job.times.late_pulses},
           {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},
-          {"calibration", job.calibration ? to_json(*job.calibration) : json()},
-          {"model", job.model ? to_json(*job.model, job.id) : json()}};
+          {"calibration", to_json(job.calibration)},
+          {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
+          {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0}};
+}
+
+json to_json(const Job& job, const Build& build) {
+  const std::string number = std::to_string(build.number);
+  const bool is_chosen = find_build(job, job.builds.chosen) != nullptr
+                             ? job.builds.chosen == build.number
+                             : build.number == 0;
+  return {{"scan", job.id},
+          {"build", build.number},
+          {"state", to_string(BuildRun::State::finished)},
+          {"phase", to_string(Phase::done)},
+          {"created", build.created},
+          {"snapshots_done", job.snapshots_done},
+          {"snapshots_total", job.snapshots_done},
+          {"settings", to_json(build.settings)},
+          {"error", nullptr},
+          {"calibration", to_json(build.calibration)},
+          {"model", with_url(build.model, path_to(job.id) + "/builds/" + number + "/Scan.stl")},
+          {"chosen", is_chosen}};
+}
+
+json to_json(const BuildRun& run) {
+  return {{"scan", run.scan},
+          {"build", run.number},
+          {"state", to_string(run.state)},
+          {"phase", to_string(run.phase)},
+          {"created", run.created},
+          {"snapshots_done", run.snapshots_done},
+          {"snapshots_total", run.snapshots},
+          {"settings", to_json(run.settings)},
+          {"error", run.failure ? to_json(*run.failure) : json()},
+          {"calibration", nullptr},
+          {"model", nullptr},
+          {"chosen", false}};
+}
+
+json builds_json(const Job& job, const std::optional<BuildRun>& run) {
+  const bool is_mine = run && run->scan == job.id;
+  json builds = json::array();
+  if (job.model) {
+    builds.push_back(to_json(job, {.number = 0,
+                                   .created = job.created,
+                                   .settings = {.scan = job.settings},
+                                   .calibration = job.calibration,
+                                   .model = *job.model}));
+  }
+  for (const Build& build : job.builds.all) {
+    if (!is_mine || run->has_ended() || run->number != build.number) {  // it is as its run tells
+      builds.push_back(to_json(job, build));
+    }
+  }
+  if (is_mine && run->state != BuildRun::State::finished) {
+    builds.push_back(to_json(*run));
+  }
+  return builds;
 }
 
 }  // namespace octurn

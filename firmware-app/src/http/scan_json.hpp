@@ -1,12 +1,24 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
+#include "scan/build_run.hpp"
 #include "scan/job.hpp"
 
 namespace octurn {
 
 /// A scan as web/API.md has it, but for its preview.
 nlohmann::json to_json(const Job& job);
+
+/// A build as web/API.md has it, of the scan of that id. Number 0 is what the scan itself made.
+nlohmann::json to_json(const Job& job, const Build& build);
+
+/// The same of a build without a model.
+nlohmann::json to_json(const BuildRun& run);
+
+/// All builds of a scan, the one that it made itself first, and the one that goes on.
+/// @param run  the build that goes on, or the last one, of any scan
+nlohmann::json builds_json(const Job& job, const std::optional<BuildRun>& run);
 
 }  // namespace octurn

@@ -10,7 +10,8 @@ namespace {
 constexpr std::size_t camera_rank = 0;
 constexpr std::size_t check_rank = 1;
 constexpr std::size_t rebuild_rank = 2;
-constexpr std::size_t scan_rank = 3;  // and of what comes after
+constexpr std::size_t build_rank = 3;
+constexpr std::size_t scan_rank = 4;  // and of what comes after
 
 std::size_t to_rank(const Command& command) { return std::min(command.index(), scan_rank); }
 
@@ -34,19 +35,29 @@ void CommandSlot::put(Command command, std::stop_source stop) {
   changed_.notify_all();
 }
 
-bool CommandSlot::offer_scan(Command scan) {
+/// Puts a command of that rank there if nothing waits or runs that is as urgent.
+bool CommandSlot::offer(Command command, std::size_t rank) {
   const std::lock_guard lock(mutex_);
-  if (!rank_is_free(scan_rank)) {
+  if (!rank_is_free(rank)) {
     return false;
   }
-  put(std::move(scan), {});
+  put(std::move(command), {});
   return true;
 }
 
-bool CommandSlot::offer_rebuild(RebuildCommand rebuild, std::stop_source stop) {
+bool CommandSlot::offer_scan(Command scan) { return offer(std::move(scan), scan_rank); }
+
+bool CommandSlot::offer_build(BuildCommand build) { return offer(std::move(build), build_rank); }
+
+bool CommandSlot::offer_rebuild(RebuildCommand rebuild, std::stop_source stop,
+                                Clock::duration patience) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return !waiting_ || !rank_is_free(rebuild_rank); });
-  if (!rank_is_free(rebuild_rank)) {
+  const auto is_free = [&] { return !waiting_ && rank_is_free(rebuild_rank); };
+  if (!std::exchange(rebuild_waits_, true)) {
+    changed_.wait_for(lock, patience, [&] { return is_free() || !rank_is_free(build_rank); });
+    rebuild_waits_ = false;
+  }
+  if (!is_free()) {
     return false;
   }
   put(std::move(rebuild), std::move(stop));
@@ -79,6 +90,19 @@ void CommandSlot::stop_scan() {
   if (rank_ == scan_rank) {
     stop_.request_stop();
   }
+}
+
+bool CommandSlot::stop_build() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_ && to_rank(waiting_->command) == build_rank) {
+    waiting_.reset();
+    changed_.notify_all();
+    return true;
+  }
+  if (rank_ == build_rank) {
+    stop_.request_stop();
+  }
+  return false;
 }
 
 bool CommandSlot::has_scan() const {

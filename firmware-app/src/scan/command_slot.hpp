@@ -13,6 +13,7 @@
 #include <variant>
 
 #include "octurn/reconstruct.hpp"
+#include "scan/build_run.hpp"
 #include "scan/job.hpp"
 #include "scan/model_pipe.hpp"
 #include "scan/rig.hpp"
@@ -33,6 +34,12 @@ struct RebuildCommand {
   std::filesystem::path folder = {};
   ReconstructOptions options = {};  ///< but for the clip box, which is the scan's
   std::shared_ptr<ModelPipe> pipe = {};
+};
+
+/// Build a model from a stored scan, and keep it.
+struct BuildCommand {
+  BuildRun run = {};
+  bool becomes_model = false;
 };
 
 /// Run a scan that has just been created.
@@ -56,12 +63,12 @@ struct WallCommand {
 };
 
 /// What the worker can be asked to do, the least urgent first.
-using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, ScanCommand,
-                             ResumeCommand, CalibrateCommand, WallCommand>;
+using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand,
+                             ScanCommand, ResumeCommand, CalibrateCommand, WallCommand>;
 
 /// The one command that waits, and the one that is carried out. A scan, or a measurement of the
-/// rig, ends whatever else is carried out and takes the place of what waits; nothing else does.
-/// Any thread may call anything.
+/// rig, ends whatever else is carried out and takes the place of what waits; a build takes the
+/// place of what is less urgent and waits. Any thread may call anything.
 class CommandSlot {
  public:
   using Clock = std::chrono::steady_clock;
@@ -75,11 +82,16 @@ class CommandSlot {
   /// waits or runs, or this has ended
   bool offer_scan(Command scan);
 
-  /// The same for a model. @param stop  that ends it
-  /// @return false also if another model waits or is made
-  bool offer_rebuild(RebuildCommand rebuild, std::stop_source stop);
+  /// The same for a build. @return false also if another one waits or is carried out
+  bool offer_build(BuildCommand build);
 
-  /// Waits for a free place. @return false if a scan or a model waits or is made
+  /// The same for a model. One at a time waits for the end of the model before it.
+  /// @param stop      that ends it
+  /// @param patience  with the model before it
+  /// @return false also if a build, or another model for too long, waits or is made
+  bool offer_rebuild(RebuildCommand rebuild, std::stop_source stop, Clock::duration patience);
+
+  /// Waits for a free place. @return false if a scan, a build or a model waits or is made
   bool offer_check(DeviceCheckCommand check);
 
   /// Has the camera read until then.
@@ -87,11 +99,13 @@ class CommandSlot {
 
   /// Asks the scan that waits or runs to stop.
   void stop_scan();
+  /// The same for a build. @return whether it waits still, so that it will never begin
+  bool stop_build();
 
   /// Whether a scan waits or runs.
   bool has_scan() const;
 
-  /// Whether a scan or a model waits or is made.
+  /// Whether a scan, a build or a model waits or is made.
   bool is_occupied() const;
 
   /// Asks what is carried out to stop, and takes no more.
@@ -111,6 +125,7 @@ class CommandSlot {
 
  private:
   bool rank_is_free(std::size_t rank) const;
+  bool offer(Command command, std::size_t rank);
   void put(Command command, std::stop_source stop);
 
   mutable std::mutex mutex_;  // guards what follows
@@ -119,6 +134,7 @@ class CommandSlot {
   std::optional<std::size_t> rank_;  // of the command that is carried out
   std::stop_source stop_;            // of the same
   Clock::time_point camera_wanted_until_ = {};
+  bool rebuild_waits_ = false;  // for the model before it
   bool ended_ = false;
 };
 

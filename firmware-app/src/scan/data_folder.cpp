@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "octurn/error.hpp"
+#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -46,6 +47,20 @@ void throw_data_error(const fs::path& path, const std::string& doing, std::error
 
 std::uint64_t max_scan_bytes(const ScanSettings& settings) {
   return model_bytes + snapshot_bytes * static_cast<std::uint64_t>(settings.snapshots);
+}
+
+std::uint64_t max_model_bytes() { return model_bytes; }
+
+void expect_room(const fs::path& data, std::uint64_t available, std::uint64_t needed,
+                 const std::string& what) {
+  if (available < needed) {
+    const auto mb = [](std::uint64_t bytes) {
+      return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
+    };
+    throw Error(ErrorCode::disk_full,
+                mb(available) + " free in " + data.string() + ", " + what + " needs " + mb(needed),
+                "Delete scans that are no longer needed.");
+  }
 }
 
 fs::path existing_part(fs::path folder) {

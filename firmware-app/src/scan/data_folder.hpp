@@ -14,6 +14,14 @@ namespace octurn {
 /// What a scan with these settings takes on the disk at most.
 std::uint64_t max_scan_bytes(const ScanSettings& settings);
 
+/// What a model takes on the disk at most, but for the finest.
+std::uint64_t max_model_bytes();
+
+/// @param what  is to be written, such as "a model"
+/// @throws Error "disk-full"  if `needed` bytes of it may not fit into those that are free
+void expect_room(const std::filesystem::path& data, std::uint64_t available, std::uint64_t needed,
+                 const std::string& what);
+
 /// The folder, or the nearest one above it that exists.
 std::filesystem::path existing_part(std::filesystem::path folder);
 

@@ -65,6 +65,18 @@ Failure interruption() {
           .hint = "Resume it if neither the object nor the platform was moved since."};
 }
 
+const Build* find_build(const Job& job, int number) {
+  const auto found = std::ranges::find(job.builds.all, number, &Build::number);
+  return found == job.builds.all.end() ? nullptr : &*found;
+}
+
+const Model* chosen_model(const Job& job) {
+  if (const Build* const build = find_build(job, job.builds.chosen)) {
+    return &build->model;
+  }
+  return job.model ? &*job.model : nullptr;
+}
+
 Job to_interrupted(Job job, int snapshots) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;

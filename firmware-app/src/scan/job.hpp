@@ -11,6 +11,7 @@
 #include "octurn/mesh_report.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
+#include "scan/build_settings.hpp"
 #include "scan/scan_settings.hpp"
 
 namespace octurn {
@@ -67,10 +68,26 @@ struct ScanCalibration {
 
 ScanCalibration to_scan_calibration(const CalibrationReport& report);
 
+/// A model that was built from the stored snapshots, with other settings than the scan's.
+struct Build {
+  int number = 1;            ///< among the scan's builds, from 1
+  std::string created = {};  ///< UTC, as in ISO 8601
+  BuildSettings settings = {};
+  std::optional<ScanCalibration> calibration = {};  ///< if the pose was solved for it
+  Model model = {};
+};
+
 /// How long a scan takes.
 struct JobTimes {
   std::chrono::duration<double> elapsed = {};
   std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
+  int late_pulses = 0;  ///< of the motor, which turned more slowly for it
+};
+
+/// The builds of a scan.
+struct JobBuilds {
+  std::vector<Build> all = {};  ///< in order of their numbers
+  int chosen = 0;               ///< whose model is the scan's; 0: what the scan itself made
 };
 
 /// One scan: what was asked for, and what has become of it.
@@ -83,11 +100,17 @@ struct Job {
   int snapshots_done = 0;
   JobTimes times = {};
   ScanSettings settings = {};
-  int late_pulses = 0;                  ///< of the motor, which turned more slowly for it
   std::optional<Failure> failure = {};  ///< of a running scan: what is being tried again
   std::optional<ScanCalibration> calibration = {};  ///< from the last stop on, unless told
-  std::optional<Model> model = {};
+  std::optional<Model> model = {};                  ///< that the scan itself made
+  JobBuilds builds = {};
 };
+
+/// The build of that number; null if there is none.
+const Build* find_build(const Job& job, int number);
+
+/// The scan's model: that of the build that was chosen. Null if there is none.
+const Model* chosen_model(const Job& job);
 
 /// A scan that ended with the program, or whose end could not be written down: it can go on.
 /// @param snapshots  that are stored

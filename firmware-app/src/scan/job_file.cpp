@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "octurn/json_object.hpp"
-#include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
-#include "scan/quality_json.hpp"
+#include "scan/model_json.hpp"
 
 namespace octurn {
 namespace {
@@ -19,30 +18,9 @@ using nlohmann::json;
 using Seconds = std::chrono::duration<double>;
 
 constexpr double most = std::numeric_limits<double>::max();
-constexpr double most_whole = 1e15;  // a double holds every whole number up to there
 
 /// Thousandths, as people and the page read them.
 double rounded(double value) { return std::round(value * 1000) / 1000; }
-
-json to_json(const Model& model) {
-  const ModelReport& report = model.report;
-  return {{"parts", report.parts == 0 ? json(nullptr) : json(report.parts)},
-          {"filled_share", report.parts == 0 ? json(nullptr) : json(rounded(report.filled_share))},
-          {"bytes", report.bytes},
-          {"triangles", report.triangles},
-          {"leaves", report.leaves},
-          {"watertight", report.watertight},
-          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
-          {"size_mm",
-           {rounded(mm_from_metres(report.size.x())), rounded(mm_from_metres(report.size.y())),
-            rounded(mm_from_metres(report.size.z()))}},
-          {"seconds", rounded(model.build_time.count())},
-          {"quality", model.quality ? to_json(*model.quality) : json()}};
-}
-
-std::uint64_t count(const JsonValue& value) {
-  return static_cast<std::uint64_t>(value.number(0, most_whole));
-}
 
 /// Of what not every method counts.
 double number_or_none(JsonObject& keys, std::string_view key, double largest) {
@@ -75,30 +53,8 @@ std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& 
                                              : std::optional(to_scan_calibration(*object));
 }
 
-std::optional<Quality> quality_from(const std::optional<JsonValue>& object) {
-  return !object || object->json().is_null() ? std::nullopt : std::optional(to_quality(*object));
-}
-
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
-  if (!object || object->json().is_null()) {
-    return std::nullopt;
-  }
-  JsonObject keys(*object);
-  Model model{
-      .report = {.leaves = count(keys.at("leaves")),
-                 .triangles = count(keys.at("triangles")),
-                 .bytes = count(keys.at("bytes")),
-                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
-                 .filled_share = number_or_none(keys, "filled_share", 1),
-                 .watertight = keys.flag("watertight").value_or(false),
-                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
-      .build_time = Seconds(keys.at("seconds").number(0, most)),
-      .quality = quality_from(keys.value("quality"))};
-  const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
-  for (int axis = 0; axis < 3; ++axis) {
-    model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());
-  }
-  return model;
+  return !object || object->json().is_null() ? std::nullopt : std::optional(to_model(*object));
 }
 
 }  // namespace
@@ -112,11 +68,12 @@ json to_job_json(const Job& job) {
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
               {"seconds_elapsed", rounded(job.times.elapsed.count())},
-              {"late_pulses", job.late_pulses},
+              {"late_pulses", job.times.late_pulses},
               {"settings", to_json(job.settings)},
               {"error", nullptr},
               {"calibration", nullptr},
-              {"model", nullptr}};
+              {"model", nullptr},
+              {"build", job.builds.chosen}};
   if (job.failure) {
     object["error"] = to_json(*job.failure);
   }
@@ -138,12 +95,13 @@ Job to_job(const json& object) {
           .phase = one_of(keys.at("phase"), phase_named),
           .created = keys.at("created").text(),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
-          .times = {.elapsed = Seconds(keys.at("seconds_elapsed").number(0, most))},
+          .times = {.elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+                    .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int))},
           .settings = stored_settings_from(keys.at("settings")),
-          .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int)),
           .failure = failure_from(keys.value("error")),
           .calibration = calibration_from(keys.value("calibration")),
-          .model = model_from(keys.value("model"))};
+          .model = model_from(keys.value("model")),
+          .builds = {.chosen = static_cast<int>(number_or_none(keys, "build", most_int))}};
 }
 
 }  // namespace octurn

@@ -13,6 +13,7 @@
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "scan/checked_snapshots.hpp"
 #include "scan/depth_scale.hpp"
 #include "scan/last_look.hpp"
 #include "scan/plan.hpp"
@@ -29,10 +30,6 @@ constexpr auto wait_interval = std::chrono::milliseconds(500);
 
 // A sensor that is well sees about as much at every stop: what turns is a part of the picture.
 constexpr double min_coverage = 0.6;  // of the readings in the scan's first snapshot
-
-// What is held of each snapshot beside the reconstruction.
-constexpr std::size_t check_bytes = 100'000;
-constexpr std::size_t calibration_bytes = 350'000;
 
 /// Stores one more snapshot: first its image, then the scan.json that names it.
 void store(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
@@ -52,10 +49,8 @@ std::ptrdiff_t readings_in(const DepthFrame& frame) {
 
 ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
                                const Limits& limits) {
-  ReconstructOptions options = reconstruct_options(settings, limits);
-  const std::size_t each =
-      check_bytes + (settings.pose == PoseSource::solved ? calibration_bytes : 0);
-  options.program_memory += each * static_cast<std::size_t>(settings.snapshots);
+  ReconstructOptions options =
+      checked_options(settings, limits, static_cast<std::size_t>(settings.snapshots));
   if (!scan.shots.empty()) {
     options.clip = scan.clip;  // which lost nothing by being written in millimetres
   }
@@ -89,7 +84,7 @@ class Run {
   void begin();
   void resume();
   void require_coverage(const DepthFrame& frame);
-  SnapshotSource checked_snapshots();
+  SnapshotSource checked();
   void rebuild();
   template <typename Tell>
   void wait_for_added(Tell tell);
@@ -160,7 +155,7 @@ void Run::resume() {
                 "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
   }
-  const SnapshotSource stored = checked_snapshots();
+  const SnapshotSource stored = checked();
   first_readings_ = readings_in(stored.read(0).frame);
   add([stored, this](Reconstructor& reconstruction) { reconstruction.add(stored, stop_); });
 }
@@ -202,14 +197,8 @@ std::vector<CalibrationFinding> Run::calibrate() {
   return report.findings;
 }
 
-/// The stored snapshots; the check looks at each that is read.
-SnapshotSource Run::checked_snapshots() {
-  return {.count = scan_.shots.size(),
-          .read = [this, stored = readable_snapshots(folder_, scan_, stop_)](std::size_t shot) {
-            Snapshot snapshot = stored.read(shot);
-            check_.add(shot, snapshot);
-            return snapshot;
-          }};
+SnapshotSource Run::checked() {
+  return checked_snapshots(readable_snapshots(folder_, scan_, stop_), check_);
 }
 
 /// Adds all snapshots as they are stored.
@@ -217,7 +206,7 @@ void Run::rebuild() {
   observer_.on_progress(Phase::rebuilding, done());
   const auto read = std::make_shared<std::atomic<int>>(0);
   const SnapshotSource counted{.count = scan_.shots.size(),
-                               .read = [read, stored = checked_snapshots()](std::size_t shot) {
+                               .read = [read, stored = checked()](std::size_t shot) {
                                  ++*read;
                                  return stored.read(shot);
                                }};

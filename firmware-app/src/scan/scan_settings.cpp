@@ -96,6 +96,25 @@ std::vector<Field> capture_fields(ScanSettings& s) {
   };
 }
 
+std::vector<Field> joined(std::vector<Field> fields, const std::vector<Field>& more) {
+  fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
+}
+
+}  // namespace
+
+std::vector<Field> fields(ScanSettings& s) {
+  return joined(scan_fields(s),
+                {{.key = "platform_from_sensor",
+                  .unit = "m",
+                  .help = "pose of the sensor: four rows of four numbers",
+                  .access = pose(s.platform_from_sensor),
+                  .default_text = "0.62 m before the axis, 0.36 m up, 25 degrees down"},
+                 {.key = "depth_scale",
+                  .help = "factor of the sensor's depths, from one length measured with calipers",
+                  .access = number(s.depth_scale, min_depth_scale, max_depth_scale)}});
+}
+
 std::vector<Field> model_fields(ScanSettings& s) {
   return {
       {.key = "method",
@@ -130,25 +149,6 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .help = "box around the object in the platform frame: its smallest x, y, z and its largest",
        .access = box(s.clip)},
   };
-}
-
-std::vector<Field> joined(std::vector<Field> fields, const std::vector<Field>& more) {
-  fields.insert(fields.end(), more.begin(), more.end());
-  return fields;
-}
-
-}  // namespace
-
-std::vector<Field> fields(ScanSettings& s) {
-  return joined(scan_fields(s),
-                {{.key = "platform_from_sensor",
-                  .unit = "m",
-                  .help = "pose of the sensor: four rows of four numbers",
-                  .access = pose(s.platform_from_sensor),
-                  .default_text = "0.62 m before the axis, 0.36 m up, 25 degrees down"},
-                 {.key = "depth_scale",
-                  .help = "factor of the sensor's depths, from one length measured with calipers",
-                  .access = number(s.depth_scale, min_depth_scale, max_depth_scale)}});
 }
 
 std::vector<Field> scan_fields(ScanSettings& s) {

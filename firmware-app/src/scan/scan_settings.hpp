@@ -70,6 +70,8 @@ struct Field;
 std::vector<Field> fields(ScanSettings& settings);
 /// Those of `octurn scan`: all but where the sensor stands.
 std::vector<Field> scan_fields(ScanSettings& settings);
+/// Those of them that need no new capture.
+std::vector<Field> model_fields(ScanSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
 

@@ -11,7 +11,7 @@
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/units.hpp"
+#include "scan/build_file.hpp"
 #include "scan/job_file.hpp"
 #include "scan/scan_id.hpp"
 #include "utc.hpp"
@@ -78,6 +78,8 @@ Job load(const fs::path& folder) {
   }
   job.id = folder.filename().string();
   job.name = read_name(folder);
+  clear_unfinished(folder / builds_folder);
+  job.builds.all = read_builds(folder);
   return job;
 }
 
@@ -108,16 +110,8 @@ ScanStore::ScanStore(fs::path data)
 }
 
 Job ScanStore::create(const ScanSettings& settings) {
-  const std::uint64_t needed = max_scan_bytes(settings);
-  if (const std::uint64_t available = free_bytes(); available < needed) {
-    const auto mb = [](std::uint64_t bytes) {
-      return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
-    };
-    throw Error(ErrorCode::disk_full,
-                mb(available) + " free in " + data_.string() + ", a scan of " +
-                    std::to_string(settings.snapshots) + " snapshots needs " + mb(needed),
-                "Delete scans that are no longer needed.");
-  }
+  expect_room(data_, free_bytes(), max_scan_bytes(settings),
+              "a scan of " + std::to_string(settings.snapshots) + " snapshots");
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
   Job job{.id = to_scan_id(now), .created = utc_text(now, rfc3339), .settings = settings};
@@ -148,12 +142,17 @@ ScanTime ScanStore::next_time() const {
 void ScanStore::save(const Job& job) {
   const std::lock_guard writing(writing_);
   get(job.id);  // or there is no such scan
-  write_file(folder(job.id) / "job.json", to_text(job));
+  write_job(job);
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
   const std::string name = held.name;  // given meanwhile
   held = job;
   held.name = name;
+}
+
+/// `writing_` is held.
+void ScanStore::write_job(const Job& job) const {
+  write_file(folder(job.id) / "job.json", to_text(job));
 }
 
 Job ScanStore::interrupt(std::string_view id) {
@@ -260,7 +259,7 @@ void ScanStore::recover() {
     log::info("store", "scan " + id + " was interrupted after " +
                            std::to_string(job.snapshots_done) + " snapshots");
     try {
-      write_file(folder(id) / "job.json", to_text(job));
+      write_job(job);
     } catch (...) {
       // A full or read-only disk: the scan is interrupted all the same, and can be deleted.
       log::warning("store", current_failure().detail);

@@ -18,8 +18,9 @@
 namespace octurn {
 
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
-/// asked for and what became of it) and `name.txt` (what a person called it). And
-/// `DATA/platform.json`, which tells where the platform stands.
+/// asked for and what became of it), `name.txt` (what a person called it), and `builds/<number>/`
+/// with the models that were built from it later. And `DATA/platform.json`, which tells where the
+/// platform stands.
 ///
 /// The files are read once, at the beginning, and then held: what is listed needs no disk. Each
 /// file appears whole or not at all. Any thread may call anything at any time.
@@ -57,12 +58,38 @@ class ScanStore {
   void rename(std::string_view id, std::string_view name);
   void remove(std::string_view id);
 
+  /// Makes the folder of a build to come, which the next start clears away if it stays unfinished.
+  /// @return where its `Scan.stl` belongs
+  /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
+  std::filesystem::path begin_build(std::string_view id, int number);
+
+  /// The number that the next build of a scan has. @throws Error "no-such-scan"
+  int next_build(std::string_view id) const;
+
+  /// Keeps a build whose model is where `begin_build` has said. It appears whole or not at all.
+  /// @throws Error "no-such-scan", "disk-full", "write-failed", "data-failed"
+  void add_build(std::string_view id, const Build& build);
+
+  /// Removes what a build has begun and will not finish.
+  void drop_build(std::string_view id, int number);
+
+  /// Makes the model of a build the scan's; that of build 0 is what the scan itself made.
+  /// @throws Error "no-such-scan", "no-model"  if there is no such build, "disk-full",
+  /// "write-failed"
+  void choose_build(std::string_view id, int number);
+
+  /// @throws Error "no-such-scan", "no-model"  if there is no such build, "busy"  if it is chosen
+  void remove_build(std::string_view id, int number);
+
   /// The data folder.
   const std::filesystem::path& data() const { return data_; }
 
   /// @param id  that exists
   std::filesystem::path folder(std::string_view id) const;
-  std::filesystem::path model_file(std::string_view id) const { return folder(id) / "Scan.stl"; }
+  /// The scan's model, which is that of the build that was chosen.
+  std::filesystem::path model_file(std::string_view id) const;
+  /// The model of a build; of build 0, what the scan itself made.
+  std::filesystem::path model_file(std::string_view id, int build) const;
 
   /// Where the platform was when it was written down last, degrees; 0 if it never was.
   double platform_angle_deg() const;
@@ -73,6 +100,7 @@ class ScanStore {
  private:
   ScanTime next_time() const;
   void recover();
+  void write_job(const Job& job) const;
 
   std::filesystem::path data_;
   std::filesystem::path scans_;

@@ -16,6 +16,7 @@ constexpr auto camera_patience =
 constexpr auto camera_interest = 5s;  // frames are read for that long after someone asked
 constexpr auto failure_lasts = 2s;    // so long a failure needs no other look
 constexpr auto fresh = 200ms;         // a frame of that age shows what is there now
+constexpr auto model_patience = 5s;   // with another model that is made for a request
 constexpr auto max_silence = 30s;     // of the worker: ten times what a device may take
 
 RigOptions at_angle(RigOptions rig, double angle_deg) {
@@ -105,6 +106,9 @@ void Scanner::remove(std::string_view id) {
   if (is_running(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
+  if (is_building(id)) {
+    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  }
   store_.remove(id);
 }
 
@@ -182,7 +186,9 @@ std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
                                                    const ReconstructOptions& options) {
   const auto pipe = std::make_shared<ModelPipe>();
   const RebuildCommand rebuild{.folder = store_.folder(id), .options = options, .pipe = pipe};
-  return slot_.offer_rebuild(rebuild, pipe->stop()) ? std::make_unique<ModelStream>(pipe) : nullptr;
+  return slot_.offer_rebuild(rebuild, pipe->stop(), model_patience)
+             ? std::make_unique<ModelStream>(pipe)
+             : nullptr;
 }
 
 bool Scanner::calibrate(const ScanSettings& settings) {

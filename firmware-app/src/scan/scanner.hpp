@@ -116,10 +116,30 @@ class Scanner {
 
   std::shared_ptr<const MeshPreview> mesh_preview() const { return board_.mesh_preview().get(); }
 
+  /// Has the worker build a model from a stored scan and keep it. A scan that starts ends it.
+  /// @return nothing while a scan runs or another build goes on
+  /// @throws Error "no-such-scan", "busy"  if the scan has not ended, "no-model"  if it has no
+  /// snapshots, "disk-full"
+  std::optional<BuildRun> build(std::string_view id, const BuildOrder& order);
+
+  /// Asks a build to stop. @return false if it has ended already
+  bool cancel_build(std::string_view id, int number);
+
+  /// The build that waits or goes on, or the last one.
+  std::shared_ptr<const std::optional<BuildRun>> build_run() const {
+    return board_.build_run().get();
+  }
+
+  /// Makes the model of a build the scan's. @throws  as `ScanStore::choose_build`
+  void choose_build(std::string_view id, int number) { store_.choose_build(id, number); }
+
+  /// Removes a build. @throws  as `ScanStore::remove_build`
+  void remove_build(std::string_view id, int number) { store_.remove_build(id, number); }
+
   /// Has the worker make the model of a stored scan with other options. There is one at a time, as
-  /// memory is for one. A scan that starts ends it.
+  /// memory is for one; another one is waited for. A scan that starts ends it.
   /// @param options  but for the clip box, which is the scan's
-  /// @return nothing while a scan runs or another model is made
+  /// @return nothing while a scan or a build goes on, or another model is made for too long
   /// @throws Error  if the scan cannot be read, the model is empty or does not fit into memory
   std::unique_ptr<ModelStream> stream_model(std::string_view id, const ReconstructOptions& options);
 
@@ -137,6 +157,7 @@ class Scanner {
 
  private:
   bool is_running(std::string_view id) const;
+  bool is_building(std::string_view id) const;
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);
 

@@ -127,4 +127,20 @@ void StatusBoard::set_calibration_run(CalibrationRun run) {
   status_.update([&](Status& status) { status.is_measuring = is_running; });
 }
 
+void StatusBoard::set_build_run(BuildRun run) {
+  const bool is_building = !run.has_ended();
+  build_run_.set(std::move(run));
+  status_.update([&](Status& status) { status.is_building = is_building; });
+}
+
+void StatusBoard::drop_waiting_build(const std::optional<Failure>& reason) {
+  std::optional<BuildRun> run = *build_run_.get();
+  if (run && run->state == BuildRun::State::waiting) {
+    run->state = BuildRun::State::cancelled;
+    run->phase = Phase::done;
+    run->failure = reason;
+    set_build_run(*std::move(run));
+  }
+}
+
 }  // namespace octurn

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "octurn/depth_frame.hpp"
+#include "scan/build_run.hpp"
 #include "scan/calibration_turn.hpp"
 #include "scan/job.hpp"
 #include "scan/latest.hpp"
@@ -38,9 +39,10 @@ struct Status {
   std::optional<Clock::time_point> job_end = {};  ///< as expected
 
   bool is_measuring = false;  ///< the rig, with a turn or a wall
+  bool is_building = false;   ///< a model from a stored scan, to be kept
 
   bool is_scanning() const { return job && job->state == JobState::running; }
-  bool busy() const { return is_scanning() || is_measuring; }
+  bool busy() const { return is_scanning() || is_measuring || is_building; }
 };
 
 /// The last depth image of the sensor, or why there is none.
@@ -78,6 +80,8 @@ class StatusBoard {
   const Latest<CameraFrame>& camera_frame() const { return camera_frame_; }
   /// The measurement that goes on, or the last one; nothing if there was none.
   const Latest<std::optional<CalibrationRun>>& calibration_run() const { return calibration_run_; }
+  /// The build that waits or goes on, or the last one; nothing if there was none.
+  const Latest<std::optional<BuildRun>>& build_run() const { return build_run_; }
   const Latest<MeshPreview>& mesh_preview() const { return mesh_preview_; }
   const Latest<KnownSensor>& known_sensor() const { return known_sensor_; }
 
@@ -102,12 +106,16 @@ class StatusBoard {
   void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
   void set_sensor_closed();
   void clear_sensor_map();
+  void set_build_run(BuildRun run);
+  /// The build that waits will never begin, for this reason.
+  void drop_waiting_build(const std::optional<Failure>& reason);
   void set_mesh_preview(MeshPreview preview) { mesh_preview_.set(std::move(preview)); }
 
  private:
   Latest<Status> status_;
   Latest<CameraFrame> camera_frame_;
   Latest<std::optional<CalibrationRun>> calibration_run_;
+  Latest<std::optional<BuildRun>> build_run_;
   Latest<MeshPreview> mesh_preview_;
   Latest<KnownSensor> known_sensor_;
 };

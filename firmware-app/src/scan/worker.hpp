@@ -42,6 +42,7 @@ class Worker {
   void carry_out(CameraCommand& command, const std::stop_source& stop);
   void carry_out(DeviceCheckCommand& command, const std::stop_source& stop);
   void carry_out(RebuildCommand& command, const std::stop_source& stop);
+  void carry_out(BuildCommand& command, const std::stop_source& stop);
   void carry_out(ScanCommand& command, const std::stop_source& stop);
   void carry_out(ResumeCommand& command, const std::stop_source& stop);
   void carry_out(CalibrateCommand& command, const std::stop_source& stop);

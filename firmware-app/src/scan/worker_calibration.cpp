@@ -66,6 +66,7 @@ void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
 /// @param measurement  tells its outcome in `run`
 void Worker::carry_out(CalibrationRun run,
                        const std::function<void(CalibrationRun& run)>& measurement) {
+  ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
   const std::string name = run.kind == CalibrationRun::Kind::turn ? "turn" : "wall";
   log::info("calibration", name + " started, of=" + std::to_string(run.stops));
   try {

@@ -44,6 +44,7 @@ MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruct
 }  // namespace
 
 void Worker::run(Job job, const std::stop_token& stop) {
+  ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
   job_ = std::move(job);
   job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.times.elapsed);
   log::info("scanner", "scan " + job_.id +
@@ -60,7 +61,7 @@ void Worker::run(Job job, const std::stop_token& stop) {
     job_ = to_interrupted(job_, job_.snapshots_done);
   }
   release_rig();
-  job_.late_pulses += rig_.late_pulses() - late_before;
+  job_.times.late_pulses += rig_.late_pulses() - late_before;
   finish();
 }
 

@@ -101,7 +101,7 @@ Response send_model(App& app, const Request& request, std::string_view id) {
   if (!request.parameters.empty()) {
     return make_model(app, request, job);
   }
-  if (job.state != JobState::finished) {
+  if (chosen_model(job) == nullptr) {
     throw Error(ErrorCode::no_model,
                 "this scan is " + std::string(to_string(job.state)) + ": it has no model",
                 "Only a finished scan has one.");

@@ -9,6 +9,7 @@
 #include "http/file_response.hpp"
 #include "http/json_body.hpp"
 #include "http/preview_image.hpp"
+#include "http/scan_json.hpp"
 #include "http/scan_view.hpp"
 #include "log.hpp"
 #include "utc.hpp"
@@ -29,9 +30,13 @@ Response send_status(App& app) {
             {"disk_free_bytes", app.store.free_bytes()},
             {"appliance", app.appliance != nullptr},
             {"scan", nullptr},
+            {"build", nullptr},
             {"newest", nullptr}};
   if (running) {
     body["scan"] = to_json(app, *running);
+  }
+  if (const auto build = app.scanner.build_run(); *build) {
+    body["build"] = to_json(**build);
   }
   if (newest) {
     body["newest"] = newest->id;

@@ -1,0 +1,106 @@
+#include "http/handlers/builds.hpp"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "http/file_response.hpp"
+#include "http/handlers/appliance.hpp"
+#include "http/json_body.hpp"
+#include "http/scan_json.hpp"
+#include "http/scan_view.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+json builds_of(const App& app, std::string_view id) {
+  return builds_json(find_scan(app, id), *app.scanner.build_run());
+}
+
+/// The build of that number in a path. @throws Error "no-model"  if there is none
+json find_build(const App& app, std::string_view id, std::string_view number) {
+  for (json& build : builds_of(app, id)) {
+    if (std::to_string(build["build"].get<int>()) == number) {
+      return std::move(build);
+    }
+  }
+  throw Error(ErrorCode::no_model, "this scan has no build " + std::string(number),
+              "GET its builds lists them.");
+}
+
+int number_of(const json& build) { return build["build"].get<int>(); }
+
+/// Reads the key that is no setting, and takes it out.
+bool take_choice(json& body) {
+  if (!body.is_object() || !body.contains("choose")) {
+    return false;
+  }
+  const bool chooses = JsonValue(body["choose"], "choose", ErrorCode::bad_settings).flag();
+  body.erase("choose");
+  return chooses;
+}
+
+}  // namespace
+
+Response list_builds(App& app, std::string_view id) {
+  return json_response({{"builds", builds_of(app, id)}});
+}
+
+Response start_build(App& app, const Request& request, std::string_view id) {
+  const Job job = find_scan(app, id);
+  json body = parse_body(request);
+  const bool becomes_model = take_choice(body);
+  const BuildOrder order{.settings = build_settings_from(body, {.scan = job.settings}),
+                         .becomes_model = becomes_model};
+  expect_no_update(app);
+  const std::optional<BuildRun> run = app.scanner.build(id, order);
+  if (!run) {
+    throw Error(ErrorCode::busy, "a scan is running, or another model is being built",
+                "Wait for its end, or cancel it.");
+  }
+  Response response = json_response(to_json(*run), 202);
+  response.headers.emplace_back(
+      "Location", "/api/v1/scans/" + run->scan + "/builds/" + std::to_string(run->number));
+  return response;
+}
+
+Response send_build(App& app, std::string_view id, std::string_view build) {
+  return json_response(find_build(app, id, build));
+}
+
+Response cancel_build(App& app, std::string_view id, std::string_view build) {
+  const json found = find_build(app, id, build);
+  if (!app.scanner.cancel_build(id, number_of(found))) {
+    throw Error(ErrorCode::not_running, "this build is " + found["state"].get<std::string>(),
+                "Only a build that goes on can be cancelled.");
+  }
+  return json_response(find_build(app, id, build), 202);
+}
+
+Response choose_build(App& app, std::string_view id, std::string_view build) {
+  app.scanner.choose_build(id, number_of(find_build(app, id, build)));
+  return json_response(to_json(app, find_scan(app, id)));
+}
+
+Response remove_build(App& app, std::string_view id, std::string_view build) {
+  app.scanner.remove_build(id, number_of(find_build(app, id, build)));
+  return {.status = 204};
+}
+
+Response send_build_model(App& app, const Request& request, std::string_view id,
+                          std::string_view build) {
+  const json found = find_build(app, id, build);
+  if (found["model"].is_null()) {
+    throw Error(ErrorCode::no_model, "this build is " + found["state"].get<std::string>(),
+                "Only a finished one has a model.");
+  }
+  const Job job = find_scan(app, id);
+  const std::string name =
+      (job.name.empty() ? "Scan" : job.name) + "-" + std::string(build) + ".stl";
+  return file_response(request, app.store.model_file(id, number_of(found)), "model/stl", name);
+}
+
+}  // namespace octurn

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "scan/job.hpp"
+
+namespace octurn {
+
+/// The folder of a scan's builds: each has one of its own, named after its number, with `Scan.stl`
+/// and `build.json`.
+inline constexpr const char* builds_folder = "builds";
+
+/// Writes `folder/build.json`. @throws Error "disk-full", "write-failed"
+void write_build(const std::filesystem::path& folder, const Build& build);
+
+/// The builds of a scan, in order of their numbers. One that cannot be read is left out.
+std::vector<Build> read_builds(const std::filesystem::path& scan);
+
+/// A number above those of all folders of builds.
+int next_build_number(const std::filesystem::path& scan);
+
+}  // namespace octurn

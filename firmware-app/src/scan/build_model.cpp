@@ -1,0 +1,98 @@
+#include "scan/build_model.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "octurn/scan_folder.hpp"
+#include "scan/checked_snapshots.hpp"
+#include "scan/last_look.hpp"
+#include "scan/solve_pose.hpp"
+#include "scan/stored_scan.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The scan as the settings want it, before its pose is solved.
+Scan to_scan(const BuildInput& input) {
+  Scan scan = read_scan(input.folder);
+  scan.clip = input.settings.scan.clip;
+  if (input.settings.platform_from_sensor) {
+    scan.platform_from_sensor = *input.settings.platform_from_sensor;
+  }
+  if (input.settings.platform_from_sensor || input.settings.scan.pose == PoseSource::told) {
+    scan.solved.reset();
+  }
+  return scan;
+}
+
+/// What the scan's own calibration found, where its pose is used again.
+std::vector<CalibrationFinding> findings_of(const Job& job) {
+  return job.calibration ? job.calibration->findings : std::vector<CalibrationFinding>{};
+}
+
+/// Counts the snapshots that are read, for `progress`.
+SnapshotSource counted(SnapshotSource snapshots, const BuildProgress& progress) {
+  const auto done = std::make_shared<std::atomic<int>>(0);
+  const auto count = static_cast<int>(snapshots.count);
+  return {.count = snapshots.count,
+          .read = [done, count, progress, read = std::move(snapshots.read)](std::size_t shot) {
+            Snapshot snapshot = read(shot);
+            progress(Phase::rebuilding, std::min(++*done, count));
+            return snapshot;
+          }};
+}
+
+}  // namespace
+
+std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
+                                 const std::filesystem::path& file, const std::stop_token& stop,
+                                 const BuildProgress& progress) try {
+  const Clock::time_point begin = Clock::now();
+  const BuildSettings& settings = input.settings;
+  Build build{.settings = settings};
+  Scan scan = to_scan(input);
+  const auto all = static_cast<int>(scan.shots.size());
+  std::vector<CalibrationFinding> findings;
+  if (scan.solved) {
+    findings = findings_of(input.job);
+  } else if (settings.scan.pose == PoseSource::solved) {
+    progress(Phase::calibrating, 0);
+    const CalibrationReport report =
+        solve_pose(scan, readable_snapshots(input.folder, scan, stop), limits.threads);
+    throw_if_stopped(stop);
+    build.calibration = to_scan_calibration(report);
+    findings = report.findings;
+    if (report.accepted && !report.confirms_told()) {
+      scan.solved = to_solved_pose(report);
+    }
+  }
+
+  add_stored_move(input.folder, findings);
+
+  ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
+  options.level = settings.level;
+  ScanCheck check(options.clip, scan.shots.size());
+  const SnapshotSource stored = readable_snapshots(input.folder, scan, stop);
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  progress(Phase::rebuilding, 0);
+  reconstruction->add(counted(checked_snapshots(stored, check), progress), stop);
+  progress(Phase::building, all);
+  const auto report = write_model(*reconstruction, stored, file, stop);
+  if (!report) {
+    return std::nullopt;
+  }
+  build.model = {.report = *report,
+                 .build_time = Clock::now() - begin,
+                 .quality = judge(check.figures(limits.threads), *report, findings)};
+  return build;
+} catch (const Stopped&) {
+  return std::nullopt;
+}
+
+}  // namespace octurn

@@ -1,0 +1,77 @@
+#include "scan/model_json.hpp"
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "octurn/units.hpp"
+#include "scan/quality_json.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+using Seconds = std::chrono::duration<double>;
+
+constexpr double most = std::numeric_limits<double>::max();
+constexpr double most_whole = 1e15;  // a double holds every whole number up to there
+
+/// Thousandths, as people and the page read them.
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+std::uint64_t count(const JsonValue& value) {
+  return static_cast<std::uint64_t>(value.number(0, most_whole));
+}
+
+/// Of what not every method counts.
+double number_or_none(JsonObject& keys, std::string_view key, double largest) {
+  const auto value = keys.value(key);
+  return !value || value->json().is_null() ? 0 : value->number(0, largest);
+}
+
+std::optional<Quality> quality_from(const std::optional<JsonValue>& object) {
+  return !object || object->json().is_null() ? std::nullopt : std::optional(to_quality(*object));
+}
+
+}  // namespace
+
+json to_json(const Model& model) {
+  const ModelReport& report = model.report;
+  const bool counted = report.parts > 0;
+  json size_mm = json::array();
+  for (const double side : report.size) {
+    size_mm.push_back(rounded(mm_from_metres(side)));
+  }
+  return {{"parts", counted ? json(report.parts) : json()},
+          {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
+          {"bytes", report.bytes},
+          {"triangles", report.triangles},
+          {"leaves", report.leaves},
+          {"watertight", report.watertight},
+          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
+          {"size_mm", std::move(size_mm)},
+          {"seconds", rounded(model.build_time.count())},
+          {"quality", model.quality ? to_json(*model.quality) : json()}};
+}
+
+Model to_model(const JsonValue& object) {
+  JsonObject keys(object);
+  Model model{
+      .report = {.leaves = count(keys.at("leaves")),
+                 .triangles = count(keys.at("triangles")),
+                 .bytes = count(keys.at("bytes")),
+                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
+                 .filled_share = number_or_none(keys, "filled_share", 1),
+                 .watertight = keys.flag("watertight").value_or(false),
+                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
+      .build_time = Seconds(keys.at("seconds").number(0, most)),
+      .quality = quality_from(keys.value("quality"))};
+  const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    model.report.size[axis] = metres_from_mm(size[static_cast<std::size_t>(axis)].number());
+  }
+  return model;
+}
+
+}  // namespace octurn

@@ -1,0 +1,124 @@
+// The builds of the scans in the store.
+
+#include <algorithm>
+#include <string>
+
+#include "log.hpp"
+#include "octurn/file.hpp"
+#include "scan/build_file.hpp"
+#include "scan/scan_store.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+// As for scans: folders that begin with a dot are cleared away by the next start.
+fs::path unfinished_in(const fs::path& builds, int number) {
+  return builds / (".new-" + std::to_string(number));
+}
+
+fs::path leaving_in(const fs::path& builds, int number) {
+  return builds / (".removed-" + std::to_string(number));
+}
+
+[[noreturn]] void throw_no_such_build(int number) {
+  throw Error(ErrorCode::no_model, "this scan has no build " + std::to_string(number),
+              "GET its builds lists them.");
+}
+
+}  // namespace
+
+int ScanStore::next_build(std::string_view id) const {
+  get(id);  // or there is no such scan
+  return next_build_number(folder(id));
+}
+
+fs::path ScanStore::begin_build(std::string_view id, int number) {
+  get(id);  // or there is no such scan
+  expect_room(data_, free_bytes(), max_model_bytes(), "a model");
+  const fs::path beginning = unfinished_in(folder(id) / builds_folder, number);
+  std::error_code error;
+  fs::create_directories(beginning, error);
+  if (error) {
+    throw_data_error(beginning, "make the folder", error);
+  }
+  return beginning / "Scan.stl";
+}
+
+void ScanStore::add_build(std::string_view id, const Build& build) {
+  const std::lock_guard writing(writing_);
+  get(id);  // or there is no such scan
+  const fs::path builds = folder(id) / builds_folder;
+  const fs::path beginning = unfinished_in(builds, build.number);
+  const fs::path kept = builds / std::to_string(build.number);
+  write_build(beginning, build);
+  std::error_code error;
+  fs::rename(beginning, kept, error);
+  if (error) {
+    throw_data_error(kept, "make the folder", error);
+  }
+  sync_folder(builds);
+  sync_folder(folder(id));  // which may be new to it
+  const std::lock_guard lock(mutex_);
+  jobs_.find(id)->second.builds.all.push_back(build);
+}
+
+void ScanStore::drop_build(std::string_view id, int number) {
+  std::error_code ignored;  // the next start clears it away
+  fs::remove_all(unfinished_in(folder(id) / builds_folder, number), ignored);
+}
+
+void ScanStore::choose_build(std::string_view id, int number) {
+  const std::lock_guard writing(writing_);
+  Job job = get(id);
+  if (number == 0 ? !job.model : find_build(job, number) == nullptr) {
+    throw_no_such_build(number);
+  }
+  job.builds.chosen = number;
+  write_job(job);
+  const std::lock_guard lock(mutex_);
+  jobs_.find(id)->second.builds.chosen = number;
+}
+
+void ScanStore::remove_build(std::string_view id, int number) {
+  const fs::path builds = folder(id) / builds_folder;
+  const fs::path leaving = leaving_in(builds, number);
+  std::error_code error;
+  {
+    const std::lock_guard writing(writing_);
+    const Job job = get(id);
+    if (number == 0 || job.builds.chosen == number) {
+      throw Error(ErrorCode::busy,
+                  number == 0 ? "this model belongs to the scan" : "this is the scan's model",
+                  number == 0 ? "It goes with the scan." : "Choose another one first.");
+    }
+    if (find_build(job, number) == nullptr) {
+      throw_no_such_build(number);
+    }
+    // Renamed first: a build that is half removed is never seen.
+    fs::rename(builds / std::to_string(number), leaving, error);
+    if (error && error != std::errc::no_such_file_or_directory) {
+      throw_data_error(builds / std::to_string(number), "remove", error);
+    }
+    const std::lock_guard lock(mutex_);
+    std::erase_if(jobs_.find(id)->second.builds.all,
+                  [&](const Build& build) { return build.number == number; });
+  }
+  fs::remove_all(leaving, error);
+  if (error) {
+    log::warning("store", leaving.string() + ": cannot remove: " + error.message());
+  }
+}
+
+fs::path ScanStore::model_file(std::string_view id) const {
+  const std::optional<Job> job = find(id);
+  return model_file(id, job && find_build(*job, job->builds.chosen) ? job->builds.chosen : 0);
+}
+
+fs::path ScanStore::model_file(std::string_view id, int build) const {
+  return build == 0 ? folder(id) / "Scan.stl"
+                    : folder(id) / builds_folder / std::to_string(build) / "Scan.stl";
+}
+
+}  // namespace octurn

@@ -1,0 +1,69 @@
+// How the worker builds a model from a stored scan.
+
+#include <utility>
+
+#include "log.hpp"
+#include "scan/build_model.hpp"
+#include "scan/worker.hpp"
+
+namespace octurn {
+namespace {
+
+/// Builds the model into a folder of its own, and keeps it.
+/// @return false if stopped first
+bool build_and_keep(const BuildCommand& command, const Limits& limits, const WorkerPorts& ports,
+                    const std::stop_token& stop) {
+  const BuildRun& run = command.run;
+  const Job job = ports.store.get(run.scan);
+  const auto show = [&](Phase phase, int done) {
+    BuildRun now = run;
+    now.phase = phase;
+    now.snapshots_done = done;
+    ports.board.set_build_run(std::move(now));
+  };
+  const std::filesystem::path file = ports.store.begin_build(run.scan, run.number);
+  std::optional<Build> build =
+      build_model({.job = job, .folder = ports.store.folder(run.scan), .settings = run.settings},
+                  limits, file, stop, show);
+  if (!build) {
+    return false;
+  }
+  build->number = run.number;
+  build->created = run.created;
+  ports.store.add_build(run.scan, *build);
+  if (command.becomes_model || !chosen_model(job)) {
+    ports.store.choose_build(run.scan, run.number);
+  }
+  return true;
+}
+
+}  // namespace
+
+void Worker::carry_out(BuildCommand& command, const std::stop_source& stop) {
+  ports_.heartbeat.suspend();  // a model may take minutes
+  BuildRun& run = command.run;
+  const std::string name = "build " + std::to_string(run.number) + " of scan " + run.scan;
+  run.state = BuildRun::State::running;
+  ports_.board.set_build_run(run);
+  log::info("scanner", name + " started");
+  try {
+    run.state = build_and_keep(command, limits_, ports_, stop.get_token())
+                    ? BuildRun::State::finished
+                    : BuildRun::State::cancelled;
+  } catch (...) {
+    run.state = BuildRun::State::failed;
+    run.failure = current_failure();
+    log::error("scanner", name + ": " + run.failure->detail);
+  }
+  ports_.store.drop_build(run.scan, run.number);
+  run.phase = Phase::done;
+  const std::lock_guard lock(ports_.scans);
+  if (run.state == BuildRun::State::cancelled && ports_.slot.has_scan()) {
+    run.failure = displaced_by_scan();
+  }
+  log::info("scanner", name + " " + std::string(to_string(run.state)));
+  ports_.slot.finish();  // before anybody is told
+  ports_.board.set_build_run(run);
+}
+
+}  // namespace octurn

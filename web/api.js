@@ -11,6 +11,8 @@
  * @property {'auto' | 'told'} calibrate  whether a scan solves the sensor's pose itself
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
+ * @typedef {{code: string, detail: string, hint: string, places_mm?: number[][]}} Reason  places_mm: where, in the model's frame
+ *
  * @typedef {Object} Model
  * @property {string} url
  * @property {number} bytes
@@ -22,7 +24,9 @@
  * @property {number} seconds
  * @property {number | null} parts
  * @property {number | null} filled_share  of the surface's area, that nobody saw
- * @property {{verdict: 'good' | 'look' | 'bad', reasons: {code: string, detail: string, hint: string}[]} | null} [quality]
+ * @property {{verdict: 'good' | 'look' | 'bad', reasons: Reason[]} | null} [quality]
+ *
+ * @typedef {{accepted: boolean, confirms_told: boolean, reason: string, solved: {after_mm: number} | null, findings?: Reason[]}} ScanCalibration
  *
  * @typedef {Object} Scan
  * @property {string} id
@@ -38,8 +42,8 @@
  * @property {number} late_pulses  of the motor
  * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
  * @property {Model | null} model
- * @property {{accepted: boolean, reason: string, solved: {after_mm: number} | null,
- *   findings?: {code: string, detail: string, hint: string}[]} | null} [calibration]  by the scan itself
+ * @property {ScanCalibration | null} [calibration]  by the scan itself
+ * @property {number} [build]  whose model it is; 0 is what the scan itself made
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device
@@ -55,6 +59,7 @@
  * @property {number} disk_free_bytes
  * @property {boolean} appliance  it has updates and WiFi
  * @property {Scan | null} scan
+ * @property {import('./api_builds.js').Build | null} [build]  that goes on, or the last one
  * @property {string | null} newest
  *
  * @typedef {Object} Finding  of one check
@@ -168,6 +173,9 @@ export const sending = (method, body = {}) => ({
   body: JSON.stringify(body),
 });
 
+/** @param {string} path @param {string} method */
+export const withoutAnswer = (path, method) => request(path, {method, headers: {'Content-Type': 'application/json'}});
+
 const scan = (/** @type {string} */ id) => `scans/${encodeURIComponent(id)}`;
 
 /** @returns {Promise<Status>} */
@@ -198,7 +206,7 @@ export const resume = (id) => json(`${scan(id)}/resume`, sending('POST'));
 export const rename = (id, name) => json(scan(id), sending('PATCH', {name}));
 
 /** @param {string} id */
-export const remove = (id) => request(scan(id), {method: 'DELETE', headers: {'Content-Type': 'application/json'}});
+export const remove = (id) => withoutAnswer(scan(id), 'DELETE');
 
 /** @returns {Promise<Blob>} what the sensor sees now, as a PNG */
 export const preview = async () => (await request('preview/depth.png')).blob();

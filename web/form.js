@@ -1,7 +1,8 @@
 // The fields of the form "New scan".
 
-import {copyOf, element, part, setText} from './dom.js';
-import {explain, formOf, leafChoices, settingsOf, stepText} from './settings.js';
+import {element, part, setText} from './dom.js';
+import {offerLeaves} from './leaf_choices.js';
+import {explain, formOf, settingsOf, stepText} from './settings.js';
 
 /** @typedef {import('./api.js').Settings} Settings */
 
@@ -41,17 +42,6 @@ function fill(settings) {
   explainFields();
 }
 
-/** @param {number} preset */
-function offerLeaves(preset) {
-  element('leaves').replaceChildren(...leafChoices(preset).map(({mm, name}) => {
-    const choice = copyOf('leaf');
-    part(choice, 'input').value = mm;
-    setText(part(choice, '.choice-name'), name);
-    setText(part(choice, '.choice-mm'), `${mm} mm`);
-    return choice;
-  }));
-}
-
 /** Marks clip fields whose range is empty, so that the browser says so. */
 function checkClip() {
   const fields = clipFields();
@@ -78,7 +68,7 @@ export const chosenSettings = () => settingsOf({
  * @param {Settings} defaults
  */
 export function prepareForm(defaults) {
-  offerLeaves(defaults.leaf_size_mm);
+  offerLeaves(element('leaves'), defaults.leaf_size_mm);
   fill(defaults);
   const form = element('form');
   form.addEventListener('input', (/** @type {InputEvent} */ event) => {

@@ -1,7 +1,9 @@
 // Asks the scanner, keeps the state, and has it shown.
 
 import * as api from './api.js';
+import * as requests from './api_builds.js';
 import {seeStatus, watchAppliance} from './appliance.js';
+import {prepareBuilds} from './builds_view.js';
 import {watchCamera} from './camera.js';
 import {seeNewest, seeReport, watchSteps} from './checklist.js';
 import {prepareDoctor} from './doctor.js';
@@ -11,7 +13,7 @@ import {here, preparePlaces, showPlace, titleAt} from './places.js';
 import {nameOf, screenOf} from './screen.js';
 import {prepareStage, renderStage} from './stage.js';
 import * as states from './state.js';
-import {askDelete, askName, render} from './view.js';
+import {askDelete, askDeleteBuild, askName, render} from './view.js';
 
 let state = states.initial;
 let actions = 0;  // asked of the scanner so far: a status from before one is old news after it
@@ -94,6 +96,55 @@ async function remove(id) {
   }
 }
 
+/** @param {Object} settings  of the scan that is looked at, those that are to differ */
+const build = (settings) => act('The model is not being built', async () => {
+  const begun = await requests.build(/** @type {string} */ (state.selected), settings);
+  return (now) => states.withBuild(now, begun);
+});
+
+/** @param {number} number */
+const cancelBuild = (number) => act('The build was not cancelled', async () => {
+  await requests.cancelBuild(/** @type {string} */ (state.selected), number);
+  return (now) => now;
+});
+
+/** @param {number} number */
+const chooseBuild = (number) => act('The model was not changed', async () => {
+  const scan = await requests.chooseBuild(/** @type {string} */ (state.selected), number);
+  const builds = await requests.builds(scan.id);
+  return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
+});
+
+/** @param {number} number */
+async function removeBuild(number) {
+  const id = /** @type {string} */ (state.selected);
+  if (await askDeleteBuild()) {
+    await act('The model was not deleted', async () => {
+      await requests.removeBuild(id, number);
+      const builds = await requests.builds(id);
+      return (now) => states.withBuilds(now.shownBuild === number ? states.withShownBuild(now, null) : now, id, builds);
+    });
+  }
+}
+
+const buildActions = {
+  build,
+  cancel: cancelBuild,
+  show: (/** @type {number} */ number) => change(states.withShownBuild(state, number)),
+  choose: chooseBuild,
+  remove: removeBuild,
+};
+
+/** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
+async function missingBuilds(now) {
+  if (!states.areBuildsStale(now)) {
+    return null;
+  }
+  prepareBuilds(buildActions);
+  const scan = /** @type {string} */ (now.selected);
+  return {scan, list: await requests.builds(scan)};
+}
+
 /** One look at the scanner; what changed is shown at once, the list of scans with it. */
 async function look() {
   const before = actions;
@@ -103,6 +154,7 @@ async function look() {
     seeNewest(status);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
+    const builds = await missingBuilds(states.withStatus(state, status)).catch(() => null);  // of a scan that is gone
     if (before !== actions || state.isPending) {
       return;
     }
@@ -110,7 +162,8 @@ async function look() {
       prepareForm(defaults);
     }
     const news = states.withDefaults(states.withStatus(state, status), defaults);
-    change(scans ? states.withScans(news, scans) : news);
+    const listed = scans ? states.withScans(news, scans) : news;
+    change(builds && builds.scan === listed.selected ? states.withBuilds(listed, builds.scan, builds.list) : listed);
   } catch {
     change(states.withoutAnswer(state));
   }
@@ -153,6 +206,13 @@ function listen() {
   click('show-model', () => change(states.withStage(state, 'model')));
   click('show-camera', () => change(states.withStage(state, 'camera')));
   click('details-rename', () => rename(state.selected));
+  click('straighten', () => element('straighten').getAttribute('aria-disabled') !== 'true' && build({calibrate: 'auto', choose: true}));
+  element('reasons').addEventListener('click', (/** @type {any} */ event) => {
+    const reason = event.target.closest('.reason-places')?.closest('li').dataset.key;
+    if (reason) {
+      change(states.withReason(state, reason));
+    }
+  });
   element('rows').addEventListener('click', (/** @type {any} */ event) => {
     const id = event.target.closest('.scan').dataset.key;
     const what = event.target.closest('[data-do]')?.dataset.do;

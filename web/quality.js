@@ -4,7 +4,7 @@ import {sentence} from './format.js';
 
 /** @typedef {import('./api.js').Model} Model */
 
-/** @typedef {{code: string, detail: string, hint: string}} Reason */
+/** @typedef {import('./api.js').Reason} Reason */
 /** @typedef {{text: string, href: string}} Action  where a reason's cure is */
 
 const calibrate = {text: 'Calibrate', href: '#calibrate'};
@@ -53,7 +53,7 @@ export function verdictOf({quality, watertight}, findings = []) {
     title,
     text: quality.verdict !== 'good' ? '' :
       watertight ? 'Nothing speaks against it: ready to slice.' : 'Nothing speaks against it, but it has open edges.',
-    reasons: [...quality.reasons, ...findings.filter(({code}) => code === 'no-map')].map(({code, detail, hint}) => (
-      {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code)})),
+    reasons: [...quality.reasons, ...findings.filter(({code}) => code === 'no-map')].map(({code, detail, hint, places_mm}) => (
+      {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code), places: places_mm ?? []})),
   };
 }

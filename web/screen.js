@@ -1,5 +1,6 @@
 // What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
 
+import {asShown, buildShown, buildsOf, pictureUrl} from './builds.js';
 import * as format from './format.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
@@ -108,8 +109,9 @@ function poseFacts({calibration}) {
   if (!calibration) {
     return [];
   }
-  return [{label: 'Pose', text: calibration.accepted && calibration.solved ?
-    `Found by this scan, looks agree to ${calibration.solved.after_mm.toFixed(2)} mm` : `As it was: ${calibration.reason}`}];
+  const {accepted, confirms_told, solved, reason} = calibration;
+  return [{label: 'Pose', text: !accepted || !solved ? `As it was: ${reason}` :
+    `${confirms_told ? 'As it was, confirmed by this scan' : 'Found by this scan'}, looks agree to ${solved.after_mm.toFixed(2)} mm`}];
 }
 
 /** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
@@ -150,12 +152,21 @@ function downloadOf({id, state, model, error, settings, ...scan}) {
     {url: `/api/v1/scans/${id}/Scan.stl?leaf_size_mm=${settings.leaf_size_mm}`, about: `of ${scan.snapshots_done} ${scan.snapshots_done === 1 ? 'snapshot' : 'snapshots'}`} : null;
 }
 
-/** @param {Scan} scan */
-const detailsOf = (scan) => ({
+/**
+ * The verdict, and which of its places are shown.
+ * @param {State} state @param {Scan} scan  as it is shown
+ */
+function verdictShown(state, {model, calibration}) {
+  const verdict = model && verdictOf(model, calibration?.findings);
+  return verdict && {...verdict, reasons: verdict.reasons.map((reason) => ({...reason, isShown: reason.key === state.shownReason}))};
+}
+
+/** @param {State} state @param {Scan} scan  as it is shown */
+const detailsOf = (state, scan) => ({
   id: scan.id,
   name: nameOf(scan),
   trouble: troubleOf(scan),
-  verdict: scan.model && verdictOf(scan.model, scan.calibration?.findings),
+  verdict: verdictShown(state, scan),
   size: scan.model ? format.size(scan.model.size_mm) : '',
   facts: factsOf(scan),
   canResume: scan.state === 'paused' || scan.state === 'interrupted',
@@ -226,7 +237,9 @@ export function screenOf(state) {
   const scan = running(state);
   const chosen = scanOf(state, state.selected);
   const panel = !state.status ? 'waiting' : chosen ? 'details' : scan ? 'progress' : 'form';
-  const hasModel = panel === 'details' && Boolean(chosen?.model);
+  const shown = chosen && asShown(state, chosen);
+  const verdict = shown && verdictShown(state, shown);
+  const hasModel = panel === 'details' && Boolean(shown?.model);
   const growing = panel === 'progress' && scan ? scan.preview : null;
   const has3D = hasModel || growing !== null;
   const devices = state.status ? [deviceOf('sensor', state.status.sensor), deviceOf('turntable', state.status.turntable)] : [];
@@ -239,7 +252,8 @@ export function screenOf(state) {
     devices,
     panel,
     progress: scan && progressOf(scan),
-    details: chosen && detailsOf(chosen),
+    details: shown && detailsOf(state, shown),
+    builds: chosen && buildsOf(state, chosen),
     isScanElsewhere: panel === 'details' && scan !== null,
     problem: state.problem && {
       title: state.problem.title,
@@ -250,7 +264,9 @@ export function screenOf(state) {
     stage: {
       shows: has3D ? state.stage : 'camera',
       hasChoice: has3D,
-      model: hasModel ? chosen?.model ?? null : null,
+      model: hasModel && chosen && shown?.model ? {...shown.model, url: pictureUrl(chosen, buildShown(state, chosen))} : null,
+      object: chosen?.id ?? '',
+      places: verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,
       name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
       sensor: state.status?.sensor.name ?? '',

@@ -35,8 +35,10 @@ const explanations = {
 /** @param {Settings['filter'] | Settings['method'] | Settings['calibrate']} choice */
 export const explain = (choice) => explanations[choice];
 
-const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
-const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrecision(6));
+/** The longest edge of a threshold, millimetres. */
+export const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
+/** The threshold of a longest edge. */
+export const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrecision(6));
 
 /**
  * @typedef {Object} Form

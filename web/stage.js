@@ -16,6 +16,11 @@ const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
 let viewer;
 /** @type {string | null} url of the model that is shown, offered or being loaded */
 let current = null;
+let object = '';  // the scan whose model that is
+/** @type {number[][] | null} places that are marked; null: of a model that is not there yet */
+let marked = null;
+/** @type {Stage | null} as it should be */
+let due = null;
 let loading = new AbortController();
 
 /** @param {string} text @param {{button?: string, progress?: number}} [more] */
@@ -41,12 +46,23 @@ async function openViewer() {
   });
 }
 
-/** @param {Model} model */
-async function load(model) {
+/** Marks the places that should be, once the model is there. */
+function markPlaces() {
+  if (due && marked !== null && marked !== due.places && (marked.length > 0 || due.places.length > 0)) {
+    marked = due.places;
+    viewer?.showPlaces(marked);
+  }
+}
+
+/** @param {Model} model @param {{isFirst?: boolean}} [growth]  another model of the same object is seen from where the eye is */
+async function load(model, {isFirst = true} = {}) {
   loading.abort();
   loading = new AbortController();
   const {signal} = loading;
-  viewer?.clear();
+  marked = null;
+  if (isFirst) {
+    viewer?.clear();
+  }
   note('Loading the model', {progress: 0});
   try {
     viewer ??= await openViewer();
@@ -58,9 +74,13 @@ async function load(model) {
     const mesh = await readStl(await api.model(model.url, signal), (progress) => note('Loading the model', {progress}));
     if (!signal.aborted) {
       show(element('filled'), mesh.filled !== null);
-      viewer.show(mesh);
-      viewer.turn(!isStill);
+      viewer.show(mesh, {isFirst});
+      if (isFirst) {
+        viewer.turn(!isStill);
+      }
       note('');
+      marked = [];
+      markPlaces();
     }
   } catch (error) {
     if (!signal.aborted) {
@@ -116,19 +136,25 @@ function setGrowing({growing, shows}) {
   }
 }
 
-/** @param {Model | null} model */
-function setModel(model) {
+/** @param {Stage} stage */
+function setModel({model, object: id}) {
   if ((model?.url ?? null) === current) {
     return;
   }
+  const isFirst = current === null || id !== object || !model;
   current = model?.url ?? null;
+  object = id;
   loading.abort();
-  viewer?.clear();
+  if (isFirst) {
+    marked = null;
+    viewer?.clear();
+  }
   if (!model) {
     note('');
   } else if (loadsUnasked(model.bytes, isHandheld)) {
-    load(model);
+    load(model, {isFirst});
   } else {
+    viewer?.clear();
     note('This is a large model.', {button: `Show it (${format.bytes(model.bytes)})`});
   }
 }
@@ -139,6 +165,7 @@ let wanted = null;
 /** @param {Stage} stage */
 export function renderStage(stage) {
   wanted = stage.model;
+  due = stage;
   element('stage').dataset.reachable = stage.isReachable ? 'yes' : 'no';
   element('stage').dataset.live = stage.isLive ? 'yes' : 'no';
   element('stage').dataset.shows = stage.shows;
@@ -150,7 +177,8 @@ export function renderStage(stage) {
   setText(element('live-text'), stage.shows === 'model' ? stage.name :
       [stage.isScanning ? 'Scanning' : stage.isLive ? 'Live depth' : 'No picture', stage.sensor].filter(Boolean).join(' · '));
   setGrowing(stage);
-  setModel(stage.model);
+  setModel(stage);
+  markPlaces();
 }
 
 /** Makes the buttons on the picture work. */

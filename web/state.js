@@ -1,9 +1,12 @@
 // What the page knows, and how news change it. Pure: nothing here touches the network, the clock or the DOM.
 // screen.js tells what is shown of it.
 
+import {isGoing, markOf} from './builds.js';
+
 /** @typedef {import('./api.js').Status} Status */
 /** @typedef {import('./api.js').Scan} Scan */
 /** @typedef {import('./api.js').Settings} Settings */
+/** @typedef {import('./api_builds.js').Build} Build */
 
 /**
  * @typedef {Object} State
@@ -13,6 +16,9 @@
  * @property {string | null} listed  mark of the status that `scans` belongs to
  * @property {Settings | null} defaults
  * @property {string | null} selected  the scan that is looked at; null for the form or the running scan
+ * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan that is looked at
+ * @property {number | null} shownBuild  the one that is looked at; null for the scan's model
+ * @property {string | null} shownReason  of the verdict, whose places are shown
  * @property {'camera' | 'model'} stage  what the large picture shows when there is a choice
  * @property {boolean} isPending  something was asked of the scanner and is not yet answered
  * @property {{title: string, detail: string, hint: string} | null} problem  why the last thing asked for was not done
@@ -26,6 +32,9 @@ export const initial = {
   listed: null,
   defaults: null,
   selected: null,
+  builds: null,
+  shownBuild: null,
+  shownReason: null,
   stage: 'camera',
   isPending: false,
   problem: null,
@@ -43,7 +52,7 @@ export const running = (state) => state.status?.scan ?? null;
 export const scanOf = (state, id) => state.scans.find((scan) => scan.id === id) ?? null;
 
 /** @param {Status} status */
-const mark = (status) => `${status.scan?.id} ${status.newest}`;
+const mark = (status) => `${status.scan?.id} ${status.newest} ${markOf(status.build)}`;
 
 /** Whether scans came or ended since the list was read. @param {State} state */
 export const isListStale = (state) => state.status !== null && state.listed !== mark(state.status);
@@ -93,9 +102,39 @@ export const withDefaults = (state, defaults) => ({...state, defaults});
 export const withSelected = (state, selected) => ({
   ...state,
   selected: selected === running(state)?.id ? null : selected,
+  shownBuild: selected === state.selected ? state.shownBuild : null,
+  shownReason: null,
   stage: 'model',
   problem: null,
 });
+
+/** @param {State} state @param {Build} build  just begun from here @returns {State} */
+export const withBuild = (state, build) => ({
+  ...state,
+  status: state.status && {...state.status, build},
+  builds: state.builds?.scan === build.scan ? {...state.builds, list: [...state.builds.list.filter(({model}) => model), build]} : state.builds,
+});
+
+/** Whether builds of the scan that is looked at came or ended since they were read. @param {State} state */
+export const areBuildsStale = ({selected, builds, status}) =>
+  selected !== null && (builds?.scan !== selected || builds.mark !== markOf(status?.build));
+
+/**
+ * A build that ends while its scan is looked at comes into view.
+ * @param {State} state @param {string} scan @param {Build[]} list @returns {State}
+ */
+export function withBuilds(state, scan, list) {
+  const before = state.builds?.scan === scan ? state.builds.list : [];
+  const ended = list.find(({build, model}) => model && before.some((other) => other.build === build && !other.model));
+  const news = {...state, builds: {scan, list, mark: markOf(state.status?.build)}};
+  return ended ? withShownBuild(news, ended.build) : news;
+}
+
+/** @param {State} state @param {number | null} shownBuild @returns {State} */
+export const withShownBuild = (state, shownBuild) => ({...state, shownBuild, shownReason: null, stage: 'model'});
+
+/** Shows the places of a reason, or hides them. @param {State} state @param {string} reason @returns {State} */
+export const withReason = (state, reason) => ({...state, shownReason: state.shownReason === reason ? null : reason, stage: 'model'});
 
 /** @param {State} state @param {State['stage']} stage @returns {State} */
 export const withStage = (state, stage) => ({...state, stage});
@@ -118,7 +157,8 @@ export function pause(state) {
   if (state.failures > 0) {
     return Math.min(500 * 2 ** (state.failures - 1), 8000);
   }
-  return running(state) ? 400 : 1000;
+  const {build} = state.status ?? {};
+  return running(state) || (build && isGoing(build)) ? 400 : 1000;
 }
 
 /**

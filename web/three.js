@@ -13,6 +13,8 @@ export {
   MeshBasicMaterial,
   MeshStandardMaterial,
   PerspectiveCamera,
+  Points,
+  PointsMaterial,
   Scene,
   Sphere,
   Vector3,

@@ -1,5 +1,6 @@
 // Puts a screen (screen.js) into the DOM, except the large picture (stage.js) and the form's fields (form.js).
 
+import {renderBuilds} from './builds_view.js';
 import {tickWidth, ticks} from './dial.js';
 import {element, list, part, setText, show} from './dom.js';
 
@@ -79,7 +80,11 @@ function showVerdict(verdict) {
     part(element('verdict'), 'use').setAttribute('href', `icons/symbols.svg#${verdict.icon}`);
     setText(element('verdict-title'), verdict.title);
     setText(element('verdict-text'), verdict.text);
-    list(element('reasons'), verdict.reasons, ({key}) => key, 'reason', (item, {detail, hint, action}) => {
+    list(element('reasons'), verdict.reasons, ({key}) => key, 'reason', (item, {detail, hint, action, places, isShown}) => {
+      const toggle = part(item, '.reason-places');
+      show(toggle, places.length > 0);
+      setText(toggle, isShown ? 'Hide where' : 'Show where');
+      toggle.setAttribute('aria-pressed', String(isShown));
       setText(part(item, '.reason-detail'), detail);
       setText(part(item, '.reason-hint'), hint);
       setAction(part(item, 'a'), action);
@@ -167,6 +172,7 @@ export function render(screen) {
   if (screen.details) {
     showDetails(screen.details);
   }
+  renderBuilds(screen.panel === 'details' ? screen.builds : null);
   showPanel(screen.panel);
   showRows(screen);
   for (const id of ['start', 'cancel', 'resume', 'end']) {
@@ -201,6 +207,9 @@ export async function askName(name) {
   field.select();
   return await answer && field.value.trim() !== name ? field.value.trim() : null;
 }
+
+/** @returns {Promise<boolean>} whether a model is to be deleted */
+export const askDeleteBuild = () => ask(element('delete-build-dialog'));
 
 /** @param {string} name */
 export function askDelete(name) {

@@ -4,6 +4,7 @@ import {
   BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer,
 } from './three.js';
+import {ballOf, placesMark} from './places_mark.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
 
@@ -88,6 +89,8 @@ export class Viewer {
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
   #model = null;
+  /** @type {any} */
+  #places = null;
   #isAimed = false;  // by hand
   #isFrameDue = false;
   #drawnAt = 0;
@@ -169,6 +172,7 @@ export class Viewer {
     });
     this.#subject.clear();
     this.#model = null;
+    this.#places = null;
     this.turn(false);
   }
 
@@ -180,9 +184,28 @@ export class Viewer {
     }
   }
 
-  /** Looks at the whole model. @param {Vector3} sight  from it to the eye, of length 1 */
-  #aim(sight) {
-    const {center, radius} = this.#model.geometry.boundingSphere;
+  /** Marks places of the model, and looks at them. @param {number[][]} points_mm  none: marks nothing */
+  showPlaces(points_mm) {
+    this.#places?.geometry.dispose();
+    this.#places?.material.dispose();
+    this.#places?.removeFromParent();
+    this.#places = null;
+    if (this.#model && points_mm.length > 0) {
+      this.#places = placesMark(points_mm);
+      this.#subject.add(this.#places);
+      const {center, radius} = this.#model.geometry.boundingSphere;
+      const ball = ballOf(points_mm);
+      const outwards = ball.center.clone().sub(center);
+      const sight = outwards.length() > radius / 20 ? outwards.normalize().setZ(Math.max(outwards.z, 0.25)).normalize() : firstSight;
+      this.#isAimed = true;
+      this.turn(false);
+      this.#aim(sight, {center: ball.center, radius: Math.max(1.4 * ball.radius, radius / 2)});
+    }
+    this.#draw();
+  }
+
+  /** Looks at the whole model, or at a ball. @param {Vector3} sight  from it to the eye, of length 1 */
+  #aim(sight, {center, radius} = this.#model.geometry.boundingSphere) {
     const narrow = Math.min(1, this.#camera.aspect);
     const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
     this.#camera.position.copy(center).addScaledVector(sight, distance);

@@ -165,5 +165,7 @@ test('a scan says what became of the pose', () => {
   const pose = (calibration) => screenOf(looking({...finished, calibration})).details.facts.find(({label}) => label === 'Pose')?.text;
   assert.equal(pose(null), undefined);
   assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Found by this scan, looks agree to 0.52 mm');
+  assert.equal(pose({accepted: true, confirms_told: true, reason: '', solved: {after_mm: 0.517}}),
+      'As it was, confirmed by this scan, looks agree to 0.52 mm');
   assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'As it was: two stops are too few');
 });

@@ -1,0 +1,115 @@
+// What the page shows of the models that were built from a scan. Pure: state in, texts and choices out.
+
+import * as format from './format.js';
+import {badgeOf} from './quality.js';
+
+/** @typedef {import('./api_builds.js').Build} Build */
+/** @typedef {import('./api.js').Scan} Scan */
+/** @typedef {import('./state.js').State} State */
+
+const methods = {solid: 'solid', intersection: 'by intersection'};
+
+/** Faults of a model that a solved pose may cure. */
+const faultsOfPose = new Set(['stops-disagree', 'floats', 'sunk']);
+
+/** @param {Build} build */
+export const isGoing = ({state}) => state === 'waiting' || state === 'running';
+
+/** Tells one state of a build from another. @param {Build | null | undefined} build */
+export const markOf = (build) => build ? `${build.scan} ${build.build} ${build.state}` : '';
+
+/** The builds of a scan that have a model, as far as they are known. @param {State} state @param {string} id */
+const modelsOf = ({builds}, id) => builds?.scan === id ? builds.list.filter(({model}) => model !== null) : [];
+
+/** The build that is looked at. @param {State} state @param {Scan} scan @returns {Build | null} */
+export function buildShown(state, scan) {
+  const models = modelsOf(state, scan.id);
+  return models.find(({build}) => build === state.shownBuild) ?? models.find(({chosen}) => chosen) ?? null;
+}
+
+/**
+ * A scan with the model that is looked at, and with what that was made with.
+ * @param {State} state @param {Scan} scan @returns {Scan}
+ */
+export function asShown(state, scan) {
+  const build = buildShown(state, scan);
+  if (!build?.model) {
+    return scan;
+  }
+  const settings = /** @type {import('./api.js').Settings} */ ({...scan.settings, ...build.settings});
+  const isSolvedAlready = settings.calibrate === 'auto' && !build.calibration;
+  const url = build.chosen ? /** @type {import('./api.js').Model} */ (scan.model ?? build.model).url : build.model.url;
+  return {...scan, settings, model: {...build.model, url}, calibration: isSolvedAlready ? scan.calibration : build.calibration};
+}
+
+/** Where the picture gets a scan's model from: another address for each build. @param {Scan} scan @param {Build | null} build */
+export const pictureUrl = (scan, build) => `/api/v1/scans/${scan.id}/builds/${build?.build ?? scan.build ?? 0}/Scan.stl`;
+
+/** Whether a solved pose may cure what a model has that was made without one. @param {Scan} scan  as it is shown */
+export const isCrooked = ({model, settings, calibration}) => (settings.calibrate === 'told' || !calibration) &&
+    Boolean(model?.quality?.reasons.some(({code}) => faultsOfPose.has(code)));
+
+/** @param {Build} build */
+const nameOf = ({build}) => build === 0 ? 'As scanned' : `Build ${build}`;
+
+/** @param {Build} build */
+function phaseText({state, phase, snapshots_done, snapshots_total}) {
+  if (state === 'waiting') {
+    return 'Waiting for its turn';
+  }
+  switch (phase) {
+    case 'calibrating': return 'Finding out where the sensor stood';
+    case 'rebuilding': return `Reading snapshot ${Math.max(snapshots_done, 1)} of ${snapshots_total}`;
+    case 'building': return 'Building the model';
+    default: return 'Getting ready';
+  }
+}
+
+/** Reading takes the longer part. @param {Build} build @returns {number | null} 0 to 1; null: nobody knows */
+const shareOf = ({phase, snapshots_done, snapshots_total}) => phase === 'rebuilding' && snapshots_total > 0 ?
+    snapshots_done / snapshots_total : null;
+
+/** @param {Build} build */
+function troubleOf({state, error}) {
+  const title = state === 'failed' ? 'The model was not built' : 'The build was ended';
+  return error && (state === 'failed' || state === 'cancelled') ?
+    {title, text: [error.detail, error.hint].map(format.sentence).join(' ')} : null;
+}
+
+/** @param {Build} build @param {number | undefined} shown */
+const rowOf = ({build, model, settings, calibration, created, chosen}, shown) => ({
+  number: build,
+  name: nameOf(/** @type {Build} */ ({build})),
+  badge: model && badgeOf(model),
+  when: format.when(created),
+  about: [
+    `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`,
+    settings.calibrate === 'told' ? 'pose as told' : calibration && !calibration.accepted ? 'pose not found' : 'pose checked',
+    model ? format.bytes(model.bytes) : '',
+  ].filter(Boolean).join(' · '),
+  isShown: build === shown,
+  isChosen: chosen,
+  canRemove: !chosen && build !== 0,
+  download: model?.url ?? '',
+});
+
+/**
+ * @param {State} state @param {Scan} scan  that is looked at
+ */
+export function buildsOf(state, scan) {
+  const last = state.status?.build;
+  const mine = last && last.scan === scan.id ? last : null;
+  const shown = buildShown(state, scan)?.build;
+  const models = modelsOf(state, scan.id);
+  const hasEnded = scan.state === 'finished' || scan.state === 'cancelled' || scan.state === 'failed';
+  return {
+    scan: scan.id,
+    canBuild: hasEnded && scan.snapshots_done > 0,
+    isBusy: Boolean(last && isGoing(last)) || Boolean(state.status?.scan),
+    canStraighten: isCrooked(asShown(state, scan)),
+    rows: models.length > 1 || (models.length === 1 && !scan.model) ? models.map((build) => rowOf(build, shown)) : [],
+    going: mine && isGoing(mine) ? {number: mine.build, text: phaseText(mine), share: shareOf(mine)} : null,
+    trouble: mine && troubleOf(mine),
+    settings: asShown(state, scan).settings,
+  };
+}

@@ -1,0 +1,16 @@
+// The choice of a leaf size, by name.
+
+import {copyOf, part, setText} from './dom.js';
+import {leafChoices} from './settings.js';
+
+/** Offers the named leaf sizes. @param {Element} parent @param {number} preset  millimetres; it is chosen */
+export function offerLeaves(parent, preset) {
+  parent.replaceChildren(...leafChoices(preset).map(({mm, name}) => {
+    const choice = copyOf('leaf');
+    part(choice, 'input').value = mm;
+    part(choice, 'input').checked = mm === preset;
+    setText(part(choice, '.choice-name'), name);
+    setText(part(choice, '.choice-mm'), `${mm} mm`);
+    return choice;
+  }));
+}

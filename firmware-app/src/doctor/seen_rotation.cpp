@@ -23,33 +23,43 @@ constexpr double coarse_step_deg = 1;
 constexpr double min_step_deg = 0.02;
 constexpr double beside_deg = 4;
 
+/// The mean of the readings around a pixel that are of the same surface as its own.
+/// @param same_surface  in the frame's units: what differs by more is another surface
+/// @return 0 if it has no reading
+int mean_around(const DepthFrame& frame, int u, int v, int same_surface) {
+  const auto at = [&](int column, int row) {
+    return static_cast<int>(
+        frame.depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
+                    static_cast<std::size_t>(column)]);
+  };
+  const int centre = at(u, v);
+  if (centre == 0) {
+    return 0;
+  }
+  const int right = std::min(u + smooth_radius, frame.width - 1);
+  const int bottom = std::min(v + smooth_radius, frame.height - 1);
+  int sum = 0;
+  int count = 0;  // the pixel's own reading is among them
+  for (int row = std::max(v - smooth_radius, 0); row <= bottom; ++row) {
+    for (int column = std::max(u - smooth_radius, 0); column <= right; ++column) {
+      const int other = at(column, row);
+      const bool is_near = other > 0 && std::abs(other - centre) <= same_surface;
+      sum += is_near ? other - centre : 0;
+      count += is_near ? 1 : 0;
+    }
+  }
+  return centre + sum / count;
+}
+
 /// A frame without the steps of depth in which a sensor counts: they stand still, and would hold
 /// the object. Each reading becomes the mean of those around it on the same surface.
 DepthFrame smoothed(const DepthFrame& frame, double depth_unit) {
   const auto same_surface = static_cast<int>(max_step / depth_unit);
-  const auto at = [&](int u, int v) {
-    return static_cast<int>(
-        frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
-                    static_cast<std::size_t>(u)]);
-  };
   DepthFrame smooth{.width = frame.width, .height = frame.height};
   smooth.depth.reserve(frame.depth.size());
   for (int v = 0; v < frame.height; ++v) {
     for (int u = 0; u < frame.width; ++u) {
-      const int centre = at(u, v);
-      int sum = 0;
-      int count = 0;
-      for (int y = std::max(v - smooth_radius, 0);
-           centre > 0 && y <= std::min(v + smooth_radius, frame.height - 1); ++y) {
-        for (int x = std::max(u - smooth_radius, 0);
-             x <= std::min(u + smooth_radius, frame.width - 1); ++x) {
-          const int other = at(x, y);
-          const bool is_near = other > 0 && std::abs(other - centre) <= same_surface;
-          sum += is_near ? other - centre : 0;
-          count += is_near ? 1 : 0;
-        }
-      }
-      smooth.depth.push_back(static_cast<std::uint16_t>(count > 0 ? centre + sum / count : 0));
+      smooth.depth.push_back(static_cast<std::uint16_t>(mean_around(frame, u, v, same_surface)));
     }
   }
   return smooth;

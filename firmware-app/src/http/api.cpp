@@ -92,22 +92,26 @@ struct Call {
 /// What a handler may wait for, for seconds.
 enum class WaitsFor { nothing, look, start };
 
-/// Holds one of the places that a semaphore counts.
+/// Holds one of the places that a semaphore counts; none where there is no semaphore.
 class Place {
  public:
   /// @throws Error "too-many"  if all are taken
-  explicit Place(std::counting_semaphore<>& places) : places_(places) {
-    if (!places_.try_acquire()) {
+  explicit Place(std::counting_semaphore<>* places) : places_(places) {
+    if (places_ != nullptr && !places_->try_acquire()) {
       throw Error(ErrorCode::too_many, "others are waiting for the devices already",
                   "Try again soon.");
     }
   }
-  ~Place() { places_.release(); }
+  ~Place() {
+    if (places_ != nullptr) {
+      places_->release();
+    }
+  }
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
 
  private:
-  std::counting_semaphore<>& places_;
+  std::counting_semaphore<>* places_;
 };
 
 Response wrong_method(const Request& request, const std::string& allowed) {
@@ -191,16 +195,26 @@ std::span<const Api::Route> Api::routes() {
   return all;
 }
 
+/// What counts those who wait as this route may; null: it waits for nothing.
+std::counting_semaphore<>* Api::places_for(const Route& route) {
+  switch (route.waits_for) {
+    case WaitsFor::look:
+      return &looks_;
+    case WaitsFor::start:
+      return &starts_;
+    case WaitsFor::nothing:
+      break;
+  }
+  return nullptr;
+}
+
 Response Api::dispatch(const Request& request) {
   const std::string_view method = request.is_read() ? std::string_view("GET") : request.method;
   std::string allowed;
   for (const Route& route : routes()) {
     const auto parts = match(route.path, request.path);
     if (parts && route.method == method) {
-      std::optional<Place> place;
-      if (route.waits_for != WaitsFor::nothing) {
-        place.emplace(route.waits_for == WaitsFor::look ? looks_ : starts_);
-      }
+      const Place place(places_for(route));
       return std::visit(Call{app_, request, *parts}, route.handler);
     }
     if (parts) {

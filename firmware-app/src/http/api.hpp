@@ -21,6 +21,7 @@ class Api {
   struct Route;
 
   static std::span<const Route> routes();
+  std::counting_semaphore<>* places_for(const Route& route);
   Response dispatch(const Request& request);
 
   App app_;

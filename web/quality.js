@@ -20,7 +20,6 @@ const actions = {
   'no-map': flatten,
   'cut-by-box': space,
   'empty': again,
-  'model-empty': again,
   'moved': again,
   'little-seen': again,
   'parts-dropped': again,

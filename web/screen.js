@@ -148,7 +148,7 @@ function downloadOf({id, state, model, error, settings, ...scan}) {
     return {url: model.url, about: format.bytes(model.bytes)};
   }
   const hasEnded = state === 'cancelled' || state === 'failed';
-  return hasEnded && scan.snapshots_done > 0 && error?.code !== 'model-empty' ?
+  return hasEnded && scan.snapshots_done > 0 && error?.code !== 'empty' ?
     {url: `/api/v1/scans/${id}/Scan.stl?leaf_size_mm=${settings.leaf_size_mm}`, about: `of ${scan.snapshots_done} ${scan.snapshots_done === 1 ? 'snapshot' : 'snapshots'}`} : null;
 }
 

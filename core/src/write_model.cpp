@@ -11,7 +11,8 @@ namespace octurn {
 void expect_facets(const SurfaceCount& count) {
   if (count.facets == 0) {
     throw Error(ErrorCode::model_empty, "no surface in the clip box: there is nothing to write",
-                "Check that the object stands on the platform, and the clip box and calibration.");
+                "Stand the object on the platform's middle, and check the scanned space and the "
+                "calibration.");
   }
 }
 

@@ -179,8 +179,7 @@ TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
   Rig rig(rig_of());
   ScanSettings settings = few_snapshots();
   settings.clip = {.min = {0.1, 0.1, 0.35}, .max = {0.12, 0.12, 0.39}};
-  EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }),
-            "model-empty");
+  EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }), "empty");
 }
 
 /// Files of this process take no more than so many bytes, which a full disk looks like.

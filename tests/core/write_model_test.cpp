@@ -66,7 +66,7 @@ TEST(WriteModel, RefusesAnEmptyModelAndWritesNoFile) {
 
   EXPECT_EQ(code_thrown_by(
                 [&] { write_model(*reconstructor, snapshots, folder.path() / "Scan.stl", {}); }),
-            "model-empty");
+            "empty");
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -115,7 +115,7 @@ test('a scan that ended without a model still gives that of its snapshots, if it
   const download = (changes) => screenOf(looking({...running, id: 'end', state: 'cancelled', ...changes})).details.download;
   assert.equal(download({}).about, 'of 9 snapshots');
   assert.equal(download({snapshots_done: 0}), null);
-  assert.equal(download({state: 'failed', error: {code: 'model-empty', detail: '', hint: ''}}), null);
+  assert.equal(download({state: 'failed', error: {code: 'empty', detail: '', hint: ''}}), null);
 });
 
 test('while a device is tried again the progress says which, and at what stop', () => {
@@ -148,7 +148,7 @@ test('a model that was never judged is finished, and no more', () => {
 });
 
 test('a scan without a model leads to what cures it, too', () => {
-  const error = {code: 'model-empty', detail: 'nothing was seen', hint: ''};
+  const error = {code: 'empty', detail: 'nothing was seen', hint: ''};
   assert.equal(screenOf(looking({...running, state: 'failed', error})).details.trouble.action.href, '#');
 });
 

@@ -102,14 +102,14 @@ struct ModelReport {
 /// The figures of a surface that was counted and checked while it was made.
 ModelReport report_of(const SurfaceCount& count, const MeshCheck& check);
 
-/// @throws Error "model-empty"  if there is no facet
+/// @throws Error "empty"  if there is no facet
 void expect_facets(const SurfaceCount& count);
 
 /// Streams the surface to `sink`.
 ///
 /// @param snapshots  those that were added
 /// @return nothing if stopped before the end, by `stop` or by a `Stopped` of the source or sink
-/// @throws Error "model-empty"  if there is no surface
+/// @throws Error "empty"  if there is no surface
 /// @throws  as `Reconstructor::surface`
 std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
                                         const SnapshotSource& snapshots, const FacetSink& sink,

@@ -11,7 +11,7 @@ struct Word {
   std::string_view text;
 };
 
-constexpr std::array<Word, 66> words{{
+constexpr std::array<Word, 67> words{{
     {ErrorCode::bad_config, "bad-config"},
     {ErrorCode::bad_json, "bad-json"},
     {ErrorCode::bad_name, "bad-name"},
@@ -38,7 +38,8 @@ constexpr std::array<Word, 66> words{{
     {ErrorCode::busy, "busy"},
     {ErrorCode::interrupted, "interrupted"},
     {ErrorCode::memory_limit, "memory-limit"},
-    {ErrorCode::model_empty, "model-empty"},
+    {ErrorCode::model_empty, "empty"},        // as the verdict on a model has it
+    {ErrorCode::model_empty, "model-empty"},  // in job.json of version 0.1
     {ErrorCode::model_too_large, "model-too-large"},
     {ErrorCode::no_model, "no-model"},
     {ErrorCode::no_preview, "no-preview"},

@@ -18,6 +18,10 @@ TEST(ErrorCode, HasAWordOfItsOwnThatLeadsBackToIt) {
   }
 }
 
+TEST(ErrorCode, IsReadByTheWordOfVersion01) {
+  EXPECT_EQ(to_error_code("model-empty"), ErrorCode::model_empty);
+}
+
 TEST(ErrorCode, IsNoneForAWordOfANewerVersion) {
   EXPECT_EQ(to_error_code("moon-full"), std::nullopt);
 }

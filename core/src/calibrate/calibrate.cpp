@@ -10,6 +10,7 @@
 #include "calibrate/number_text.hpp"
 #include "calibrate/platform_map.hpp"
 #include "calibrate/platform_plane.hpp"
+#include "calibrate/platform_wobble.hpp"
 #include "calibrate/read_turn.hpp"
 #include "calibrate/stop_offsets.hpp"
 #include "calibrate/stop_residuals.hpp"
@@ -42,6 +43,7 @@ constexpr double max_unevenness = 0.15;
 constexpr double loose_direction_deg = 0.2;
 constexpr double tight_direction_deg = 0.02;
 constexpr double wobble_sigmas = 5;
+constexpr double min_wobble_deg = 0.3;
 
 constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
@@ -66,24 +68,27 @@ double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
   return std::atan2(std::hypot(normal.x(), normal.y()), normal.z());
 }
 
-/// Radians between the axis and the plane's normal, if more than the object's own sigma explains;
-/// else 0.
+/// Whether the axis is further from the plane's normal than the object's own sigma explains.
 /// @param solution  with the plane as a loose prior
-double find_wobble(const AxisSolution& solution, const PlatformPlane& plane) {
+bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
   const double prior = radians_from_degrees(loose_direction_deg);
   const double sigma = solution.direction_sigma();
   // Of the object alone: without what the prior adds.
   const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
-  const double off = direction_off(solution, plane);
-  return off > wobble_sigmas / std::sqrt(information) ? off : 0;
+  return direction_off(solution, plane) > wobble_sigmas / std::sqrt(information);
 }
 
-CalibrationFinding to_finding(double wobble) {
-  return {.code = "wobble",
-          .detail = "the platform stands " + deg_text(wobble) + " from square to its axis",
-          .hint = "Look whether the platform sits straight on the motor.",
-          .stop = {},
-          .angle = {}};
+/// Adds that the platform tilts as it turns, if it does.
+void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& wobble) {
+  if (wobble && wobble->angle >
+                    std::max(radians_from_degrees(min_wobble_deg), wobble_sigmas * wobble->sigma)) {
+    report.findings.push_back(
+        {.code = "wobble",
+         .detail = "the platform's surface tilts by " + deg_text(wobble->angle) + " as it turns",
+         .hint = "Look whether the platform sits straight on the motor.",
+         .stop = {},
+         .angle = {}});
+  }
 }
 
 /// Adds that flattening the sensor would help, if the platform looks uneven.
@@ -118,8 +123,7 @@ std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& vi
     report.findings = {*std::move(move)};  // which looks like a slip
   }
   // A slip or a move tilts the axis, too.
-  if (const double wobble = find_wobble(*loose, plane); wobble > 0 && report.findings.empty()) {
-    report.findings.push_back(to_finding(wobble));
+  if (report.findings.empty() && contradicts(*loose, plane)) {
     return loose;
   }
   return solve_axis(views, plane, loose->platform_from_sensor,
@@ -209,6 +213,7 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     return refused(std::move(report), reason);
   }
   const auto solution = solve(report, views, plane, levelled, threads);
+  add_wobble(report, measure_wobble(reader.samples(), plane, turn.angles, levelled));
   if (!turn.has_sensor_map) {
     add_no_map(report, measure_platform_map(reader.samples(), plane));
   }

@@ -115,10 +115,9 @@ TEST(Calibrate, SeesInOneMoreLookAtTheFirstAngleThatTheObjectMovedAtTheEnd) {
       << report.findings[0].detail;
 }
 
-/// A turn by a sensor that errs by a smooth pattern of 0.8 units of disparity (root mean square),
+/// The same by a sensor that errs by a smooth pattern of 0.8 units of disparity (root mean square),
 /// whose waves are some 130 pixels long.
-CalibrationTurn turn_with_pattern(std::size_t stops) {
-  CalibrationTurn turn = rendered_turn(figure(), stops);
+CalibrationTurn with_pattern(CalibrationTurn turn) {
   turn.read = [read = turn.read](std::size_t stop) {
     DepthFrame frame = read(stop);
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {
@@ -137,7 +136,7 @@ CalibrationTurn turn_with_pattern(std::size_t stops) {
 }
 
 TEST(Calibrate, AdvisesToFlattenASensorWhosePatternShowsOnThePlatform) {
-  CalibrationTurn turn = turn_with_pattern(8);
+  CalibrationTurn turn = with_pattern(rendered_turn(figure(), 8));
   const auto has_no_map = [](const CalibrationReport& report) {
     return std::ranges::find(report.findings, "no-map", &CalibrationFinding::code) !=
            report.findings.end();
@@ -145,6 +144,29 @@ TEST(Calibrate, AdvisesToFlattenASensorWhosePatternShowsOnThePlatform) {
   EXPECT_TRUE(has_no_map(calibrate(turn)));
   turn.has_sensor_map = true;
   EXPECT_FALSE(has_no_map(calibrate(turn)));
+}
+
+TEST(Calibrate, TellsThatThePlatformIsNotSquareToItsShaft) {
+  const Eigen::Vector3d normal =
+      Eigen::AngleAxisd(radians_from_degrees(0.6), Eigen::Vector3d(1, 2, 0).normalized()) *
+      Eigen::Vector3d::UnitZ();
+  for (const CalibrationTurn& turn : {rendered_turn(figure(), 12, {}, normal),
+                                      with_pattern(rendered_turn(figure(), 12, {}, normal))}) {
+    const CalibrationReport report = calibrate(turn);
+    const auto wobble = std::ranges::find(report.findings, "wobble", &CalibrationFinding::code);
+    ASSERT_NE(wobble, report.findings.end());
+    constexpr std::string_view before = "the platform's surface tilts by ";
+    ASSERT_TRUE(wobble->detail.starts_with(before)) << wobble->detail;
+    // Depths are rounded to 0.1 mm: over the platform's 30 cm by no more than 0.02 degrees.
+    EXPECT_NEAR(std::stod(wobble->detail.substr(before.size())), 0.6, 0.05);
+  }
+}
+
+TEST(Calibrate, TakesNoPatternForAWobble) {
+  for (const std::size_t stops : {8U, 24U}) {
+    const CalibrationReport report = calibrate(with_pattern(rendered_turn(figure(), stops)));
+    EXPECT_EQ(std::ranges::count(report.findings, "wobble", &CalibrationFinding::code), 0);
+  }
 }
 
 TEST(Calibrate, ReadsEachDepthImageOnce) {

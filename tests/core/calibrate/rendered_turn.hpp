@@ -48,18 +48,21 @@ inline Shape figure() {
 
 /// Depth of an object turned by `angle` on a disc of 30 cm, with noise that is uniform in
 /// disparity, as a Kinect's is, of 0.3 of its steps.
-inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random) {
+/// @param disc_normal  in the frame that turns
+inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random,
+                                 const Eigen::Vector3d& disc_normal = Eigen::Vector3d::UnitZ()) {
   constexpr double steps_per_inverse_metre = 345.489;  // of a Kinect v1's disparity
   constexpr double noise = 0.5;  // steps, half the uniform distribution's width
   const Intrinsics lens;
   const Eigen::Isometry3d pose = true_platform_from_sensor();
   const Eigen::AngleAxisd back(-angle, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d normal = back.inverse() * disc_normal;
   DepthFrame frame{.width = lens.width, .height = lens.height, .depth = {}};
   for (int v = 0; v < lens.height; ++v) {
     for (int u = 0; u < lens.width; ++u) {
       const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
       const Eigen::Vector3d direction = pose.linear() * ray;
-      const double to_disc = -pose.translation().z() / direction.z();
+      const double to_disc = -normal.dot(pose.translation()) / normal.dot(direction);
       const bool on_disc =
           to_disc > 0 && (pose.translation() + to_disc * direction).head<2>().norm() < 0.15;
       const double end = on_disc ? to_disc : 1.0;
@@ -80,8 +83,10 @@ inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937
 
 /// A turn of so many stops, told the truth but for `offsets`: radians that the platform stood
 /// further on than told, 0 at the stops that it does not have.
-inline CalibrationTurn rendered_turn(const Shape& object, std::size_t stops,
-                                     const std::vector<double>& offsets = {}) {
+/// @param disc_normal  in the frame that turns
+inline CalibrationTurn rendered_turn(
+    const Shape& object, std::size_t stops, const std::vector<double>& offsets = {},
+    const Eigen::Vector3d& disc_normal = Eigen::Vector3d::UnitZ()) {
   CalibrationTurn turn{.intrinsics = {}, .platform_from_sensor = true_platform_from_sensor()};
   std::mt19937 random(1);
   std::vector<DepthFrame> frames;
@@ -89,7 +94,7 @@ inline CalibrationTurn rendered_turn(const Shape& object, std::size_t stops,
     turn.angles.push_back(2 * std::numbers::pi * static_cast<double>(stop) /
                           static_cast<double>(stops));
     const double offset = stop < offsets.size() ? offsets[stop] : 0;
-    frames.push_back(rendered_frame(object, turn.angles.back() + offset, random));
+    frames.push_back(rendered_frame(object, turn.angles.back() + offset, random, disc_normal));
   }
   turn.read = [frames = std::move(frames)](std::size_t stop) { return frames[stop]; };
   return turn;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -32,6 +33,11 @@ void check(const octurn::Scan& scan) {
     const std::filesystem::path there =
         ("/scan" / std::filesystem::path(shot.file)).lexically_normal();
     require(there.string().starts_with("/scan/") && there.has_filename());
+    require(shot.pose >= 0 &&
+            static_cast<std::size_t>(shot.pose) < std::max<std::size_t>(scan.poses.size(), 1));
+  }
+  for (const octurn::ScanPose& pose : scan.poses) {
+    require((pose.clip.min.array() < pose.clip.max.array()).all());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string_view>
+#include <vector>
 
 #include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
@@ -52,6 +53,11 @@ struct ReconstructOptions {
 
   /// Metres, object's frame. Samples outside make no surface.
   Box clip = {};
+
+  /// How the object lay in each of several poses, by `Snapshot::pose`; empty for one pose, in which
+  /// the object's frame is the platform's. Of a pose, samples outside its own clip box make no
+  /// surface either, nor do those of its platform.
+  std::vector<Placement> placements = {};
 
   /// `intersection` only: the level whose nodes the surface is drawn of, 0 for the root. The level
   /// of the leaves if absent.

@@ -20,6 +20,9 @@ namespace octurn {
 struct Shot {
   std::string file = {};  ///< the depth image, relative to the scan folder
   double angle = 0.0;     ///< of the platform, radians, counter-clockwise seen from above
+  int pose = 0;           ///< index in the scan's poses
+  /// Metres, in place of what angle and calibration tell, if it is there.
+  std::optional<Eigen::Isometry3d> object_from_sensor = {};
 };
 
 /// A pose that was solved from a scan's own snapshots, as `CalibrationReport` has it.
@@ -31,7 +34,17 @@ struct SolvedPose {
   double after = 0;   ///< the same with this one
 };
 
-/// What `scan.json` says (format "octurn-scan", version 1).
+/// One of several ways that the object lay on the platform, each for a turn of snapshots.
+struct ScanPose {
+  /// Platform frame of this pose, at angle 0, to the object's frame, which is that of the first
+  /// pose; metres. None: not known yet.
+  std::optional<Eigen::Isometry3d> object_from_platform = {};
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< as told, metres
+  std::optional<SolvedPose> solved = {};
+  Box clip = {};  ///< metres, platform frame of this pose
+};
+
+/// What `scan.json` says (format "octurn-scan", version 1 or 2).
 struct Scan {
   std::string sensor_name = {};
   std::string sensor_serial = {};  ///< empty if it tells none
@@ -41,6 +54,7 @@ struct Scan {
   std::optional<SolvedPose> solved = {};
   Box clip = {};  ///< metres, platform frame
   std::vector<Shot> shots = {};
+  std::vector<ScanPose> poses = {};  ///< empty: one, as above and as version 1 has it
   /// What snapshots are freed from when they are read; none: they stay as the sensor gave them.
   /// It is no part of `scan.json`.
   std::shared_ptr<const SensorMap> sensor_map = {};
@@ -49,10 +63,26 @@ struct Scan {
 /// The map of the scan's sensor, in a scan folder.
 inline constexpr const char* sensor_map_file = "sensor-map.png";
 
-/// The pose that models are made with: the solved one, else the one that the rig was told.
+/// The pose of the sensor that models are made with: the solved one, else the one that the rig was
+/// told.
 inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
   return scan.solved ? scan.solved->platform_from_sensor : scan.platform_from_sensor;
 }
+
+/// The pose that a shot has in models: optical frame to the object's frame, metres.
+/// @throws Error "scan-malformed"  that says the pose's number, if how the object lay is not known
+Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot);
+
+/// How the object lay in each pose; empty for a scan of one. @throws Error  as above
+std::vector<Placement> placements(const Scan& scan);
+
+/// The clip box of the scan's models, metres, object's frame: of several poses, around those of
+/// all.
+/// @throws Error  as above
+Box model_clip(const Scan& scan);
+
+/// Whether all shots are of one turn of the platform, with one calibration and clip box.
+bool is_one_turn(const Scan& scan);
 
 /// Reads and checks the text of a `scan.json`. Keys that are not of the contract are passed over.
 ///
@@ -74,8 +104,7 @@ void use_sensor_map(Scan& scan, const std::filesystem::path& file);
 /// A depth image of the scan's sensor, corrected by its sensor map if it has one.
 DepthFrame corrected(DepthFrame frame, const Scan& scan);
 
-/// Reads the depth image of one shot, corrected by the scan's sensor map; its pose is `model_pose`
-/// at the shot's angle.
+/// Reads the depth image of one shot, corrected by the scan's sensor map; its pose is `model_pose`.
 ///
 /// @throws Error "scan-missing"        if there is no such file
 /// @throws Error "snapshot-malformed"  if it is no 16-bit greyscale PNG, is damaged or cut short,
@@ -89,11 +118,13 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
 SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
                                 const std::stop_token& stop = {});
 
-/// Writes `folder/scan.json`, whole or not at all, and returns when it is on the disk.
+/// Writes `folder/scan.json`, whole or not at all, and returns when it is on the disk. Version 1,
+/// unless the scan has poses or a shot its own pose.
 /// @throws Error "disk-full", "write-failed"
 void write_scan(const std::filesystem::path& folder, const Scan& scan);
 
 /// Writes a solved pose into `folder/scan.json`, whole or not at all. All its other keys stay.
+/// Poses with a calibration of their own keep that.
 /// @throws Error  as `read_scan` and `write_scan`
 void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved);
 

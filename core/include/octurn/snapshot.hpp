@@ -5,6 +5,7 @@
 #include <functional>
 #include <stop_token>
 
+#include "octurn/box.hpp"
 #include "octurn/depth_frame.hpp"
 
 namespace octurn {
@@ -15,6 +16,14 @@ struct Snapshot {
   Intrinsics intrinsics = {};
   /// Optical frame to the object's frame, metres (`object_from_sensor` in platform_pose.hpp).
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();
+  int pose = 0;  ///< of a scan of several poses, its index
+};
+
+/// How the object lay on the platform in one of several poses.
+struct Placement {
+  /// Platform frame of the pose, at angle 0, to the object's frame, metres.
+  Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
+  Box clip = {};  ///< metres, platform frame of the pose
 };
 
 /// Snapshots that can be read, and read again, by several threads at once.

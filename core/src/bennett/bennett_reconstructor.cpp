@@ -13,6 +13,7 @@
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
 #include "depth/back_project.hpp"
+#include "depth/placement_of.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
@@ -92,6 +93,9 @@ void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
   const SnapGrid snap_grid(octree.side());
   PointGrid grid = world_points(snapshot);
   clip(grid, options_.clip);
+  if (!options_.placements.empty()) {
+    clip(grid, placement_of(snapshot, options_));
+  }
   triangulate(grid, static_cast<float>(options_.threshold),
               [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
                 const auto p = snap_grid.snap(a);

@@ -1,5 +1,6 @@
 #include "depth/back_project.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -50,6 +51,29 @@ PointGrid world_points(const Snapshot& snapshot) {
     }
   }
   return grid;
+}
+
+void clip(PointGrid& grid, const Placement& placement) {
+  constexpr double platform_slack = 0.0025;  // metres above the platform that may be the platform
+  constexpr float max_lift = 0.005F;         // metres
+  const Eigen::Isometry3d platform_from_object = placement.object_from_platform.inverse();
+  const Eigen::Matrix3f rotation = platform_from_object.linear().cast<float>();
+  const Eigen::Vector3f shift = platform_from_object.translation().cast<float>();
+  Eigen::Array3f min = placement.clip.min.cast<float>();
+  min.z() = std::max(min.z(), static_cast<float>(platform_slack));
+  const Eigen::Array3f max = placement.clip.max.cast<float>();
+  for (Eigen::Vector3f& point : grid.points) {
+    Eigen::Array3f own;
+    for (int axis = 0; axis < 3; ++axis) {  // written out, as above
+      own[axis] = rotation(axis, 0) * point.x() + rotation(axis, 1) * point.y() +
+                  rotation(axis, 2) * point.z() + shift[axis];
+    }
+    if (!((own >= min).all() && (own <= max).all())) {
+      point = no_point;
+    } else if (point.z() < 0 && point.z() > -max_lift) {
+      point.z() = 0;
+    }
+  }
 }
 
 void clip(PointGrid& grid, const Box& box) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "depth/depth_image.hpp"
 #include "depth/depth_limits.hpp"
@@ -17,6 +18,11 @@ constexpr int border = fit_window_side / 2;  // pixels at the image's edges that
 constexpr float min_cosine = 0.15F;          // of incidence: 81 degrees
 constexpr float reference_distance = 0.65F;  // metres, at which a whole window weighs one
 constexpr double platform_slack = 0.0015;    // metres above the platform that may be the platform
+
+// The same of one of several poses: another one sees the foot. Readings up to the second height
+// may be a mean of object and platform.
+constexpr double foot_slack = 0.0025;  // metres
+constexpr float foot_height = 0.007F;  // metres
 
 DepthImage to_metres(const Snapshot& snapshot) {
   const DepthFrame& frame = snapshot.frame;
@@ -60,19 +66,18 @@ struct ClipVolume {
   Eigen::Matrix3f rotation;
   Eigen::Vector3f centre;
 
-  ClipVolume(const Box& clip, const Eigen::Isometry3d& object_from_sensor)
+  ClipVolume(const Box& clip, const Eigen::Isometry3d& object_from_sensor, double lowest)
       : min(clip.min.cast<float>()),
         max(clip.max.cast<float>()),
         rotation(object_from_sensor.linear().cast<float>()),
         centre(object_from_sensor.translation().cast<float>()) {
-    min.z() = std::max(min.z(), static_cast<float>(platform_slack));
+    min.z() = std::max(min.z(), static_cast<float>(lowest));
   }
 
-  /// Whether a reading lies inside, 1 or 0, for each pixel of a row.
+  /// Clears, for each pixel of a row, what says whether its reading lies inside, 1 or 0.
   void mask(const DepthImage& image, int v, const std::vector<float>& ray_x, float ray_y,
             std::vector<int>& inside) const {
     const float* const row = image.row(v);
-    std::ranges::fill(inside, 1);
     for (int axis = 0; axis < 3; ++axis) {
       const float along_x = rotation(axis, 0);
       const float along_y = rotation(axis, 1) * ray_y;
@@ -86,6 +91,46 @@ struct ClipVolume {
       }
     }
   }
+};
+
+/// What tells that a reading is the object's: the clip box, and those of its pose.
+class ObjectVolume {
+ public:
+  ObjectVolume(const Snapshot& snapshot, const Box& clip, const Placement* placement)
+      : clip_(clip, snapshot.object_from_sensor,
+              placement == nullptr ? platform_slack : std::numeric_limits<double>::lowest()) {
+    if (placement != nullptr) {
+      own_.emplace(placement->clip,
+                   placement->object_from_platform.inverse() * snapshot.object_from_sensor,
+                   foot_slack);
+    }
+  }
+
+  /// Whether a reading lies inside, 1 or 0, for each pixel of a row.
+  void mask(const DepthImage& image, int v, const std::vector<float>& ray_x, float ray_y,
+            std::vector<int>& inside) const {
+    std::ranges::fill(inside, 1);
+    clip_.mask(image, v, ray_x, ray_y, inside);
+    if (own_) {
+      own_->mask(image, v, ray_x, ray_y, inside);
+    }
+  }
+
+  /// The share of its weight that a reading keeps: less near the platform of one of several poses.
+  float share(const Ray& ray, float z) const {
+    if (!own_) {
+      return 1;
+    }
+    const Eigen::Matrix3f& r = own_->rotation;
+    const float height =
+        z * (r(2, 0) * ray[0] + r(2, 1) * ray[1] + r(2, 2) * ray[2]) + own_->centre.z();
+    constexpr auto lowest = static_cast<float>(foot_slack);
+    return std::clamp((height - lowest) / (foot_height - lowest), 0.0F, 1.0F);
+  }
+
+ private:
+  ClipVolume clip_;
+  std::optional<ClipVolume> own_ = {};
 };
 
 /// Stores the surface that was fitted at a ray, unless it is seen at grazing incidence.
@@ -114,12 +159,14 @@ void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intri
   observation.weight = close * close * close * close * share * share / cosine;
 }
 
-std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Box& clip) {
+/// @param placement  of one of several poses; null for one pose
+std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Box& clip,
+                                              const Placement* placement) {
   const Intrinsics& intrinsics = snapshot.intrinsics;
   check_size(snapshot.frame, intrinsics, "ConditionedDepth");
   const DepthImage image = remove_speckle(to_metres(snapshot));
   const std::vector<float> inverse_depth = to_inverse_depth(image);
-  const ClipVolume volume(clip, snapshot.object_from_sensor);
+  const ObjectVolume volume(snapshot, clip, placement);
 
   const auto width = static_cast<std::size_t>(intrinsics.width);
   std::vector<float> ray_x(width);
@@ -146,7 +193,9 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Bo
         continue;
       }
       if (const auto fit = fit_plane(image, inverse_depth, u, v)) {
-        set_surface(observation, *fit, intrinsics, {ray_x[column], ray_y, 1.0F}, z);
+        const Ray ray{ray_x[column], ray_y, 1.0F};
+        set_surface(observation, *fit, intrinsics, ray, z);
+        observation.weight *= volume.share(ray, z);
       }
     }
   }
@@ -158,7 +207,14 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Bo
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip)
     : intrinsics_(snapshot.intrinsics),
       sensor_from_object_(snapshot.object_from_sensor.inverse()),
-      observations_(condition_depth(snapshot, clip)),
+      observations_(condition_depth(snapshot, clip, nullptr)),
+      pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
+
+ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,
+                                   const Placement& placement)
+    : intrinsics_(snapshot.intrinsics),
+      sensor_from_object_(snapshot.object_from_sensor.inverse()),
+      observations_(condition_depth(snapshot, clip, &placement)),
       pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
 
 }  // namespace octurn

@@ -18,6 +18,11 @@ class ConditionedDepth {
   /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
   ConditionedDepth(const Snapshot& snapshot, const Box& clip);
 
+  /// The same of one of several poses: readings outside its own clip box, or lower than 2.5 mm
+  /// above its platform, make no surface either. Those of the next millimetres count less, as they
+  /// mix object and platform.
+  ConditionedDepth(const Snapshot& snapshot, const Box& clip, const Placement& placement);
+
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Eigen::Isometry3d& sensor_from_object() const { return sensor_from_object_; }
 

@@ -34,9 +34,10 @@ struct PixelInterval {
 }  // namespace
 
 Snapshot crop(const Snapshot& snapshot, const Box& box) {
-  const auto& [frame, intrinsics, object_from_sensor] = snapshot;
+  const DepthFrame& frame = snapshot.frame;
+  const Intrinsics& intrinsics = snapshot.intrinsics;
   check_size(frame, intrinsics, "crop");
-  const Eigen::Isometry3d sensor_from_object = object_from_sensor.inverse();
+  const Eigen::Isometry3d sensor_from_object = snapshot.object_from_sensor.inverse();
   PixelInterval u;
   PixelInterval v;
   for (int corner = 0; corner < 8; ++corner) {
@@ -59,7 +60,8 @@ Snapshot crop(const Snapshot& snapshot, const Box& box) {
   }
   Snapshot part{.frame = {.width = width, .height = height, .depth = {}},
                 .intrinsics = intrinsics,
-                .object_from_sensor = object_from_sensor};
+                .object_from_sensor = snapshot.object_from_sensor,
+                .pose = snapshot.pose};
   part.intrinsics.width = width;
   part.intrinsics.height = height;
   part.intrinsics.cx -= u0;

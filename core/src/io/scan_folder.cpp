@@ -1,16 +1,17 @@
 #include "octurn/scan_folder.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 #include <utility>
 
+#include "io/pose_json.hpp"
 #include "io/sensor_json.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
-#include "octurn/platform_pose.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -18,56 +19,75 @@ namespace {
 
 using nlohmann::json;
 
+constexpr int max_poses = 1000;
+
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
-Eigen::Isometry3d pose_from(const JsonValue& matrix) {
-  Eigen::Matrix4d pose;
-  int row = 0;
-  for (const JsonValue& values : matrix.elements(4)) {
-    int column = 0;
-    for (const JsonValue& value : values.elements(4)) {
-      pose(row, column++) = value.number();
+/// The root cube that models have by default: the clip box of a scan that tells none.
+const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
+
+Shot shot_from(const JsonValue& value, int version) {
+  JsonObject keys(value);
+  std::string file = file_inside(keys.at("file"), "a file in the scan's folder");
+  if (version == 1) {
+    return {.file = std::move(file), .angle = radians_from_degrees(keys.at("angle_deg").number())};
+  }
+  Shot shot{.file = std::move(file),
+            .angle = 0.0,
+            .pose = keys.whole_number("pose", 0, max_poses).value_or(0)};
+  const auto matrix = keys.value("object_from_sensor");
+  const auto angle = keys.value("angle_deg");
+  if (matrix && angle) {
+    value.refuse("a snapshot with either \"angle_deg\" or \"object_from_sensor\"");
+  }
+  if (matrix) {
+    shot.object_from_sensor = pose_from(*matrix);
+  } else {
+    shot.angle = radians_from_degrees(keys.at("angle_deg").number());
+  }
+  return shot;
+}
+
+/// A scan whose only pose is the object's frame has that as its own, like one of version 1.
+void take_single_pose(Scan& scan) {
+  if (scan.poses.size() == 1 &&
+      scan.poses.front().object_from_platform->isApprox(Eigen::Isometry3d::Identity())) {
+    const ScanPose pose = scan.poses.front();
+    scan.platform_from_sensor = pose.platform_from_sensor;
+    scan.solved = pose.solved;
+    scan.clip = pose.clip;
+    scan.poses.clear();
+  }
+}
+
+/// Reads calibration, clip box and poses. Where each snapshot tells its own pose, calibration and
+/// clip box may be missing.
+void read_rig(JsonObject& root, int version, Scan& scan) {
+  const bool all_told = std::ranges::all_of(
+      scan.shots, [](const Shot& shot) { return shot.object_from_sensor.has_value(); });
+  const auto calibration = root.value("calibration");
+  const auto clip = root.value("clip_m");
+  if (calibration || !all_told) {
+    RigPose rig = calibration_from(root.at("calibration"));
+    scan.platform_from_sensor = rig.platform_from_sensor;
+    scan.solved = rig.solved;
+  }
+  scan.clip = clip || !all_told ? box_from(root.at("clip_m")) : whole_root;
+  if (const auto poses = version > 1 ? root.value("poses") : std::nullopt) {
+    scan.poses = poses_from(*poses, scan);
+  }
+}
+
+/// @throws Error  that names the first snapshot of a pose that is not listed
+void expect_poses(const Scan& scan) {
+  const std::size_t poses = std::max<std::size_t>(scan.poses.size(), 1);
+  for (std::size_t i = 0; i < scan.shots.size(); ++i) {
+    if (static_cast<std::size_t>(scan.shots[i].pose) >= poses) {
+      throw Error(malformed, "\"snapshots[" + std::to_string(i) + "].pose\" is " +
+                                 std::to_string(scan.shots[i].pose) + ": \"poses\" has " +
+                                 std::to_string(poses));
     }
-    ++row;
   }
-  if (!is_rigid(pose)) {
-    matrix.refuse("a rotation and a translation");
-  }
-  return Eigen::Isometry3d(pose);
-}
-
-Eigen::Vector3d point_from(const JsonValue& array) {
-  Eigen::Vector3d point;
-  int axis = 0;
-  for (const JsonValue& value : array.elements(3)) {
-    point[axis++] = value.number();
-  }
-  return point;
-}
-
-Box clip_from(const JsonValue& clip) {
-  JsonObject keys(clip);
-  Box box{.min = point_from(keys.at("min")), .max = point_from(keys.at("max"))};
-  if ((box.min.array() >= box.max.array()).any()) {
-    clip.refuse("a box: \"min\" below \"max\" on each axis");
-  }
-  return box;
-}
-
-Shot shot_from(const JsonValue& shot) {
-  JsonObject keys(shot);
-  return {.file = file_inside(keys.at("file"), "a file in the scan's folder"),
-          .angle = radians_from_degrees(keys.at("angle_deg").number())};
-}
-
-SolvedPose solved_from(const JsonValue& solved) {
-  JsonObject keys(solved);
-  const auto metres = [&](std::string_view key) { return metres_from_mm(keys.at(key).number()); };
-  return {.platform_from_sensor = pose_from(keys.at("platform_from_sensor")),
-          .position_sigma = metres("sigma_mm"),
-          .direction_sigma = radians_from_degrees(keys.at("sigma_deg").number()),
-          .before = metres("before_mm"),
-          .after = metres("after_mm")};
 }
 
 Scan scan_from(const json& document) {
@@ -75,43 +95,38 @@ Scan scan_from(const json& document) {
   if (const JsonValue format = root.at("format"); format.text() != "octurn-scan") {
     format.refuse("\"octurn-scan\"");
   }
-  if (const JsonValue version = root.at("version"); version.number() != 1) {
-    version.refuse("1, which this program reads");
+  const JsonValue version = root.at("version");
+  if (version.number() != 1 && version.number() != 2) {
+    version.refuse("1 or 2, which this program reads");
   }
+  const int number = version.whole_number(1, 2);
   SensorJson sensor = sensor_from(root.at("sensor"));
-  JsonObject calibration(root.at("calibration"));
   Scan scan{.sensor_name = std::move(sensor.name),
             .sensor_serial = std::move(sensor.serial),
-            .intrinsics = sensor.intrinsics,
-            .platform_from_sensor = pose_from(calibration.at("platform_from_sensor")),
-            .clip = clip_from(root.at("clip_m")),
-            .shots = {}};
-  if (const auto solved = calibration.value("solved")) {
-    scan.solved = solved_from(*solved);
-  }
+            .intrinsics = sensor.intrinsics};
   for (const JsonValue& shot : root.at("snapshots").elements()) {
-    scan.shots.push_back(shot_from(shot));
+    scan.shots.push_back(shot_from(shot, number));
   }
   if (scan.shots.empty()) {
     throw Error(ErrorCode::scan_empty, "\"snapshots\" is empty: there is nothing to reconstruct");
   }
+  read_rig(root, number, scan);
+  expect_poses(scan);
+  take_single_pose(scan);
   return scan;
 }
 
-json to_json(const Eigen::Isometry3d& pose) {
-  json matrix = json::array();
-  for (int row = 0; row < 4; ++row) {
-    matrix.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
+json shot_json(const Shot& shot) {
+  json value{{"file", shot.file}};
+  if (shot.object_from_sensor) {
+    value["object_from_sensor"] = to_json(*shot.object_from_sensor);
+  } else {
+    value["angle_deg"] = degrees_from_radians(shot.angle);
   }
-  return matrix;
-}
-
-json to_json(const SolvedPose& solved) {
-  return {{"platform_from_sensor", to_json(solved.platform_from_sensor)},
-          {"sigma_mm", mm_from_metres(solved.position_sigma)},
-          {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
-          {"before_mm", mm_from_metres(solved.before)},
-          {"after_mm", mm_from_metres(solved.after)}};
+  if (shot.pose != 0) {
+    value["pose"] = shot.pose;
+  }
+  return value;
 }
 
 /// A device may call itself by bytes that are no UTF-8; they are replaced.
@@ -168,7 +183,8 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
                                       intrinsics.height);
   return {.frame = corrected(std::move(frame), scan),
           .intrinsics = intrinsics,
-          .object_from_sensor = object_from_sensor(model_pose(scan), shot.angle)};
+          .object_from_sensor = model_pose(scan, shot),
+          .pose = shot.pose};
 }
 
 SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
@@ -182,25 +198,24 @@ SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan&
 }
 
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
-  json calibration{{"platform_from_sensor", to_json(scan.platform_from_sensor)}};
-  if (scan.solved) {
-    calibration["solved"] = to_json(*scan.solved);
-  }
   json shots = json::array();
   for (const Shot& shot : scan.shots) {
-    shots.push_back({{"file", shot.file}, {"angle_deg", degrees_from_radians(shot.angle)}});
+    shots.push_back(shot_json(shot));
   }
-  const auto point = [](const Eigen::Vector3d& p) { return json::array({p.x(), p.y(), p.z()}); };
-  const json document{
+  json document{
       {"format", "octurn-scan"},
-      {"version", 1},
+      {"version", is_one_turn(scan) ? 1 : 2},
       {"sensor",
        to_json(SensorJson{
            .name = scan.sensor_name, .serial = scan.sensor_serial, .intrinsics = scan.intrinsics})},
-      {"calibration", calibration},
-      {"clip_m", {{"min", point(scan.clip.min)}, {"max", point(scan.clip.max)}}},
+      {"calibration",
+       to_json(RigPose{.platform_from_sensor = scan.platform_from_sensor, .solved = scan.solved})},
+      {"clip_m", to_json(scan.clip)},
       {"snapshots", shots},
   };
+  if (!scan.poses.empty()) {
+    document["poses"] = to_json(scan.poses);
+  }
   write_document(folder, document);
 }
 

@@ -10,18 +10,20 @@ constexpr float min_weight = 0.1F;
 
 /// A voxel is observed if its weight reaches the minimum, and one for each ray that passed through.
 /// @param free  snapshots whose ray passed through the voxel
-VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int free) {
+/// @param min_free  that make it free space
+VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int free, int min_free) {
   const float w = static_cast<float>(brick.weight[sample]) / TsdfVolume::weight_ticks;
   if (w >= min_weight && w >= static_cast<float>(free)) {
     return VoxelState::observed;
   }
-  if (free > 0) {
+  if (free >= min_free) {
     return VoxelState::free;
   }
   return brick.distance[sample] < 0 && w > 0 ? VoxelState::occluded : VoxelState::unknown;
 }
 
-CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index) {
+CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index,
+                     int min_free) {
   constexpr int side = VoxelGrid::brick_side;
   const int per_brick = volume.grid().blocks_per_brick();
   const int voxels = volume.grid().block_voxels();
@@ -38,7 +40,7 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
         }
       }
       for (const int of_block : free) {
-        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample]));
+        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample], min_free));
         ++sample;
       }
     }
@@ -48,8 +50,8 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
 
 }  // namespace
 
-CompactTsdf::CompactTsdf(const VoxelGrid& grid)
-    : grid_(grid), bricks_(grid.brick_count()), free_(grid.block_count()) {}
+CompactTsdf::CompactTsdf(const VoxelGrid& grid, int min_free)
+    : grid_(grid), min_free_(min_free), bricks_(grid.brick_count()), free_(grid.block_count()) {}
 
 void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
   const auto& [low, end] = volume.layers();
@@ -59,7 +61,7 @@ void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
         if (const TsdfBrick* brick = volume.find({x, y, z})) {
-          bricks_.add(grid_.brick_index({x, y, z})) = compact(volume, *brick, {x, y, z});
+          bricks_.add(grid_.brick_index({x, y, z})) = compact(volume, *brick, {x, y, z}, min_free_);
         }
       }
     }
@@ -68,7 +70,7 @@ void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
   for (int z = low * per_brick; z < end * per_brick; ++z) {
     for (int y = 0; y < size.y * per_brick; ++y) {
       for (int x = 0; x < size.x * per_brick; ++x) {
-        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) > 0 ? 1 : 0;
+        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) >= min_free_ ? 1 : 0;
       }
     }
   }

@@ -39,7 +39,8 @@ struct CompactBrick {
 /// which was integrated in slabs fits in memory as a whole.
 class CompactTsdf {
  public:
-  explicit CompactTsdf(const VoxelGrid& grid);
+  /// @param min_free  snapshots that must see through a voxel for it to be free
+  explicit CompactTsdf(const VoxelGrid& grid, int min_free = 1);
 
   const VoxelGrid& grid() const { return grid_; }
 
@@ -58,6 +59,7 @@ class CompactTsdf {
 
  private:
   VoxelGrid grid_;
+  int min_free_;
   BrickMap<CompactBrick> bricks_;
   std::vector<std::uint8_t> free_;
 };

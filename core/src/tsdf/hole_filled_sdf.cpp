@@ -11,6 +11,10 @@ namespace {
 
 constexpr int brick_side = VoxelGrid::brick_side;
 
+// What was observed may lie this far below another pose's platform: poses are known to a tenth of
+// a millimetre or so.
+constexpr double observed_slack = 0.001;  // metres
+
 std::size_t sample_index(const Index3& voxel) {
   return static_cast<std::size_t>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
 }
@@ -44,7 +48,19 @@ void clear_border(VoxelMask& mask) {
 
 HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop)
     : known_(known), base_layer_(base_layer) {
-  KnownBlocks blocks = known_blocks(known, base_layer, stop);
+  fill(stop);
+}
+
+HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
+                             const std::stop_token& stop)
+    : known_(known),
+      base_layer_(known.grid().low().z * brick_side),
+      platforms_(std::move(platforms)) {
+  fill(stop);
+}
+
+void HoleFilledSdf::fill(const std::stop_token& stop) {
+  KnownBlocks blocks = known_blocks(known_, base_layer_, stop);
   if (blocks.distances.values.empty()) {
     return;
   }
@@ -121,6 +137,9 @@ HoleFilledSdf::Value HoleFilledSdf::at(const Index3& voxel) const {
   } else {
     value.distance = filled_at(above);
   }
+  if (!platforms_.empty()) {
+    return cut_by_platforms(voxel, value);
+  }
   // The intersection with the half-space above the platform.
   const auto below = static_cast<float>(-(voxel.z + 0.5) * grid().voxel_side() /
                                         grid().truncation() * VoxelGrid::ticks);
@@ -130,13 +149,34 @@ HoleFilledSdf::Value HoleFilledSdf::at(const Index3& voxel) const {
   return value;
 }
 
+/// The intersection with the half-spaces above the platforms of several poses. What was observed
+/// is cut only well below them: a foot is flat where nothing saw it.
+HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value value) const {
+  const auto slack = static_cast<float>(observed_slack / grid().truncation() * VoxelGrid::ticks);
+  for (const PlatformCut& platform : platforms_) {
+    const float below = -platform.height(voxel) - (value.observed ? slack : 0.0F);
+    if (below > value.distance) {
+      value = {below, false};
+    }
+  }
+  return value;
+}
+
+bool HoleFilledSdf::is_above_platforms(const Index3& low, const Index3& size) const {
+  return std::ranges::all_of(
+      platforms_, [&](const PlatformCut& platform) { return platform.is_below(low, size); });
+}
+
 /// The side of the surface that a whole brick, counted from the box's lowest corner, lies on; both,
 /// if its blocks and those around it do not agree, or it has samples of its own.
 HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
   const int per_brick = grid().blocks_per_brick();
   const Index3 first{brick.x * per_brick, brick.y * per_brick, brick.z * per_brick};
   const Index3 in_grid{low_brick_.x + brick.x, low_brick_.y + brick.y, low_brick_.z + brick.z};
-  if (known_.find(in_grid) != nullptr || brick.z == 0) {
+  if (known_.find(in_grid) != nullptr || brick.z == 0 ||
+      !is_above_platforms({low_.x + brick.x * brick_side, low_.y + brick.y * brick_side,
+                           low_.z + brick.z * brick_side},
+                          {brick_side, brick_side, brick_side})) {
     return Side::both;
   }
   bool any_inside = false;
@@ -164,7 +204,7 @@ HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
 /// The signs of eight voxels of a brick's row, `first` the first of them: 1 where the distance is
 /// negative.
 std::uint64_t HoleFilledSdf::inside_bits(const Index3& first) const {
-  if (first.z < base_layer_) {
+  if (first.z < base_layer_ || !is_above_platforms(first, {brick_side, 1, 1})) {
     return row_bits([&](int x) { return at({first.x + x, first.y, first.z}).distance < 0; });
   }
   const CompactBrick* const brick = brick_at(first);
@@ -210,6 +250,11 @@ VoxelMask HoleFilledSdf::inside(const std::stop_token& stop) const {
     }
   }
   clear_border(mask);
+  if (!platforms_.empty() && size.z > 0) {  // a lowest layer is no foot
+    for (int y = 0; y < size.y; ++y) {
+      std::ranges::fill(mask.row(y, 0), 0U);
+    }
+  }
   return mask;
 }
 

@@ -7,6 +7,7 @@
 
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/laplace_fill.hpp"
+#include "tsdf/platform_cut.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {
@@ -23,6 +24,12 @@ class HoleFilledSdf {
   /// @param base_layer  the lowest layer of voxels whose samples count
   /// @throws Stopped
   HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {});
+
+  /// Of an object that was seen in several poses: all layers count, and the field is cut at each
+  /// pose's platform where nothing saw the object's foot.
+  /// @param platforms  of the poses, at least one
+  HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
+                const std::stop_token& stop = {});
 
   const VoxelGrid& grid() const { return known_.grid(); }
 
@@ -58,17 +65,21 @@ class HoleFilledSdf {
   };
   enum class Side { inside, outside, both };
 
+  void fill(const std::stop_token& stop);
   std::vector<LerpWeight> lerp_weights(int voxels, int blocks) const;
   float trilinear(const LerpWeight& x, const LerpWeight& y, const LerpWeight& z) const;
   float filled_at(const Index3& voxel) const;
   VoxelState state_at(const Index3& voxel, const CompactBrick* brick) const;
   const CompactBrick* brick_at(const Index3& voxel) const;
+  Value cut_by_platforms(const Index3& voxel, Value value) const;
+  bool is_above_platforms(const Index3& low, const Index3& size) const;
   Side side_of(const Index3& brick) const;
   std::uint64_t inside_bits(const Index3& first) const;
   void add_inside(const Index3& brick, VoxelMask& mask) const;
 
   const CompactTsdf& known_;
   int base_layer_;
+  std::vector<PlatformCut> platforms_ = {};  // of several poses; empty for one
   Index3 low_ = {};
   Index3 end_ = {};
   Index3 low_brick_ = {};

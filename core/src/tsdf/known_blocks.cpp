@@ -74,7 +74,10 @@ void find_box(const CompactTsdf& known, KnownBlocks& blocks) {
     }
   }
   if (last.x >= 0) {
-    blocks.low = {first.x - 1, first.y - 1, 1};
+    // A volume that ends at the platform has a border of one brick below, of which nothing is
+    // known.
+    const bool ends_at_platform = known.grid().low().z == -1;
+    blocks.low = {first.x - 1, first.y - 1, ends_at_platform ? 1 : first.z - 1};
     blocks.end = {last.x + 2, last.y + 2, std::min(last.z + 2, size.z)};
   }
 }

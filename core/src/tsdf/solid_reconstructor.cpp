@@ -9,11 +9,13 @@
 
 #include "depth/condition_depth.hpp"
 #include "depth/crop.hpp"
+#include "depth/placement_of.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
 #include "parallel/ordered_pipeline.hpp"
+#include "tsdf/facet_stream.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/marching_cubes.hpp"
@@ -27,6 +29,7 @@ namespace {
 // Truncation distance: 3 sigma of a Kinect v1's noise at 0.65 m, and at least 2.5 voxels.
 constexpr double truncation = 0.0035;  // metres
 constexpr double min_truncation_voxels = 2.5;
+constexpr double foot_room = 1.5;  // truncations below the platform of the first of several poses
 
 // The lowest layers of the clip box hold some of the platform's noise: the base layer is the first
 // one this far above the box's bottom.
@@ -79,11 +82,20 @@ std::size_t slab_budget(const ReconstructOptions& options, const CompactTsdf& kn
   return all > taken ? static_cast<std::size_t>(share * static_cast<double>(all - taken)) : 0;
 }
 
+/// Snapshots that make free space: of several poses a few, as one that errs would open the inside,
+/// which no other pose closes.
+int min_free(const ReconstructOptions& options) { return options.placements.empty() ? 1 : 3; }
+
 VoxelGrid make_grid(const ReconstructOptions& options) {
   const int levels = checked_levels(options);
   const double voxel_side = options.root_size / (1 << levels);
-  return {options.root_size, levels, options.clip,
-          std::max(truncation, min_truncation_voxels * voxel_side)};
+  const double distance = std::max(truncation, min_truncation_voxels * voxel_side);
+  // Of several poses, room for the surface of a foot that is seen from below.
+  const int below = options.placements.empty()
+                        ? 0
+                        : static_cast<int>(std::ceil(foot_room * distance /
+                                                     (voxel_side * VoxelGrid::brick_side)));
+  return {options.root_size, levels, options.clip, distance, below};
 }
 
 [[noreturn]] void throw_memory_limit(const ReconstructOptions& options) {
@@ -98,35 +110,6 @@ std::size_t mask_bytes(const HoleFilledSdf& sdf) {
   return side(sdf.low().x, sdf.end().x) * side(sdf.low().y, sdf.end().y) *
          side(sdf.low().z, sdf.end().z) / 16 * 3;
 }
-
-/// Streams a mesh's triangles as facets, all of them.
-class FacetStream {
- public:
-  explicit FacetStream(const FacetSink& sink) : sink_(sink) {}
-
-  void add(const MeshPiece& piece) {
-    // Triangles refer to vertices of this piece and of the one before.
-    vertices_.erase(vertices_.begin(), vertices_.end() - static_cast<std::ptrdiff_t>(last_));
-    first_ = next_ - static_cast<std::uint32_t>(last_);
-    last_ = piece.vertices.size();
-    next_ += static_cast<std::uint32_t>(last_);
-    vertices_.insert(vertices_.end(), piece.vertices.begin(), piece.vertices.end());
-    facets_.clear();
-    for (const MeshTriangle& triangle : piece.triangles) {
-      facets_.push_back(to_facet({vertices_[triangle[0] - first_], vertices_[triangle[1] - first_],
-                                  vertices_[triangle[2] - first_]}));
-    }
-    sink_(facets_);
-  }
-
- private:
-  const FacetSink& sink_;
-  std::vector<MeshVertex> vertices_ = {};
-  std::vector<Facet> facets_ = {};
-  std::size_t last_ = 0;  // vertices of the last piece
-  std::uint32_t first_ = 0;
-  std::uint32_t next_ = 0;
-};
 
 /// The times that voxels can be merged, eight in one, until their side would exceed `leaf_size`.
 int halvings_to(double leaf_size, const VoxelGrid& grid) {
@@ -145,8 +128,7 @@ SolidReconstructor::SolidReconstructor(const ReconstructOptions& options)
 
 void SolidReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) try {
   throw_if_stopped(stop);
-  const ConditionedDepth depth(crop(snapshot, volume_.grid().box()), options_.clip);
-  integrate(volume_, depth, stop);
+  integrate(volume_, condition(snapshot), stop);
 } catch (const OutOfBudget&) {
   throw_memory_limit(options_);
 }
@@ -162,7 +144,7 @@ void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_to
   fork_join(threads, [&](int) {
     pipeline.run(
         [&](std::size_t index, std::optional<ConditionedDepth>& depth) {
-          depth.emplace(crop(snapshots.read(index), volume_.grid().box()), options_.clip);
+          depth.emplace(condition(snapshots.read(index)));
         },
         [&](std::optional<ConditionedDepth>& depth) {
           integrate(volume_, *depth, stop);
@@ -176,7 +158,7 @@ void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_to
 SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink,
                                          const std::stop_token& stop) {
   const CompactTsdf known = integrate_slabs(snapshots, stop);
-  const HoleFilledSdf sdf(known, base_layer(), stop);
+  const HoleFilledSdf sdf = fill_holes(known, stop);
   expect_room_for_masks(known, sdf);
   VoxelMask solid = sdf.inside(stop);
   const std::uint64_t all = solid.count();
@@ -209,7 +191,7 @@ SurfaceCount SolidReconstructor::count(const SnapshotSource& snapshots,
 /// Integrates all slabs, reading the snapshots again for each but the one in memory.
 CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
                                                 const std::stop_token& stop) {
-  CompactTsdf known(volume_.grid());
+  CompactTsdf known(volume_.grid(), min_free(options_));
   const int top = volume_.grid().size().z;
   for (int low = 0; low < top; low = volume_.layers().end) {
     if (low != volume_.layers().low) {
@@ -242,6 +224,27 @@ int SolidReconstructor::base_layer() const {
   return static_cast<int>(std::ceil((bottom + base_margin) / volume_.grid().voxel_side() - 0.5));
 }
 
+/// @throws std::invalid_argument  if the snapshot is of a pose that the options do not list
+ConditionedDepth SolidReconstructor::condition(const Snapshot& snapshot) const {
+  const Snapshot window = crop(snapshot, volume_.grid().box());
+  if (options_.placements.empty()) {
+    return {window, options_.clip};
+  }
+  return {window, options_.clip, placement_of(snapshot, options_)};
+}
+
+HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known,
+                                             const std::stop_token& stop) const {
+  if (options_.placements.empty()) {
+    return {known, base_layer(), stop};
+  }
+  std::vector<PlatformCut> platforms;
+  for (const Placement& placement : options_.placements) {
+    platforms.emplace_back(known.grid(), placement);
+  }
+  return {known, std::move(platforms), stop};
+}
+
 /// Draws a mask by marching cubes, and simplifies the mesh on its way to the sink.
 void SolidReconstructor::draw(const VoxelMask& solid, const HoleFilledSdf& sdf,
                               const FacetSink& sink, const std::stop_token& stop) const {
@@ -261,9 +264,9 @@ void SolidReconstructor::draw(const VoxelMask& solid, const HoleFilledSdf& sdf,
 void SolidReconstructor::preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
                                  const std::stop_token& stop) const {
   const VoxelGrid& grid = volume_.grid();
-  CompactTsdf known(grid);
+  CompactTsdf known(grid, min_free(options_));
   known.add(volume_, stop);
-  VoxelMask mask = HoleFilledSdf(known, base_layer(), stop).inside(stop);
+  VoxelMask mask = fill_holes(known, stop).inside(stop);
   mask.keep_main_component(stop);
   int halvings = 0;
   for (; halvings < halvings_to(leaf_size, grid); ++halvings) {

@@ -2,6 +2,7 @@
 
 #include <stop_token>
 
+#include "depth/condition_depth.hpp"
 #include "octurn/reconstruct.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
@@ -21,6 +22,9 @@ namespace octurn {
 /// Where the volume does not fit in the memory limit it holds a slab, and the snapshots are read
 /// again for each further one. Neither slabs nor threads change a byte of the surface.
 ///
+/// Of an object in several poses each snapshot is conditioned by its pose's clip box and platform,
+/// the largest component is kept, and its foot is flat only where nothing saw it.
+///
 /// Facets in holes have the attribute `filled_in`. The contract of the members is
 /// `Reconstructor`'s; `count` takes as long as `surface`.
 class SolidReconstructor final : public Reconstructor {
@@ -38,6 +42,8 @@ class SolidReconstructor final : public Reconstructor {
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
   void expect_room_for_masks(const CompactTsdf& known, const HoleFilledSdf& sdf) const;
   int base_layer() const;
+  ConditionedDepth condition(const Snapshot& snapshot) const;
+  HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop) const;
   void draw(const VoxelMask& solid, const HoleFilledSdf& sdf, const FacetSink& sink,
             const std::stop_token& stop) const;
 

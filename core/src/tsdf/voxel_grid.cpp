@@ -20,7 +20,7 @@ int block_voxels_for(double voxel_side) {
 
 }  // namespace
 
-VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double truncation)
+VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double truncation, int below)
     : root_side_(root_side),
       levels_(levels),
       voxel_side_(root_side / (1 << levels)),
@@ -34,7 +34,7 @@ VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double trunc
       return std::clamp(static_cast<int>(std::floor((at - corner) / brick_metres)), 0, last);
     };
     // The model stands on the platform, wherever the clip box begins.
-    const int first = axis == 2 ? 0 : brick_at(clip.min[axis]);
+    const int first = axis == 2 ? -below : brick_at(clip.min[axis]);
     return std::array{first - 1, brick_at(clip.max[axis]) - first + 3};
   };
   low_ = {bricks(0)[0], bricks(1)[0], bricks(2)[0]};

@@ -155,7 +155,9 @@ SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& 
           .read = [&bar, &check, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
             bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
             Snapshot snapshot = stored.read(i);
-            check.add(i, snapshot);
+            if (snapshot.pose == 0) {  // whose platform the check looks for
+              check.add(i, snapshot);
+            }
             return snapshot;
           }};
 }
@@ -166,13 +168,20 @@ struct PosedScan {
   std::vector<CalibrationFinding> findings = {};
 };
 
+void take_told_poses(Scan& scan) {
+  scan.solved.reset();
+  for (ScanPose& pose : scan.poses) {
+    pose.solved.reset();
+  }
+}
+
 /// A solved pose that merely confirms the told one does not replace it: the model keeps its bytes.
 PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
                     const std::stop_token& stop) {
   PosedScan posed{.scan = std::move(scan)};
   if (settings.scan.pose == PoseSource::told) {
-    posed.scan.solved.reset();
-  } else if (!posed.scan.solved) {
+    take_told_poses(posed.scan);
+  } else if (!posed.scan.solved && is_one_turn(posed.scan)) {
     CalibrationReport report =
         solve_pose(posed.scan, stored_snapshots(folder, posed.scan, stop), settings.limits.threads);
     if (report.accepted && !report.confirms_told()) {
@@ -203,14 +212,16 @@ void reconstruct(const ReconstructArguments& arguments) try {
   const auto [scan, findings] =
       with_pose(read_scan_of(arguments), arguments.folder, settings, stop);
   if (!arguments.settings.contains("clip_mm")) {
-    settings.scan.clip = scan.clip;
+    settings.scan.clip = model_clip(scan);
   }
-  const ReconstructOptions options = options_from(settings);
+  ReconstructOptions options = options_from(settings);
+  options.placements = placements(scan);
   if (options.memory_limit != 0) {
     return_freed_memory();
   }
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
-  ScanCheck scan_check(options.clip, scan.shots.size());
+  ScanCheck scan_check(scan.poses.empty() ? options.clip : scan.poses.front().clip,
+                       scan.shots.size());
   MeshCheck check;
   std::optional<SurfaceCount> count;
   Times times;

@@ -18,7 +18,8 @@ void stream_model(const RebuildCommand& command) {
   const Scan scan = read_scan(command.folder);
   const SnapshotSource snapshots = readable_snapshots(command.folder, scan, stop);
   ReconstructOptions options = command.options;
-  options.clip = scan.clip;
+  options.clip = model_clip(scan);
+  options.placements = placements(scan);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   reconstruction->add(snapshots, stop);
   const SurfaceCount count = reconstruction->count(snapshots, stop);

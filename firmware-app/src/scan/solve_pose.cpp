@@ -1,8 +1,15 @@
 #include "scan/solve_pose.hpp"
 
+#include "octurn/error.hpp"
+
 namespace octurn {
 
 CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads) {
+  if (!is_one_turn(scan)) {
+    throw Error(ErrorCode::scan_malformed,
+                "the scan is of several poses, and a pose is solved from one turn",
+                "Solve each turn before they are merged.");
+  }
   CalibrationTurn turn{.intrinsics = scan.intrinsics,
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},

@@ -8,7 +8,7 @@ namespace octurn {
 /// Solves the pose of a stored scan from its own snapshots, from the told pose on.
 ///
 /// @param snapshots  of the scan
-/// @throws  what a read of them throws
+/// @throws Error "scan-malformed"  if the scan is of several turns; and what a read throws
 CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads);
 
 /// What scan.json keeps of an accepted report.

@@ -5,7 +5,6 @@
 
 #include "log.hpp"
 #include "octurn/error.hpp"
-#include "octurn/platform_pose.hpp"
 
 namespace octurn {
 namespace {
@@ -17,7 +16,8 @@ Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
                     .height = lens.height,
                     .depth = std::vector<std::uint16_t>(size)},
           .intrinsics = lens,
-          .object_from_sensor = object_from_sensor(model_pose(scan), shot.angle)};
+          .object_from_sensor = model_pose(scan, shot),
+          .pose = shot.pose};
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST(ParseScan, RefusesNumbersOutOfTheirRange) {
 
 TEST(ParseScan, RefusesAnotherFormatAndAnotherVersion) {
   expect_refused(with("/format", "octurn-mesh"), "\"format\"");
-  expect_refused(with("/version", 2), "\"version\" is 2");
+  expect_refused(with("/version", 3), "\"version\" is 3");
   expect_refused(with("/version", 0), "\"version\"");
   expect_refused(with("/version", 1.5), "\"version\"");
 }

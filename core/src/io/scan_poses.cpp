@@ -1,0 +1,67 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+
+#include "octurn/error.hpp"
+#include "octurn/platform_pose.hpp"
+#include "octurn/scan_folder.hpp"
+
+namespace octurn {
+namespace {
+
+/// The placement of a pose. @throws Error  that says its number, if it is not known yet
+const Eigen::Isometry3d& known(const Scan& scan, int pose) {
+  const auto& placement = scan.poses[static_cast<std::size_t>(pose)].object_from_platform;
+  if (!placement) {
+    throw Error(ErrorCode::scan_malformed,
+                "scan.json: how the object lay in pose " + std::to_string(pose) +
+                    " is not known yet: \"poses[" + std::to_string(pose) +
+                    "].object_from_platform\" is null",
+                "Find it out by octurn merge.");
+  }
+  return *placement;
+}
+
+}  // namespace
+
+Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot) {
+  if (shot.object_from_sensor) {
+    return *shot.object_from_sensor;
+  }
+  if (scan.poses.empty()) {
+    return object_from_sensor(model_pose(scan), shot.angle);
+  }
+  const ScanPose& pose = scan.poses[static_cast<std::size_t>(shot.pose)];
+  const auto& sensor = pose.solved ? pose.solved->platform_from_sensor : pose.platform_from_sensor;
+  return known(scan, shot.pose) * object_from_sensor(sensor, shot.angle);
+}
+
+std::vector<Placement> placements(const Scan& scan) {
+  std::vector<Placement> all;
+  for (std::size_t i = 0; i < scan.poses.size(); ++i) {
+    all.push_back(
+        {.object_from_platform = known(scan, static_cast<int>(i)), .clip = scan.poses[i].clip});
+  }
+  return all;
+}
+
+Box model_clip(const Scan& scan) {
+  const std::vector<Placement> all = placements(scan);
+  if (all.empty()) {
+    return scan.clip;
+  }
+  Eigen::AlignedBox3d box;
+  for (const Placement& placement : all) {
+    const Eigen::AlignedBox3d own(placement.clip.min, placement.clip.max);
+    box.extend(own.transformed(placement.object_from_platform));
+  }
+  return {.min = box.min(), .max = box.max()};
+}
+
+bool is_one_turn(const Scan& scan) {
+  return scan.poses.empty() && std::ranges::none_of(scan.shots, [](const Shot& shot) {
+           return shot.object_from_sensor.has_value();
+         });
+}
+
+}  // namespace octurn

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "octurn/stl.hpp"
+
+namespace octurn {
+
+/// Streams a mesh's triangles as facets, all of them.
+class FacetStream {
+ public:
+  explicit FacetStream(const FacetSink& sink) : sink_(sink) {}
+
+  void add(const MeshPiece& piece) {
+    // Triangles refer to vertices of this piece and of the one before.
+    vertices_.erase(vertices_.begin(), vertices_.end() - static_cast<std::ptrdiff_t>(last_));
+    first_ = next_ - static_cast<std::uint32_t>(last_);
+    last_ = piece.vertices.size();
+    next_ += static_cast<std::uint32_t>(last_);
+    vertices_.insert(vertices_.end(), piece.vertices.begin(), piece.vertices.end());
+    facets_.clear();
+    for (const MeshTriangle& triangle : piece.triangles) {
+      facets_.push_back(to_facet({vertices_[triangle[0] - first_], vertices_[triangle[1] - first_],
+                                  vertices_[triangle[2] - first_]}));
+    }
+    sink_(facets_);
+  }
+
+ private:
+  const FacetSink& sink_;
+  std::vector<MeshVertex> vertices_ = {};
+  std::vector<Facet> facets_ = {};
+  std::size_t last_ = 0;  // vertices of the last piece
+  std::uint32_t first_ = 0;
+  std::uint32_t next_ = 0;
+};
+
+}  // namespace octurn

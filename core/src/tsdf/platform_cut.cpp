@@ -1,0 +1,31 @@
+#include "tsdf/platform_cut.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstddef>
+
+namespace octurn {
+
+PlatformCut::PlatformCut(const VoxelGrid& grid, const Placement& placement) {
+  const Eigen::Isometry3d platform_from_object = placement.object_from_platform.inverse();
+  const Eigen::Vector3d up = platform_from_object.linear().row(2);
+  const double ticks_per_metre = VoxelGrid::ticks / grid.truncation();
+  double offset = platform_from_object.translation().z();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double along = up[static_cast<Eigen::Index>(axis)];
+    step_[axis] = static_cast<float>(along * grid.voxel_side() * ticks_per_metre);
+    offset += along * grid.centre(0, axis);
+  }
+  offset_ = static_cast<float>(offset * ticks_per_metre);
+}
+
+bool PlatformCut::is_below(const Index3& low, const Index3& size) const {
+  float lowest = height(low);
+  const std::array<int, 3> steps{size.x - 1, size.y - 1, size.z - 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lowest += std::min(step_[axis] * static_cast<float>(steps[axis]), 0.0F);
+  }
+  return lowest >= 0;
+}
+
+}  // namespace octurn

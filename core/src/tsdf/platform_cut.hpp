@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "octurn/snapshot.hpp"
+#include "tsdf/voxel_grid.hpp"
+#include "voxel/index3.hpp"
+
+namespace octurn {
+
+/// The half-space below the platform of one of several poses, in which nothing of the object is.
+class PlatformCut {
+ public:
+  PlatformCut(const VoxelGrid& grid, const Placement& placement);
+
+  /// Height of a voxel's centre above the platform, in ticks of the grid's truncation.
+  float height(const Index3& voxel) const {
+    return offset_ + step_[0] * static_cast<float>(voxel.x) +
+           step_[1] * static_cast<float>(voxel.y) + step_[2] * static_cast<float>(voxel.z);
+  }
+
+  /// Whether all centres of the half-open box of voxels from `low` on are above the platform.
+  bool is_below(const Index3& low, const Index3& size) const;
+
+ private:
+  std::array<float, 3> step_ = {};  // ticks for a voxel along each axis
+  float offset_ = 0;                // of the voxel (0, 0, 0)
+};
+
+}  // namespace octurn

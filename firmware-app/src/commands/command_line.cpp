@@ -199,6 +199,20 @@ void add_set(CLI::App& program, SetArguments& arguments) {
   command.callback([&arguments] { set(arguments); });
 }
 
+void add_merge(CLI::App& program, MergeArguments& arguments, int& status) {
+  CLI::App& command = *program.add_subcommand(
+      "merge", "one scan of an object that was scanned, turned over, and scanned again");
+  command.add_option("SCAN_DIR", arguments.folders, "folders with a scan.json each")->required();
+  command.add_option("-o,--output", arguments.output, "scan folder to write; must not exist yet")
+      ->type_name("SCAN_DIR")
+      ->required();
+  command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
+  command.footer(
+      "It ends with 0 if the scans fit together, with 1 and the reason if they do not, or in "
+      "several ways that give different shapes.");
+  command.callback([&arguments, &status] { status = merge(arguments) ? 0 : 1; });
+}
+
 void add_password(CLI::App& program, std::filesystem::path& file) {
   CLI::App& command = *program.add_subcommand("password", "gives the page a password");
   command
@@ -237,6 +251,7 @@ int run(int argc, char** argv) {
   CalibrateArguments calibrate_arguments;
   CalibrateWallArguments calibrate_wall_arguments;
   SetArguments set_arguments;
+  MergeArguments merge_arguments;
   std::filesystem::path password_file;
   std::filesystem::path update_file;
   int status = 0;
@@ -247,6 +262,7 @@ int run(int argc, char** argv) {
   add_reconstruct(program, reconstruct_arguments);
   add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
   add_set(program, set_arguments);
+  add_merge(program, merge_arguments, status);
   add_password(program, password_file);
   add_update(program, update_file);
 

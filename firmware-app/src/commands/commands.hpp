@@ -141,6 +141,16 @@ struct SetArguments {
 /// @throws Error  that names the wrong key
 void set(const SetArguments& arguments);
 
+struct MergeArguments {
+  std::vector<std::filesystem::path> folders = {};
+  std::filesystem::path output = {};  ///< folder, which must not exist yet
+  bool json = false;                  ///< one line of JSON in place of text
+};
+
+/// `octurn merge`: one scan folder of several scans of one object, laid down in several ways.
+/// @return false if the scans do not fit together, or in several ways
+bool merge(const MergeArguments& arguments);
+
 /// `octurn password`: reads a line from standard input, and writes it as a password file for
 /// `password_file` of the configuration.
 void set_password(const std::filesystem::path& file);

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "octurn/box.hpp"
+#include "octurn/depth_frame.hpp"
+
+namespace octurn {
+
+/// The depth images of one turn of the platform, on a rig whose pose is known.
+struct RegistrationTurn {
+  Intrinsics intrinsics = {};
+  /// Optical frame to platform frame, metres; as `calibrate` solves it.
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
+  /// Of each stop: radians, counter-clockwise seen from above.
+  std::vector<double> angles = {};
+  Box clip = {};  ///< metres, platform frame: what lies outside is not the object's
+  /// The depth image of a stop; called by several threads at once.
+  std::function<DepthFrame(std::size_t stop)> read = {};
+  /// How the object lay, if it is known: platform frame at angle 0 to the object's frame, metres.
+  std::optional<Eigen::Isometry3d> object_from_platform = {};
+};
+
+/// How the object lay in one turn, and how well that is known.
+struct RegisteredPose {
+  /// Platform frame at angle 0 to the object's frame, which is the first turn's platform frame.
+  Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
+  double position_sigma = 0;   ///< metres, of the object's middle; large where it can slide freely
+  double direction_sigma = 0;  ///< radians
+  double overlap = 0;          ///< share of what this turn saw that turns before it saw, too
+  double residual = 0;         ///< metres: median distance between what both saw
+  /// Share of what this turn saw where turns before it saw that nothing is, and the other way
+  /// round; 0 to 2.
+  double contradiction = 0;
+  bool symmetric = false;  ///< other poses give the same shape
+};
+
+/// How all turns fit together.
+struct Registration {
+  bool accepted = false;
+  std::string reason = {};  ///< why not, for people; empty if accepted
+  /// Of each turn, if accepted. The first, and those that were known, have no sigma.
+  std::vector<RegisteredPose> poses = {};
+};
+
+/// Finds how one object lay on the platform in each of several turns. Nothing is assumed of how it
+/// was laid down.
+///
+/// The points of a turn are compared with those of the turns before it in all rotations; the best
+/// ones are refined (point-to-plane ICP) and judged by free space: a pose is wrong if it puts what
+/// one turn saw where another saw that nothing is. Several answers are taken as one if they give
+/// the same shape. The accepted one is refined on the readings themselves (Gauss-Newton, six
+/// unknowns). docs/merge.md has the method.
+///
+/// The same for any number of threads. About 10 MB for two turns of 24 stops of 640 x 480.
+/// @param turns  at least two
+/// @throws std::invalid_argument  if a depth image has another size than the intrinsics say
+/// @throws Stopped
+Registration register_turns(std::span<const RegistrationTurn> turns, int threads = 1,
+                            const std::stop_token& stop = {});
+
+}  // namespace octurn

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "register/stop_view.hpp"
+
+namespace octurn {
+
+/// A volume around points that knows the nearest of them to each voxel.
+class NearestPoints {
+ public:
+  /// Metres: what is farther from all points is far.
+  static constexpr double cap = 0.012;
+
+  explicit NearestPoints(std::vector<SurfacePoint> points);
+
+  const std::vector<SurfacePoint>& points() const { return points_; }
+
+  /// The middle of the points' bounding box.
+  Eigen::Vector3d middle() const { return middle_; }
+
+  /// The nearest point, to within a voxel of 3 mm; null if all are far.
+  const SurfacePoint* find(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3i at = ((point - low_) / voxel_side).array().floor().cast<int>();
+    if ((at.array() < 0).any() || (at.array() >= size_.array()).any()) {
+      return nullptr;
+    }
+    const std::int32_t nearest = nearest_[index(at)];
+    return nearest < 0 ? nullptr : &points_[static_cast<std::size_t>(nearest)];
+  }
+
+ private:
+  static constexpr double voxel_side = 0.003;
+
+  std::size_t index(const Eigen::Vector3i& voxel) const {
+    return (static_cast<std::size_t>(voxel.z()) * static_cast<std::size_t>(size_.y()) +
+            static_cast<std::size_t>(voxel.y())) *
+               static_cast<std::size_t>(size_.x()) +
+           static_cast<std::size_t>(voxel.x());
+  }
+
+  std::vector<SurfacePoint> points_;
+  Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
+  std::vector<std::int32_t> nearest_ = {};
+};
+
+}  // namespace octurn

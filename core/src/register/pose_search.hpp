@@ -1,0 +1,37 @@
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "register/nearest_points.hpp"
+
+namespace octurn {
+
+/// A pose that was found to fit.
+struct PoseCandidate {
+  Eigen::Isometry3d target_from_points = Eigen::Isometry3d::Identity();
+  double distance = 0;       ///< metres, mean to the target, capped; the smaller the better
+  double overlap = 0;        ///< share of the points that lie on the target
+  double residual = 0;       ///< metres, root mean square of their distances
+  double contradiction = 0;  ///< 0 to 2, by free space
+};
+
+/// Looks for poses of points on a target in all rotations, about 15 degrees apart
+/// (Super-Fibonacci spirals, Alexa 2022), each shifted from middle on middle to where the points
+/// find the target nearest (mean shift).
+///
+/// @return the best, by their mean distance, the best first
+std::vector<PoseCandidate> search_poses(const NearestPoints& target,
+                                        const std::vector<SurfacePoint>& points, int threads,
+                                        const std::stop_token& stop);
+
+/// Refines a candidate by point-to-plane ICP.
+PoseCandidate refine(const NearestPoints& target, const std::vector<SurfacePoint>& points,
+                     PoseCandidate candidate, int iterations);
+
+/// Drops all but the best of candidates that are nearly the same pose.
+/// @param middle  of the points
+std::vector<PoseCandidate> distinct(const std::vector<PoseCandidate>& candidates,
+                                    const Eigen::Vector3d& middle);
+
+}  // namespace octurn

@@ -1,0 +1,204 @@
+#include "register/reading_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "octurn/snapshot.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr int max_iterations = 10;
+constexpr double settled = 1e-6;           // metres
+constexpr double readings_wanted = 300;    // of a stop
+constexpr int max_step = 6;                // pixels
+constexpr double min_cosine = 0.5;         // between a normal and the way to the sensor
+constexpr double min_agreement = 0.7;      // cosine between two normals of one surface
+constexpr double max_distance = 0.004;     // metres
+constexpr double cauchy_scale = 0.0015;    // metres
+constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
+
+/// Readings of all stops of a turn.
+struct Readings {
+  std::vector<std::vector<SurfacePoint>> of_stops = {};
+  double correlation = 1;  ///< readings for each that is independent
+};
+
+Readings readings_of(const SeenTurn& turn) {
+  double pixels = 0;
+  for (const StopView& view : turn.stops) {
+    pixels += view.pixels();
+  }
+  const double each = pixels / static_cast<double>(std::max<std::size_t>(turn.stops.size(), 1));
+  const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
+  Readings readings{.of_stops = {},
+                    .correlation = std::max(1.0, correlated_pixels / (step * step))};
+  for (const StopView& view : turn.stops) {
+    readings.of_stops.push_back(view.readings(step));
+  }
+  return readings;
+}
+
+/// One comparison: a reading, and the surface that another turn saw there.
+struct Match {
+  SurfacePoint reading;  ///< frame of its turn
+  SurfacePoint surface;  ///< frame of the other turn
+};
+
+/// Calls `visit(Match)` for each stop of `other` that saw a reading's place.
+/// @param other_from_reading  from the frame of the reading's turn
+template <typename Visit>
+void match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d& other_from_reading,
+           Visit visit) {
+  const Vector3d point = other_from_reading * reading.point;
+  const Vector3d normal = other_from_reading.linear() * reading.normal;
+  for (const StopView& view : other.stops) {
+    const Vector3d to_eye = view.eye() - point;
+    if (normal.dot(to_eye) < min_cosine * to_eye.norm()) {
+      continue;
+    }
+    const auto surface = view.look_up(point);
+    if (surface && surface->normal.dot(normal) > min_agreement &&
+        std::abs(surface->normal.dot(point - surface->point)) < max_distance) {
+      visit(Match{.reading = reading, .surface = *surface});
+    }
+  }
+}
+
+/// The normal equations of one stop's readings, and the magnitudes of its distances.
+struct StopFit {
+  RigidFit fit = {};
+  std::vector<float> distances = {};
+
+  void add(const Vector3d& point, const Vector3d& normal, double distance) {
+    fit.add(point, normal, distance, cauchy_weight(distance, cauchy_scale));
+    distances.push_back(static_cast<float>(std::abs(distance)));
+  }
+};
+
+/// What is compared, and from where.
+struct Comparison {
+  std::span<const PlacedTurn> placed;
+  const SeenTurn& turn;
+  Readings of_turn;
+  std::vector<Readings> of_placed;
+  Vector3d middle;
+};
+
+/// The readings of one of the turn's own stops, with what the placed turns saw.
+void add_own(StopFit& fit, const Comparison& compared, std::size_t stop, const Isometry3d& pose) {
+  for (const PlacedTurn& placed : compared.placed) {
+    const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
+    for (const SurfacePoint& reading : compared.of_turn.of_stops[stop]) {
+      match(reading, *placed.turn, placed_from_turn, [&](const Match& pair) {
+        const Vector3d at = pose * pair.reading.point;
+        const Vector3d normal = placed.object_from_turn.linear() * pair.surface.normal;
+        fit.add(at, normal, normal.dot(at - placed.object_from_turn * pair.surface.point));
+      });
+    }
+  }
+}
+
+/// The readings of a placed turn's stop, with what the turn itself saw: its surface moves.
+void add_placed(StopFit& fit, const Comparison& compared, std::size_t which, std::size_t stop,
+                const Isometry3d& pose) {
+  const PlacedTurn& placed = compared.placed[which];
+  const Isometry3d turn_from_placed = pose.inverse() * placed.object_from_turn;
+  for (const SurfacePoint& reading : compared.of_placed[which].of_stops[stop]) {
+    match(reading, compared.turn, turn_from_placed, [&](const Match& pair) {
+      const Vector3d at = pose * pair.surface.point;
+      const Vector3d normal = pose.linear() * pair.surface.normal;
+      fit.add(at, normal, normal.dot(at - placed.object_from_turn * pair.reading.point));
+    });
+  }
+}
+
+/// Over all stops. Their sums are added in their order, so that threads change no bit.
+StopFit compare(const Comparison& compared, const Isometry3d& pose, int threads,
+                const std::stop_token& stop) {
+  struct Work {
+    std::size_t placed = 0;  // behind the last: the turn itself
+    std::size_t stop = 0;
+  };
+  std::vector<Work> work;
+  for (std::size_t i = 0; i < compared.turn.stops.size(); ++i) {
+    work.push_back({compared.placed.size(), i});
+  }
+  for (std::size_t which = 0; which < compared.placed.size(); ++which) {
+    for (std::size_t i = 0; i < compared.placed[which].turn->stops.size(); ++i) {
+      work.push_back({which, i});
+    }
+  }
+  std::vector<StopFit> fits(work.size());
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t i = next++; i < work.size(); i = next++) {
+      throw_if_stopped(stop);
+      fits[i].fit.middle = compared.middle;
+      if (work[i].placed == compared.placed.size()) {
+        add_own(fits[i], compared, work[i].stop, pose);
+      } else {
+        add_placed(fits[i], compared, work[i].placed, work[i].stop, pose);
+      }
+    }
+  });
+  StopFit all;
+  all.fit.middle = compared.middle;
+  for (const StopFit& fit : fits) {
+    all.fit += fit.fit;
+    all.distances.insert(all.distances.end(), fit.distances.begin(), fit.distances.end());
+  }
+  return all;
+}
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  return std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0));
+}
+
+double median(std::vector<float> values) {
+  if (values.empty()) {
+    return 0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return static_cast<double>(*middle);
+}
+
+}  // namespace
+
+ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn,
+                        const Isometry3d& start, const Vector3d& middle, int threads,
+                        const std::stop_token& stop) {
+  Comparison compared{.placed = placed,
+                      .turn = turn,
+                      .of_turn = readings_of(turn),
+                      .of_placed = {},
+                      .middle = middle};
+  for (const PlacedTurn& other : placed) {
+    compared.of_placed.push_back(readings_of(*other.turn));
+  }
+  ReadingFit result{.object_from_turn = start};
+  StopFit last;
+  for (int i = 0; i < max_iterations; ++i) {
+    last = compare(compared, result.object_from_turn, threads, stop);
+    const Isometry3d motion = last.fit.motion();
+    result.object_from_turn = motion * result.object_from_turn;
+    if (length_of(motion, middle) < settled) {
+      break;
+    }
+  }
+  const RigidFit::Matrix6d covariance = last.fit.covariance(compared.of_turn.correlation);
+  result.direction_sigma = largest_sigma(covariance.topLeftCorner<3, 3>());
+  result.position_sigma = largest_sigma(covariance.bottomRightCorner<3, 3>());
+  result.residual = median(std::move(last.distances));
+  return result;
+}
+
+}  // namespace octurn

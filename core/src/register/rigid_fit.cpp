@@ -1,0 +1,77 @@
+#include "register/rigid_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double max_motion = 0.1;  // radians or metres
+constexpr double lever = 0.05;      // metres
+
+// A motion that nothing opposes, as the turn of a vase about its axis, is kept small by a prior: as
+// if so small a share of the weight lay at the lever and opposed it.
+constexpr double damping = 1e-4;
+
+}  // namespace
+
+void RigidFit::add(const Vector3d& point, const Vector3d& normal, double distance,
+                   double of_weight) {
+  Vector6d row;
+  row << (point - middle).cross(normal), normal;
+  normal_matrix += of_weight * row * row.transpose();
+  right -= of_weight * distance * row;
+  weight += of_weight;
+  squares += of_weight * distance * distance;
+  ++count;
+}
+
+void RigidFit::operator+=(const RigidFit& other) {
+  normal_matrix += other.normal_matrix;
+  right += other.right;
+  weight += other.weight;
+  squares += other.squares;
+  count += other.count;
+}
+
+RigidFit::Matrix6d RigidFit::damped() const {
+  Matrix6d matrix = normal_matrix;
+  matrix.diagonal().head<3>().array() += damping * lever * lever * weight;
+  matrix.diagonal().tail<3>().array() += damping * weight;
+  return matrix;
+}
+
+Eigen::Isometry3d RigidFit::motion() const {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  if (count == 0) {
+    return motion;
+  }
+  Vector6d wanted = damped().ldlt().solve(right);
+  if (!wanted.allFinite()) {
+    return motion;
+  }
+  wanted *= std::min(1.0, max_motion / std::max(wanted.cwiseAbs().maxCoeff(), 1e-12));
+  const Vector3d rotation = wanted.head<3>();
+  const double angle = rotation.norm();
+  if (angle > 0) {
+    motion.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+  }
+  motion.translation() = middle + wanted.tail<3>() - motion.linear() * middle;
+  return motion;
+}
+
+RigidFit::Matrix6d RigidFit::covariance(double correlation) const {
+  const double variance = weight > 0 ? squares / weight * correlation : 1;
+  return damped().inverse() * variance;
+}
+
+double length_of(const Eigen::Isometry3d& motion, const Vector3d& middle) {
+  const Vector3d shift = motion * middle - middle;
+  return shift.norm() + lever * Eigen::AngleAxisd(motion.linear()).angle();
+}
+
+}  // namespace octurn

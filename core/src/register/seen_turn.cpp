@@ -1,0 +1,121 @@
+#include "register/seen_turn.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double platform_margin = 0.004;  // metres: readings below may be the platform's
+constexpr double cell_side = 0.002;        // metres
+constexpr std::size_t many_stops = 16;     // of which every other pixel is enough
+constexpr std::size_t min_readings = 3;    // in a cell
+constexpr double min_agreement = 0.7;      // length of the mean of a cell's normals
+constexpr double max_below = 0.004;        // metres below a platform where nothing can be
+constexpr int min_witnesses = 2;           // stops that saw through a point
+
+struct Cell {
+  Vector3d point = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  std::size_t count = 0;
+};
+
+using CellKey = std::tuple<int, int, int>;
+
+CellKey to_key(const Vector3d& point) {
+  const auto at = [&](Eigen::Index axis) {
+    return static_cast<int>(std::floor(point[axis] / cell_side));
+  };
+  return {at(2), at(1), at(0)};
+}
+
+std::vector<SurfacePoint> mean_points(const std::vector<std::vector<SurfacePoint>>& of_stops) {
+  std::map<CellKey, Cell> cells;
+  for (const std::vector<SurfacePoint>& readings : of_stops) {
+    for (const SurfacePoint& reading : readings) {
+      Cell& cell = cells[to_key(reading.point)];
+      cell.point += reading.point;
+      cell.normal += reading.normal;
+      ++cell.count;
+    }
+  }
+  std::vector<SurfacePoint> points;
+  for (const auto& [key, cell] : cells) {
+    const auto count = static_cast<double>(cell.count);
+    if (cell.count >= min_readings && cell.normal.norm() > min_agreement * count) {
+      points.push_back({.point = cell.point / count, .normal = cell.normal.normalized()});
+    }
+  }
+  return points;
+}
+
+bool contradicts(const SeenTurn& turn, const Vector3d& point) {
+  if (point.z() < -max_below) {
+    return true;
+  }
+  int witnesses = 0;
+  for (const StopView& view : turn.stops) {
+    witnesses += view.saw_through(point) ? 1 : 0;
+    if (witnesses == min_witnesses) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_token& stop) {
+  Box object = turn.clip;
+  object.min.z() = std::max(object.min.z(), platform_margin);
+  std::vector<std::optional<StopView>> views(turn.angles.size());
+  std::vector<std::vector<SurfacePoint>> readings(views.size());
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t i = next++; i < views.size(); i = next++) {
+      throw_if_stopped(stop);
+      views[i].emplace(turn.read(i), turn.intrinsics,
+                       object_from_sensor(turn.platform_from_sensor, turn.angles[i]), object);
+      readings[i] = views[i]->readings(views.size() < many_stops ? 1 : 2);
+    }
+  });
+  SeenTurn seen{.stops = {}, .points = mean_points(readings)};
+  for (auto& view : views) {
+    seen.stops.push_back(*std::move(view));
+  }
+  return seen;
+}
+
+std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::size_t count) {
+  if (points.size() <= count) {
+    return points;
+  }
+  std::vector<SurfacePoint> some;
+  some.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    some.push_back(points[i * points.size() / count]);
+  }
+  return some;
+}
+
+double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,
+                          const Eigen::Isometry3d& turn_from_points) {
+  const auto contradicted = std::ranges::count_if(points, [&](const SurfacePoint& point) {
+    return contradicts(turn, turn_from_points * point.point);
+  });
+  return points.empty() ? 0
+                        : static_cast<double>(contradicted) / static_cast<double>(points.size());
+}
+
+}  // namespace octurn

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "octurn/register.hpp"
+#include "register/stop_view.hpp"
+
+namespace octurn {
+
+/// What one turn saw of the object, in its own frame: the platform's at angle 0.
+struct SeenTurn {
+  std::vector<StopView> stops = {};
+  /// Means of the readings in cells of 2 mm that several readings fell in, in a fixed order.
+  std::vector<SurfacePoint> points = {};
+};
+
+/// Reads the depth images of a turn. @throws  as `register_turns`
+SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_token& stop);
+
+/// About so many of the points, spread evenly over them.
+std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::size_t count);
+
+/// Share of the points where a turn saw that nothing is: several of its stops saw through them, or
+/// they lie below its platform.
+/// @param turn_from_points  takes the points to the turn's frame
+double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,
+                          const Eigen::Isometry3d& turn_from_points);
+
+}  // namespace octurn

@@ -1,0 +1,112 @@
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "commands/commands.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "scan/merged_scan.hpp"
+#include "scan/scan_settings.hpp"
+#include "signal_stop.hpp"
+#include "standard_output.hpp"
+
+namespace octurn {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const RegisteredPose& pose) {
+  Json matrix = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    Json values = Json::array();
+    for (int column = 0; column < 4; ++column) {
+      values.push_back(pose.object_from_platform(row, column));
+    }
+    matrix.push_back(std::move(values));
+  }
+  return {{"object_from_platform", std::move(matrix)},
+          {"sigma_mm", mm_from_metres(pose.position_sigma)},
+          {"sigma_deg", degrees_from_radians(pose.direction_sigma)},
+          {"overlap", pose.overlap},
+          {"residual_mm", mm_from_metres(pose.residual)},
+          {"contradiction", pose.contradiction},
+          {"symmetric", pose.symmetric}};
+}
+
+Json to_json(const Registration& registration) {
+  bool symmetric = false;
+  Json poses = Json::array();
+  for (const RegisteredPose& pose : registration.poses) {
+    poses.push_back(to_json(pose));
+    symmetric = symmetric || pose.symmetric;
+  }
+  return {{"accepted", registration.accepted},
+          {"reason", registration.reason},
+          {"symmetric", symmetric},
+          {"poses", std::move(poses)}};
+}
+
+/// The answer as lines for people.
+std::string to_text(const Registration& registration, const std::vector<StoredTurn>& turns) {
+  if (!registration.accepted) {
+    return "Not merged: " + registration.reason + ".\n";
+  }
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  for (std::size_t i = 1; i < registration.poses.size(); ++i) {
+    if (turns[i].object_from_platform) {
+      continue;
+    }
+    const RegisteredPose& pose = registration.poses[i];
+    const Eigen::AngleAxisd turned(pose.object_from_platform.linear());
+    text << "Pose " << i << " lies " << std::lround(degrees_from_radians(turned.angle()))
+         << " degrees from the first, and shares " << std::lround(100 * pose.overlap)
+         << " % of its surface, to within " << mm_from_metres(pose.residual) << " mm.\n";
+    if (pose.symmetric) {
+      text << "The object is symmetric: other poses give the same shape.\n";
+    } else {
+      text << "Known to " << mm_from_metres(pose.position_sigma) << " mm and "
+           << degrees_from_radians(pose.direction_sigma) << " degrees.\n";
+    }
+  }
+  return text.str();
+}
+
+void expect_absent(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (folder.empty()) {
+    throw Error(ErrorCode::bad_settings, "--output is empty: must be a folder");
+  }
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    throw Error(ErrorCode::write_failed, folder.string() + ": is there already",
+                "Name a folder that does not exist yet.");
+  }
+}
+
+}  // namespace
+
+bool merge(const MergeArguments& arguments) try {
+  const SignalStop signal;
+  const int threads = available_threads();
+  expect_absent(arguments.output);
+  std::vector<StoredTurn> turns = read_turns(arguments.folders);
+  if (turns.size() < 2) {
+    throw Error(ErrorCode::bad_settings, "one turn alone: there is nothing to merge it with",
+                "Name the folders of two scans of the object.");
+  }
+  solve_rigs(turns, threads, signal.token());
+  const Registration registration = register_turns(turns, threads, signal.token());
+  if (registration.accepted) {
+    write_merged_scan(arguments.output, turns, registration);
+  }
+  write_standard_output(arguments.json ? to_json(registration).dump() + "\n"
+                                       : to_text(registration, turns));
+  return registration.accepted;
+} catch (const Stopped&) {
+  throw_stopped("nothing was merged");
+}
+
+}  // namespace octurn

@@ -1,0 +1,170 @@
+#include "scan/merged_scan.hpp"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "scan/solve_pose.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One pose of a scan, as a scan of one turn.
+Scan to_turn(const Scan& scan, int number) {
+  const ScanPose& pose = scan.poses[static_cast<std::size_t>(number)];
+  Scan turn = scan;
+  turn.poses.clear();
+  turn.shots.clear();
+  turn.platform_from_sensor = pose.platform_from_sensor;
+  turn.solved = pose.solved;
+  turn.clip = pose.clip;
+  for (Shot shot : scan.shots) {
+    if (shot.pose == number) {
+      shot.pose = 0;
+      turn.shots.push_back(std::move(shot));
+    }
+  }
+  return turn;
+}
+
+void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
+  const Scan scan = read_scan(folder);
+  const auto refuse = [&](const std::string& what, const std::string& hint) {
+    throw Error(ErrorCode::scan_malformed, folder.string() + ": " + what, hint);
+  };
+  if (!turns.empty() && !(turns.front().scan.intrinsics == scan.intrinsics)) {
+    refuse("is of another sensor than " + turns.front().folder.string(),
+           "Merge scans of one sensor.");
+  }
+  if (is_one_turn(scan)) {
+    turns.push_back({.folder = folder, .scan = scan, .object_from_platform = {}});
+    return;
+  }
+  if (scan.poses.empty()) {
+    refuse("is no turn: its snapshots tell their own poses", "Merge scans of the turntable.");
+  }
+  const bool is_first = turns.empty();
+  for (std::size_t i = 0; i < scan.poses.size(); ++i) {
+    StoredTurn turn{.folder = folder, .scan = to_turn(scan, static_cast<int>(i))};
+    if (!is_one_turn(turn.scan) || turn.scan.shots.empty()) {
+      refuse("pose " + std::to_string(i) + " is no turn of the platform",
+             "Merge scans of the turntable.");
+    }
+    if (is_first) {
+      turn.object_from_platform = scan.poses[i].object_from_platform;
+    }
+    turns.push_back(std::move(turn));
+  }
+}
+
+/// A file under another name: a link to the same bytes, or a copy.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_hard_link(fs::canonical(from), to, error);
+  if (error) {
+    fs::copy_file(from, to);
+  }
+}
+
+/// Files the snapshots of all turns into a folder. @return the scan that they make
+Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
+            const Registration& registration) {
+  Scan merged = turns.front().scan;
+  merged.shots.clear();
+  fs::create_directories(folder / "snapshots");
+  if (merged.sensor_map) {
+    link_or_copy(turns.front().folder / sensor_map_file, folder / sensor_map_file);
+  }
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Scan& scan = turns[i].scan;
+    merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
+                            .platform_from_sensor = scan.platform_from_sensor,
+                            .solved = scan.solved,
+                            .clip = scan.clip});
+    for (Shot shot : scan.shots) {
+      const std::string file = shot_file(static_cast<int>(merged.shots.size()));
+      link_or_copy(turns[i].folder / shot.file, folder / file);
+      shot.file = file;
+      shot.pose = static_cast<int>(i);
+      merged.shots.push_back(std::move(shot));
+    }
+  }
+  return merged;
+}
+
+}  // namespace
+
+std::vector<StoredTurn> read_turns(const std::vector<fs::path>& folders) {
+  std::vector<StoredTurn> turns;
+  for (const fs::path& folder : folders) {
+    append_turns(turns, folder);
+  }
+  return turns;
+}
+
+void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop) {
+  for (StoredTurn& turn : turns) {
+    if (turn.scan.solved) {
+      continue;
+    }
+    const CalibrationReport report =
+        solve_pose(turn.scan, stored_snapshots(turn.folder, turn.scan, stop), threads);
+    if (report.accepted && !report.confirms_told()) {
+      turn.scan.solved = to_solved_pose(report);
+    }
+  }
+}
+
+Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
+                            const std::stop_token& stop) {
+  std::vector<RegistrationTurn> seen;
+  for (const StoredTurn& turn : turns) {
+    RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
+                         .platform_from_sensor = model_pose(turn.scan),
+                         .angles = {},
+                         .clip = turn.scan.clip,
+                         .read = {},
+                         .object_from_platform = turn.object_from_platform};
+    for (const Shot& shot : turn.scan.shots) {
+      one.angles.push_back(shot.angle);
+    }
+    one.read = [snapshots = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t index) {
+      return snapshots.read(index).frame;
+    };
+    seen.push_back(std::move(one));
+  }
+  return register_turns(seen, threads, stop);
+}
+
+void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& turns,
+                       const Registration& registration) {
+  const fs::path target = fs::absolute(folder / "").parent_path();
+  fs::path temporary;
+  for (int attempt = 0; temporary.empty() || fs::exists(temporary); ++attempt) {
+    temporary = temporary_name(target, attempt);
+  }
+  try {
+    write_scan(temporary, gather(temporary, turns, registration));
+    sync_folder(temporary / "snapshots");
+    sync_folder(temporary);
+    fs::rename(temporary, target);
+    sync_folder(target.parent_path());
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    const bool is_full = error.code() == std::errc::no_space_on_device;
+    throw Error(is_full ? ErrorCode::disk_full : ErrorCode::write_failed,
+                target.string() + ": " + error.code().message());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace octurn

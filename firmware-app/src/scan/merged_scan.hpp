@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <vector>
+
+#include "octurn/register.hpp"
+#include "octurn/scan_folder.hpp"
+
+namespace octurn {
+
+/// One turn of the platform in a stored scan.
+struct StoredTurn {
+  std::filesystem::path folder = {};
+  Scan scan = {};  ///< of this turn alone: its shots, rig and clip box, and no poses
+  /// How the object lay, if the folder tells it.
+  std::optional<Eigen::Isometry3d> object_from_platform = {};
+};
+
+/// The turns of scan folders, in their order. How the object lay is known of the first folder's
+/// alone: each folder has an object's frame of its own.
+/// @throws Error "scan-malformed"  if a scan has no turns, or another sensor than the first; others
+///                                 as `read_scan`
+std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& folders);
+
+/// Solves the pose of the sensor for each turn that has none, from its snapshots. What is not
+/// accepted, or merely confirms the told pose, leaves that.
+void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
+
+/// Registers the turns. @throws Error, Stopped  as `read_snapshot` and `register_turns`
+Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
+                            const std::stop_token& stop);
+
+/// Writes one scan folder of several poses, whole or not at all: its snapshots are hard links to
+/// those of the turns, or copies where the file system has no such links.
+///
+/// @param folder  must not exist, or be empty
+/// @throws Error "disk-full", "write-failed"
+void write_merged_scan(const std::filesystem::path& folder, const std::vector<StoredTurn>& turns,
+                       const Registration& registration);
+
+}  // namespace octurn

@@ -9,6 +9,7 @@
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
+#include "register/contact.hpp"
 #include "register/rigid_fit.hpp"
 
 namespace octurn {
@@ -24,7 +25,8 @@ constexpr double far_limit = 0.012;    // metres, at the first iterations
 constexpr double near_limit = 0.004;   // at the last
 constexpr int approach = 8;            // iterations from the one to the other
 constexpr double cauchy_scale = 0.002;
-constexpr double settled = 1e-5;  // metres
+constexpr double settled = 1e-5;      // metres
+constexpr double contact_weight = 4;  // of a point of a flat foot: platforms are known well
 
 // Two poses that are nearer are the same.
 constexpr double same_angle_deg = 4;
@@ -98,6 +100,16 @@ RigidFit fit(const NearestPoints& target, const std::vector<SurfacePoint>& point
   return fit;
 }
 
+void add_contacts(RigidFit& fit, const Stands& stands, const std::vector<SurfacePoint>& points,
+                  const Eigen::Isometry3d& pose) {
+  for (const Eigen::Isometry3d& target_from_platform : stands.target_from_platforms) {
+    const Contact foot = find_contact(points, target_from_platform.inverse() * pose, stands.share);
+    add_moving_foot(fit, foot, pose, contact_weight);
+  }
+  const Contact foot = find_contact(stands.target_points, pose.inverse(), stands.target_share);
+  add_moving_platform(fit, foot, Eigen::Isometry3d::Identity(), contact_weight);
+}
+
 }  // namespace
 
 std::vector<PoseCandidate> search_poses(const NearestPoints& target,
@@ -116,13 +128,16 @@ std::vector<PoseCandidate> search_poses(const NearestPoints& target,
   return all;
 }
 
-PoseCandidate refine(const NearestPoints& target, const std::vector<SurfacePoint>& points,
-                     PoseCandidate candidate, int iterations) {
+PoseCandidate refine(const NearestPoints& target, const Stands& stands,
+                     const std::vector<SurfacePoint>& points, PoseCandidate candidate,
+                     int iterations) {
   Eigen::Isometry3d& pose = candidate.target_from_points;
   for (int i = 0; i < iterations; ++i) {
     const double far = std::max(1 - static_cast<double>(i) / approach, 0.0);
     const double limit = near_limit + far * (far_limit - near_limit);
-    const Eigen::Isometry3d motion = fit(target, points, pose, limit).motion();
+    RigidFit step = fit(target, points, pose, limit);
+    add_contacts(step, stands, points, pose);
+    const Eigen::Isometry3d motion = step.motion();
     pose = motion * pose;
     if (i > approach && length_of(motion, target.middle()) < settled) {
       break;

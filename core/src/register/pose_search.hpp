@@ -16,6 +16,14 @@ struct PoseCandidate {
   double contradiction = 0;  ///< 0 to 2, by free space
 };
 
+/// The platforms, which tell how high a flat foot stood.
+struct Stands {
+  std::vector<Eigen::Isometry3d> target_from_platforms = {};  ///< of the target's turns
+  std::vector<SurfacePoint> target_points = {};               ///< some of the target's
+  double target_share = 1;                                    ///< that these are of all
+  double share = 1;  ///< that the points which are refined are of all
+};
+
 /// Looks for poses of points on a target in all rotations, about 15 degrees apart
 /// (Super-Fibonacci spirals, Alexa 2022), each shifted from middle on middle to where the points
 /// find the target nearest (mean shift).
@@ -25,9 +33,11 @@ std::vector<PoseCandidate> search_poses(const NearestPoints& target,
                                         const std::vector<SurfacePoint>& points, int threads,
                                         const std::stop_token& stop);
 
-/// Refines a candidate by point-to-plane ICP.
-PoseCandidate refine(const NearestPoints& target, const std::vector<SurfacePoint>& points,
-                     PoseCandidate candidate, int iterations);
+/// Refines a candidate by point-to-plane ICP, flat feet on their platforms. The points are in the
+/// frame of their platform.
+PoseCandidate refine(const NearestPoints& target, const Stands& stands,
+                     const std::vector<SurfacePoint>& points, PoseCandidate candidate,
+                     int iterations);
 
 /// Drops all but the best of candidates that are nearly the same pose.
 /// @param middle  of the points

@@ -7,6 +7,7 @@
 
 #include "octurn/snapshot.hpp"
 #include "parallel/fork_join.hpp"
+#include "register/contact.hpp"
 
 namespace octurn {
 namespace {
@@ -23,11 +24,12 @@ constexpr double min_agreement = 0.7;      // cosine between two normals of one 
 constexpr double max_distance = 0.004;     // metres
 constexpr double cauchy_scale = 0.0015;    // metres
 constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
+constexpr double contact_weight = 20;      // of a cell of a flat foot: a mean of many readings
 
 /// Readings of all stops of a turn.
 struct Readings {
   std::vector<std::vector<SurfacePoint>> of_stops = {};
-  double correlation = 1;  ///< readings for each that is independent
+  double per_patch = 1;  ///< that lie where the sensor's errors are alike
 };
 
 Readings readings_of(const SeenTurn& turn) {
@@ -37,8 +39,7 @@ Readings readings_of(const SeenTurn& turn) {
   }
   const double each = pixels / static_cast<double>(std::max<std::size_t>(turn.stops.size(), 1));
   const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
-  Readings readings{.of_stops = {},
-                    .correlation = std::max(1.0, correlated_pixels / (step * step))};
+  Readings readings{.of_stops = {}, .per_patch = std::max(1.0, correlated_pixels / (step * step))};
   for (const StopView& view : turn.stops) {
     readings.of_stops.push_back(view.readings(step));
   }
@@ -53,11 +54,13 @@ struct Match {
 
 /// Calls `visit(Match)` for each stop of `other` that saw a reading's place.
 /// @param other_from_reading  from the frame of the reading's turn
+/// @return whether any did
 template <typename Visit>
-void match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d& other_from_reading,
+bool match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d& other_from_reading,
            Visit visit) {
   const Vector3d point = other_from_reading * reading.point;
   const Vector3d normal = other_from_reading.linear() * reading.normal;
+  bool any = false;
   for (const StopView& view : other.stops) {
     const Vector3d to_eye = view.eye() - point;
     if (normal.dot(to_eye) < min_cosine * to_eye.norm()) {
@@ -67,14 +70,17 @@ void match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d&
     if (surface && surface->normal.dot(normal) > min_agreement &&
         std::abs(surface->normal.dot(point - surface->point)) < max_distance) {
       visit(Match{.reading = reading, .surface = *surface});
+      any = true;
     }
   }
+  return any;
 }
 
 /// The normal equations of one stop's readings, and the magnitudes of its distances.
 struct StopFit {
   RigidFit fit = {};
   std::vector<float> distances = {};
+  std::size_t matched = 0;  // readings that were compared
 
   void add(const Vector3d& point, const Vector3d& normal, double distance) {
     fit.add(point, normal, distance, cauchy_weight(distance, cauchy_scale));
@@ -96,11 +102,12 @@ void add_own(StopFit& fit, const Comparison& compared, std::size_t stop, const I
   for (const PlacedTurn& placed : compared.placed) {
     const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
     for (const SurfacePoint& reading : compared.of_turn.of_stops[stop]) {
-      match(reading, *placed.turn, placed_from_turn, [&](const Match& pair) {
+      const bool any = match(reading, *placed.turn, placed_from_turn, [&](const Match& pair) {
         const Vector3d at = pose * pair.reading.point;
         const Vector3d normal = placed.object_from_turn.linear() * pair.surface.normal;
         fit.add(at, normal, normal.dot(at - placed.object_from_turn * pair.surface.point));
       });
+      fit.matched += any ? 1 : 0;
     }
   }
 }
@@ -111,11 +118,12 @@ void add_placed(StopFit& fit, const Comparison& compared, std::size_t which, std
   const PlacedTurn& placed = compared.placed[which];
   const Isometry3d turn_from_placed = pose.inverse() * placed.object_from_turn;
   for (const SurfacePoint& reading : compared.of_placed[which].of_stops[stop]) {
-    match(reading, compared.turn, turn_from_placed, [&](const Match& pair) {
+    const bool any = match(reading, compared.turn, turn_from_placed, [&](const Match& pair) {
       const Vector3d at = pose * pair.surface.point;
       const Vector3d normal = pose.linear() * pair.surface.normal;
       fit.add(at, normal, normal.dot(at - placed.object_from_turn * pair.reading.point));
     });
+    fit.matched += any ? 1 : 0;
   }
 }
 
@@ -152,9 +160,29 @@ StopFit compare(const Comparison& compared, const Isometry3d& pose, int threads,
   all.fit.middle = compared.middle;
   for (const StopFit& fit : fits) {
     all.fit += fit.fit;
+    all.matched += fit.matched;
     all.distances.insert(all.distances.end(), fit.distances.begin(), fit.distances.end());
   }
   return all;
+}
+
+/// What flat feet say that stood on platforms.
+void add_contacts(RigidFit& fit, const Comparison& compared, const Isometry3d& pose) {
+  for (const PlacedTurn& placed : compared.placed) {
+    const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
+    add_moving_foot(fit, find_contact(compared.turn.points, placed_from_turn, 1), pose,
+                    contact_weight);
+    add_moving_platform(fit, find_contact(placed.turn->points, placed_from_turn.inverse(), 1),
+                        placed.object_from_turn, contact_weight);
+  }
+}
+
+/// Comparisons for each that is independent: a patch of alike errors takes part in those of its
+/// own readings and, in as many again, as the surface that other readings are compared with.
+double correlation_of(const StopFit& fit, double readings_per_patch) {
+  const auto pairs = static_cast<double>(fit.distances.size());
+  return 2 * readings_per_patch * pairs /
+         static_cast<double>(std::max<std::size_t>(fit.matched, 1));
 }
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
@@ -188,13 +216,15 @@ ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn
   StopFit last;
   for (int i = 0; i < max_iterations; ++i) {
     last = compare(compared, result.object_from_turn, threads, stop);
+    add_contacts(last.fit, compared, result.object_from_turn);
     const Isometry3d motion = last.fit.motion();
     result.object_from_turn = motion * result.object_from_turn;
     if (length_of(motion, middle) < settled) {
       break;
     }
   }
-  const RigidFit::Matrix6d covariance = last.fit.covariance(compared.of_turn.correlation);
+  const RigidFit::Matrix6d covariance =
+      last.fit.covariance(correlation_of(last, compared.of_turn.per_patch));
   result.direction_sigma = largest_sigma(covariance.topLeftCorner<3, 3>());
   result.position_sigma = largest_sigma(covariance.bottomRightCorner<3, 3>());
   result.residual = median(std::move(last.distances));

@@ -14,6 +14,7 @@
 #include "register/nearest_points.hpp"
 #include "register/pose_search.hpp"
 #include "register/reading_fit.hpp"
+#include "register/same_shape.hpp"
 #include "register/seen_turn.hpp"
 
 namespace octurn {
@@ -37,12 +38,6 @@ constexpr double similar_overlap = 0.85;  // of the best one's
 constexpr double similar_residual = 1.5;
 constexpr double min_overlap = 0.15;
 constexpr double max_residual = 0.0015;  // metres
-
-// Two answers give the same shape if nearly all that the one shows lies on the other.
-constexpr double same_surface = 0.0015;  // metres, along the normal
-constexpr double same_point = 0.003;     // metres, whatever the normal: near an edge there are two
-constexpr double foot = 0.002;           // metres from a platform: a flat foot is made there
-constexpr double max_other_share = 0.04;
 
 /// What all placed turns saw, in the object's frame.
 struct Target {
@@ -73,20 +68,37 @@ double contradiction(const Target& target, const SeenTurn& turn,
   return worst + contradicted_share(turn, target_points, pose.inverse());
 }
 
+/// @param points  some of the turn's
+Stands make_stands(const Target& target, const SeenTurn& turn,
+                   const std::vector<SurfacePoint>& points, std::size_t point_count) {
+  const auto share = [](const auto& some, const auto& all) {
+    return static_cast<double>(some.size()) /
+           static_cast<double>(std::max<std::size_t>(all.size(), 1));
+  };
+  Stands stands{.target_from_platforms = {},
+                .target_points = thinned(target.points.points(), point_count)};
+  stands.target_share = share(stands.target_points, target.points.points());
+  stands.share = share(points, turn.points);
+  for (const PlacedTurn& placed : target.turns) {
+    stands.target_from_platforms.push_back(placed.object_from_turn);
+  }
+  return stands;
+}
+
 /// Refines and judges candidates with so many points. @return the distinct ones, the best first
 std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const Target& target,
                                   const SeenTurn& turn, std::size_t point_count, int steps,
                                   int threads, const std::stop_token& stop) {
   const std::vector<SurfacePoint> points = thinned(turn.points, point_count);
-  const std::vector<SurfacePoint> target_points = thinned(target.points.points(), point_count);
+  const Stands stands = make_stands(target, turn, points, point_count);
   std::atomic<std::size_t> next = 0;
   fork_join(threads, [&](int) {
     for (std::size_t i = next++; i < candidates.size(); i = next++) {
       throw_if_stopped(stop);
       PoseCandidate& candidate = candidates[i];
-      candidate = refine(target.points, points, candidate, steps);
+      candidate = refine(target.points, stands, points, candidate, steps);
       candidate.contradiction =
-          contradiction(target, turn, points, target_points, candidate.target_from_points);
+          contradiction(target, turn, points, stands.target_points, candidate.target_from_points);
     }
   });
   std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
@@ -102,36 +114,6 @@ std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn&
       judged(std::move(candidates), target, turn, searched_points, rough_iterations, threads, stop);
   candidates.resize(std::min(candidates.size(), refined_poses));
   return judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
-}
-
-/// Share of points that neither of two surfaces has.
-/// @param b_from_points  the second surface's frame from the points'
-double other_share(const NearestPoints& a, const Isometry3d& a_from_points, const NearestPoints& b,
-                   const Isometry3d& b_from_points, const std::vector<SurfacePoint>& points) {
-  const auto on = [](const NearestPoints& surface, const Isometry3d& pose,
-                     const SurfacePoint& point) {
-    const Vector3d at = pose * point.point;
-    if (std::abs(at.z()) < foot) {
-      return true;
-    }
-    const SurfacePoint* const nearest = surface.find(at);
-    return nearest != nullptr &&
-           (std::abs(nearest->normal.dot(at - nearest->point)) < same_surface ||
-            (at - nearest->point).norm() < same_point);
-  };
-  const auto others = std::ranges::count_if(points, [&](const SurfacePoint& point) {
-    return !on(a, a_from_points, point) && !on(b, b_from_points, point);
-  });
-  return static_cast<double>(others) / static_cast<double>(points.size());
-}
-
-/// Whether the object has the same shape by two poses of a turn: what the turn saw, placed by the
-/// one, is on what is there by the other.
-bool same_shape(const Target& target, const NearestPoints& turn, const Isometry3d& one,
-                const Isometry3d& other) {
-  const std::vector<SurfacePoint> points = thinned(turn.points(), refined_points);
-  return other_share(target.points, other, turn, one.inverse() * other, points) < max_other_share &&
-         other_share(target.points, one, turn, other.inverse() * one, points) < max_other_share;
 }
 
 std::string text(const char* format, double value) {
@@ -161,6 +143,39 @@ std::string refuse(const PoseCandidate& best) {
   return {};
 }
 
+/// Whether a candidate fits about as well as the best one, and did not slide beside it.
+bool is_rival(const PoseCandidate& candidate, const PoseCandidate& best) {
+  return candidate.contradiction <= best.contradiction + min_lead &&
+         candidate.residual <= similar_residual * best.residual &&
+         candidate.overlap >= similar_overlap * best.overlap;
+}
+
+/// What the candidates beside the best one, the first, say.
+struct Rivals {
+  bool symmetric = false;
+  std::string reason = {};  // to refuse, or empty
+};
+
+Rivals compare_rivals(const Target& target, const NearestPoints& turn,
+                      const std::vector<PoseCandidate>& candidates) {
+  const PoseCandidate& best = candidates.front();
+  Rivals rivals;
+  for (auto other = candidates.begin() + 1; other != candidates.end(); ++other) {
+    if (!is_rival(*other, best)) {
+      continue;
+    }
+    if (!same_shape(target.points, turn, best.target_from_points, other->target_from_points)) {
+      const Eigen::AngleAxisd between(best.target_from_points.linear().transpose() *
+                                      other->target_from_points.linear());
+      rivals.reason = "two poses that are " + text("%.0f", degrees_from_radians(between.angle())) +
+                      " degrees apart fit alike, and give different shapes";
+      break;
+    }
+    rivals.symmetric = true;
+  }
+  return rivals;
+}
+
 Answer answer(const Target& target, const SeenTurn& turn, int threads,
               const std::stop_token& stop) {
   if (turn.points.size() < min_points) {
@@ -175,24 +190,9 @@ Answer answer(const Target& target, const SeenTurn& turn, int threads,
     return {.pose = {}, .reason = std::move(reason)};
   }
   const NearestPoints points(turn.points);
-  bool symmetric = false;
-  for (auto other = candidates.begin() + 1; other != candidates.end(); ++other) {
-    if (other->contradiction > best.contradiction + min_lead) {
-      break;
-    }
-    if (other->overlap < similar_overlap * best.overlap ||
-        other->residual > similar_residual * best.residual) {
-      continue;  // not settled: it slid beside the best one
-    }
-    if (!same_shape(target, points, best.target_from_points, other->target_from_points)) {
-      const Eigen::AngleAxisd between(best.target_from_points.linear().transpose() *
-                                      other->target_from_points.linear());
-      return {.pose = {},
-              .reason = "two poses that are " +
-                        text("%.0f", degrees_from_radians(between.angle())) +
-                        " degrees apart fit alike, and give different shapes"};
-    }
-    symmetric = true;
+  const Rivals rivals = compare_rivals(target, points, candidates);
+  if (!rivals.reason.empty()) {
+    return {.pose = {}, .reason = rivals.reason};
   }
   const Vector3d middle = best.target_from_points * points.middle();
   const ReadingFit fit =
@@ -203,7 +203,7 @@ Answer answer(const Target& target, const SeenTurn& turn, int threads,
                    .overlap = best.overlap,
                    .residual = fit.residual,
                    .contradiction = best.contradiction,
-                   .symmetric = symmetric},
+                   .symmetric = rivals.symmetric},
           .reason = {}};
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "core/register/laid_down.hpp"
@@ -83,6 +84,60 @@ TEST(RegisterTurns, RefusesAnEmptyPlatform) {
 
   EXPECT_FALSE(found.accepted);
   EXPECT_NE(found.reason.find("turn 1"), std::string::npos) << found.reason;
+}
+
+/// A prism that has a face for each side, but none that is slanted: turned over, it shares no face
+/// that tells how high it stood. Its plan is no mirror image of itself.
+Shape prism() {
+  const Eigen::Vector3d aside(0.025, 0.02, 0);
+  return joined(block({0.1, 0.03, 0.05}), moved(block({0.03, 0.08, 0.05}), aside));
+}
+
+// A platform's plane is known to 0.02 mm, and the mean of a face of some 40 cm2 to better than 0.1.
+TEST(RegisterTurns, SetsAFlatFootOnItsPlatform) {
+  const Eigen::Isometry3d truth = turned_over(0.05);
+
+  const Registration found =
+      register_turns(std::array{laid_turn(prism(), stops), laid_turn(prism(), stops, truth)});
+
+  ASSERT_TRUE(found.accepted) << found.reason;
+  expect_near(found.poses[1].object_from_platform, truth, 0.3, 0.3);
+}
+
+// Each of four poses is right: the true one takes the block to where the found one has it.
+TEST(RegisterTurns, TellsThatABlockIsSymmetric) {
+  const Eigen::Vector3d size(0.09, 0.06, 0.05);
+  const Eigen::Isometry3d truth = turned_over(size.z());
+
+  const Registration found = register_turns(
+      std::array{laid_turn(block(size), stops), laid_turn(block(size), stops, truth)});
+
+  ASSERT_TRUE(found.accepted) << found.reason;
+  EXPECT_TRUE(found.poses[1].symmetric);
+  const Eigen::Isometry3d error = found.poses[1].object_from_platform * truth.inverse();
+  for (const double z : {0.0, size.z()}) {
+    const Eigen::Vector3d corner(size.x() / 2, size.y() / 2, z);
+    const Eigen::Vector3d moved_to = error * corner;
+    EXPECT_NEAR(std::abs(moved_to.x()), corner.x(), 0.0005);
+    EXPECT_NEAR(std::abs(moved_to.y()), corner.y(), 0.0005);
+    EXPECT_NEAR(std::abs(moved_to.z() - size.z() / 2), size.z() / 2, 0.0005);
+  }
+}
+
+// Any rotation is right; the middle must stay.
+TEST(RegisterTurns, TellsThatABallIsSymmetric) {
+  const Shape round = ball({0, 0, 0.04}, 0.04);
+  const Eigen::Isometry3d truth = turned_over(0.08);
+
+  const Registration found =
+      register_turns(std::array{laid_turn(round, stops), laid_turn(round, stops, truth)});
+
+  ASSERT_TRUE(found.accepted) << found.reason;
+  EXPECT_TRUE(found.poses[1].symmetric);
+  const Eigen::Vector3d middle(0, 0, 0.04);
+  const Eigen::Vector3d found_middle =
+      found.poses[1].object_from_platform * (truth.inverse() * middle);
+  EXPECT_NEAR((found_middle - middle).norm(), 0, 0.0003);
 }
 
 // The first turn shows a square block; only the second one shows the dent in its underside, which

@@ -1,0 +1,97 @@
+// `octurn merge`, as its users meet it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/register/laid_down.hpp"
+#include "octurn/depth_png.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t stops = 8;
+
+/// The volume of a shape above the platform, in cubes of 2 mm.
+double volume_cm3(const Shape& shape) {
+  constexpr double side = 0.002;
+  double volume = 0;
+  for (int x = -40; x < 40; ++x) {
+    for (int y = -40; y < 40; ++y) {
+      for (int z = 0; z < 70; ++z) {
+        volume += shape(side * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5)) < 0 ? 1 : 0;
+      }
+    }
+  }
+  return cm3_from_m3(volume * side * side * side);
+}
+
+class MergeCommand : public ::testing::Test {
+ protected:
+  /// Stores what a turn saw. @return the scan's folder
+  fs::path write_turn(const std::string& name, const RegistrationTurn& turn) const {
+    const fs::path folder = folder_.path() / name;
+    fs::create_directories(folder / "snapshots");
+    Scan scan{.sensor_name = "test",
+              .intrinsics = turn.intrinsics,
+              .platform_from_sensor = turn.platform_from_sensor,
+              .clip = turn.clip};
+    for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+      scan.shots.push_back({.file = shot_file(static_cast<int>(stop)), .angle = turn.angles[stop]});
+      write_depth_png(folder / scan.shots.back().file, turn.read(stop));
+    }
+    write_scan(folder, scan);
+    return folder;
+  }
+
+  /// What `octurn merge --json` prints; fails unless it ends with that status.
+  json merge(int status, const fs::path& one, const fs::path& other) const {
+    Program program(
+        {OCTURN_PROGRAM, "merge", one.string(), other.string(), "-o", merged_.string(), "--json"});
+    EXPECT_EQ(program.wait(), status) << program.errors();
+    return json::parse(program.output());
+  }
+
+  TemporaryFolder folder_;
+  fs::path merged_ = folder_.path() / "merged";
+};
+
+TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
+  const json report =
+      merge(0, write_turn("a", laid_turn(figure(), stops)),
+            write_turn("b", laid_turn(figure(), stops, turned_over(figure_height))));
+
+  EXPECT_TRUE(report["accepted"]);
+  EXPECT_FALSE(report["symmetric"]);
+  EXPECT_EQ(json::parse(content_of(merged_ / "scan.json"))["version"], 2);
+  const fs::path model = folder_.path() / "Scan.stl";
+  Program program({OCTURN_PROGRAM, "reconstruct", merged_.string(), "-o", model.string(),
+                   "--method", "solid", "--json"});
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  const json built = json::parse(program.output());
+  EXPECT_TRUE(built["watertight"]);
+  EXPECT_EQ(built["parts"], 1);  // a cavity would be another
+  const double volume = volume_cm3(figure());
+  EXPECT_NEAR(built["volume_cm3"], volume, 0.02 * volume);  // 0.3 mm all around
+}
+
+TEST_F(MergeCommand, RefusesTwoObjectsWithExit1) {
+  const Shape other = joined(block({0.1, 0.03, 0.05}), ball({0.03, 0, 0.06}, 0.03));
+
+  const json report = merge(1, write_turn("a", laid_turn(figure(), stops)),
+                            write_turn("b", laid_turn(other, stops)));
+
+  EXPECT_FALSE(report["accepted"]);
+  EXPECT_NE(report["reason"], "");
+  EXPECT_FALSE(fs::exists(merged_));
+}
+
+}  // namespace
+}  // namespace octurn

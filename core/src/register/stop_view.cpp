@@ -100,8 +100,8 @@ void StopView::find_free_depths(const DepthFrame& frame) {
   }
 }
 
-/// The reading of a pixel of the rectangle, with the normal of the plane through its neighbours:
-/// the inverse depth of a plane is linear in the image.
+/// The surface at a pixel of the rectangle, by the plane through its neighbours: the inverse depth
+/// of a plane is linear in the image.
 std::optional<SurfacePoint> StopView::read(int u, int v) const {
   if (u < reach || v < reach || u >= width_ - reach || v >= height_ - reach) {
     return std::nullopt;
@@ -137,7 +137,7 @@ std::optional<SurfacePoint> StopView::read(int u, int v) const {
   if (!(-normal.dot(ray) > min_cosine * ray.norm())) {
     return std::nullopt;
   }
-  return SurfacePoint{.point = turn_from_sensor_ * (ray * depth(u, v)) + eye_,
+  return SurfacePoint{.point = turn_from_sensor_ * (ray * (count / sum)) + eye_,
                       .normal = turn_from_sensor_ * normal};
 }
 

@@ -32,7 +32,8 @@ class StopView {
   /// Pixels that are the object's.
   int pixels() const { return pixels_; }
 
-  /// The reading nearest to where a point is seen: its point as read, its normal by least squares.
+  /// The reading nearest to where a point is seen: on the plane through its neighbours, with that
+  /// plane's normal. On a curved surface such points lie behind it, in all turns alike.
   /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
   std::optional<SurfacePoint> look_up(const Eigen::Vector3d& point) const;
 

@@ -97,6 +97,26 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
   return merged;
 }
 
+/// Turns that were told the same pose are of one rig, if what they solved agrees: then all get its
+/// mean, which is nearer to the truth than each. Turns that are placed already stay as they are.
+void share_rig(std::vector<StoredTurn>& turns) {
+  std::vector<SolvedPose> solved;
+  const Eigen::Isometry3d& told = turns.front().scan.platform_from_sensor;
+  for (const StoredTurn& turn : turns) {
+    const Scan& scan = turn.scan;
+    if (turn.object_from_platform || !scan.solved ||
+        scan.platform_from_sensor.matrix() != told.matrix()) {
+      return;
+    }
+    solved.push_back(*scan.solved);
+  }
+  if (const auto shared = shared_pose(solved)) {
+    for (StoredTurn& turn : turns) {
+      turn.scan.solved->platform_from_sensor = *shared;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<StoredTurn> read_turns(const std::vector<fs::path>& folders) {
@@ -117,6 +137,9 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
     if (report.accepted && !report.confirms_told()) {
       turn.scan.solved = to_solved_pose(report);
     }
+  }
+  if (!turns.empty()) {
+    share_rig(turns);
   }
 }
 

@@ -24,7 +24,8 @@ struct StoredTurn {
 std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& folders);
 
 /// Solves the pose of the sensor for each turn that has none, from its snapshots. What is not
-/// accepted, or merely confirms the told pose, leaves that.
+/// accepted, or merely confirms the told pose, leaves that. Turns of one rig share the mean of what
+/// they solve.
 void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
 
 /// Registers the turns. @throws Error, Stopped  as `read_snapshot` and `register_turns`

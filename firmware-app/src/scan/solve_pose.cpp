@@ -3,6 +3,36 @@
 #include "octurn/error.hpp"
 
 namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double max_sigmas = 3;  // that a turn of the same rig may be off
+
+/// A small motion: its rotation vector and its shift.
+struct Motion {
+  Vector3d rotation = Vector3d::Zero();  // radians
+  Vector3d shift = Vector3d::Zero();     // metres
+};
+
+Motion motion_between(const Isometry3d& from, const Isometry3d& to) {
+  const Isometry3d between = to * from.inverse();
+  const Eigen::AngleAxisd turn(between.linear());
+  return {.rotation = turn.angle() * turn.axis(), .shift = between.translation()};
+}
+
+Isometry3d moved(const Isometry3d& pose, const Motion& motion) {
+  const double angle = motion.rotation.norm();
+  Isometry3d by = Isometry3d::Identity();
+  if (angle > 0) {
+    by.linear() = Eigen::AngleAxisd(angle, motion.rotation / angle).toRotationMatrix();
+  }
+  by.translation() = motion.shift;
+  return by * pose;
+}
+
+}  // namespace
 
 CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads) {
   if (!is_one_turn(scan)) {
@@ -28,6 +58,36 @@ SolvedPose to_solved_pose(const CalibrationReport& report) {
           .direction_sigma = report.direction_sigma,
           .before = report.before,
           .after = report.after};
+}
+
+std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {
+  if (turns.size() < 2) {
+    return std::nullopt;
+  }
+  const Isometry3d& first = turns.front().platform_from_sensor;
+  Motion mean;
+  double rotation_weight = 0;
+  double shift_weight = 0;
+  for (const SolvedPose& turn : turns) {
+    const Motion motion = motion_between(first, turn.platform_from_sensor);
+    const double of_rotation = 1 / (turn.direction_sigma * turn.direction_sigma);
+    const double of_shift = 1 / (turn.position_sigma * turn.position_sigma);
+    mean.rotation += of_rotation * motion.rotation;
+    mean.shift += of_shift * motion.shift;
+    rotation_weight += of_rotation;
+    shift_weight += of_shift;
+  }
+  mean.rotation /= rotation_weight;
+  mean.shift /= shift_weight;
+  const Isometry3d pose = moved(first, mean);
+  for (const SolvedPose& turn : turns) {
+    const Motion off = motion_between(pose, turn.platform_from_sensor);
+    if (!(off.rotation.norm() <= max_sigmas * turn.direction_sigma &&
+          off.shift.norm() <= max_sigmas * turn.position_sigma)) {
+      return std::nullopt;
+    }
+  }
+  return pose;
 }
 
 }  // namespace octurn

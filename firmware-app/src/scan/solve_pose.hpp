@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "octurn/calibrate.hpp"
 #include "octurn/scan_folder.hpp"
 
@@ -13,5 +16,10 @@ CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, 
 
 /// What scan.json keeps of an accepted report.
 SolvedPose to_solved_pose(const CalibrationReport& report);
+
+/// The pose of a rig that stood still from turn to turn: the mean of what each turn solved,
+/// weighted by its sigmas.
+/// @return none, if there are fewer than two, or one is more than three sigmas off the mean
+std::optional<Eigen::Isometry3d> shared_pose(std::span<const SolvedPose> turns);
 
 }  // namespace octurn

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "depth/depth_limits.hpp"
 
@@ -28,12 +29,12 @@ int blocks(int pixels) { return (pixels + block - 1) / block; }
 }  // namespace
 
 StopView::StopView(const DepthFrame& frame, const Intrinsics& intrinsics,
-                   const Eigen::Isometry3d& turn_from_sensor, const Box& object)
+                   const Eigen::Isometry3d& turn_from_sensor, Box object)
     : intrinsics_(intrinsics),
       sensor_from_turn_(turn_from_sensor.inverse()),
       turn_from_sensor_(turn_from_sensor.linear()),
       eye_(turn_from_sensor.translation()),
-      object_(object) {
+      object_(std::move(object)) {
   check_size(frame, intrinsics, "register_turns");
   find_object(frame);
   find_free_depths(frame);

@@ -24,7 +24,7 @@ class StopView {
   /// @param object            metres, the turn's frame: the object's readings lie inside
   /// @throws std::invalid_argument  if the image has another size than the intrinsics say
   StopView(const DepthFrame& frame, const Intrinsics& intrinsics,
-           const Eigen::Isometry3d& turn_from_sensor, const Box& object);
+           const Eigen::Isometry3d& turn_from_sensor, Box object);
 
   /// Where the sensor stood.
   const Eigen::Vector3d& eye() const { return eye_; }

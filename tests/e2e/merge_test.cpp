@@ -79,7 +79,8 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
   EXPECT_TRUE(built["watertight"]);
   EXPECT_EQ(built["parts"], 1);  // a cavity would be another
   const double volume = volume_cm3(figure());
-  EXPECT_NEAR(built["volume_cm3"], volume, 0.02 * volume);  // 0.3 mm all around
+  // What neither pose sees between the balls and the block is filled in.
+  EXPECT_NEAR(built["volume_cm3"], volume, 0.03 * volume);
 }
 
 TEST_F(MergeCommand, RefusesTwoObjectsWithExit1) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "app/faulty_rig.hpp"
@@ -35,13 +37,15 @@ BoxesOnPlatform blocks_moved(const Vector3d& by) {
                           AlignedBox3d(corner - speck, corner)});
 }
 
+constexpr int stops = 8;
+
 /// A simulated sensor with a Kinect's noise and pattern, whose object is moved before a look.
 class SensorOfMovedObject final : public DepthSensor {
  public:
   static constexpr double speed = 20;
   static constexpr double askew = 0.6;  // radians: of two walls each tells another direction
 
-  /// @param looks  before it is moved
+  /// @param looks  stops at which it stands before it is moved
   SensorOfMovedObject(const Vector3d& by, int looks)
       : before_(blocks_moved(Vector3d::Zero())),
         after_(blocks_moved(by)),
@@ -57,7 +61,10 @@ class SensorOfMovedObject final : public DepthSensor {
   std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
   std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
   void show_angle(double angle) override {
-    if (looks_-- == 0) {
+    const double stop = angle * stops / (2 * std::numbers::pi);
+    const auto nearest = static_cast<int>(std::lround(stop));
+    if (std::abs(stop - nearest) < 0.01 && std::exchange(stop_, nearest) != nearest &&
+        looks_-- == 0) {
       sensor_ = open(after_);
     }
     sensor_->show_angle(angle + askew);
@@ -73,10 +80,9 @@ class SensorOfMovedObject final : public DepthSensor {
   BoxesOnPlatform before_;
   BoxesOnPlatform after_;
   int looks_;
+  int stop_ = -1;  // at which the platform was last
   std::unique_ptr<DepthSensor> sensor_;
 };
-
-constexpr int stops = 8;
 
 ScanSettings eight_stops(PoseSource pose) {
   ScanSettings settings = few_snapshots(stops);

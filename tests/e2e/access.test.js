@@ -74,6 +74,11 @@ async function lookAtLarge(scanner, browser, finished, bytes) {
     body.scans.find(({id}) => id === finished.id).model.bytes = bytes;
     await route.fulfill({json: body});
   });
+  await page.route(`**/api/v1/scans/${finished.id}/builds`, async (route) => {
+    const body = await (await route.fetch()).json();
+    body.builds[0].model.bytes = bytes;
+    await route.fulfill({json: body});
+  });
   await page.goto('about:blank');
   await page.goto(`${scanner.url}#${finished.id}`);
   await page.getByRole('button', {name: 'Show it (21 MB)'}).click();

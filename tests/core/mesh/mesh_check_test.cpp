@@ -77,7 +77,7 @@ TEST(MeshCheck, SeesACornerMovedByOneBit) {
 
 TEST(MeshCheck, TellsWhereTheSurfaceAboveTheBaseIsFilledIn) {
   std::vector<Facet> facets = cube();
-  for (const std::size_t base_and_top : {0, 2}) {
+  for (const std::size_t base_and_top : {0U, 2U}) {
     facets[base_and_top].attributes = filled_in;
   }
   const MeshCheck check = check_of(facets);

@@ -3,6 +3,7 @@
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
+import {changeSettings} from './api_settings.js';
 import {showCalibration, showMap, showNotice} from './calibrate_view.js';
 import {scaleOf} from './calibration.js';
 import {chosenSpace, discardSpace, prepareSpace, showSpace} from './clip_form.js';
@@ -68,7 +69,7 @@ async function keepSpace() {
   const clip_mm = chosenSpace();
   if (clip_mm) {
     await act('The scanned space was not kept', async () => {
-      const {defaults} = await api.changeSettings({scan: {clip_mm}});
+      const {defaults} = await changeSettings({scan: {clip_mm}});
       discardSpace();
       showSpace(defaults.clip_mm);
     });

@@ -23,12 +23,24 @@ constexpr std::size_t max_name = 100;  // of a scan, bytes
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
 
+/// Takes the places of its verdict's reasons from a model: of thousands of scans they would be most
+/// of the list.
+void drop_places(json& model) {
+  if (model.is_null() || model["quality"].is_null()) {
+    return;
+  }
+  for (json& reason : model["quality"]["reasons"]) {
+    reason.erase("places_mm");
+  }
+}
+
 }  // namespace
 
 Response list_scans(App& app) {
   json scans = json::array();
   for (const Job& job : all_scans(app)) {
     scans.push_back(to_json(app, job));
+    drop_places(scans.back()["model"]);
   }
   return json_response({{"scans", scans}});
 }

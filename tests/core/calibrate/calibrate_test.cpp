@@ -163,7 +163,7 @@ TEST(Calibrate, TellsThatThePlatformIsNotSquareToItsShaft) {
 }
 
 TEST(Calibrate, TakesNoPatternForAWobble) {
-  for (const std::size_t stops : {8U, 24U}) {
+  for (const std::size_t stops : {8U, 12U}) {
     const CalibrationReport report = calibrate(with_pattern(rendered_turn(figure(), stops)));
     EXPECT_EQ(std::ranges::count(report.findings, "wobble", &CalibrationFinding::code), 0);
   }

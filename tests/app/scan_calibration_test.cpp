@@ -13,18 +13,12 @@
 #include "scan/run_scan.hpp"
 #include "scan/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/wrong_pose.hpp"
 
 namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A pose that is wrong by 2 cm and 2 degrees.
-Eigen::Isometry3d wrong_pose() {
-  return Eigen::Translation3d(0.012, -0.016, 0) *
-         Eigen::AngleAxisd(radians_from_degrees(2), Eigen::Vector3d::UnitX()) *
-         nominal_platform_from_sensor();
-}
 
 /// Millimetres between the platform's origin as two poses have it.
 double origins_apart_mm(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {

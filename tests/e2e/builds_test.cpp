@@ -6,29 +6,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "octurn/units.hpp"
-#include "rig/nominal_pose.hpp"
 #include "support/daemon.hpp"
 #include "support/stl.hpp"
+#include "support/wrong_pose.hpp"
 
 namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// A pose that is wrong by 2 cm and 2 degrees.
-json wrong_pose() {
-  const Eigen::Isometry3d pose =
-      Eigen::Translation3d(0.012, -0.016, 0) *
-      Eigen::AngleAxisd(radians_from_degrees(2), Eigen::Vector3d::UnitX()) *
-      nominal_platform_from_sensor();
-  json rows = json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
-  }
-  return rows;
-}
 
 /// A scan that goes by a wrong pose.
 json askew_scan(const Daemon& daemon) {
@@ -37,7 +23,8 @@ json askew_scan(const Daemon& daemon) {
       {"frames", 2},
       {"leaf_size_mm", 1},
       {"calibrate", "told"},
-      {"platform_from_sensor", wrong_pose()}}.dump()));
+      {"platform_from_sensor",
+       to_rows(wrong_pose())}}.dump()));
 }
 
 std::string path_to(const json& scan) { return "/api/v1/scans/" + scan["id"].get<std::string>(); }

@@ -8,6 +8,7 @@
 #include "octurn/units.hpp"
 #include "rig/misaligned_pose.hpp"
 #include "support/daemon.hpp"
+#include "support/wrong_pose.hpp"
 
 namespace octurn {
 namespace {
@@ -16,21 +17,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* calibration = "/api/v1/calibration";
-
-json to_rows(const Eigen::Isometry3d& pose) {
-  json rows = json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
-  }
-  return rows;
-}
-
-/// A pose that is wrong by 2 cm and 2 degrees.
-Eigen::Isometry3d wrong_pose() {
-  return Eigen::Translation3d(0.012, -0.016, 0) *
-         Eigen::AngleAxisd(radians_from_degrees(2), Eigen::Vector3d::UnitX()) *
-         nominal_platform_from_sensor();
-}
 
 /// Millimetres that a pose is off the true one at the sensor.
 double off_mm(const json& rows) {

@@ -5,9 +5,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "octurn/units.hpp"
-#include "rig/nominal_pose.hpp"
 #include "support/daemon.hpp"
+#include "support/wrong_pose.hpp"
 
 namespace octurn {
 namespace {
@@ -15,24 +14,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A pose that is wrong by 2 cm and 2 degrees.
-json wrong_pose() {
-  const Eigen::Isometry3d pose =
-      Eigen::Translation3d(0.012, -0.016, 0) *
-      Eigen::AngleAxisd(radians_from_degrees(2), Eigen::Vector3d::UnitX()) *
-      nominal_platform_from_sensor();
-  json rows = json::array();
-  for (int row = 0; row < 4; ++row) {
-    rows.push_back({pose(row, 0), pose(row, 1), pose(row, 2), pose(row, 3)});
-  }
-  return rows;
-}
-
 std::string wrongly_told(const json& more = json::object()) {
   json settings{{"snapshots", 12},
                 {"frames", 2},
                 {"leaf_size_mm", 2},
-                {"platform_from_sensor", wrong_pose()}};
+                {"platform_from_sensor", to_rows(wrong_pose())}};
   settings.update(more);
   return settings.dump();
 }
@@ -61,9 +47,9 @@ TEST(ScanCalibration, TellsWhatWasSolvedAndKeepsWhatWasTold) {
   EXPECT_EQ(calibration["rebuilt"], 12);
   EXPECT_LT(calibration["solved"]["after_mm"], calibration["solved"]["before_mm"]);
   const json stored = calibration_in(folder_of(folder, done));
-  EXPECT_EQ(stored["platform_from_sensor"], wrong_pose());
+  EXPECT_EQ(stored["platform_from_sensor"], to_rows(wrong_pose()));
   EXPECT_EQ(stored["solved"], calibration["solved"]);
-  EXPECT_EQ(done["settings"]["platform_from_sensor"], wrong_pose());
+  EXPECT_EQ(done["settings"]["platform_from_sensor"], to_rows(wrong_pose()));
 
   for (const char* const source : {"auto", "told"}) {
     Program again({OCTURN_PROGRAM, "reconstruct", folder_of(folder, done), "-o", "-",

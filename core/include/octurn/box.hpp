@@ -10,4 +10,8 @@ struct Box {
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
 };
 
+inline bool contains(const Box& box, const Eigen::Vector3d& point) {
+  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+}
+
 }  // namespace octurn

@@ -213,9 +213,10 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     return refused(std::move(report), reason);
   }
   const auto solution = solve(report, views, plane, levelled, threads);
-  add_wobble(report, measure_wobble(reader.samples(), plane, turn.angles, levelled));
+  const std::vector<bool> is_plane = find_plane_pixels(reader.samples(), plane);
+  add_wobble(report, measure_wobble(reader.samples(), plane, is_plane, turn.angles, levelled));
   if (!turn.has_sensor_map) {
-    add_no_map(report, measure_platform_map(reader.samples(), plane));
+    add_no_map(report, measure_platform_map(reader.samples(), plane, is_plane));
   }
   if (!solution) {
     return refused(std::move(report), "too little of the object is seen from two stops");

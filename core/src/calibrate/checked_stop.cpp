@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "depth/depth_limits.hpp"
+#include "depth/pinhole.hpp"
 
 namespace octurn {
 namespace {
@@ -58,10 +59,6 @@ Snapshot thinned(const Snapshot& snapshot) {
   return thin;
 }
 
-bool contains(const Box& box, const Vector3d& point) {
-  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
-}
-
 /// The side of the box that lies between a point inside and one outside, numbered as
 /// `ScanFigures::cut_pixels`; 5 is the bottom.
 std::size_t side_between(const Box& box, const Vector3d& outside) {
@@ -88,10 +85,7 @@ class Points {
            snapshot_.intrinsics.depth_unit;
   }
   Vector3d at(int u, int v) const {
-    const Intrinsics& lens = snapshot_.intrinsics;
-    const double z = depth(u, v);
-    return snapshot_.object_from_sensor *
-           Vector3d((u - lens.cx) / lens.fx * z, (v - lens.cy) / lens.fy * z, z);
+    return snapshot_.object_from_sensor * (to_ray(snapshot_.intrinsics, u, v) * depth(u, v));
   }
 
  private:
@@ -168,8 +162,9 @@ double ScanCheck::Stop::empty_depth(const Vector3d& point) const {
   if (!(point.z() > nearest_z)) {
     return 0;
   }
-  const double u = point.x() / point.z() * block_lens.fx + block_lens.cx;
-  const double v = point.y() / point.z() * block_lens.fy + block_lens.cy;
+  const Eigen::Vector2d pixel = project(block_lens, point);
+  const double u = pixel.x();
+  const double v = pixel.y();
   if (!(u >= 1 && v >= 1 && u < block_lens.width - 2 && v < block_lens.height - 2)) {
     return 0;
   }

@@ -85,7 +85,7 @@ Readings readings_in(const ObjectView& view, const Isometry3d& platform_from_sen
   Readings inside;
   for (const SurfaceReading& reading : view.readings(step)) {
     const Vector3d point = platform_from_sensor * reading.point;
-    if ((point.array() >= clip.min.array()).all() && (point.array() <= clip.max.array()).all()) {
+    if (contains(clip, point)) {
       inside.push_back({.point = point, .normal = platform_from_sensor.linear() * reading.normal});
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calibrate/platform_plane.hpp"
+#include "depth/object_window.hpp"
 #include "octurn/depth_frame.hpp"
 
 namespace octurn {
@@ -29,7 +30,7 @@ class ObjectView {
   ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask);
 
   /// Pixels that are the object's.
-  int pixels() const { return pixels_; }
+  int pixels() const { return window_.pixels; }
 
   /// The reading nearest to where a point is seen.
   /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
@@ -41,17 +42,13 @@ class ObjectView {
  private:
   std::optional<SurfaceReading> read(int u, int v) const;
   float at(int u, int v) const {
-    return inverse_depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+    return inverse_depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(window_.width) +
                           static_cast<std::size_t>(u)];
   }
 
   Intrinsics intrinsics_;
   Mask mask_;
-  int left_ = 0;  // of the rectangle, in the image
-  int top_ = 0;
-  int width_ = 0;
-  int height_ = 0;
-  int pixels_ = 0;
+  ObjectWindow window_ = {};
   std::vector<float> inverse_depth_ = {};  // 1/metres, row by row; 0 is no reading
 };
 

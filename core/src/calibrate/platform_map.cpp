@@ -33,14 +33,14 @@ double mean_difference(const PlatformSamples& samples, const PlatformPlane& plan
 }  // namespace
 
 std::optional<double> measure_platform_map(const PlatformSamples& samples,
-                                           const PlatformPlane& plane) {
+                                           const PlatformPlane& plane,
+                                           const std::vector<bool>& is_plane) {
   struct Sum {
     double differences = 0;
     std::size_t count = 0;
   };
   const std::size_t blocks_in_row = samples.columns / block + 1;
   std::vector<Sum> sums((samples.rays.size() / samples.columns / block + 1) * blocks_in_row);
-  const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
   for (std::size_t sample = 0; sample < samples.rays.size(); ++sample) {
     if (is_plane[sample]) {
       Sum& sum =

@@ -14,8 +14,8 @@ constexpr std::size_t min_pixels = 500;
 
 /// Pixels that see the platform at every stop: the same ones, so that what is wrong with a pixel is
 /// wrong with it at each stop.
-std::vector<std::size_t> always_seen(const PlatformSamples& samples, const PlatformPlane& plane) {
-  const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
+std::vector<std::size_t> always_seen(const PlatformSamples& samples,
+                                     const std::vector<bool>& is_plane) {
   std::vector<std::size_t> pixels;
   for (std::size_t pixel = 0; pixel < samples.rays.size(); ++pixel) {
     bool is_seen = is_plane[pixel];
@@ -50,9 +50,10 @@ std::vector<double> mean_inverse_depths(const PlatformSamples& samples,
 
 std::optional<PlatformWobble> measure_wobble(const PlatformSamples& samples,
                                              const PlatformPlane& plane,
+                                             const std::vector<bool>& is_plane,
                                              const std::vector<double>& angles,
                                              const Eigen::Isometry3d& levelled) {
-  const std::vector<std::size_t> pixels = always_seen(samples, plane);
+  const std::vector<std::size_t> pixels = always_seen(samples, is_plane);
   if (angles.size() < min_stops || pixels.size() < min_pixels) {
     return std::nullopt;
   }

@@ -18,11 +18,13 @@ struct PlatformWobble {
 /// plane's change from the mean over all stops is fitted in inverse depth, in which a plane is
 /// linear. A sensor's fixed error is the same at all stops, and cancels.
 ///
+/// @param is_plane  as `find_plane_pixels` tells
 /// @param angles  radians, of the stops
 /// @param levelled  platform_from_sensor, in which `plane` is z = 0
 /// @return nothing if there are too few stops, or too little of the platform is seen at all of them
 std::optional<PlatformWobble> measure_wobble(const PlatformSamples& samples,
                                              const PlatformPlane& plane,
+                                             const std::vector<bool>& is_plane,
                                              const std::vector<double>& angles,
                                              const Eigen::Isometry3d& levelled);
 

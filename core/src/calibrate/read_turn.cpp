@@ -7,6 +7,7 @@
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/object_view.hpp"
 #include "depth/depth_limits.hpp"
+#include "depth/pinhole.hpp"
 
 namespace octurn {
 namespace {
@@ -26,7 +27,7 @@ PlatformSamples make_samples(const Intrinsics& lens, std::size_t stops) {
       .depths = std::vector<std::vector<float>>(stops)};
   for (int v = 0; v < lens.height; v += platform_step) {
     for (int u = 0; u < lens.width; u += platform_step) {
-      samples.rays.emplace_back((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+      samples.rays.push_back(to_ray(lens, u, v));
     }
   }
   return samples;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "depth/depth_limits.hpp"
+#include "depth/pinhole.hpp"
 
 namespace octurn {
 namespace {
@@ -48,8 +49,9 @@ Snapshot crop(const Snapshot& snapshot, const Box& box) {
     if (p.z() < nearest_z) {
       return snapshot;
     }
-    u.extend(p.x() / p.z() * intrinsics.fx + intrinsics.cx);
-    v.extend(p.y() / p.z() * intrinsics.fy + intrinsics.cy);
+    const Eigen::Vector2d pixel = project(intrinsics, p);
+    u.extend(pixel.x());
+    v.extend(pixel.y());
   }
   const int u0 = u.first(intrinsics.width);
   const int v0 = v.first(intrinsics.height);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "depth/object_window.hpp"
 #include "octurn/box.hpp"
 #include "octurn/depth_frame.hpp"
 
@@ -30,7 +31,7 @@ class StopView {
   const Eigen::Vector3d& eye() const { return eye_; }
 
   /// Pixels that are the object's.
-  int pixels() const { return pixels_; }
+  int pixels() const { return window_.pixels; }
 
   /// The reading nearest to where a point is seen: on the plane through its neighbours, with that
   /// plane's normal. On a curved surface such points lie behind it, in all turns alike.
@@ -44,12 +45,11 @@ class StopView {
   bool saw_through(const Eigen::Vector3d& point) const;
 
  private:
-  void find_object(const DepthFrame& frame);
+  void keep_object(const DepthFrame& frame);
   void find_free_depths(const DepthFrame& frame);
   std::optional<SurfacePoint> read(int u, int v) const;
-  Eigen::Vector3d to_ray(int u, int v) const;
   double depth(int u, int v) const {
-    return depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+    return depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(window_.width) +
                   static_cast<std::size_t>(u)] *
            intrinsics_.depth_unit;
   }
@@ -59,11 +59,7 @@ class StopView {
   Eigen::Matrix3d turn_from_sensor_;
   Eigen::Vector3d eye_;
   Box object_;
-  int left_ = 0;  // of the rectangle, in the image
-  int top_ = 0;
-  int width_ = 0;
-  int height_ = 0;
-  int pixels_ = 0;
+  ObjectWindow window_ = {};
   std::vector<std::uint16_t> depth_ = {};  // of the rectangle, row by row, in depth units
   std::vector<std::uint16_t> free_ = {};   // of blocks of the image: the smallest; 0: unknown
 };

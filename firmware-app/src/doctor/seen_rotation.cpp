@@ -78,8 +78,7 @@ Points points_in(const View& view, const DepthFrame& frame) {
       const Eigen::Vector3d point =
           view.platform_from_sensor *
           Eigen::Vector3d((u - lens.cx) * z / lens.fx, (v - lens.cy) * z / lens.fy, z);
-      if (z > 0 && point.z() >= min_height && (point.array() >= view.clip.min.array()).all() &&
-          (point.array() <= view.clip.max.array()).all()) {
+      if (z > 0 && point.z() >= min_height && contains(view.clip, point)) {
         points.push_back(point);
       }
     }

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+
+#include "depth/depth_limits.hpp"
+#include "depth/pinhole.hpp"
+#include "octurn/depth_frame.hpp"
+
+namespace octurn {
+
+/// Pixels on each side of one whose normal is fitted: 5 x 5 of them.
+inline constexpr int normal_reach = 2;
+
+/// The rectangle of a depth image around an object, with the neighbours that its normals need.
+struct ObjectWindow {
+  int left = 0;
+  int top = 0;
+  int width = 0;  // 0: no pixel is the object's
+  int height = 0;
+  int pixels = 0;  // that are the object's
+};
+
+/// @param is_object  of the point that a pixel sees, metres, optical frame
+template <typename IsObject>
+ObjectWindow find_object(const DepthFrame& frame, const Intrinsics& intrinsics,
+                         const IsObject& is_object) {
+  int left = frame.width;
+  int right = -1;
+  int top = frame.height;
+  int bottom = -1;
+  int pixels = 0;
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+          static_cast<std::size_t>(u);
+      const double z = frame.depth[pixel] * intrinsics.depth_unit;
+      if (z > nearest_z && is_object(to_ray(intrinsics, u, v) * z)) {
+        ++pixels;
+        left = std::min(left, u);
+        right = std::max(right, u);
+        top = std::min(top, v);
+        bottom = v;
+      }
+    }
+  }
+  if (pixels == 0) {
+    return {};
+  }
+  left = std::max(left - normal_reach, 0);
+  top = std::max(top - normal_reach, 0);
+  return {.left = left,
+          .top = top,
+          .width = std::min(right + normal_reach + 1, frame.width) - left,
+          .height = std::min(bottom + normal_reach + 1, frame.height) - top,
+          .pixels = pixels};
+}
+
+/// Sums over the 5 x 5 pixels around one: of inverse depths, 1/m, and of these times the pixels'
+/// distances from the middle.
+struct InverseDepthSums {
+  static constexpr double count = (2 * normal_reach + 1) * (2 * normal_reach + 1);
+
+  double sum = 0;
+  double sum_u = 0;
+  double sum_v = 0;
+};
+
+/// The normal of the least-squares plane through 5 x 5 pixels: the inverse depth of a plane is
+/// linear in the image.
+/// @param ray  of the middle, z = 1
+/// @param min_cosine  between the normal and the ray: a surface that is seen flatter is refused
+/// @return of length one, towards the sensor
+inline std::optional<Eigen::Vector3d> fit_normal(const InverseDepthSums& sums,
+                                                 const Intrinsics& intrinsics,
+                                                 const Eigen::Vector3d& ray, double min_cosine) {
+  constexpr double squares = 2.0 * (1 + 4) * (2 * normal_reach + 1);  // of du, over the neighbours
+  const double slope_x = sums.sum_u / squares * intrinsics.fx;
+  const double slope_y = sums.sum_v / squares * intrinsics.fy;
+  const Eigen::Vector3d away(
+      slope_x, slope_y, sums.sum / InverseDepthSums::count - slope_x * ray.x() - slope_y * ray.y());
+  const Eigen::Vector3d normal = -away.normalized();
+  if (!(-normal.dot(ray) > min_cosine * ray.norm())) {
+    return std::nullopt;
+  }
+  return normal;
+}
+
+}  // namespace octurn

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "octurn/depth_frame.hpp"
+
+namespace octurn {
+
+/// The ray of a pixel, optical frame, z = 1: a depth times it is the point.
+inline Eigen::Vector3d to_ray(const Intrinsics& intrinsics, int u, int v) {
+  return {(u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy, 1};
+}
+
+/// Where a point is seen, pixels. @param point  optical frame, z > 0
+inline Eigen::Vector2d project(const Intrinsics& intrinsics, const Eigen::Vector3d& point) {
+  return {point.x() / point.z() * intrinsics.fx + intrinsics.cx,
+          point.y() / point.z() * intrinsics.fy + intrinsics.cy};
+}
+
+}  // namespace octurn

@@ -30,12 +30,13 @@ constexpr double still_deg = 1;       // at a first move
 constexpr double closing_deg = 32;    // nine percent of a turn
 constexpr double settled_deg = 2;     // so near, a comparison does not depend on the pose
 constexpr int closing_looks = 3;
+constexpr int play_rounds = 3;
 constexpr double approach_deg = 15;  // more than any gears' play
 // Comparisons are of looks so far apart: what is the same in all of them, the sensor's own pattern,
 // draws those that are nearer together.
 constexpr double apart_deg = 8;
 constexpr double min_sharpness = 0.08;
-constexpr int looks = 2 * few_moves + more_moves + closing_looks + 5;
+constexpr int looks = 2 * few_moves + more_moves + closing_looks + 3 * play_rounds + 2;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -189,17 +190,22 @@ double TurnMeter::measure_whole(double rate) {
   return rate;
 }
 
-/// Goes on and back, and compares where it was and is with a place a little further on.
-/// @return by how much a move back falls short, degrees
+/// Goes on and back some times, and compares where it was and is with a place a little further on.
+/// @return by how much a move back falls short, degrees: the median, as a sensor whose pose is not
+/// quite right is wrong by a degree now and then
 double TurnMeter::measure_play(double rate) {
   const double there_deg = told_deg_;
   const double on_deg = apart_deg / std::abs(rate);
-  const DepthFrame before = look();
-  const DepthFrame further = look_at(there_deg + on_deg);
-  move_to(there_deg + approach_deg / std::abs(rate));
-  const DepthFrame after = look_at(there_deg);
   const AngleRange range = around(0, approach_deg);
-  const double short_deg = seen(before, further, range) - seen(after, further, range);
+  std::vector<double> short_by;
+  for (int round = 0; round < play_rounds; ++round) {
+    const DepthFrame before = look_from_below(there_deg, rate);
+    const DepthFrame further = look_at(there_deg + on_deg);
+    move_to(there_deg + approach_deg / std::abs(rate));
+    const DepthFrame after = look_at(there_deg);
+    short_by.push_back(seen(before, further, range) - seen(after, further, range));
+  }
+  const double short_deg = median(std::move(short_by));
   return rate > 0 ? short_deg : -short_deg;
 }
 

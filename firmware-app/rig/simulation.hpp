@@ -38,6 +38,11 @@ inline constexpr int platform_angle_property = 0x4F430001;
 /// away, or with 0 back. A sensor that a URI has look at a wall keeps to that.
 inline constexpr int wall_property = 0x4F430003;
 
+/// Property of type double, written by the program: how the object lies, a whole number; 0 as it
+/// stood at first.
+inline constexpr int object_pose_property = 0x4F430004;
+inline constexpr int max_object_pose = 1000;
+
 /// Property of type double: the time by the simulated sensor's own clock, seconds. It advances by
 /// 1/30 s with each frame that was sent or, from `silent_after` on, left out. So a machine that is
 /// too busy to render in time slows this clock down, and only a simulated fault is a silence.

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "app/simulated_frames.hpp"
+#include "simulator/object_pose.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
 #include "turntable/simulated_turntable.hpp"
@@ -42,6 +44,31 @@ TEST(Simulator, TurnsToAWallAndBack) {
   }
   sensor->show_wall(std::nullopt);
   EXPECT_TRUE(frame_at(*sensor, 0).frame.depth == before.frame.depth);
+}
+
+TEST(Simulator, TurnsItsObjectOverAndBack) {
+  const auto sensor = open_sensor(ideal);
+  const KinectFrame before = frame_at(*sensor, 0);
+  sensor->lay_object(1);
+  const KinectFrame lies = frame_at(*sensor, 0);
+  EXPECT_FALSE(lies.frame.depth == before.frame.depth);
+  sensor->lay_object(0);
+  EXPECT_TRUE(frame_at(*sensor, 0).frame.depth == before.frame.depth);
+}
+
+TEST(Simulator, LaysItsObjectOnThePlatform) {
+  const Mesh object = simulator_object();
+  for (int pose = 1; pose <= 3; ++pose) {
+    const Eigen::Isometry3d lies = platform_from_object(object, pose);
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& vertex : object.vertices) {
+      box.extend(lies * vertex.cast<double>());
+    }
+    EXPECT_NEAR(box.min().z(), 0, 1e-9);
+    EXPECT_LT(std::max(box.max().x(), box.max().y()), 0.14);
+    EXPECT_GT(std::min(box.min().x(), box.min().y()), -0.14);
+    EXPECT_GT(std::acos(std::clamp(lies.linear()(2, 2), -1.0, 1.0)), 1.5);  // from upright, radians
+  }
 }
 
 TEST(Simulator, SeesNothingInTheLastEightColumns) {

@@ -45,8 +45,8 @@ class Device final : public DepthDevice {
 
   OniBool isPropertySupported(int property) override {
     return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property ||
-                   property == wall_property || property == sensor_time_property ||
-                   property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
+                   property == wall_property || property == object_pose_property ||
+                   property == sensor_time_property || property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
                ? TRUE
                : FALSE;
   }
@@ -70,17 +70,21 @@ class Device final : public DepthDevice {
   }
 
   OniStatus setProperty(int property, const void* data, int size) override {
-    if (property != platform_angle_property && property != wall_property) {
+    if (property != platform_angle_property && property != wall_property &&
+        property != object_pose_property) {
       return ONI_STATUS_NOT_SUPPORTED;
     }
     double value = 0;
     const OniStatus status = take_property(value, data, size);
     if (status != ONI_STATUS_OK || !std::isfinite(value) ||
-        (property == wall_property && value < 0)) {
+        (property == wall_property && value < 0) ||
+        (property == object_pose_property && !(value >= 0 && value <= max_object_pose))) {
       return ONI_STATUS_BAD_PARAMETER;
     }
     if (property == platform_angle_property) {
       state_.angle = value;
+    } else if (property == object_pose_property) {
+      state_.object_pose = static_cast<int>(value);
     } else if (!simulation_.wall) {
       state_.wall = value;
     }

@@ -6,6 +6,7 @@
 
 #include "octurn/units.hpp"
 #include "simulator/camera.hpp"
+#include "simulator/object_pose.hpp"
 
 namespace octurn {
 namespace {
@@ -96,8 +97,18 @@ Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_
   rasterise(around, projector_from_platform_, projector, projector_background_);
 }
 
+bool Scene::lay_object(int pose) {
+  if (pose == pose_) {
+    return false;
+  }
+  pose_ = pose;
+  platform_from_object_ = platform_from_object(object_, pose);
+  return true;
+}
+
 InverseDepth Scene::lit_at(double angle) const {
-  const Eigen::AngleAxisd turn(angle, Eigen::Vector3d::UnitZ());
+  const Eigen::Isometry3d turn =
+      Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * platform_from_object_;
   InverseDepth seen = camera_background_;
   InverseDepth reached = projector_background_;
   rasterise(object_, camera_from_platform_ * turn, camera, seen);

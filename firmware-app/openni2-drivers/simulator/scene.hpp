@@ -23,6 +23,10 @@ class Scene {
   /// A wall instead, and nothing else. @param distance  metres; the sensor looks squarely at it
   static Scene of_wall(double distance);
 
+  /// Turns the object over. @param pose  as of `platform_from_object`
+  /// @return false if it lies so already
+  bool lay_object(int pose);
+
   /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   InverseDepth lit_at(double angle) const;
@@ -32,6 +36,8 @@ class Scene {
   Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor);
 
   Mesh object_;
+  int pose_ = 0;  // in which the object lies
+  Eigen::Isometry3d platform_from_object_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d camera_from_platform_;
   Eigen::Isometry3d projector_from_platform_;
   InverseDepth camera_background_;

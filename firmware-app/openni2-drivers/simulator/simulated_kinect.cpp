@@ -90,6 +90,12 @@ void SimulatedKinect::turn_to_wall(double distance) {
   }
 }
 
+void SimulatedKinect::lay_object(int pose) {
+  if (scene_.lay_object(pose)) {
+    look_again();
+  }
+}
+
 void SimulatedKinect::look_again() {
   const InverseDepth before =
       std::exchange(lit_, wall_ > 0 ? Scene::of_wall(wall_).lit_at(0) : scene_.lit_at(angle_));

@@ -42,6 +42,9 @@ class SimulatedKinect {
   /// Turns the sensor to a wall, and away from its scene. @param distance  metres; 0: back again
   void turn_to_wall(double distance);
 
+  /// Turns the object over. @param pose  as of `platform_from_object`
+  void lay_object(int pose);
+
   /// Takes one frame: 640 x 480 depths in tenths of a millimetre, 0 for none.
   /// @param angle  of the platform, radians
   /// @param frame  its number: the same gives the same noise

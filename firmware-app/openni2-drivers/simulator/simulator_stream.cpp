@@ -51,12 +51,13 @@ bool SimulatorStream::is_silent() const {
   return simulation_.silent_after && frames_ >= *simulation_.silent_after;
 }
 
-/// The time is read before angle and wall, so that a frame stamped after a move shows the end of
-/// it.
+/// The time is read before angle, wall and pose, so that a frame stamped after a move shows the end
+/// of it.
 void SimulatorStream::deliver_frame() {
   const auto time = steady_clock::now();
   const double angle = device_.angle;
   kinect_.turn_to_wall(device_.wall);
+  kinect_.lay_object(device_.object_pose);
   ++frames_;
   deliver(frames_, time, [&](std::span<OniDepthPixel> depth) {
     kinect_.expose(angle, static_cast<std::uint32_t>(frames_), depth);

@@ -18,8 +18,16 @@ DepthSensor& Rig::sensor() {
     sensor_ = options_.open_sensor(options_.sensor_uri);
     sensor_since_ = std::chrono::steady_clock::now();
     sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
+    sensor_->lay_object(object_pose_);
   }
   return *sensor_;
+}
+
+void Rig::lay_object(int pose) {
+  object_pose_ = pose;
+  if (sensor_) {
+    sensor_->lay_object(pose);
+  }
 }
 
 Turntable& Rig::turntable() {

@@ -36,6 +36,9 @@ class Rig {
   /// Opens the sensor if it is closed. @throws Error "sensor-missing" or "sensor-failed"
   DepthSensor& sensor();
 
+  /// Has the object of a simulated rig lie so, as `DepthSensor::lay_object` says.
+  void lay_object(int pose);
+
   /// Closes the sensor, which switches its projector off; the next use opens it again.
   void close_sensor() { sensor_.reset(); }
 
@@ -63,6 +66,7 @@ class Rig {
 
  private:
   RigOptions options_;
+  int object_pose_ = 0;
   double closed_angle_deg_;     // the platform's, when the turntable was closed
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;

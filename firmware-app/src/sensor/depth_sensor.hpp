@@ -55,6 +55,10 @@ class DepthSensor {
   /// them.
   /// @param distance  metres; nothing: back to the platform
   virtual void show_wall(std::optional<double> distance);
+
+  /// Turns the object of a simulated sensor over. Other sensors ignore it: a person does it.
+  /// @param pose  which way it lies, 0: as it stood at first
+  virtual void lay_object(int pose);
 };
 
 /// Opens a sensor and starts its depth stream.

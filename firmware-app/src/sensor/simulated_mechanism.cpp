@@ -23,6 +23,7 @@ class SensorOnMechanism final : public DepthSensor {
   std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
 
   void show_wall(std::optional<double> distance) override { sensor_->show_wall(distance); }
+  void lay_object(int pose) override { sensor_->lay_object(pose); }
 
   void show_angle(double angle) override {
     // Told angles may be wrapped: between two of them there is never half a turn.

@@ -84,6 +84,24 @@ TEST_F(SolidCommand, SaysWhyAModelIsNotGood) {
   })) << quality;
 }
 
+TEST_F(SolidCommand, CallsAModelBadOfWhichHalfTheStopsAreMissing) {
+  write_ball_scan(scan_, 8);
+  Scan half = read_scan(scan_);
+  half.shots.resize(4);
+  write_scan(scan_, half);
+  Program program(command({"--leaf-size-mm", "2", "--json"}));
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_EQ(program.errors().find("The model is bad: "), 0U) << program.errors();
+  const auto quality = nlohmann::json::parse(program.output())["quality"];
+  EXPECT_EQ(quality["verdict"], "bad");
+  const auto& reason = quality["reasons"].at(0);
+  EXPECT_EQ(reason["code"], "little-seen");
+  EXPECT_EQ(
+      reason["detail"],
+      "the platform turned by 225 degrees without a stop: nobody saw that side of the object");
+  EXPECT_EQ(reason["hint"], "Scan a whole turn.");
+}
+
 TEST_F(SolidCommand, TellsOfTheMoveThatTheLastLookSawAndMakesTheSameModel) {
   write_ball_scan(scan_, 8);
   report_of({"--leaf-size-mm", "2"});

@@ -12,7 +12,9 @@
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/platform_wobble.hpp"
 #include "calibrate/read_turn.hpp"
+#include "calibrate/sensor_step.hpp"
 #include "calibrate/stop_offsets.hpp"
+#include "calibrate/stop_planes.hpp"
 #include "calibrate/stop_residuals.hpp"
 #include "calibrate/stop_step.hpp"
 #include "octurn/units.hpp"
@@ -214,8 +216,15 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   }
   const auto solution = solve(report, views, plane, levelled, threads);
   const std::vector<bool> is_plane = find_plane_pixels(reader.samples(), plane);
-  add_wobble(report, measure_wobble(reader.samples(), plane, is_plane, turn.angles, levelled));
-  if (!turn.has_sensor_map) {
+  const std::vector<StopPlane> planes =
+      measure_stop_planes(reader.samples(), plane, is_plane, levelled);
+  const auto sensor_step = solve_sensor_step(planes, turn.angles);
+  const auto bump = sensor_step ? find_bump(*sensor_step) : std::nullopt;
+  if (bump) {
+    report.findings = {*bump};  // which looks like a slip, or a move of the object
+  }
+  add_wobble(report, measure_wobble(planes, turn.angles));
+  if (!turn.has_sensor_map && !bump) {
     add_no_map(report, measure_platform_map(reader.samples(), plane, is_plane));
   }
   if (!solution) {
@@ -228,7 +237,9 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   compare(report, turn.platform_from_sensor);
-  const std::string reason = refuse_solution(report, solution->last_step);
+  const std::string reason = bump && sensor_step->size > max_after
+                                 ? bump->detail
+                                 : refuse_solution(report, solution->last_step);
   report.accepted = reason.empty();
   return refused(std::move(report), reason);
 }

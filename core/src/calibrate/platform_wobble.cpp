@@ -1,84 +1,24 @@
 #include "calibrate/platform_wobble.hpp"
 
 #include <cmath>
-#include <cstddef>
 
 namespace octurn {
-namespace {
 
 using Eigen::Vector2d;
-using Eigen::Vector3d;
 
-constexpr std::size_t min_stops = 6;
-constexpr std::size_t min_pixels = 500;
-
-/// Pixels that see the platform at every stop: the same ones, so that what is wrong with a pixel is
-/// wrong with it at each stop.
-std::vector<std::size_t> always_seen(const PlatformSamples& samples,
-                                     const std::vector<bool>& is_plane) {
-  std::vector<std::size_t> pixels;
-  for (std::size_t pixel = 0; pixel < samples.rays.size(); ++pixel) {
-    bool is_seen = is_plane[pixel];
-    for (const std::vector<float>& depths : samples.depths) {
-      is_seen = is_seen && depths[pixel] > 0;
-    }
-    if (is_seen) {
-      pixels.push_back(pixel);
-    }
-  }
-  return pixels;
-}
-
-double inverse(float depth) { return 1 / static_cast<double>(depth); }
-
-/// The mean over all stops of each pixel's inverse depth, 1/m.
-std::vector<double> mean_inverse_depths(const PlatformSamples& samples,
-                                        const std::vector<std::size_t>& pixels) {
-  std::vector<double> means;
-  means.reserve(pixels.size());
-  for (const std::size_t pixel : pixels) {
-    double sum = 0;
-    for (const std::vector<float>& depths : samples.depths) {
-      sum += inverse(depths[pixel]);
-    }
-    means.push_back(sum / static_cast<double>(samples.depths.size()));
-  }
-  return means;
-}
-
-}  // namespace
-
-std::optional<PlatformWobble> measure_wobble(const PlatformSamples& samples,
-                                             const PlatformPlane& plane,
-                                             const std::vector<bool>& is_plane,
-                                             const std::vector<double>& angles,
-                                             const Eigen::Isometry3d& levelled) {
-  const std::vector<std::size_t> pixels = always_seen(samples, is_plane);
-  if (angles.size() < min_stops || pixels.size() < min_pixels) {
+std::optional<PlatformWobble> measure_wobble(const std::vector<StopPlane>& planes,
+                                             const std::vector<double>& angles) {
+  if (planes.empty()) {
     return std::nullopt;
   }
-  const std::vector<double> means = mean_inverse_depths(samples, pixels);
-  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
-  for (const std::size_t pixel : pixels) {
-    square += samples.rays[pixel] * samples.rays[pixel].transpose();
-  }
-  const Eigen::LDLT<Eigen::Matrix3d> solver(square);
-
-  // A plane is 1/z = (normal / offset) . ray. The tilt is told in the frame that turns with it.
-  std::vector<Vector2d> tilts;
-  tilts.reserve(angles.size());
+  std::vector<Vector2d> tilts;  // in the frame that turns with the platform
+  tilts.reserve(planes.size());
   Vector2d mean = Vector2d::Zero();
-  for (std::size_t stop = 0; stop < angles.size(); ++stop) {
-    Vector3d right = Vector3d::Zero();
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const std::size_t pixel = pixels[i];
-      right += samples.rays[pixel] * (inverse(samples.depths[stop][pixel]) - means[i]);
-    }
-    const Vector3d normal = (plane.normal + plane.offset * solver.solve(right)).normalized();
-    tilts.emplace_back(Eigen::Rotation2Dd(-angles[stop]) * (levelled.linear() * normal).head<2>());
+  for (std::size_t stop = 0; stop < planes.size(); ++stop) {
+    tilts.emplace_back(Eigen::Rotation2Dd(-angles[stop]) * planes[stop].tilt);
     mean += tilts.back();
   }
-  const auto stops = static_cast<double>(angles.size());
+  const auto stops = static_cast<double>(planes.size());
   mean /= stops;
   double squares = 0;
   for (const Vector2d& tilt : tilts) {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
-#include "calibrate/platform_plane.hpp"
+#include "calibrate/stop_planes.hpp"
 
 namespace octurn {
 
@@ -14,18 +13,12 @@ struct PlatformWobble {
   double sigma = 0;  ///< standard deviation, from how the stops differ
 };
 
-/// Such a surface tilts another way at each stop: its normal goes round with the platform. The
-/// plane's change from the mean over all stops is fitted in inverse depth, in which a plane is
-/// linear. A sensor's fixed error is the same at all stops, and cancels.
+/// Such a surface tilts another way at each stop: its normal goes round with the platform.
 ///
-/// @param is_plane  as `find_plane_pixels` tells
+/// @param planes  of the stops
 /// @param angles  radians, of the stops
-/// @param levelled  platform_from_sensor, in which `plane` is z = 0
-/// @return nothing if there are too few stops, or too little of the platform is seen at all of them
-std::optional<PlatformWobble> measure_wobble(const PlatformSamples& samples,
-                                             const PlatformPlane& plane,
-                                             const std::vector<bool>& is_plane,
-                                             const std::vector<double>& angles,
-                                             const Eigen::Isometry3d& levelled);
+/// @return nothing if there are no planes
+std::optional<PlatformWobble> measure_wobble(const std::vector<StopPlane>& planes,
+                                             const std::vector<double>& angles);
 
 }  // namespace octurn

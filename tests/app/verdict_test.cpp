@@ -1,0 +1,190 @@
+// What a scan says of its model where something went wrong: by a job, as the interface tells it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "app/scanner_fixture.hpp"
+#include "app/simulated_frames.hpp"
+#include "http/scan_json.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr int stops = 8;
+
+/// What a sensor sees at each stop. A real one's noise, averaged over four frames.
+using Seen = std::array<DepthFrame, stops>;
+
+/// @param misalignment  of the sensor, times 5 mm and 1 degree off the told pose
+Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
+  // The simulator stands the middle of all boxes on the axis: two specks, which no pixel sees, keep
+  // it there.
+  const Vector3d speck(0.01, 0.01, 0.01);
+  const Vector3d corner(90, 90, 0);
+  boxes.emplace_back(-corner, -corner + speck);
+  boxes.emplace_back(corner - speck, corner);
+  const BoxesOnPlatform on_platform(boxes);
+  Simulation simulation = parse_simulation(on_platform.uri(0.5, 50));
+  simulation.misalignment = misalignment;
+  const auto sensor = open_sensor(simulation_uri(simulation));
+  Seen frames;
+  for (int stop = 0; stop < stops; ++stop) {
+    frames[static_cast<std::size_t>(stop)] =
+        frame_at(*sensor, 2 * std::numbers::pi * stop / stops + 0.6).frame;  // no wall is head-on
+  }
+  return frames;
+}
+
+/// An object of 8 cm on which no two sides are alike.
+std::vector<AlignedBox3d> object() {
+  return {AlignedBox3d(Vector3d(-30, -25, 0), Vector3d(25, 20, 40)),
+          AlignedBox3d(Vector3d(-5, -15, 40), Vector3d(20, 10, 80))};
+}
+
+const Seen& object_seen() {
+  static const Seen frames = seen(object());
+  return frames;
+}
+
+/// A sensor that sees what a test wants at each look: one at each stop, and one more at the first.
+class SensorOfLooks final : public DepthSensor {
+ public:
+  explicit SensorOfLooks(std::function<DepthFrame(int look)> see) : see_(std::move(see)) {}
+
+  const std::string& name() const override { return name_; }
+  const Intrinsics& intrinsics() const override { return lens_; }
+  std::string serial() const override { return {}; }
+  std::optional<TimedFrame> read(const std::stop_token& stop) override {
+    if (stop.stop_requested()) {
+      return std::nullopt;
+    }
+    return TimedFrame{.frame = see_(look_), .time = std::chrono::steady_clock::now()};
+  }
+  std::optional<Tilt> tilt() const override { return std::nullopt; }
+  std::optional<int> damaged_frames() const override { return std::nullopt; }
+  void show_angle(double angle) override {
+    const double stop = angle * stops / (2 * std::numbers::pi);
+    const double nearest = std::round(stop);
+    if (std::abs(stop - nearest) < 0.01 && static_cast<int>(nearest) % stops != look_ % stops) {
+      ++look_;  // stops come one after the other
+    }
+  }
+
+ private:
+  std::function<DepthFrame(int look)> see_;
+  int look_ = 0;
+  std::string name_ = "sensor of a test";
+  Intrinsics lens_ = {};
+};
+
+/// A scan's reasons of a code.
+std::vector<json> reasons(const json& scan, const std::string& code) {
+  std::vector<json> found;
+  std::ranges::copy_if(scan["model"]["quality"]["reasons"], std::back_inserter(found),
+                       [&](const json& reason) { return reason["code"] == code; });
+  return found;
+}
+
+class VerdictTest : public ScannerTest {
+ protected:
+  /// Scans to the end. @return the scan as the interface has it
+  json scan_of(const std::function<DepthFrame(int look)>& see,
+               const Box& clip = ScanSettings().clip) {
+    const auto open = [&](const std::string& /*uri*/) {
+      return std::make_unique<SensorOfLooks>(see);
+    };
+    Scanner scanner({.speed = 1000, .open_sensor = open}, {}, store_);
+    ScanSettings settings = few_snapshots(stops);
+    settings.frames = 1;
+    settings.clip = clip;
+    return to_json(scan(scanner, settings));
+  }
+
+  static DepthFrame at(const Seen& frames, int look) {
+    return frames[static_cast<std::size_t>(look % stops)];
+  }
+};
+
+TEST_F(VerdictTest, IsGoodWhereNothingWentWrong) {
+  const json scan = scan_of([](int look) { return at(object_seen(), look); });
+  EXPECT_EQ(scan["model"]["quality"], json::parse(R"({"verdict": "good", "reasons": []})")) << scan;
+}
+
+TEST_F(VerdictTest, SaysThatTheScannedSpaceBeheadsTheObject) {
+  Box low = ScanSettings().clip;
+  low.max.z() = 0.06;  // the object has 8 cm
+  const json scan = scan_of([](int look) { return at(object_seen(), look); }, low);
+  EXPECT_EQ(scan["model"]["quality"]["verdict"], "look") << scan;
+  const auto cut = reasons(scan, "cut-by-box");
+  ASSERT_EQ(cut.size(), 1U) << scan;
+  EXPECT_EQ(cut[0]["detail"], "the object reaches through the top of the scanned space");
+  EXPECT_EQ(cut[0]["hint"], "Make the scanned space larger, or move the object.");
+  for (const json& place : cut[0]["places_mm"]) {
+    EXPECT_NEAR(place[2].get<double>(), 60, 8);  // a cell, and a pixel
+  }
+}
+
+TEST_F(VerdictTest, IsTheErrorOfAScanOfAnEmptyPlatform) {
+  const Seen nothing = seen({});
+  const json scan = scan_of([&](int look) { return at(nothing, look); });
+  EXPECT_EQ(scan["model"], nullptr) << scan;
+  EXPECT_EQ(scan["state"], "failed");
+  EXPECT_EQ(scan["error"]["code"], "empty");
+  EXPECT_EQ(scan["error"]["detail"], "no surface in the clip box: there is nothing to write");
+  EXPECT_TRUE(scan["error"]["hint"].get<std::string>().starts_with(
+      "Stand the object on the platform's middle"));
+  EXPECT_TRUE(scan["calibration"]["reason"].get<std::string>().starts_with(
+      "too little of an object is seen"));
+}
+
+TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
+  const Seen bumped = seen(object(), 0.6);  // 0.6 degrees; the platform's middle is 1.2 mm lower
+  const json scan =
+      scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
+  EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;
+  const auto moved = reasons(scan, "moved");
+  ASSERT_EQ(moved.size(), 1U) << scan;
+  EXPECT_EQ(
+      moved[0]["detail"],
+      "between stops 3 and 4 the sensor moved: the platform tilts by 0.6 degrees and sinks by "
+      "1.2 mm as it sees it");
+  EXPECT_EQ(moved[0]["hint"], "Fix the sensor and the platform, calibrate, and scan again.");
+  EXPECT_EQ(reasons(scan, "stops-disagree").size(), 1U) << scan;
+}
+
+TEST_F(VerdictTest, SolvesNoPoseWhereTheRigWasBumpedByACentimetre) {
+  const Seen bumped = seen(object(), 2);
+  const json scan =
+      scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
+  EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;
+  ASSERT_EQ(reasons(scan, "moved").size(), 1U) << scan;
+  EXPECT_EQ(scan["calibration"]["accepted"], false) << scan;
+  EXPECT_EQ(scan["calibration"]["reason"], reasons(scan, "moved")[0]["detail"]);
+}
+
+TEST_F(VerdictTest, NamesTheStopWithAHandInThePicture) {
+  std::vector<AlignedBox3d> with_hand = object();
+  with_hand.emplace_back(Vector3d(45, 30, 20), Vector3d(85, 85, 60));
+  const Seen hand = seen(with_hand);
+  const json scan = scan_of([&](int look) { return at(look == 3 ? hand : object_seen(), look); });
+  EXPECT_EQ(scan["model"]["quality"]["verdict"], "look") << scan;
+  const auto moved = reasons(scan, "moved");
+  ASSERT_EQ(moved.size(), 1U) << scan;
+  const auto detail = moved[0]["detail"].get<std::string>();
+  EXPECT_TRUE(detail.starts_with("at stop 3 ")) << detail;
+  EXPECT_TRUE(detail.ends_with("of what was seen is empty space as other stops saw it")) << detail;
+  EXPECT_EQ(moved[0]["hint"], "Keep hands out of the picture, and look that nothing moves.");
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,9 +1,12 @@
 // "Settings": what the scanner is told to last, on cards of which each is saved by itself.
 
 import {Problem, status} from './api.js';
+import {calibration} from './api_calibration.js';
 import * as api from './api_settings.js';
+import {sourceOf} from './calibration.js';
 import {copyOf, element, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
+import {here} from './places.js';
 import {makeField} from './settings_fields.js';
 import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
 import {prepareMachine} from './machine.js';
@@ -55,14 +58,26 @@ function showPassword() {
   show(element('password-remove'), password === 'page');
 }
 
+/** Shows the pose in force: a scan that solves its own changes it, and no setting. */
+async function showPose() {
+  try {
+    const pose = await calibration();
+    setText(element('pose-text'), poseText(pose.platform_from_sensor));
+    setText(element('pose-source'), sentence(sourceOf(pose)));
+  } catch (error) {
+    setText(element('pose-text'), wordsOf(problemOf(error)));
+    setText(element('pose-source'), '');
+  }
+}
+
 function showNews() {
-  const {settings, stored, preset, trouble} = told;
+  const {stored, preset, trouble} = told;
   show(element('settings-trouble'), trouble !== '');
   setText(part(element('settings-trouble'), 'p'), sentence(trouble));
-  setText(element('pose-text'), poseText(settings.scan.platform_from_sensor));
   setText(element('turntable-about'),
       `The platform makes a turn of ${stepsOf({...preset.turntable, ...stored.turntable})} steps.`);
   showPassword();
+  showPose();
 }
 
 async function showRestart() {
@@ -256,5 +271,6 @@ export function prepare() {
   preparePassword();
   prepareMachine();
   element('restore-file').addEventListener('change', restore);
+  addEventListener('hashchange', () => here() === 'settings' && showPose());
   begin();
 }

@@ -1,7 +1,9 @@
 #include "config.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/temporary_folder.hpp"
@@ -34,6 +36,14 @@ TEST(Config, ReadsEveryKey) {
   EXPECT_EQ(config.limits.memory_bytes, 64U << 20U);
   EXPECT_EQ(config.scan.snapshots, 12);
   EXPECT_EQ(config.turntable.microsteps, 8);
+}
+
+TEST(Config, TakesHalfOfTheMemoryInWholeMegabytes) {
+  const double mb = to_json(Config())["memory_limit_mb"].get<double>();
+  const double half = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) / 2 *
+                      static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1U << 20U);
+  EXPECT_EQ(mb, std::floor(mb));
+  EXPECT_NEAR(mb, half, 1);
 }
 
 TEST(Config, IsWrittenAsItIsRead) {

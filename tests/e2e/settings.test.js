@@ -33,6 +33,7 @@ async function settled(scanner) {
 async function keepScanDefault(scanner, browser) {
   const {page, faults} = await openSettings(browser, scanner);
   assert.equal(await save(page, 'Snapshots a turn').isVisible(), false);
+  assert.match(await page.getByLabel('Memory').inputValue(), /^\d+$/);  // half of the machine's, in whole MB
   await card(page, 'Snapshots a turn').getByLabel('Snapshots a turn').fill('12');
   await save(page, 'Snapshots a turn').click();
   await page.getByText('Saved.', {exact: true}).waitFor();
@@ -87,6 +88,22 @@ async function backUp(scanner, browser) {
   await page.getByText('Choose a file octurn-settings').waitFor();
 }
 
+/** Where the sensor stands is told by the pose in force, whatever the settings have. */
+async function tellPoseInForce(scanner, browser) {
+  const {platform_from_sensor} = await ask(scanner, 'calibration');
+  platform_from_sensor[2][3] += 0.011;
+  const {page} = await openSettings(browser, scanner);
+  await page.getByText('360 mm above its surface').waitFor();
+  await page.getByText('Taken from the drawing.').waitFor();
+  const change = (pose) => fetch(new URL('api/v1/calibration', scanner.url), {
+    method: 'PATCH', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({platform_from_sensor: pose})});
+  assert.ok((await change(platform_from_sensor)).ok);
+  await page.getByRole('link', {name: 'Scan', exact: true}).click();
+  await page.getByRole('link', {name: 'Settings'}).click();
+  await page.getByText('371 mm above its surface').waitFor();
+  await page.getByText(/^Set by hand, /).waitFor();
+}
+
 /** On any screen, nothing is cut off. */
 async function fits(scanner, browser, screen, colorScheme) {
   const {page, faults} = await openSettings(browser, scanner, {screen, colorScheme});
@@ -120,6 +137,7 @@ test('settings are set on the page and last', async (t) => {
   await t.test('a wrong one is told by its field', () => refuseByField(scanner, browser));
   await t.test('one that needs a restart', () => takeUpGear(scanner, browser));
   await t.test('a backup', () => backUp(scanner, browser));
+  await t.test('and beside them the pose in force', () => tellPoseInForce(scanner, browser));
   await t.test('on a desktop', () => fits(scanner, browser, 'desktop', 'light'));
   await t.test('on a phone', () => fits(scanner, browser, 'phone', 'dark'));
 });

@@ -189,8 +189,9 @@ int available_threads() {
 }
 
 std::size_t half_of_memory() {
-  return static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) / 2 *
-         static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const double half = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) / 2 *
+                      static_cast<double>(::sysconf(_SC_PAGESIZE));
+  return static_cast<std::size_t>(bytes_from_mb(std::floor(mb_from_bytes(half))));
 }
 
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {

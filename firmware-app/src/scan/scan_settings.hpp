@@ -17,7 +17,7 @@ namespace octurn {
 /// One for each processor.
 int available_threads();
 
-/// Half of the machine's memory, bytes: the rest is for the system and its buffers.
+/// Half of the machine's memory, bytes, in whole MB: the rest is for the system and its buffers.
 std::size_t half_of_memory();
 
 /// Which pose of the sensor a model is made with.

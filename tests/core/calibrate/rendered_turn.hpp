@@ -48,31 +48,34 @@ inline Shape figure() {
 
 /// Depth of an object turned by `angle` on a disc of 30 cm, with noise that is uniform in
 /// disparity, as a Kinect's is, of 0.3 of its steps.
+/// @param object       within 20 cm of a point 6 cm above the disc's middle: rays that pass by that
+///                     ball are not walked along
 /// @param disc_normal  in the frame that turns
 inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random,
                                  const Eigen::Vector3d& disc_normal = Eigen::Vector3d::UnitZ()) {
   constexpr double steps_per_inverse_metre = 345.489;  // of a Kinect v1's disparity
   constexpr double noise = 0.5;  // steps, half the uniform distribution's width
   const Intrinsics lens;
-  const Eigen::Isometry3d pose = true_platform_from_sensor();
-  const Eigen::AngleAxisd back(-angle, Eigen::Vector3d::UnitZ());
-  const Eigen::Vector3d normal = back.inverse() * disc_normal;
+  const Eigen::Isometry3d object_from_sensor =
+      Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()) * true_platform_from_sensor();
+  const Eigen::Vector3d origin = object_from_sensor.translation();
+  const Eigen::Vector3d to_middle = Eigen::Vector3d(0, 0, 0.06) - origin;
+  const double past_ball = to_middle.squaredNorm() - 0.2 * 0.2;
   DepthFrame frame{.width = lens.width, .height = lens.height, .depth = {}};
+  frame.depth.reserve(static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height));
   for (int v = 0; v < lens.height; ++v) {
     for (int u = 0; u < lens.width; ++u) {
-      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
-      const Eigen::Vector3d direction = pose.linear() * ray;
-      const double to_disc = -normal.dot(pose.translation()) / normal.dot(direction);
+      const Eigen::Vector3d through((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+      const DepthRay ray{.origin = origin, .direction = object_from_sensor.linear() * through};
+      const double to_disc = -disc_normal.dot(origin) / disc_normal.dot(ray.direction);
       const bool on_disc =
-          to_disc > 0 && (pose.translation() + to_disc * direction).head<2>().norm() < 0.15;
+          to_disc > 0 && (origin + to_disc * ray.direction).head<2>().norm() < 0.15;
       const double end = on_disc ? to_disc : 1.0;
-      double z = 0.4;
-      for (double gap = 1; gap > 1e-5 && z < end;) {
-        gap = object(back * (pose * (z * ray)));
-        z += gap / ray.norm();
-      }
+      const double along = to_middle.dot(ray.direction);
+      const bool may_meet = along * along > past_ball * ray.direction.squaredNorm();
+      const double z = may_meet ? depth_along(ray, object, 0.4, end) : end;
       const double error = noise * (2 * static_cast<double>(random()) / 4294967295.0 - 1);
-      const double read = 1 / (1 / std::min(z, end) + error / steps_per_inverse_metre);
+      const double read = 1 / (1 / z + error / steps_per_inverse_metre);
       const bool is_read = on_disc || z < end;
       frame.depth.push_back(
           static_cast<std::uint16_t>(is_read ? std::lround(read / lens.depth_unit) : 0));

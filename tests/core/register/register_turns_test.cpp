@@ -143,9 +143,8 @@ TEST(RegisterTurns, TellsThatABallIsSymmetric) {
 // The first turn shows a square block; only the second one shows the dent in its underside, which
 // may then be at any of four corners.
 TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
-  const Shape dented = [](const Eigen::Vector3d& p) {
-    return std::max(block({0.08, 0.08, 0.05})(p), -ball({0.018, 0.018, 0}, 0.015)(p));
-  };
+  const Shape dented = [whole = block({0.08, 0.08, 0.05}), dent = ball({0.018, 0.018, 0}, 0.015)](
+                           const Eigen::Vector3d& p) { return std::max(whole(p), -dent(p)); };
 
   const Registration found = register_turns(
       std::array{laid_turn(dented, stops), laid_turn(dented, stops, turned_over(0.05))});

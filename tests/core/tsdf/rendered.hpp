@@ -34,8 +34,26 @@ inline Shape hollowed_block(const Eigen::Vector3d& size, double radius) {
   };
 }
 
+/// A ray of the platform's frame: `origin + z * direction`, where `z` is the depth.
+struct DepthRay {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+};
+
+/// The depth at which a ray meets a shape, which it walks along by the distance to it (Hart 1996,
+/// "Sphere tracing"), or `end` if it does not before.
+inline double depth_along(const DepthRay& ray, const Shape& shape, double begin, double end) {
+  const double length = ray.direction.norm();
+  double z = begin;
+  for (double gap = 1; gap > 1e-5 && z < end;) {
+    gap = shape(ray.origin + z * ray.direction);
+    z += gap / length;
+  }
+  return std::min(z, end);
+}
+
 /// A scan of a shape by an ideal sensor of 240 x 180 samples, 0.7 m away and 25 degrees above: each
-/// ray is walked along by the distance to the shape or the platform.
+/// ray ends on the shape or on the platform.
 inline SnapshotSource rendered(const Shape& shape, std::size_t count) {
   return {.count = count, .read = [=](std::size_t i) {
             Eigen::Matrix3d upright;  // optical X right, Y down, Z forward, in the platform's axes
@@ -55,16 +73,15 @@ inline SnapshotSource rendered(const Shape& shape, std::size_t count) {
                                              .cy = 90,
                                              .depth_unit = 0.0001},
                               .object_from_sensor = object_from_sensor(pose, angle)};
+            const Eigen::Isometry3d& from_sensor = snapshot.object_from_sensor;
             for (int v = 0; v < 180; ++v) {
               for (int u = 0; u < 240; ++u) {
-                const Eigen::Vector3d ray((u - 120) / 216.0, (v - 90) / 216.0, 1);
-                double z = 0.4;
-                double gap = 1;
-                for (int step = 0; step < 40 && gap > 1e-5 && z < 1.2; ++step) {
-                  const Eigen::Vector3d point = snapshot.object_from_sensor * (z * ray);
-                  gap = std::min(shape(point), point.z());
-                  z += gap / ray.norm();
-                }
+                const Eigen::Vector3d through((u - 120) / 216.0, (v - 90) / 216.0, 1);
+                const DepthRay ray{.origin = from_sensor.translation(),
+                                   .direction = from_sensor.linear() * through};
+                const double to_platform =
+                    ray.direction.z() < 0 ? -ray.origin.z() / ray.direction.z() : 1.2;
+                const double z = depth_along(ray, shape, 0.4, std::min(to_platform, 1.2));
                 snapshot.frame.depth.push_back(
                     static_cast<std::uint16_t>(z < 1.2 ? std::lround(z / 0.0001) : 0));
               }

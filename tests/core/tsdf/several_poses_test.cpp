@@ -21,9 +21,8 @@ const Box clip_box{.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}};
 
 /// A block with half a ball hollowed out of its underside.
 Shape dented() {
-  return [](const Eigen::Vector3d& p) {
-    return std::max(block({0.09, 0.07, height})(p), -ball({0, 0, 0}, dent)(p));
-  };
+  return [whole = block({0.09, 0.07, height}), gap = ball({0, 0, 0}, dent)](
+             const Eigen::Vector3d& p) { return std::max(whole(p), -gap(p)); };
 }
 
 double dented_cm3() {
@@ -142,7 +141,8 @@ TEST(IntersectionOfSeveralPoses, CoversTheUndersideThatTheSecondPoseSaw) {
   // Its surface in the dent, as deep as the sensor sees into it: one pose has none there.
   bool in_dent = false;
   for (const Facet& facet : model.facets) {
-    for (const auto& corner : facet.corners) {
+    const auto corners = facet.corners;  // a copy: a facet is packed, and its own are not aligned
+    for (const auto& corner : corners) {
       const Eigen::Vector3d at(static_cast<double>(corner[0]), static_cast<double>(corner[1]),
                                static_cast<double>(corner[2]));
       in_dent = in_dent || (at.z() > 5 && std::abs(at.norm() - mm_from_metres(dent)) < 4);

@@ -26,7 +26,7 @@ struct CalibrationTurn {
 
 /// Something about the rig that a new pose does not cure.
 struct CalibrationFinding {
-  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved", "no-map"
+  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved", "focal-length", "no-map"
   std::string detail = {};
   std::string hint = {};
   std::optional<int> stop = {};      ///< of a slip, counted from 0

@@ -94,7 +94,14 @@ void add_plane(Sums& scaled, const Vector3d& normal, double sigma) {
   scaled.right(0) += information * normal.y();
 }
 
-Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Vector4d& motion) {
+double step_of(const Vector4d& motion) {
+  return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
+}
+
+}  // namespace
+
+Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformPlane& plane,
+                                  const Vector4d& motion) {
   const Vector3d rotation(motion[0], motion[1], 0);
   const double angle = rotation.norm();
   Eigen::Isometry3d change = Eigen::Isometry3d::Identity();
@@ -102,22 +109,12 @@ Eigen::Isometry3d moved(const Eigen::Isometry3d& pose, const Vector4d& motion) {
     change.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
   }
   change.translation() = Vector3d(motion[2], motion[3], 0);
-  return change * pose;
+  Eigen::Isometry3d moved = change * pose;
+  const Vector3d normal = moved.linear() * plane.normal;
+  const double height = normal.dot(moved * (plane.normal * plane.offset)) / normal.z();
+  moved.translation().z() -= height;
+  return moved;
 }
-
-/// Slides the origin along the axis to where that meets the plane.
-Eigen::Isometry3d with_origin_on(const PlatformPlane& plane, Eigen::Isometry3d pose) {
-  const Vector3d normal = pose.linear() * plane.normal;
-  const double height = normal.dot(pose * (plane.normal * plane.offset)) / normal.z();
-  pose.translation().z() -= height;
-  return pose;
-}
-
-double step_of(const Vector4d& motion) {
-  return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
-}
-
-}  // namespace
 
 double AxisSolution::position_sigma() const {
   Eigen::Matrix<double, 2, 4> at_lever = Eigen::Matrix<double, 2, 4>::Zero();
@@ -154,8 +151,7 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
     const double largest = wanted.cwiseAbs().maxCoeff();
     const Vector4d motion =
         largest > max_motion ? Vector4d(wanted * (max_motion / largest)) : wanted;
-    solution.platform_from_sensor =
-        with_origin_on(plane, moved(solution.platform_from_sensor, motion));
+    solution.platform_from_sensor = with_axis_moved(solution.platform_from_sensor, plane, motion);
     solution.last_step = step_of(motion);
     if (stage == last_stage && solution.last_step < settled_step) {
       break;

@@ -19,6 +19,12 @@ struct AxisSolution {
   double direction_sigma() const;  ///< radians
 };
 
+/// Moves a pose's axis, and slides its origin along it to where it meets the plane.
+/// @param pose    optical frame to platform frame
+/// @param motion  rotation about x and y (radians), translation along x and y (metres), both small
+Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformPlane& plane,
+                                  const Eigen::Vector4d& motion);
+
 /// Moves a pose until the stops agree best: Gauss-Newton over the axis's direction and place, the
 /// distances weighted as Cauchy distributed. Height and turn about the axis stay: the plane tells
 /// the one, and nothing the other.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
+#include "calibrate/focal_length.hpp"
 #include "calibrate/number_text.hpp"
 #include "calibrate/platform_map.hpp"
 #include "calibrate/platform_plane.hpp"
@@ -93,17 +94,53 @@ void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& 
   }
 }
 
+/// What the platform's surface says beside where it lies.
+struct SurfaceFindings {
+  std::optional<SensorStep> bump = {};    ///< of the sensor
+  std::optional<double> unevenness = {};  ///< units of disparity; nothing if too little is seen
+};
+
+SurfaceFindings look_at_surface(CalibrationReport& report, const TurnReader& reader,
+                                const std::vector<double>& angles,
+                                const Eigen::Isometry3d& levelled) {
+  const std::vector<bool> is_plane = find_plane_pixels(reader.samples(), reader.plane());
+  const std::vector<StopPlane> planes =
+      measure_stop_planes(reader.samples(), reader.plane(), is_plane, levelled);
+  SurfaceFindings surface{.unevenness =
+                              measure_platform_map(reader.samples(), reader.plane(), is_plane)};
+  const auto step = solve_sensor_step(planes, angles);
+  if (auto bump = step ? find_bump(*step) : std::nullopt) {
+    report.findings = {*std::move(bump)};  // which looks like a slip, or a move of the object
+    surface.bump = step;
+  }
+  add_wobble(report, measure_wobble(planes, angles));
+  return surface;
+}
+
 /// Adds that flattening the sensor would help, if the platform looks uneven.
 /// @param unevenness  units of disparity
-void add_no_map(CalibrationReport& report, std::optional<double> unevenness) {
-  if (unevenness && *unevenness > max_unevenness) {
-    report.findings.push_back(
-        {.code = "no-map",
-         .detail = "the flat platform looks uneven by " +
-                   number_text("%.2f units of the sensor's disparity", *unevenness),
-         .hint = "Flatten the sensor: record a bare wall, and make its map.",
-         .stop = {},
-         .angle = {}});
+void add_no_map(CalibrationReport& report, double unevenness) {
+  report.findings.push_back(
+      {.code = "no-map",
+       .detail = "the flat platform looks uneven by " +
+                 number_text("%.2f units of the sensor's disparity", unevenness),
+       .hint = "Flatten the sensor: record a bare wall, and make its map.",
+       .stop = {},
+       .angle = {}});
+}
+
+/// Whether nothing slipped or moved, which pulls a focal length along.
+bool all_stand_as_told(const CalibrationReport& report) {
+  return std::ranges::all_of(report.findings, [](const CalibrationFinding& finding) {
+    return finding.code == "wobble" || finding.code == "no-map";
+  });
+}
+
+/// Adds that the focal length is wrong, if it is. @param told  pixels
+void add_focal_length(CalibrationReport& report, const std::optional<FocalLength>& solved,
+                      double told) {
+  if (auto wrong = solved ? find_wrong_focal_length(*solved, told) : std::nullopt) {
+    report.findings.push_back(*std::move(wrong));
   }
 }
 
@@ -208,24 +245,17 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   if (const std::string reason = refuse_plane(reader.find_platform()); !reason.empty()) {
     return refused(std::move(report), reason);
   }
-  const TurnViews views = reader.read_views();
+  TurnViews views = reader.read_views();
   const PlatformPlane& plane = reader.plane();
   const Eigen::Isometry3d levelled = level(turn.platform_from_sensor, plane);
   if (const std::string reason = refuse_object(views); !reason.empty()) {
     return refused(std::move(report), reason);
   }
   const auto solution = solve(report, views, plane, levelled, threads);
-  const std::vector<bool> is_plane = find_plane_pixels(reader.samples(), plane);
-  const std::vector<StopPlane> planes =
-      measure_stop_planes(reader.samples(), plane, is_plane, levelled);
-  const auto sensor_step = solve_sensor_step(planes, turn.angles);
-  const auto bump = sensor_step ? find_bump(*sensor_step) : std::nullopt;
-  if (bump) {
-    report.findings = {*bump};  // which looks like a slip, or a move of the object
-  }
-  add_wobble(report, measure_wobble(planes, turn.angles));
-  if (!turn.has_sensor_map && !bump) {
-    add_no_map(report, measure_platform_map(reader.samples(), plane, is_plane));
+  const SurfaceFindings surface = look_at_surface(report, reader, turn.angles, levelled);
+  const bool is_uneven = !turn.has_sensor_map && surface.unevenness.value_or(0) > max_unevenness;
+  if (is_uneven && !surface.bump) {
+    add_no_map(report, *surface.unevenness);
   }
   if (!solution) {
     return refused(std::move(report), "too little of the object is seen from two stops");
@@ -237,8 +267,12 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   compare(report, turn.platform_from_sensor);
-  const std::string reason = bump && sensor_step->size > max_after
-                                 ? bump->detail
+  if (!is_uneven && all_stand_as_told(report)) {
+    add_focal_length(report, solve_focal_length(views, plane, report.platform_from_sensor, threads),
+                     turn.intrinsics.fx);
+  }
+  const std::string reason = surface.bump && surface.bump->size > max_after
+                                 ? report.findings.front().detail
                                  : refuse_solution(report, solution->last_step);
   report.accepted = reason.empty();
   return refused(std::move(report), reason);

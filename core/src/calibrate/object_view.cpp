@@ -90,6 +90,11 @@ std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   return read(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)));
 }
 
+void ObjectView::widen(double factor) {
+  intrinsics_.fx /= factor;
+  intrinsics_.fy /= factor;
+}
+
 std::vector<SurfaceReading> ObjectView::readings(int step) const {
   std::vector<SurfaceReading> readings;
   for (int v = normal_reach; v < window_.height - normal_reach; v += step) {

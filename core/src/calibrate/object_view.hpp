@@ -36,6 +36,9 @@ class ObjectView {
   /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
   std::optional<SurfaceReading> look_up(const Eigen::Vector3d& point) const;
 
+  /// Makes everything wider by a factor, and no nearer: as with a focal length that much shorter.
+  void widen(double factor);
+
   /// The object's readings, of pixels `step` apart.
   std::vector<SurfaceReading> readings(int step) const;
 

@@ -115,15 +115,15 @@ TEST(Calibrate, SeesInOneMoreLookAtTheFirstAngleThatTheObjectMovedAtTheEnd) {
       << report.findings[0].detail;
 }
 
-/// The same by a sensor that errs by a smooth pattern of 0.8 units of disparity (root mean square),
-/// whose waves are some 130 pixels long.
-CalibrationTurn with_pattern(CalibrationTurn turn) {
-  turn.read = [read = turn.read](std::size_t stop) {
+/// The same by a sensor that errs by a smooth pattern, whose waves are some 130 pixels long.
+/// @param size  units of disparity, root mean square
+CalibrationTurn with_pattern(CalibrationTurn turn, double size = 0.8) {
+  turn.read = [size, read = turn.read](std::size_t stop) {
     DepthFrame frame = read(stop);
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {
       const auto u = static_cast<double>(i % 640);
       const auto v = static_cast<double>(i / 640);
-      const double error = 0.8 * (std::sin(u / 21 + 1) + std::sin(v / 17 + u / 40));
+      const double error = size * (std::sin(u / 21 + 1) + std::sin(v / 17 + u / 40));
       const double depth = frame.depth[i] * 0.0001;
       frame.depth[i] =
           frame.depth[i] == 0
@@ -167,6 +167,46 @@ TEST(Calibrate, TakesNoPatternForAWobble) {
     const CalibrationReport report = calibrate(with_pattern(rendered_turn(figure(), stops)));
     EXPECT_EQ(std::ranges::count(report.findings, "wobble", &CalibrationFinding::code), 0);
   }
+}
+
+/// The finding of a code, if there is one.
+std::optional<CalibrationFinding> finding(const CalibrationReport& report,
+                                          const std::string& code) {
+  const auto found = std::ranges::find(report.findings, code, &CalibrationFinding::code);
+  return found == report.findings.end() ? std::nullopt : std::optional(*found);
+}
+
+TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  for (const double ratio : {0.98, 1.02}) {
+    turn.intrinsics = {.fx = Intrinsics().fx / ratio, .fy = Intrinsics().fy / ratio};
+    const CalibrationReport report = calibrate(turn);
+    const auto wrong = finding(report, "focal-length");
+    ASSERT_TRUE(wrong) << ratio;
+    constexpr std::string_view before = "the sensor's focal length is ";
+    ASSERT_TRUE(wrong->detail.starts_with(before)) << wrong->detail;
+    // The sigma is 0.3 %.
+    EXPECT_NEAR(std::stod(wrong->detail.substr(before.size())), 2, 0.9) << wrong->detail;
+    EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than told" : "shorter than told"),
+              std::string::npos);
+  }
+}
+
+// A map of one wall leaves some 0.1 units.
+TEST(Calibrate, TellsAFocalLengthOnlyBesideSoMuchOfAPatternAsAMapLeaves) {
+  const CalibrationTurn seen = rendered_turn(figure(), 8);
+  for (const bool has_map : {false, true}) {
+    CalibrationTurn turn = with_pattern(seen, has_map ? 0.1 : 0.8);
+    turn.has_sensor_map = has_map;
+    EXPECT_FALSE(finding(calibrate(turn), "focal-length")) << has_map;
+    turn.intrinsics = {.fx = 0.98 * Intrinsics().fx, .fy = 0.98 * Intrinsics().fy};
+    EXPECT_EQ(finding(calibrate(turn), "focal-length").has_value(), has_map);
+  }
+}
+
+// Of a ball and a platform, only the platform's tilt against the axis tells.
+TEST(Calibrate, TellsNoFocalLengthOfABall) {
+  EXPECT_FALSE(finding(calibrate(rendered_turn(ball({0.02, 0, 0.05}, 0.05), 8)), "focal-length"));
 }
 
 TEST(Calibrate, ReadsEachDepthImageOnce) {

@@ -1,0 +1,191 @@
+#include "calibrate/focal_length.hpp"
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "calibrate/axis_solver.hpp"
+#include "calibrate/for_each_stop.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Vector5d = Eigen::Matrix<double, 5, 1>;
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+
+constexpr std::array schedule = {ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
+                                 ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
+                                 ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002}};
+constexpr std::size_t min_residuals = 60;
+constexpr double direction_sigma_deg = 0.05;  // between the plane's normal and the axis
+// Metres: what edges and grazing angles make residuals wrong by, all around an object. It is as
+// large as what a focal length 1 % off does to a flat box.
+constexpr double systematic_error = 3e-5;
+constexpr double max_change = 0.2;  // in one iteration: more is no focal length
+constexpr double min_error = 0.01;
+constexpr double min_sigmas = 5;
+
+/// How the platform frame's points move as what is seen becomes wider, and the plane stays z = 0.
+class Widening {
+ public:
+  Widening(const PlatformPlane& plane, const Isometry3d& platform_from_sensor)
+      : pose_(platform_from_sensor), back_(platform_from_sensor.inverse()) {
+    const Vector3d& normal = plane.normal;
+    const Vector3d across(-normal.x(), -normal.y(), 0);
+    const Vector3d tilt = pose_.linear() * (across - normal * normal.dot(across));
+    turning_ = Vector3d(tilt.y(), -tilt.x(), 0);
+    rise_ = -(pose_.linear() * across_of(back_.translation())).z();
+  }
+
+  /// Metres for each unit of the factor. @param point  of the platform's frame
+  Vector3d operator()(const Vector3d& point) const {
+    return pose_.linear() * across_of(back_ * point) + turning_.cross(point) +
+           rise_ * Vector3d::UnitZ();
+  }
+
+  /// Radians about x and y for each unit of the factor.
+  Eigen::Vector2d turning() const { return turning_.head<2>(); }
+
+ private:
+  static Vector3d across_of(const Vector3d& seen) { return {seen.x(), seen.y(), 0}; }
+
+  Isometry3d pose_;
+  Isometry3d back_;
+  Vector3d turning_;
+  double rise_ = 0;
+};
+
+struct Sums {
+  Matrix5d normal_matrix = Matrix5d::Zero();
+  Vector5d right = Vector5d::Zero();
+  double weight = 0;
+  double squares = 0;
+  std::size_t count = 0;
+};
+
+Sums sums_of_stop(const TurnViews& turn, const Isometry3d& pose, const Widening& widening,
+                  std::size_t stop, const ResidualLimits& limits) {
+  Sums sums;
+  const std::vector<double> as_told(turn.angles.size(), 0.0);
+  for_each_residual(turn, pose, as_told, stop, limits, [&](const StopResidual& residual) {
+    const Vector3d turning = residual.point_from.cross(residual.normal_from) -
+                             residual.point_to.cross(residual.normal_to);
+    const Vector3d moving = residual.normal_from - residual.normal_to;
+    Vector5d row;
+    row << turning.x(), turning.y(), moving.x(), moving.y(),
+        residual.normal_from.dot(widening(residual.point_from)) -
+            residual.normal_to.dot(widening(residual.point_to));
+    const double weight = limits.weight(residual.distance);
+    sums.normal_matrix += weight * row * row.transpose();
+    sums.right -= weight * residual.distance * row;
+    sums.weight += weight;
+    sums.squares += weight * residual.distance * residual.distance;
+    ++sums.count;
+  });
+  return sums;
+}
+
+Sums sums_of_turn(const TurnViews& turn, const Isometry3d& pose, const Widening& widening,
+                  const ResidualLimits& limits, int threads) {
+  std::vector<Sums> of_stops(turn.views.size());
+  for_each_stop(of_stops.size(), threads, [&](std::size_t stop) {
+    of_stops[stop] = sums_of_stop(turn, pose, widening, stop, limits);
+  });
+  Sums all;
+  for (const Sums& sums : of_stops) {  // in their order, so that threads change no bit
+    all.normal_matrix += sums.normal_matrix;
+    all.right += sums.right;
+    all.weight += sums.weight;
+    all.squares += sums.squares;
+    all.count += sums.count;
+  }
+  return all;
+}
+
+/// A normal of a surface that becomes wider. Not of length one.
+Vector3d widened_normal(const Vector3d& normal, double factor) {
+  return {normal.x() / factor, normal.y() / factor, normal.z()};
+}
+
+void widen(TurnViews& turn, double factor) {
+  for (ObjectView& view : turn.views) {
+    view.widen(factor);
+  }
+  for (std::vector<SurfaceReading>& readings : turn.readings) {
+    for (SurfaceReading& reading : readings) {
+      reading.point.head<2>() *= factor;
+      reading.normal = widened_normal(reading.normal, factor).normalized();
+    }
+  }
+}
+
+PlatformPlane widened(PlatformPlane plane, double factor) {
+  const Vector3d normal = widened_normal(plane.normal, factor);
+  plane.offset /= normal.norm();
+  plane.normal = normal.normalized();
+  return plane;
+}
+
+}  // namespace
+
+std::optional<FocalLength> solve_focal_length(TurnViews& turn, PlatformPlane plane,
+                                              Isometry3d platform_from_sensor, int threads) {
+  const double information = std::pow(radians_from_degrees(direction_sigma_deg), -2);
+  double width = 1;
+  double sigma = 0;
+  for (const ResidualLimits& limits : schedule) {
+    const Widening widening(plane, platform_from_sensor);
+    const Sums sums = sums_of_turn(turn, platform_from_sensor, widening, limits, threads);
+    if (sums.count < min_residuals) {
+      return std::nullopt;
+    }
+    const double variance = sums.squares / sums.weight * turn.correlation;
+    Matrix5d normal_matrix = sums.normal_matrix / variance;
+    Vector5d right = sums.right / variance;
+    // The axis is the plane's normal. A small rotation w takes a normal near z to n + (w_y, -w_x).
+    const Vector3d normal = platform_from_sensor.linear() * plane.normal;
+    normal_matrix.topLeftCorner<2, 2>() += information * Eigen::Matrix2d::Identity();
+    right.head<2>() += information * Eigen::Vector2d(normal.y(), -normal.x());
+    const Eigen::LDLT<Matrix5d> factors(normal_matrix);
+    const Vector5d motion = factors.solve(right);
+    if (!motion.allFinite() || std::abs(motion[4]) > max_change) {
+      return std::nullopt;
+    }
+    const double factor = 1 + motion[4];
+    widen(turn, factor);
+    plane = widened(plane, factor);
+    Eigen::Vector4d of_axis = motion.head<4>();
+    of_axis.head<2>() += motion[4] * widening.turning();
+    platform_from_sensor = with_axis_moved(platform_from_sensor, plane, of_axis);
+    width *= factor;
+    const double noise = std::sqrt(factors.solve(Vector5d::Unit(4))[4]);
+    const double sensitivity = std::sqrt(variance / sums.weight) / noise;
+    sigma = std::hypot(noise, systematic_error / sensitivity);
+  }
+  return FocalLength{.ratio = 1 / width, .sigma = sigma};
+}
+
+std::optional<CalibrationFinding> find_wrong_focal_length(const FocalLength& solved, double told) {
+  const double error = std::abs(solved.ratio - 1);
+  if (error < min_error || error < min_sigmas * solved.sigma) {
+    return std::nullopt;
+  }
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(),
+                "the sensor's focal length is %.1f %% %s than told: %.0f pixels instead of %.0f",
+                100 * error, solved.ratio > 1 ? "longer" : "shorter", told * solved.ratio, told);
+  return CalibrationFinding{.code = "focal-length",
+                            .detail = text.data(),
+                            .hint =
+                                "Look whether the scan is of this sensor, and its depth images "
+                                "of their full size.",
+                            .stop = {},
+                            .angle = {}};
+}
+
+}  // namespace octurn

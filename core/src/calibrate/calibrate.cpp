@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
+#include "calibrate/axis_start.hpp"
 #include "calibrate/focal_length.hpp"
 #include "calibrate/number_text.hpp"
 #include "calibrate/platform_map.hpp"
@@ -148,8 +149,8 @@ void add_focal_length(CalibrationReport& report, const std::optional<FocalLength
 std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
                                   const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
                                   int threads) {
-  auto loose =
-      solve_axis(views, plane, levelled, radians_from_degrees(loose_direction_deg), threads);
+  auto loose = solve_axis(views, plane, find_axis_start(views, levelled, threads),
+                          radians_from_degrees(loose_direction_deg), threads);
   if (!loose) {
     return std::nullopt;
   }

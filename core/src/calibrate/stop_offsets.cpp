@@ -24,10 +24,17 @@ constexpr std::array schedule = {
     ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
 };
 
-constexpr double max_sigma_deg = 1.0;  // of a stop's angle: a vase leaves 1.5 degrees open
+constexpr double max_sigma_deg = 1.0;  // of a stop's angle
+// Metres for a radian, of the residuals: a vase and a ball have 4 to 5, of which noise in the
+// normals is the most, a flat box 9 to 12, an object with limbs 20 and more.
+constexpr double min_sensitivity = 0.007;
 constexpr double min_slip_deg = 0.6;
 constexpr double slip_sigmas = 3;
 constexpr double slip_to_noise = 5;  // times the median step: the sensor's fixed pattern is in all
+// A platform that slipped stays where it is. What stands out at one stop alone, or creeps up over
+// some, is an object seen from its narrow side.
+constexpr double min_lasting = 0.6;  // of the step, between the stops before and after it
+constexpr std::ptrdiff_t lasting_stops = 3;
 
 // A sensor's fixed pattern alone looks like a turn of 356 degrees.
 constexpr double min_drift_deg = 8;
@@ -77,6 +84,7 @@ struct Equations {
   Eigen::MatrixXd normal_matrix;
   Eigen::VectorXd right;
   double variance = 0;
+  double sensitivity = 0;  // metres for a radian, root mean square
 };
 
 Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
@@ -106,7 +114,20 @@ Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
     squares += of_stops[stop].squares;
   }
   all.variance = weight > 0 ? squares / weight * turn.correlation : 0;
+  // Each residual has two stops.
+  all.sensitivity = weight > 0 ? std::sqrt(all.normal_matrix.trace() / (2 * weight)) : 0;
   return all;
+}
+
+/// Of any stop's angle from the mean of all. From the first stop it would be the larger the less
+/// that stop saw, or one on the way to it: the simulator's robot in profile.
+/// @param covariance  of the offsets from the second stop on
+double worst_sigma(const Eigen::MatrixXd& covariance) {
+  const Eigen::Index stops = covariance.rows() + 1;
+  Eigen::MatrixXd from_mean =
+      Eigen::MatrixXd::Constant(stops, stops - 1, -1.0 / static_cast<double>(stops));
+  from_mean.bottomRows(stops - 1) += Eigen::MatrixXd::Identity(stops - 1, stops - 1);
+  return std::sqrt((from_mean * covariance * from_mean.transpose()).diagonal().maxCoeff());
 }
 
 std::string degrees_text(double angle) {
@@ -125,6 +146,26 @@ double step_sigma(const Eigen::MatrixXd& covariance, Eigen::Index stop) {
                    2 * covariance(stop - 1, stop));
 }
 
+/// The median of the offsets of some stops. @param first, last  stops, both included
+double median_offset(const std::vector<double>& offsets, std::ptrdiff_t first,
+                     std::ptrdiff_t last) {
+  std::vector<double> some(
+      offsets.begin() + std::max<std::ptrdiff_t>(first, 0),
+      offsets.begin() + std::min(last + 1, static_cast<std::ptrdiff_t>(offsets.size())));
+  std::ranges::sort(some);
+  return some[some.size() / 2];
+}
+
+/// Whether the stops around a step differ by most of it, too.
+/// @param stop  the first after it
+bool lasts(const std::vector<double>& offsets, std::ptrdiff_t stop) {
+  const auto at = static_cast<std::size_t>(stop);
+  const double step = offsets[at] - offsets[at - 1];
+  const double around = median_offset(offsets, stop, stop + lasting_stops - 1) -
+                        median_offset(offsets, stop - lasting_stops, stop - 1);
+  return around / step > min_lasting;
+}
+
 /// The largest step between neighbouring stops, if it stands out of the others.
 std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   const std::vector<double>& offsets = solved.offsets;
@@ -141,7 +182,7 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   std::ranges::sort(sorted);
   const double sigma = step_sigma(solved.covariance, at);
   if (*largest < radians_from_degrees(min_slip_deg) || *largest < slip_sigmas * sigma ||
-      *largest < slip_to_noise * sorted[middle]) {
+      *largest < slip_to_noise * sorted[middle] || !lasts(offsets, at + 1)) {
     return std::nullopt;
   }
   const int stop = static_cast<int>(at) + 1;
@@ -197,6 +238,9 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
   StopOffsets solved{.offsets = std::vector<double>(stops, 0.0), .covariance = {}};
   for (const ResidualLimits& limits : schedule) {
     const Equations all = equations(turn, platform_from_sensor, solved.offsets, limits, threads);
+    if (all.sensitivity < min_sensitivity) {
+      return std::nullopt;
+    }
     // The first stop is where the angles are counted from.
     const auto free = static_cast<Eigen::Index>(stops) - 1;
     const Eigen::MatrixXd normal_matrix = all.normal_matrix.bottomRightCorner(free, free);
@@ -210,9 +254,9 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
     }
     solved.covariance = factors.solve(Eigen::MatrixXd::Identity(free, free)) * all.variance;
   }
-  const double worst = std::sqrt(solved.covariance.diagonal().maxCoeff());
-  return worst < radians_from_degrees(max_sigma_deg) ? std::optional(std::move(solved))
-                                                     : std::nullopt;
+  return worst_sigma(solved.covariance) < radians_from_degrees(max_sigma_deg)
+             ? std::optional(std::move(solved))
+             : std::nullopt;
 }
 
 std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,

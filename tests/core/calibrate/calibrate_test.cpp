@@ -52,6 +52,15 @@ TEST(Calibrate, SeesAnObjectThatStandsBesideTheMiddleFromEightStops) {
   expect_axis_found(calibrate(turn));
 }
 
+// Its sides, of 12 mm, overlap nothing of themselves from there.
+TEST(Calibrate, FindsTheAxisUnderAFlatBoxThatWasTold28MillimetresBeside) {
+  CalibrationTurn turn = rendered_turn(block({0.12, 0.08, 0.012}), 8);
+  turn.platform_from_sensor = wrong_pose({0.02, 0.02, 0}, {1, 0.5, 0}, 3);
+  const CalibrationReport report = calibrate(turn);
+  EXPECT_TRUE(report.accepted) << report.reason;
+  EXPECT_LT(axis_error(report.platform_from_sensor).position_mm, 0.3);
+}
+
 TEST(Calibrate, ConfirmsARigThatIsRight) {
   const CalibrationReport report = calibrate(rendered_turn(figure(), 12));
   expect_axis_found(report);

@@ -70,22 +70,24 @@ class Lattice {
   std::vector<float> values_;
 };
 
-Vector3d gradient(const SignedDistance& distance, const Vector3d& at, double step) {
+/// @param value  the distance at the point
+Vector3d gradient(const SignedDistance& distance, const Vector3d& at, double value, double step) {
   Vector3d result;
   for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d aside = step * Vector3d::Unit(axis);
-    result[axis] = (distance(at + aside) - distance(at - aside)) / (2 * step);
+    result[axis] = (distance(at + step * Vector3d::Unit(axis)) - value) / step;
   }
   return result;
 }
 
-/// Newton's steps along the gradient, each at most a cell long.
+/// Newton's steps along the gradient, each at most a cell long, until a thousandth of a cell is
+/// left.
 Vector3d onto_surface(const SignedDistance& distance, Vector3d at, double cell) {
-  constexpr int steps = 4;
-  for (int i = 0; i < steps; ++i) {
-    const Vector3d slope = gradient(distance, at, cell / 100);
-    const double value = std::clamp(distance(at), -cell, cell);
-    at -= slope * (value / std::max(slope.squaredNorm(), 0.25));
+  constexpr int max_steps = 4;
+  double value = distance(at);
+  for (int i = 0; i < max_steps && std::abs(value) > cell / 1000; ++i) {
+    const Vector3d slope = gradient(distance, at, value, cell / 100);
+    at -= slope * (std::clamp(value, -cell, cell) / std::max(slope.squaredNorm(), 0.25));
+    value = distance(at);
   }
   return at;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "octurn/units.hpp"
@@ -51,15 +52,30 @@ int mean_around(const DepthFrame& frame, int u, int v, int same_surface) {
   return centre + sum / count;
 }
 
-/// A frame without the steps of depth in which a sensor counts: they stand still, and would hold
-/// the object. Each reading becomes the mean of those around it on the same surface.
-DepthFrame smoothed(const DepthFrame& frame, double depth_unit) {
-  const auto same_surface = static_cast<int>(max_step / depth_unit);
-  DepthFrame smooth{.width = frame.width, .height = frame.height};
-  smooth.depth.reserve(frame.depth.size());
+/// A pixel's reading as a point of the platform's frame, metres; not a number where there is none.
+Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v) {
+  const Intrinsics& lens = view.intrinsics;
+  const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                            static_cast<std::size_t>(u);
+  const double reading = frame.depth[pixel] * lens.depth_unit;
+  const double z = reading > 0 ? reading : std::numeric_limits<double>::quiet_NaN();
+  return view.platform_from_sensor *
+         Eigen::Vector3d((u - lens.cx) * z / lens.fx, (v - lens.cy) * z / lens.fy, z);
+}
+
+/// A frame in which the object has not the steps of depth in which a sensor counts: they stand
+/// still, and would hold it. Each reading inside the clip box becomes the mean of those around it
+/// on the same surface.
+DepthFrame smoothed(const View& view, const DepthFrame& frame) {
+  const auto same_surface = static_cast<int>(max_step / view.intrinsics.depth_unit);
+  DepthFrame smooth = frame;
   for (int v = 0; v < frame.height; ++v) {
     for (int u = 0; u < frame.width; ++u) {
-      smooth.depth.push_back(static_cast<std::uint16_t>(mean_around(frame, u, v, same_surface)));
+      if (contains(view.clip, point_at(view, frame, u, v))) {
+        smooth.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                     static_cast<std::size_t>(u)] =
+            static_cast<std::uint16_t>(mean_around(frame, u, v, same_surface));
+      }
     }
   }
   return smooth;
@@ -67,18 +83,11 @@ DepthFrame smoothed(const DepthFrame& frame, double depth_unit) {
 
 /// Readings inside the clip box, in the platform's frame.
 Points points_in(const View& view, const DepthFrame& frame) {
-  const Intrinsics& lens = view.intrinsics;
   Points points;
   for (int v = 0; v < frame.height; v += pixel_step) {
     for (int u = 0; u < frame.width; u += pixel_step) {
-      const double z =
-          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
-                      static_cast<std::size_t>(u)] *
-          lens.depth_unit;
-      const Eigen::Vector3d point =
-          view.platform_from_sensor *
-          Eigen::Vector3d((u - lens.cx) * z / lens.fx, (v - lens.cy) * z / lens.fy, z);
-      if (z > 0 && point.z() >= min_height && contains(view.clip, point)) {
+      const Eigen::Vector3d point = point_at(view, frame, u, v);
+      if (point.z() >= min_height && contains(view.clip, point)) {
         points.push_back(point);
       }
     }
@@ -134,8 +143,8 @@ class Looks {
  public:
   Looks(const View& view, const DepthFrame& from, const DepthFrame& to)
       : view_(view),
-        from_(smoothed(from, view.intrinsics.depth_unit)),
-        to_(smoothed(to, view.intrinsics.depth_unit)),
+        from_(smoothed(view, from)),
+        to_(smoothed(view, to)),
         points_from_(points_in(view, from_)),
         points_to_(points_in(view, to_)) {}
 

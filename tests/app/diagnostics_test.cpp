@@ -14,7 +14,10 @@ namespace {
 using nlohmann::json;
 
 Job job_of(const std::string& id, const std::string& name) {
-  return {.id = id, .name = name, .state = JobState::failed, .created = "2026-11-21T08:15:00Z"};
+  return {.id = id,
+          .name = name,
+          .state = JobState::failed,
+          .times = {.created = "2026-11-21T08:15:00Z"}};
 }
 
 std::vector<std::string> names_of(const std::vector<ArchivedFile>& files) {

@@ -74,7 +74,7 @@ TEST(ScanStore, ListsTheNewestFirst) {
   const TemporaryFolder folder;
   for (const char* const id :
        {"20261121-081500-aaaa", "20251231-235959-ffff", "20270101-000000-0000"}) {
-    Job job{.id = id, .created = "2026-11-21T08:15:00Z"};
+    Job job{.id = id, .times = {.created = "2026-11-21T08:15:00Z"}};
     job.state = JobState::cancelled;
     put(folder.path() / "scans" / id / "job.json", to_job_json(job).dump());
   }
@@ -105,7 +105,7 @@ TEST(ScanStore, PutsANewScanFirstAlthoughTheClockHasGoneBack) {
   ScanStore store(folder.path());
   const Job job = store.create({});
   EXPECT_EQ(job.id, "21000101-000000-0000");
-  EXPECT_EQ(job.created, "2100-01-01T00:00:00Z");
+  EXPECT_EQ(job.times.created, "2100-01-01T00:00:00Z");
 }
 
 TEST(ScanStore, RemovesAScanWithEverythingInIt) {
@@ -161,7 +161,7 @@ TEST(ScanStore, ReadsADataFolderOfVersion01) {
   const Job finished = store.get("20261122-215909-48de");
   EXPECT_EQ(finished.state, JobState::finished);
   EXPECT_EQ(finished.name, "Hase, groß");
-  EXPECT_EQ(finished.created, "2026-11-22T21:59:09Z");
+  EXPECT_EQ(finished.times.created, "2026-11-22T21:59:09Z");
   EXPECT_EQ(finished.settings.snapshots, 3);
   EXPECT_EQ(finished.settings.frames, 2);
   EXPECT_NEAR(finished.settings.leaf_size, 0.004, 1e-12);

@@ -50,11 +50,18 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
       ->type_name("FILE");
   ScanSettings defaults;
   add_options(command, scan_fields(defaults), arguments.settings);
+  CLI::Option* resume =
+      command
+          .add_option("--resume", arguments.resume,
+                      "go on with this scan in the folder of scans, which was paused or "
+                      "interrupted; its own settings apply")
+          ->type_name("ID");
   command
-      .add_option("--resume", arguments.resume,
-                  "go on with this scan in the folder of scans, which was paused or interrupted; "
-                  "its own settings apply")
-      ->type_name("ID");
+      .add_option("--pose-of", arguments.pose_of,
+                  "the object of this scan in the folder of scans, turned over: make one model of "
+                  "both; its settings apply where none are given")
+      ->type_name("ID|DIR")
+      ->excludes(resume);
   command.callback([&arguments, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
     scan(arguments);

@@ -63,6 +63,7 @@ struct ScanArguments {
   ConfigArguments config = {};
   nlohmann::json settings = nlohmann::json::object();  ///< of ScanSettings, by their keys
   std::optional<std::string> resume = {};     ///< id of a scan to resume, with its own settings
+  std::optional<std::string> pose_of = {};    ///< id or folder of a scan of the object, turned over
   std::filesystem::path output = "Scan.stl";  ///< "-" is standard output
 };
 

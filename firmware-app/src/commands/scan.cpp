@@ -81,6 +81,55 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
   }
 }
 
+/// The id of a scan that is told by it, or by its folder in the store.
+std::string to_id(const std::string& told, const ScanStore& store) {
+  if (store.find(told) || !std::filesystem::is_directory(told)) {
+    return told;
+  }
+  const auto folder = std::filesystem::canonical(told);
+  std::string id = folder.filename();
+  if (!store.find(id) || std::filesystem::canonical(store.folder(id)) != folder) {
+    throw Error(ErrorCode::no_such_scan, told + ": is no scan in " + store.data().string(),
+                "Scan the object as it lies now, and join the two folders with octurn merge.");
+  }
+  return id;
+}
+
+/// Settings as the arguments have them, the rest as another scan had it.
+ScanSettings pose_settings(const ScanArguments& arguments, const Job& first,
+                           const Scanner& scanner) {
+  ScanSettings settings =
+      settings_from(arguments.settings, scanner.calibration().in_force(first.settings));
+  settings.depth_scale = first.settings.depth_scale;  // so that both have one sensor
+  return settings;
+}
+
+/// @param settings  of a scan of its own
+std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& settings,
+                         const ScanStore& store, Scanner& scanner) {
+  if (arguments.resume) {
+    return scanner.resume(*arguments.resume);
+  }
+  if (arguments.pose_of) {
+    const std::string first = to_id(*arguments.pose_of, store);
+    return scanner.start_pose(first, pose_settings(arguments, store.get(first), scanner));
+  }
+  return scanner.start(scanner.calibration().in_force(settings));
+}
+
+/// The scan whose model is handed over. @throws Error  if a pose does not fit to what it is one of
+std::string scan_with_model(const Job& job, const ScanStore& store) {
+  if (!job.pose_of) {
+    return job.id;
+  }
+  const auto& registration = job.pose_of->registration;
+  if (registration && !registration->accepted) {
+    throw Error(ErrorCode::no_model, "not merged: " + registration->reason,
+                "The scan before it is as it was; this one is in " + store.folder(job.id).string());
+  }
+  return job.pose_of->scan;
+}
+
 }  // namespace
 
 void scan(const ScanArguments& arguments) {
@@ -96,15 +145,14 @@ void scan(const ScanArguments& arguments) {
   return_freed_memory();
   Scanner scanner(rig, config.limits, store);
 
-  scanner.expect_ready();             // or there would be no more than an empty folder
-  const std::optional<Job> started =  // nothing else starts scans here
-      arguments.resume ? scanner.resume(*arguments.resume)
-                       : scanner.start(scanner.calibration().in_force(settings));
+  scanner.expect_ready();  // or there would be no more than an empty folder
+  const std::optional<Job> started =
+      begin(arguments, settings, store, scanner);  // nothing else starts scans here
   const Job job = follow(scanner, *started, signal.token());
-  if (!job.model) {
+  if (job.state != JobState::finished) {
     explain(job, store.folder(job.id));
   }
-  hand_over_model(store.model_file(job.id), arguments.output);
+  hand_over_model(store.model_file(scan_with_model(job, store)), arguments.output);
 }
 
 }  // namespace octurn

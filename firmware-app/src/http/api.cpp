@@ -10,6 +10,7 @@
 #include "http/handlers/builds.hpp"
 #include "http/handlers/calibration.hpp"
 #include "http/handlers/models.hpp"
+#include "http/handlers/poses.hpp"
 #include "http/handlers/scans.hpp"
 #include "http/handlers/settings.hpp"
 #include "http/handlers/system.hpp"
@@ -23,10 +24,10 @@ namespace {
 
 constexpr std::string_view update_path = "/api/v1/update";
 
-/// The parts of a path for which its route has `{id}` and `{build}`; empty if it has not.
+/// The parts of a path for which its route has `{id}` and `{number}`; empty if it has not.
 struct PathParts {
   std::string_view id = {};
-  std::string_view build = {};
+  std::string_view number = {};
 };
 
 /// Takes a path's first part, up to the next slash, which goes with it.
@@ -36,7 +37,7 @@ std::string_view take_part(std::string_view& path) {
   return part;
 }
 
-/// Whether a path is as a route has it; `{id}` and `{build}` stand for any one part each.
+/// Whether a path is as a route has it; `{id}` and `{number}` stand for any one part each.
 std::optional<PathParts> match(std::string_view route, std::string_view path) {
   if (std::ranges::count(route, '/') != std::ranges::count(path, '/')) {
     return std::nullopt;
@@ -47,8 +48,8 @@ std::optional<PathParts> match(std::string_view route, std::string_view path) {
     const std::string_view given = take_part(path);
     if (wanted == "{id}") {
       parts.id = given;
-    } else if (wanted == "{build}") {
-      parts.build = given;
+    } else if (wanted == "{number}") {
+      parts.number = given;
     } else if (wanted != given) {
       return std::nullopt;
     }
@@ -61,8 +62,8 @@ using Handler =
     std::variant<Response (*)(App&), Response (*)(App&, const Request&),
                  Response (*)(App&, std::string_view id),
                  Response (*)(App&, const Request&, std::string_view id),
-                 Response (*)(App&, std::string_view id, std::string_view build),
-                 Response (*)(App&, const Request&, std::string_view id, std::string_view build)>;
+                 Response (*)(App&, std::string_view id, std::string_view number),
+                 Response (*)(App&, const Request&, std::string_view id, std::string_view number)>;
 
 /// Calls any of the handlers.
 struct Call {
@@ -81,11 +82,11 @@ struct Call {
     return handler(app, request, parts.id);
   }
   Response operator()(Response (*handler)(App&, std::string_view, std::string_view)) const {
-    return handler(app, parts.id, parts.build);
+    return handler(app, parts.id, parts.number);
   }
   Response operator()(Response (*handler)(App&, const Request&, std::string_view,
                                           std::string_view)) const {
-    return handler(app, request, parts.id, parts.build);
+    return handler(app, request, parts.id, parts.number);
   }
 };
 
@@ -180,11 +181,14 @@ std::span<const Api::Route> Api::routes() {
       Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
       Route{"GET", "/api/v1/scans/{id}/builds", list_builds},
       Route{"POST", "/api/v1/scans/{id}/builds", start_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{build}", send_build},
-      Route{"DELETE", "/api/v1/scans/{id}/builds/{build}", remove_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{build}/cancel", cancel_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{build}/choose", choose_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{build}/Scan.stl", send_build_model},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}", send_build},
+      Route{"DELETE", "/api/v1/scans/{id}/builds/{number}", remove_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{number}/cancel", cancel_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{number}/choose", choose_build},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.stl", send_build_model},
+      Route{"GET", "/api/v1/scans/{id}/poses", list_poses},
+      Route{"POST", "/api/v1/scans/{id}/poses", start_pose, WaitsFor::start},
+      Route{"DELETE", "/api/v1/scans/{id}/poses/{number}", remove_pose},
       Route{"GET", update_path, send_update_state},
       Route{"PUT", update_path, take_update},
       Route{"GET", "/api/v1/machine", send_machine},

@@ -8,6 +8,7 @@
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
 #include "scan/model_json.hpp"
+#include "scan/pose_of_json.hpp"
 
 namespace octurn {
 namespace {
@@ -37,7 +38,7 @@ json to_json(const Job& job) {
           {"name", job.name},
           {"state", to_string(job.state)},
           {"phase", to_string(job.phase)},
-          {"created", job.created},
+          {"created", job.times.created},
           {"snapshots_done", job.snapshots_done},
           {"snapshots_total", job.settings.snapshots},
           {"seconds_elapsed", rounded(job.times.elapsed.count())},
@@ -47,7 +48,8 @@ json to_json(const Job& job) {
           {"error", job.failure ? to_json(*job.failure) : json()},
           {"calibration", to_json(job.calibration)},
           {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
-          {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0}};
+          {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0},
+          {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()}};
 }
 
 json to_json(const Job& job, const Build& build) {
@@ -66,7 +68,8 @@ json to_json(const Job& job, const Build& build) {
           {"error", nullptr},
           {"calibration", to_json(build.calibration)},
           {"model", with_url(build.model, path_to(job.id) + "/builds/" + number + "/Scan.stl")},
-          {"chosen", is_chosen}};
+          {"chosen", is_chosen},
+          {"poses", build.poses}};
 }
 
 json to_json(const BuildRun& run) {
@@ -81,7 +84,25 @@ json to_json(const BuildRun& run) {
           {"error", run.failure ? to_json(*run.failure) : json()},
           {"calibration", nullptr},
           {"model", nullptr},
-          {"chosen", false}};
+          {"chosen", false},
+          {"poses", json::array()}};
+}
+
+json poses_json(const std::vector<Job>& poses) {
+  json list = json::array();
+  for (const Job& pose : poses) {
+    list.push_back(pose_json(pose, static_cast<int>(list.size()) + 1));
+  }
+  return list;
+}
+
+json pose_json(const Job& job, int number) {
+  json pose = to_json(*job.pose_of);
+  pose["pose"] = number;
+  pose["scan"] = job.id;
+  pose["state"] = to_string(job.state);
+  pose["model"] = job.model ? json(path_to(job.id) + "/builds/0/Scan.stl") : json();
+  return pose;
 }
 
 json builds_json(const Job& job, const std::optional<BuildRun>& run) {
@@ -89,7 +110,7 @@ json builds_json(const Job& job, const std::optional<BuildRun>& run) {
   json builds = json::array();
   if (job.model) {
     builds.push_back(to_json(job, {.number = 0,
-                                   .created = job.created,
+                                   .created = job.times.created,
                                    .settings = {.scan = job.settings},
                                    .calibration = job.calibration,
                                    .model = *job.model}));

@@ -2,14 +2,21 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <vector>
 
 #include "scan/build_run.hpp"
 #include "scan/job.hpp"
 
 namespace octurn {
 
-/// A scan as web/API.md has it, but for its preview.
+/// A scan as web/API.md has it, but for its preview and its other poses.
 nlohmann::json to_json(const Job& job);
+
+/// A scan of another pose as one of those of the first scan. @param number  of the pose, from 1
+nlohmann::json pose_json(const Job& job, int number);
+
+/// The scans of other poses of a scan, the oldest first.
+nlohmann::json poses_json(const std::vector<Job>& poses);
 
 /// A build as web/API.md has it, of the scan of that id. Number 0 is what the scan itself made.
 nlohmann::json to_json(const Job& job, const Build& build);

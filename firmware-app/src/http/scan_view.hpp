@@ -22,4 +22,7 @@ std::optional<Job> running_scan(const App& app);
 /// A scan as web/API.md has it.
 nlohmann::json to_json(const App& app, const Job& job);
 
+/// All of them, the newest first.
+nlohmann::json scans_json(const App& app);
+
 }  // namespace octurn

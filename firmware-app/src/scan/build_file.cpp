@@ -36,10 +36,17 @@ Build read_build(const fs::path& folder, int number) {
                  ErrorCode::job_malformed, "the file");
   JsonObject keys(document, ErrorCode::job_malformed, "");
   const JsonValue calibration = keys.at("calibration");
-  Build build{.number = number,
-              .created = keys.at("created").text(),
-              .settings = stored_build_settings_from(keys.at("settings")),
-              .model = to_model(keys.at("model"))};
+  Build build{
+      .number = number,
+      .created = keys.at("created").text(),
+      .settings = stored_build_settings_from(keys.at("settings")),
+      .model = to_model(keys.at("model")),
+      .replaced = keys.whole_number("replaced", 0, std::numeric_limits<int>::max()).value_or(0)};
+  if (const auto poses = keys.value("poses")) {
+    for (const JsonValue& scan : poses->elements()) {
+      build.poses.push_back(scan.text());
+    }
+  }
   if (!calibration.json().is_null()) {
     build.calibration = to_scan_calibration(calibration);
   }
@@ -52,7 +59,9 @@ void write_build(const fs::path& folder, const Build& build) {
   const json document{{"created", build.created},
                       {"settings", to_json(build.settings)},
                       {"calibration", build.calibration ? to_json(*build.calibration) : json()},
-                      {"model", to_json(build.model)}};
+                      {"model", to_json(build.model)},
+                      {"poses", build.poses},
+                      {"replaced", build.replaced}};
   write_file(folder / "build.json",
              document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }

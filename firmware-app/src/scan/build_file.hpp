@@ -11,6 +11,9 @@ namespace octurn {
 /// and `build.json`.
 inline constexpr const char* builds_folder = "builds";
 
+/// In the folder of a build that a scan of another pose made: the scan folder of all its poses.
+inline constexpr const char* merged_folder = "scan";
+
 /// Writes `folder/build.json`. @throws Error "disk-full", "write-failed"
 void write_build(const std::filesystem::path& folder, const Build& build);
 

@@ -21,6 +21,14 @@ using Clock = std::chrono::steady_clock;
 /// The scan as the settings want it, before its pose is solved.
 Scan to_scan(const BuildInput& input) {
   Scan scan = read_scan(input.folder);
+  if (!scan.poses
+           .empty()) {  // which were registered with the rig as it was solved, and their boxes
+    if (input.settings.platform_from_sensor) {
+      throw Error(ErrorCode::bad_settings, "a model of several poses has the pose that they solved",
+                  "Leave platform_from_sensor out.");
+    }
+    return scan;
+  }
   scan.clip = input.settings.scan.clip;
   if (input.settings.platform_from_sensor) {
     scan.platform_from_sensor = *input.settings.platform_from_sensor;
@@ -29,6 +37,15 @@ Scan to_scan(const BuildInput& input) {
     scan.solved.reset();
   }
   return scan;
+}
+
+/// What a model is clipped to: as the settings say; of several poses, each to its own box as long
+/// as the settings have that of the scan.
+Box clip_of(const Scan& scan, const BuildInput& input) {
+  const Box& wanted = input.settings.scan.clip;
+  const Box& own = input.job.settings.clip;
+  const bool is_own = wanted.min == own.min && wanted.max == own.max;
+  return is_own && !scan.poses.empty() ? model_clip(scan) : wanted;
 }
 
 /// What the scan's own calibration found, where its pose is used again.
@@ -61,7 +78,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   std::vector<CalibrationFinding> findings;
   if (scan.solved) {
     findings = findings_of(input.job);
-  } else if (settings.scan.pose == PoseSource::solved) {
+  } else if (settings.scan.pose == PoseSource::solved && is_one_turn(scan)) {
     progress(Phase::calibrating, 0);
     const CalibrationReport report =
         solve_pose(scan, readable_snapshots(input.folder, scan, stop), limits.threads);
@@ -77,7 +94,9 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
 
   ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
   options.level = settings.level;
-  ScanCheck check(options.clip, scan.shots.size());
+  options.clip = clip_of(scan, input);
+  options.placements = placements(scan);
+  ScanCheck check(scan.poses.empty() ? options.clip : scan.poses.front().clip, scan.shots.size());
   const SnapshotSource stored = readable_snapshots(input.folder, scan, stop);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   progress(Phase::rebuilding, 0);

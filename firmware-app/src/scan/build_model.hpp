@@ -12,7 +12,7 @@ namespace octurn {
 /// What a build works on.
 struct BuildInput {
   const Job& job;                       ///< of the scan
-  const std::filesystem::path& folder;  ///< of the same; nothing in it is changed
+  const std::filesystem::path& folder;  ///< of the same, or of its poses; nothing in it is changed
   const BuildSettings& settings;
 };
 

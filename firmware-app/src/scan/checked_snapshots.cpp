@@ -24,7 +24,9 @@ SnapshotSource checked_snapshots(SnapshotSource snapshots, ScanCheck& check) {
   const std::size_t count = snapshots.count;
   return {.count = count, .read = [&check, read = std::move(snapshots.read)](std::size_t shot) {
             Snapshot snapshot = read(shot);
-            check.add(shot, snapshot);
+            if (snapshot.pose == 0) {
+              check.add(shot, snapshot);
+            }
             return snapshot;
           }};
 }

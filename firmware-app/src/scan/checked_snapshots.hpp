@@ -13,7 +13,8 @@ namespace octurn {
 ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
                                    std::size_t snapshots);
 
-/// The same snapshots; `check` looks at each that is read, and has to outlive them.
+/// The same snapshots; `check` looks at each of the first pose, whose platform it knows, that is
+/// read, and has to outlive them.
 SnapshotSource checked_snapshots(SnapshotSource snapshots, ScanCheck& check);
 
 }  // namespace octurn

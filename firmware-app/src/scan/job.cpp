@@ -19,11 +19,12 @@ constexpr std::array<Names<JobState>, 6> states{{{JobState::running, "running"},
                                                  {JobState::failed, "failed"},
                                                  {JobState::interrupted, "interrupted"}}};
 
-constexpr std::array<Names<Phase>, 7> phases{{{Phase::starting, "starting"},
+constexpr std::array<Names<Phase>, 8> phases{{{Phase::starting, "starting"},
                                               {Phase::turning, "turning"},
                                               {Phase::capturing, "capturing"},
                                               {Phase::calibrating, "calibrating"},
                                               {Phase::rebuilding, "rebuilding"},
+                                              {Phase::registering, "registering"},
                                               {Phase::building, "building"},
                                               {Phase::done, "done"}}};
 

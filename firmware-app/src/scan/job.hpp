@@ -10,6 +10,7 @@
 #include "octurn/calibrate.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/quality.hpp"
+#include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/build_settings.hpp"
 #include "scan/scan_settings.hpp"
@@ -32,6 +33,7 @@ enum class Phase {
   capturing,
   calibrating,  ///< solving the sensor's pose from the snapshots
   rebuilding,   ///< adding the stored snapshots with another pose than while the platform turned
+  registering,  ///< finding out how the object was turned over
   building,
   done,
 };
@@ -75,10 +77,26 @@ struct Build {
   BuildSettings settings = {};
   std::optional<ScanCalibration> calibration = {};  ///< if the pose was solved for it
   Model model = {};
+  std::vector<std::string> poses = {};  ///< ids of the scans of other poses that are in it
+  int replaced = 0;  ///< of a build that a scan of another pose made: the one chosen before it
 };
 
-/// How long a scan takes.
+/// How a turn fits together with those before it.
+struct PoseRegistration {
+  bool accepted = false;
+  std::string reason = {};   ///< why not, for people; empty if accepted
+  RegisteredPose pose = {};  ///< of the turn, if accepted
+};
+
+/// What a scan is that has the object of another scan lie otherwise.
+struct PoseOf {
+  std::string scan = {};                              ///< id of the other one
+  std::optional<PoseRegistration> registration = {};  ///< once all snapshots are taken
+};
+
+/// When a scan was begun, and how long it takes.
 struct JobTimes {
+  std::string created = {};  ///< UTC, as in ISO 8601
   std::chrono::duration<double> elapsed = {};
   std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
   int late_pulses = 0;  ///< of the motor, which turned more slowly for it
@@ -96,7 +114,6 @@ struct Job {
   std::string name = {};  ///< given by a person, or empty
   JobState state = JobState::running;
   Phase phase = Phase::starting;
-  std::string created = {};  ///< UTC, as in ISO 8601
   int snapshots_done = 0;
   JobTimes times = {};
   ScanSettings settings = {};
@@ -104,6 +121,7 @@ struct Job {
   std::optional<ScanCalibration> calibration = {};  ///< from the last stop on, unless told
   std::optional<Model> model = {};                  ///< that the scan itself made
   JobBuilds builds = {};
+  std::optional<PoseOf> pose_of = {};  ///< of a scan of another pose
 };
 
 /// The build of that number; null if there is none.

@@ -10,6 +10,7 @@
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
 #include "scan/model_json.hpp"
+#include "scan/pose_of_json.hpp"
 
 namespace octurn {
 namespace {
@@ -53,6 +54,10 @@ std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& 
                                              : std::optional(to_scan_calibration(*object));
 }
 
+std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
+  return !object || object->json().is_null() ? std::nullopt : std::optional(to_pose_of(*object));
+}
+
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_model(*object));
 }
@@ -64,7 +69,7 @@ json to_job_json(const Job& job) {
               {"name", job.name},
               {"state", to_string(job.state)},
               {"phase", to_string(job.phase)},
-              {"created", job.created},
+              {"created", job.times.created},
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
               {"seconds_elapsed", rounded(job.times.elapsed.count())},
@@ -73,7 +78,8 @@ json to_job_json(const Job& job) {
               {"error", nullptr},
               {"calibration", nullptr},
               {"model", nullptr},
-              {"build", job.builds.chosen}};
+              {"build", job.builds.chosen},
+              {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()}};
   if (job.failure) {
     object["error"] = to_json(*job.failure);
   }
@@ -93,15 +99,16 @@ Job to_job(const json& object) {
           .name = keys.at("name").text(),
           .state = one_of(keys.at("state"), job_state_named),
           .phase = one_of(keys.at("phase"), phase_named),
-          .created = keys.at("created").text(),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
-          .times = {.elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+          .times = {.created = keys.at("created").text(),
+                    .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
                     .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int))},
           .settings = stored_settings_from(keys.at("settings")),
           .failure = failure_from(keys.value("error")),
           .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model")),
-          .builds = {.chosen = static_cast<int>(number_or_none(keys, "build", most_int))}};
+          .builds = {.chosen = static_cast<int>(number_or_none(keys, "build", most_int))},
+          .pose_of = pose_of_from(keys.value("pose_of"))};
 }
 
 }  // namespace octurn

@@ -109,12 +109,15 @@ ScanStore::ScanStore(fs::path data)
   recover();
 }
 
-Job ScanStore::create(const ScanSettings& settings) {
+Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of) {
   expect_room(data_, free_bytes(), max_scan_bytes(settings),
               "a scan of " + std::to_string(settings.snapshots) + " snapshots");
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
-  Job job{.id = to_scan_id(now), .created = utc_text(now, rfc3339), .settings = settings};
+  Job job{.id = to_scan_id(now),
+          .times = {.created = utc_text(now, rfc3339)},
+          .settings = settings,
+          .pose_of = pose_of};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
   std::error_code error;
@@ -193,8 +196,9 @@ Job ScanStore::get(std::string_view id) const {
 
 std::optional<Job> ScanStore::newest_finished() const {
   const std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find_if(
-      jobs_, [](const auto& entry) { return entry.second.state == JobState::finished; });
+  const auto found = std::ranges::find_if(jobs_, [](const auto& entry) {
+    return entry.second.state == JobState::finished && !entry.second.pose_of;
+  });
   return found == jobs_.end() ? std::nullopt : std::optional(found->second);
 }
 

@@ -34,7 +34,8 @@ class ScanStore {
   /// Makes the folder of a new scan, in state running. Its id comes after every other's, even where
   /// the clock has gone back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
-  Job create(const ScanSettings& settings);
+  /// @param pose_of  of a scan of another pose
+  Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {});
 
   /// Writes `job.json`. Where that fails, the scan is what it was.
   /// @throws Error "no-such-scan", "disk-full", "write-failed"
@@ -51,7 +52,10 @@ class ScanStore {
   /// @throws Error "no-such-scan"
   Job get(std::string_view id) const;
 
-  /// The newest finished scan, if there is one.
+  /// The scans of other poses of that scan, the oldest first.
+  std::vector<Job> poses(std::string_view id) const;
+
+  /// The newest finished scan that is no other pose of one, if there is one.
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
@@ -80,6 +84,15 @@ class ScanStore {
 
   /// @throws Error "no-such-scan", "no-model"  if there is no such build, "busy"  if it is chosen
   void remove_build(std::string_view id, int number);
+
+  /// The scan folder that builds with these other poses are made from: that of the build which
+  /// merged them; without poses, the scan's own. @throws Error "no-model"  if there is none
+  std::filesystem::path merged_scan(std::string_view id,
+                                    const std::vector<std::string>& poses) const;
+
+  /// Removes the builds that have the object in that pose. If one of them is chosen, the model is
+  /// again what it was before. @throws  as `choose_build` and `remove_build`
+  void withdraw_pose(std::string_view id, const std::string& pose);
 
   /// The data folder.
   const std::filesystem::path& data() const { return data_; }

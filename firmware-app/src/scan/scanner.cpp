@@ -94,6 +94,9 @@ bool Scanner::cancel(std::string_view id) {
   if (!job || !is_resumable(job->state)) {
     return false;
   }
+  if (job->pose_of) {
+    store_.withdraw_pose(job->pose_of->scan, job->id);  // if the program ended just then
+  }
   job->state = JobState::cancelled;
   job->failure.reset();
   store_.save(*job);
@@ -103,13 +106,30 @@ bool Scanner::cancel(std::string_view id) {
 
 void Scanner::remove(std::string_view id) {
   const std::lock_guard lock(scans_);
+  const Job job = store_.get(id);
+  if (job.pose_of && store_.find(job.pose_of->scan)) {
+    take_back(job);
+    return;
+  }
+  const std::vector<Job> poses = store_.poses(id);
+  for (const Job& pose : poses) {
+    expect_idle(pose.id);
+  }
+  expect_idle(id);
+  store_.remove(id);
+  for (const Job& pose : poses) {
+    store_.remove(pose.id);
+  }
+}
+
+/// Before a scan is removed. @throws Error "busy"
+void Scanner::expect_idle(std::string_view id) const {
   if (is_running(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
   if (is_building(id)) {
     throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
   }
-  store_.remove(id);
 }
 
 void Scanner::rename(std::string_view id, std::string_view name) {

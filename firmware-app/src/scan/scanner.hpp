@@ -49,6 +49,23 @@ class Scanner {
   /// @throws Error "disk-full", "data-failed"
   std::optional<Job> start(const ScanSettings& settings);
 
+  /// Starts a scan of the object of a finished scan, which a person has turned over. What it sees
+  /// is merged with what was seen before: the model of all poses becomes the finished scan's.
+  /// Nothing if a scan runs.
+  /// @param id  of the finished scan
+  /// @throws Error "no-such-scan", "no-model"  if it is not finished, or is itself of another pose;
+  ///               "disk-full", "data-failed"
+  std::optional<Job> start_pose(std::string_view id, const ScanSettings& settings);
+
+  /// The scans of other poses of that scan as they are now, the oldest first.
+  std::vector<Job> poses(std::string_view id) const;
+
+  /// Takes a pose back: the model is again what it was before, and the scan of the pose is removed.
+  /// @param number  of the pose, from 1
+  /// @throws Error "no-such-scan", "not-found"  if there is no such pose; "busy"  if it is being
+  ///               scanned, or a later one was merged with it
+  void remove_pose(std::string_view id, int number);
+
   /// Goes on with a scan that was paused or interrupted, at the stop where that was, unless one
   /// runs: nothing then.
   /// @throws Error "no-such-scan", "not-paused", "disk-full", "write-failed"
@@ -58,7 +75,7 @@ class Scanner {
   /// @return false if it has ended already
   bool cancel(std::string_view id);
 
-  /// Removes a scan that does not run.
+  /// Removes a scan that does not run, with its other poses. One of another pose is taken back.
   /// @throws Error "no-such-scan", "busy"
   void remove(std::string_view id);
 
@@ -133,8 +150,8 @@ class Scanner {
   /// Makes the model of a build the scan's. @throws  as `ScanStore::choose_build`
   void choose_build(std::string_view id, int number) { store_.choose_build(id, number); }
 
-  /// Removes a build. @throws  as `ScanStore::remove_build`
-  void remove_build(std::string_view id, int number) { store_.remove_build(id, number); }
+  /// Removes a build. @throws  as `ScanStore::remove_build`, "busy"  also if it belongs to a pose
+  void remove_build(std::string_view id, int number);
 
   /// Has the worker make the model of a stored scan with other options. There is one at a time, as
   /// memory is for one; another one is waited for. A scan that starts ends it.
@@ -158,6 +175,8 @@ class Scanner {
  private:
   bool is_running(std::string_view id) const;
   bool is_building(std::string_view id) const;
+  void expect_idle(std::string_view id) const;
+  void take_back(const Job& pose);
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);
 

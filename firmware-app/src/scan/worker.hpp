@@ -26,6 +26,8 @@ struct WorkerPorts {
   std::mutex& scans;  ///< held while the state of a scan changes that others may change, too
 };
 
+struct MergedTurns;
+
 /// Carries out the commands of a slot, one after the other, on the thread that calls `work`. Owns
 /// sensor, turntable and the running scan; all that others learn of them is what it publishes.
 class Worker {
@@ -52,6 +54,10 @@ class Worker {
   void run(Job job, const std::stop_token& stop);
   void run_until_it_ends(const std::stop_token& stop);
   void attempt(const std::stop_token& stop);
+  void expect_same_sensor();
+  bool join(const std::stop_token& stop);
+  void show_join(Phase phase);
+  bool keep_merged(const Job& first, const MergedTurns& merged, const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
   void show_frame(const DepthFrame& frame);
   void show_progress(Phase phase, int snapshots_done);

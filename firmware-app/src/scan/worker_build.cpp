@@ -22,12 +22,15 @@ bool build_and_keep(const BuildCommand& command, const Limits& limits, const Wor
     ports.board.set_build_run(std::move(now));
   };
   const std::filesystem::path file = ports.store.begin_build(run.scan, run.number);
-  std::optional<Build> build =
-      build_model({.job = job, .folder = ports.store.folder(run.scan), .settings = run.settings},
-                  limits, file, stop, show);
+  const Build* const chosen = find_build(job, job.builds.chosen);
+  const auto poses = chosen != nullptr ? chosen->poses : std::vector<std::string>{};
+  std::optional<Build> build = build_model(
+      {.job = job, .folder = ports.store.merged_scan(run.scan, poses), .settings = run.settings},
+      limits, file, stop, show);
   if (!build) {
     return false;
   }
+  build->poses = poses;
   build->number = run.number;
   build->created = run.created;
   ports.store.add_build(run.scan, *build);

@@ -1,5 +1,6 @@
 // How the worker runs a scan.
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +29,17 @@ std::string to_text(const CalibrationReport& report) {
   return report.confirms_told() ? "the told pose is right"
          : report.accepted      ? "its pose is solved, the model is built again"
                                 : "the told pose stays: " + report.reason;
+}
+
+/// Which way the object lies in a scan: 0 in one of its own, then 1, 2, ... in those of other
+/// poses.
+std::size_t to_pose_index(const ScanStore& store, const Job& job) {
+  if (!job.pose_of) {
+    return 0;
+  }
+  const std::vector<Job> poses = store.poses(job.pose_of->scan);
+  const auto own = std::ranges::find(poses, job.id, &Job::id);
+  return static_cast<std::size_t>(own - poses.begin()) + 1;
 }
 
 MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruction, int snapshots,
@@ -99,12 +111,14 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 /// closed, so that the next use opens it again.
 void Worker::attempt(const std::stop_token& stop) {
   try {
+    rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
     if (job_.snapshots_done == 0) {
+      expect_same_sensor();
       keep_sensor_map(ports_.store.data(), rig_.sensor().serial(), ports_.store.folder(job_.id));
     }
     job_.model =
         run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
-    job_.state = job_.model ? JobState::finished : JobState::cancelled;
+    job_.state = job_.model && join(stop) ? JobState::finished : JobState::cancelled;
     job_.failure.reset();
   } catch (...) {
     job_.failure = current_failure();

@@ -37,10 +37,9 @@ void drop_places(json& model) {
 }  // namespace
 
 Response list_scans(App& app) {
-  json scans = json::array();
-  for (const Job& job : all_scans(app)) {
-    scans.push_back(to_json(app, job));
-    drop_places(scans.back()["model"]);
+  json scans = scans_json(app);
+  for (json& scan : scans) {
+    drop_places(scan["model"]);
   }
   return json_response({{"scans", scans}});
 }

@@ -1,0 +1,52 @@
+#include "http/handlers/poses.hpp"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "http/handlers/appliance.hpp"
+#include "http/json_body.hpp"
+#include "http/scan_json.hpp"
+#include "http/scan_view.hpp"
+
+namespace octurn {
+namespace {
+
+/// A pose's number in a path; 0 if it is none.
+int to_number(std::string_view text) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  return read.ec == std::errc() && read.ptr == end ? number : 0;
+}
+
+}  // namespace
+
+Response list_poses(App& app, std::string_view id) {
+  find_scan(app, id);  // or there is no such scan
+  return json_response({{"poses", poses_json(app.scanner.poses(id))}});
+}
+
+Response start_pose(App& app, const Request& request, std::string_view id) {
+  const Job first = find_scan(app, id);
+  ScanSettings defaults = app.scanner.calibration().in_force(first.settings);
+  defaults.depth_scale = first.settings.depth_scale;  // so that both have one sensor
+  const ScanSettings settings = settings_from(parse_body(request), defaults);
+  expect_no_update(app);
+  app.scanner.expect_ready();
+  const std::optional<Job> job = app.scanner.start_pose(id, settings);
+  if (!job) {
+    throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
+                "Wait for its end, or cancel it.");
+  }
+  Response response = json_response(to_json(app, *job), 202);
+  response.headers.emplace_back("Location", "/api/v1/scans/" + job->id);
+  return response;
+}
+
+Response remove_pose(App& app, std::string_view id, std::string_view number) {
+  app.scanner.remove_pose(id, to_number(number));
+  return json_response(to_json(app, find_scan(app, id)));
+}
+
+}  // namespace octurn

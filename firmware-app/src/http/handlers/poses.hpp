@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "http/app.hpp"
+#include "http/message.hpp"
+
+namespace octurn {
+
+/// `GET /api/v1/scans/{id}/poses`
+Response list_poses(App& app, std::string_view id);
+
+/// `POST /api/v1/scans/{id}/poses`
+Response start_pose(App& app, const Request& request, std::string_view id);
+
+/// `DELETE /api/v1/scans/{id}/poses/{number}`
+Response remove_pose(App& app, std::string_view id, std::string_view number);
+
+}  // namespace octurn

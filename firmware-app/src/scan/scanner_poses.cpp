@@ -1,0 +1,89 @@
+// How a scanner scans other poses of a scan's object, and takes them back.
+
+#include <algorithm>
+#include <mutex>
+#include <system_error>
+
+#include "scan/build_file.hpp"
+#include "scan/scanner.hpp"
+
+namespace octurn {
+namespace {
+
+bool has_pose(const Build& build, const std::string& pose) {
+  return std::ranges::find(build.poses, pose) != build.poses.end();
+}
+
+/// Whether a later pose was merged with that one.
+bool is_built_on(const Job& first, const std::string& pose) {
+  return std::ranges::any_of(first.builds.all, [&](const Build& build) {
+    return has_pose(build, pose) && build.poses.back() != pose;
+  });
+}
+
+}  // namespace
+
+std::optional<Job> Scanner::start_pose(std::string_view id, const ScanSettings& settings) {
+  const std::lock_guard lock(scans_);
+  const Job first = store_.get(id);
+  if (first.pose_of) {
+    throw Error(ErrorCode::no_model, "this scan is itself another pose of " + first.pose_of->scan,
+                "Add the pose to that one.");
+  }
+  if (first.state != JobState::finished) {
+    throw Error(ErrorCode::no_model, "this scan is " + std::string(to_string(first.state)),
+                "Only a finished one gets another pose.");
+  }
+  if (slot_.has_scan()) {
+    return std::nullopt;
+  }
+  const Job job = store_.create(settings, PoseOf{.scan = first.id});
+  return hand_over(job, ScanCommand{job});
+}
+
+std::vector<Job> Scanner::poses(std::string_view id) const {
+  std::vector<Job> poses = store_.poses(id);
+  if (const Status now = status(); now.is_scanning()) {
+    std::ranges::replace_if(
+        poses, [&](const Job& pose) { return pose.id == now.job->id; }, *now.job);
+  }
+  return poses;
+}
+
+void Scanner::remove_pose(std::string_view id, int number) {
+  const std::lock_guard lock(scans_);
+  store_.get(id);  // or there is no such scan
+  const std::vector<Job> poses = store_.poses(id);
+  if (number < 1 || number > static_cast<int>(poses.size())) {
+    throw Error(ErrorCode::not_found, "this scan has no other pose " + std::to_string(number),
+                "GET its poses lists them.");
+  }
+  take_back(poses[static_cast<std::size_t>(number) - 1]);
+}
+
+/// `scans_` is held.
+void Scanner::take_back(const Job& pose) {
+  const std::string& first = pose.pose_of->scan;
+  expect_idle(pose.id);
+  if (is_building(first)) {
+    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  }
+  if (is_built_on(store_.get(first), pose.id)) {
+    throw Error(ErrorCode::busy, "a later pose was merged with this one",
+                "Take the last pose back first.");
+  }
+  store_.withdraw_pose(first, pose.id);
+  store_.remove(pose.id);
+}
+
+void Scanner::remove_build(std::string_view id, int number) {
+  std::error_code unreadable;
+  const auto folder = store_.model_file(id, number).parent_path();
+  if (number > 0 && std::filesystem::exists(folder / merged_folder, unreadable)) {
+    throw Error(ErrorCode::busy, "this model belongs to a pose of the scan",
+                "It goes with the pose.");
+  }
+  store_.remove_build(id, number);
+}
+
+}  // namespace octurn

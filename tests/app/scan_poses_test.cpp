@@ -1,0 +1,163 @@
+// Scans of other poses of a scan's object.
+
+#include "app/scanner_fixture.hpp"
+#include "octurn/file.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/build_file.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// With the told pose: there is nothing to solve.
+ScanSettings quick(int snapshots = 3) {
+  ScanSettings settings = few_snapshots(snapshots);
+  settings.pose = PoseSource::told;
+  return settings;
+}
+
+class ScanPosesTest : public ScannerTest {
+ protected:
+  /// What a client gets of a scan's model.
+  std::string model_of(const std::string& id) const { return content_of(store_.model_file(id)); }
+
+  /// Waits until the scan of another pose has stored a snapshot.
+  static Status wait_for_snapshot(const Scanner& scanner, const std::string& pose) {
+    return wait_until(scanner, [&](const Status& status) {
+      return status.job && status.job->id == pose && status.job->snapshots_done > 0;
+    });
+  }
+
+  /// A scan whose model is that of a build with another pose.
+  Job merged(const std::string& pose) {
+    Job job = store_.create(quick());
+    job.state = JobState::finished;
+    job.model = Model{};
+    store_.save(job);
+    write_file(store_.folder(job.id) / "Scan.stl", "alone");
+    for (const auto& poses : {std::vector<std::string>{}, std::vector<std::string>{pose}}) {
+      const int number = store_.next_build(job.id);
+      const fs::path file = store_.begin_build(job.id, number);
+      write_file(file, poses.empty() ? "finer" : "both sides");
+      if (!poses.empty()) {
+        fs::create_directory(file.parent_path() / merged_folder);
+      }
+      store_.add_build(
+          job.id, {.number = number, .poses = poses, .replaced = store_.get(job.id).builds.chosen});
+      store_.choose_build(job.id, number);
+    }
+    return store_.get(job.id);
+  }
+};
+
+TEST_F(ScanPosesTest, LeaveTheFirstScanAsItWasWhenTheyAreCancelled) {
+  Scanner scanner(rig(), {}, store_);
+  const Job first = scan(scanner, quick());
+  const std::string model = model_of(first.id);
+  const auto pose = scanner.start_pose(first.id, quick());
+  ASSERT_TRUE(pose);
+  EXPECT_FALSE(scanner.start_pose(first.id, quick())) << "while one is scanned";
+  EXPECT_THROW(scanner.remove_pose(first.id, 1), Error);
+  wait_for_snapshot(scanner, pose->id);
+  EXPECT_TRUE(scanner.cancel(pose->id));
+  scanner.wait_until_done(patience);
+  ASSERT_EQ(scanner.poses(first.id).size(), 1U);
+  EXPECT_EQ(scanner.poses(first.id).front().state, JobState::cancelled);
+  EXPECT_EQ(store_.get(first.id).state, JobState::finished);
+  EXPECT_TRUE(model_of(first.id) == model);
+  EXPECT_EQ(store_.newest_finished()->id, first.id);
+  scanner.remove_pose(first.id, 1);
+  EXPECT_TRUE(scanner.poses(first.id).empty());
+  EXPECT_FALSE(store_.find(pose->id));
+}
+
+TEST_F(ScanPosesTest, GoOnAfterTheProgramEndedAndAreMergedAndTakenBack) {
+  std::string first;
+  std::string pose;
+  {
+    Scanner scanner(rig(), {}, store_);
+    first = scan(scanner, quick(6)).id;
+    pose = scanner.start_pose(first, quick(6))->id;
+    wait_for_snapshot(scanner, pose);
+  }
+  const std::string model = model_of(first);
+  EXPECT_EQ(store_.get(pose).state, JobState::interrupted);
+  EXPECT_EQ(store_.get(first).state, JobState::finished);
+  Scanner scanner(rig(), {}, store_);
+  ASSERT_TRUE(scanner.resume(pose));
+  scanner.wait_until_done(patience);
+  const Job job = store_.get(pose);
+  EXPECT_EQ(job.state, JobState::finished);
+  ASSERT_TRUE(job.pose_of && job.pose_of->registration);
+  ASSERT_TRUE(job.pose_of->registration->accepted) << job.pose_of->registration->reason;
+  EXPECT_FALSE(model_of(first) == model);
+  EXPECT_EQ(read_scan(store_.merged_scan(first, {pose})).shots.size(), 12U);
+  scanner.remove_pose(first, 1);
+  EXPECT_TRUE(model_of(first) == model);
+  EXPECT_TRUE(store_.get(first).builds.all.empty());
+}
+
+TEST_F(ScanPosesTest, LeaveTheFirstScanAsItWasWhenTheyDoNotFit) {
+  Scanner scanner(rig(), {}, store_);
+  const std::string first = scan(scanner, quick()).id;
+  const std::string model = model_of(first);
+  ScanSettings little = quick();
+  little.clip = {.min = {-0.02, -0.02, 0.02}, .max = {0.02, 0.02, 0.05}};
+  const std::string pose = scanner.start_pose(first, little)->id;
+  scanner.wait_until_done(patience);
+  const Job job = store_.get(pose);
+  EXPECT_EQ(job.state, JobState::finished);
+  ASSERT_TRUE(job.pose_of && job.pose_of->registration);
+  EXPECT_FALSE(job.pose_of->registration->accepted);
+  EXPECT_NE(job.pose_of->registration->reason, "");
+  EXPECT_TRUE(model_of(first) == model);
+  EXPECT_TRUE(store_.get(first).builds.all.empty());
+}
+
+TEST_F(ScanPosesTest, AreOfFinishedScansThatAreNoPosesThemselves) {
+  Scanner scanner(rig(), {}, store_);
+  Job unfinished = store_.create(quick());
+  EXPECT_THROW(scanner.start_pose(unfinished.id, quick()), Error);
+  unfinished.state = JobState::finished;
+  store_.save(unfinished);
+  Job pose = store_.create(quick(), PoseOf{.scan = unfinished.id});
+  pose.state = JobState::finished;
+  store_.save(pose);
+  EXPECT_THROW(scanner.start_pose(pose.id, quick()), Error);
+}
+
+TEST_F(ScanPosesTest, AreTakenBackToTheModelBeforeThem) {
+  Scanner scanner(rig(), {}, store_);
+  const Job first = merged("20260102-030405-0000");
+  EXPECT_EQ(model_of(first.id), "both sides");
+  EXPECT_THROW(scanner.remove_build(first.id, 2), Error) << "it belongs to the pose";
+  store_.withdraw_pose(first.id, "20260102-030405-0000");
+  EXPECT_EQ(model_of(first.id), "finer");
+  EXPECT_EQ(store_.get(first.id).builds.all.size(), 1U);
+}
+
+TEST_F(ScanPosesTest, AreKeptWithWhatTheyFitTo) {
+  const TemporaryFolder data;
+  std::string pose;
+  {
+    ScanStore store(data.path());
+    const Job first = store.create(quick());
+    Job job = store.create(quick(), PoseOf{.scan = first.id});
+    job.state = JobState::finished;
+    job.pose_of->registration =
+        PoseRegistration{.accepted = true, .pose = {.overlap = 0.5, .residual = 0.0004}};
+    store.save(job);
+    pose = job.id;
+  }
+  const ScanStore store(data.path());
+  const Job job = store.get(pose);
+  ASSERT_TRUE(job.pose_of && job.pose_of->registration);
+  EXPECT_TRUE(job.pose_of->registration->accepted);
+  EXPECT_NEAR(job.pose_of->registration->pose.overlap, 0.5, 1e-12);
+  EXPECT_NEAR(job.pose_of->registration->pose.residual, 0.0004, 1e-12);
+  EXPECT_EQ(store.poses(job.pose_of->scan).size(), 1U);
+}
+
+}  // namespace
+}  // namespace octurn

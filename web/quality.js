@@ -25,6 +25,9 @@ const actions = {
   'parts-dropped': again,
 };
 
+/** Findings of a calibration that the verdict does not have. */
+const improvable = ['no-map', 'focal-length', 'wobble'];
+
 /** @param {string | undefined} code @returns {Action | null} */
 export const actionOf = (code) => actions[code ?? ''] ?? null;
 
@@ -52,7 +55,7 @@ export function verdictOf({quality, watertight}, findings = []) {
     title,
     text: quality.verdict !== 'good' ? '' :
       watertight ? 'Nothing speaks against it: ready to slice.' : 'Nothing speaks against it, but it has open edges.',
-    reasons: [...quality.reasons, ...findings.filter(({code}) => code === 'no-map')].map(({code, detail, hint, places_mm}) => (
+    reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map(({code, detail, hint, places_mm}) => (
       {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code), places: places_mm ?? []})),
   };
 }

@@ -31,3 +31,10 @@ test('a good model of an uneven sensor leads to the wall, and stays good', () =>
   assert.equal(tone, 'good');
   assert.deepEqual(reasons.map(({detail, action}) => [detail, action.text]), [['The flat platform looks uneven.', 'Flatten the sensor']]);
 });
+
+test('a rig that could be better is told beside a good model', () => {
+  const findings = ['wobble', 'focal-length', 'turn-not-whole'].map((code) => ({code, detail: code, hint: 'look'}));
+  const {tone, reasons} = verdictOf(judged('good'), findings);
+  assert.equal(tone, 'good');
+  assert.deepEqual(reasons.map(({detail, action}) => [detail, action]), [['Wobble.', null], ['Focal-length.', null]]);
+});

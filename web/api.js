@@ -32,7 +32,7 @@
  * @property {string} id
  * @property {string} name
  * @property {'running' | 'paused' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
- * @property {'starting' | 'turning' | 'capturing' | 'calibrating' | 'rebuilding' | 'building' | 'done'} phase
+ * @property {'starting' | 'turning' | 'capturing' | 'calibrating' | 'rebuilding' | 'registering' | 'building' | 'done'} phase
  * @property {string} created
  * @property {number} snapshots_done
  * @property {number} snapshots_total
@@ -44,6 +44,8 @@
  * @property {Model | null} model
  * @property {ScanCalibration | null} [calibration]  by the scan itself
  * @property {number} [build]  whose model it is; 0 is what the scan itself made
+ * @property {{scan: string, registration: import('./api_poses.js').Registration | null} | null} [pose_of]  of a scan of another pose
+ * @property {import('./api_poses.js').Pose[]} [poses]  of the same object
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device

@@ -17,6 +17,7 @@ import {json, sending, withoutAnswer} from './api.js';
  * @property {{code: string, detail: string, hint: string} | null} error
  * @property {import('./api.js').ScanCalibration | null} calibration
  * @property {import('./api.js').Model | null} model
+ * @property {string[]} [poses]  scans of other poses that are in it
  * @property {boolean} chosen  it is the scan's model
  */
 

@@ -50,7 +50,8 @@ export const isCrooked = ({model, settings, calibration}) => (settings.calibrate
     Boolean(model?.quality?.reasons.some(({code}) => faultsOfPose.has(code)));
 
 /** @param {Build} build */
-const nameOf = ({build}) => build === 0 ? 'As scanned' : `Build ${build}`;
+const nameOf = ({build, poses}) => build === 0 ? 'As scanned' :
+    poses && poses.length > 0 ? `Build ${build}, of ${poses.length + 1} sides` : `Build ${build}`;
 
 /** @param {Build} build */
 function phaseText({state, phase, snapshots_done, snapshots_total}) {
@@ -77,9 +78,9 @@ function troubleOf({state, error}) {
 }
 
 /** @param {Build} build @param {number | undefined} shown */
-const rowOf = ({build, model, settings, calibration, created, chosen}, shown) => ({
+const rowOf = ({build, model, settings, calibration, created, chosen, poses}, shown) => ({
   number: build,
-  name: nameOf(/** @type {Build} */ ({build})),
+  name: nameOf(/** @type {Build} */ ({build, poses})),
   badge: model && badgeOf(model),
   when: format.when(created),
   about: [
@@ -89,7 +90,7 @@ const rowOf = ({build, model, settings, calibration, created, chosen}, shown) =>
   ].filter(Boolean).join(' · '),
   isShown: build === shown,
   isChosen: chosen,
-  canRemove: !chosen && build !== 0,
+  canRemove: !chosen && build !== 0 && !poses?.length,  // those go with their poses
   download: model?.url ?? '',
 });
 

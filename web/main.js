@@ -2,6 +2,7 @@
 
 import * as api from './api.js';
 import * as requests from './api_builds.js';
+import * as poseRequests from './api_poses.js';
 import {seeStatus, watchAppliance} from './appliance.js';
 import {prepareBuilds} from './builds_view.js';
 import {watchCamera} from './camera.js';
@@ -10,6 +11,7 @@ import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import {chosenSettings, prepareForm} from './form.js';
 import {here, preparePlaces, showPlace, titleAt} from './places.js';
+import {preparePoses} from './poses_view.js';
 import {nameOf, screenOf} from './screen.js';
 import {prepareStage, renderStage} from './stage.js';
 import * as states from './state.js';
@@ -135,12 +137,25 @@ const buildActions = {
   remove: removeBuild,
 };
 
+const poseActions = {
+  add: () => act('The scan did not start', async () => {
+    const scan = await poseRequests.startPose(/** @type {string} */ (state.selected));
+    return (now) => states.withStarted(now, scan);
+  }),
+  remove: (/** @type {number} */ number) => act('The side was not taken back', async () => {
+    const scan = await poseRequests.removePose(/** @type {string} */ (state.selected), number);
+    const builds = await requests.builds(scan.id);
+    return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
+  }),
+};
+
 /** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
   prepareBuilds(buildActions);
+  preparePoses(poseActions);
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};
 }

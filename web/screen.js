@@ -2,6 +2,7 @@
 
 import {asShown, buildShown, buildsOf, pictureUrl} from './builds.js';
 import * as format from './format.js';
+import {isPartOfAnother, posesOf} from './poses.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
 
@@ -30,7 +31,7 @@ export const nameOf = (scan) => scan.name || `Scan of ${format.when(scan.created
 /** @param {Scan} scan */
 const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
 
-const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'building', 'done']);
+const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'registering', 'building', 'done']);
 
 /** @param {Scan} scan */
 function phaseText(scan) {
@@ -47,6 +48,7 @@ function phaseText(scan) {
     case 'capturing': return `Looking at ${stop}`;
     case 'calibrating': return 'Checking where the sensor stands';
     case 'rebuilding': return 'Building again, with the pose corrected';
+    case 'registering': return 'Finding out how it was turned over';
     default: return 'Building the model';
   }
 }
@@ -254,6 +256,7 @@ export function screenOf(state) {
     progress: scan && progressOf(scan),
     details: shown && detailsOf(state, shown),
     builds: chosen && buildsOf(state, chosen),
+    poses: chosen && posesOf(state, chosen),
     isScanElsewhere: panel === 'details' && scan !== null,
     problem: state.problem && {
       title: state.problem.title,
@@ -274,7 +277,7 @@ export function screenOf(state) {
       isLive: state.status?.sensor.state === 'ready' && !isAway(state),
       isScanning: scan !== null,
     },
-    rows: state.scans.map(rowOf(state)),
+    rows: state.scans.filter((one) => !isPartOfAnother(one)).map(rowOf(state)),
     isListed: state.listed !== null,
     footer: state.status ? {version: `Octurn ${state.status.version}`, disk: `${format.bytes(state.status.disk_free_bytes)} free`} : null,
   };

@@ -62,14 +62,17 @@ const merged = (scans, scan) => scans.some(({id}) => id === scan.id) ?
     scans.map((other) => other.id === scan.id ? scan : other) : [scan, ...scans];
 
 /**
- * A scan that ends while it is looked at stays in view: its result appears where its progress was.
+ * A scan that ends while it is looked at stays in view: its result appears where its progress was. That of another
+ * pose has it on the page of the first scan, whose models it may have changed.
  * @param {State} state @param {Status} status @returns {State}
  */
 export function withStatus(state, status) {
   const before = running(state);
   const ended = before !== null && before.id !== status.scan?.id;
   const news = {...state, status, failures: 0, scans: status.scan ? merged(state.scans, status.scan) : state.scans};
-  return ended && state.selected === null ? {...news, selected: before.id, stage: 'model'} : news;
+  const shown = before?.pose_of?.scan ?? before?.id ?? null;
+  const renewed = ended && before.pose_of ? {...news, builds: null, shownBuild: null} : news;
+  return ended && state.selected === null ? {...renewed, selected: shown, stage: 'model'} : renewed;
 }
 
 /** @param {State} state @returns {State} */

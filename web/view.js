@@ -3,6 +3,7 @@
 import {renderBuilds} from './builds_view.js';
 import {tickWidth, ticks} from './dial.js';
 import {element, list, part, setText, show} from './dom.js';
+import {renderPoses} from './poses_view.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
 
@@ -172,6 +173,7 @@ export function render(screen) {
   if (screen.details) {
     showDetails(screen.details);
   }
+  renderPoses(screen.panel === 'details' ? screen.poses : null);
   renderBuilds(screen.panel === 'details' ? screen.builds : null);
   showPanel(screen.panel);
   showRows(screen);

@@ -1,0 +1,52 @@
+// The other poses of a scan's object: the offer to scan one, how they fit, and to take them back.
+
+import {element, list, part, setText, show} from './dom.js';
+import {fetchFragment} from './fragment.js';
+
+/** @typedef {ReturnType<import('./poses.js').posesOf>} Poses */
+
+let isHere = false;  // its part of the page
+let isBegun = false;
+/** @type {Poses | null} */
+let last = null;
+
+/** @param {Poses | null} poses  of the scan that is looked at */
+export function renderPoses(poses) {
+  last = poses;
+  show(element('poses'), Boolean(poses?.canAdd));
+  if (!poses?.canAdd || !isHere) {
+    return;
+  }
+  list(element('pose-rows'), poses.rows, ({number}) => String(number), 'pose-row', (item, row) => {
+    item.dataset.tone = row.tone;
+    setText(part(item, 'strong'), row.title);
+    setText(part(item, 'p'), row.text);
+    show(part(item, 'a'), row.open !== '');
+    part(item, 'a').href = row.open;
+    show(part(item, '[data-do=remove]'), row.canRemove);
+    part(item, '[data-do=remove]').setAttribute('aria-label', `Take back: side ${row.number + 1}`);
+  });
+  setText(element('pose-add'), poses.add);
+  element('pose-add').setAttribute('aria-disabled', String(poses.isBusy));
+}
+
+/** Fetches its part of the page, once. @param {{add: () => void, remove: (pose: number) => void}} actions */
+export async function preparePoses(actions) {
+  if (isBegun) {
+    return;
+  }
+  isBegun = true;
+  try {
+    await fetchFragment(element('poses'), 'poses.html');
+    isHere = true;
+    element('pose-add').addEventListener('click', () => last?.isBusy || actions.add());
+    element('pose-rows').addEventListener('click', (/** @type {any} */ event) => {
+      if (event.target.closest('[data-do=remove]')) {
+        actions.remove(Number(event.target.closest('li').dataset.key));
+      }
+    });
+    renderPoses(last);
+  } catch {
+    isBegun = false;  // the next look asks again
+  }
+}

@@ -11,6 +11,11 @@
 namespace octurn {
 namespace {
 
+// How many times its volume a component counts that stands on the platform. Something above the
+// object is not it, though larger; nor is a speck on the platform below a ball, whose foot is
+// hardly seen.
+constexpr std::uint64_t base_weight = 8;
+
 /// Sets or clears the bits of a run.
 void assign(std::span<std::uint64_t> row, const Run& run, bool value) {
   for (int x = run.first; x < run.end;) {
@@ -51,12 +56,10 @@ void VoxelMask::keep_main_component(const std::stop_token& stop) {
     volumes[root] += static_cast<std::uint64_t>(run.end - run.first);
     at_base[root] = static_cast<char>(at_base[root] | (z == 0 ? 1 : 0));
   });
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < volumes.size(); ++i) {
-    if (std::pair(at_base[i], volumes[i]) > std::pair(at_base[kept], volumes[kept])) {
-      kept = i;
-    }
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    volumes[i] *= at_base[i] != 0 ? base_weight : 1;
   }
+  const auto kept = static_cast<std::size_t>(std::ranges::max_element(volumes) - volumes.begin());
   components.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
     if (components.root(i) != kept) {
       assign(row(y, z), run, false);

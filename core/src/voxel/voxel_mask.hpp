@@ -36,8 +36,8 @@ class VoxelMask {
   std::uint64_t count() const;
   std::size_t bytes() const { return bits_.size() * sizeof bits_[0]; }
 
-  /// Keeps one connected component (voxels that share faces): the largest of those that reach the
-  /// box's lowest layer, or the largest of all if none does.
+  /// Keeps one connected component (voxels that share faces): the largest, where those that reach
+  /// the box's lowest layer count eightfold.
   void keep_main_component(const std::stop_token& stop = {});
 
   /// Removes spurs, which are one voxel thick along two axes, from their ends: voxels with at most

@@ -171,7 +171,33 @@ TEST(VoxelMask, FillsTheCavitiesThatAFloodFromOutsideDoesNotReach) {
   EXPECT_GT(filled, 20U);  // so that masks without cavities do not pass
 }
 
-TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestAtTheBase) {
+/// A box of voxels, from `low` up to but not including `end`.
+void set_box(VoxelMask& mask, const Index3& low, const Index3& end) {
+  for (int z = low.z; z < end.z; ++z) {
+    for (int y = low.y; y < end.y; ++y) {
+      for (int x = low.x; x < end.x; ++x) {
+        mask.row(y, z)[static_cast<std::size_t>(x) / 64] |= std::uint64_t{1} << (x % 64);
+      }
+    }
+  }
+}
+
+TEST(VoxelMask, KeepsWhatStandsOnTheBaseBelowALargerThingButNotASpeck) {
+  VoxelMask stands({0, 0, 0}, {16, 16, 16});
+  set_box(stands, {1, 1, 0}, {7, 7, 4});
+  set_box(stands, {1, 1, 8}, {9, 9, 16});
+  stands.keep_main_component();
+  EXPECT_EQ(stands.count(), 6U * 6 * 4);
+  EXPECT_TRUE(stands.contains(3, 3, 0));
+
+  VoxelMask hovers({0, 0, 0}, {16, 16, 16});
+  set_box(hovers, {12, 12, 0}, {14, 14, 1});
+  set_box(hovers, {1, 1, 1}, {9, 9, 9});
+  hovers.keep_main_component();
+  EXPECT_EQ(hovers.count(), 8U * 8 * 8);
+}
+
+TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestWithTheBaseWeighed) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     VoxelMask before = noise(seed, 0.1 + 0.03 * seed);
     if (seed % 2 == 0) {  // nothing at the base: the largest of all
@@ -191,10 +217,16 @@ TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestAtTheBase) {
       }
     });
     EXPECT_EQ(before.component_count(), volumes.size());
-    const bool any_at_base = std::ranges::find(at_base, true) != at_base.end();
+    std::uint64_t most = 0;
     std::uint64_t largest = 0;
+    bool stands = false;
     for (std::size_t i = 0; i < volumes.size(); ++i) {
-      largest = at_base[i] || !any_at_base ? std::max(largest, volumes[i]) : largest;
+      const std::uint64_t weighed = volumes[i] * (at_base[i] ? 8 : 1);
+      if (weighed > most) {
+        most = weighed;
+        largest = volumes[i];
+        stands = at_base[i];
+      }
     }
 
     VoxelMask after = before;
@@ -209,7 +241,7 @@ TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestAtTheBase) {
       }
     });
     ASSERT_EQ(kept.size(), 1U);
-    EXPECT_EQ(at_base[static_cast<std::size_t>(*kept.begin())], any_at_base);
+    EXPECT_EQ(at_base[static_cast<std::size_t>(*kept.begin())], stands);
   }
 }
 

@@ -79,12 +79,11 @@ Vector3d gradient(const SignedDistance& distance, const Vector3d& at, double val
   return result;
 }
 
-/// Newton's steps along the gradient, each at most a cell long, until a thousandth of a cell is
-/// left.
+/// Newton's steps along the gradient, each at most a cell long, until a 100,000th of it is left.
 Vector3d onto_surface(const SignedDistance& distance, Vector3d at, double cell) {
   constexpr int max_steps = 4;
   double value = distance(at);
-  for (int i = 0; i < max_steps && std::abs(value) > cell / 1000; ++i) {
+  for (int i = 0; i < max_steps && std::abs(value) > cell / 100'000; ++i) {
     const Vector3d slope = gradient(distance, at, value, cell / 100);
     at -= slope * (std::clamp(value, -cell, cell) / std::max(slope.squaredNorm(), 0.25));
     value = distance(at);

@@ -13,11 +13,11 @@ let last = null;
 /** @param {Poses | null} poses  of the scan that is looked at */
 export function renderPoses(poses) {
   last = poses;
-  show(element('poses'), Boolean(poses?.canAdd));
+  show(element('sides'), Boolean(poses?.canAdd));
   if (!poses?.canAdd || !isHere) {
     return;
   }
-  list(element('pose-rows'), poses.rows, ({number}) => String(number), 'pose-row', (item, row) => {
+  list(element('side-rows'), poses.rows, ({number}) => String(number), 'side-row', (item, row) => {
     item.dataset.tone = row.tone;
     setText(part(item, 'strong'), row.title);
     setText(part(item, 'p'), row.text);
@@ -26,8 +26,8 @@ export function renderPoses(poses) {
     show(part(item, '[data-do=remove]'), row.canRemove);
     part(item, '[data-do=remove]').setAttribute('aria-label', `Take back: side ${row.number + 1}`);
   });
-  setText(element('pose-add'), poses.add);
-  element('pose-add').setAttribute('aria-disabled', String(poses.isBusy));
+  setText(element('side-add'), poses.add);
+  element('side-add').setAttribute('aria-disabled', String(poses.isBusy));
 }
 
 /** Fetches its part of the page, once. @param {{add: () => void, remove: (pose: number) => void}} actions */
@@ -37,10 +37,10 @@ export async function preparePoses(actions) {
   }
   isBegun = true;
   try {
-    await fetchFragment(element('poses'), 'poses.html');
+    await fetchFragment(element('sides'), 'poses.html');
     isHere = true;
-    element('pose-add').addEventListener('click', () => last?.isBusy || actions.add());
-    element('pose-rows').addEventListener('click', (/** @type {any} */ event) => {
+    element('side-add').addEventListener('click', () => last?.isBusy || actions.add());
+    element('side-rows').addEventListener('click', (/** @type {any} */ event) => {
       if (event.target.closest('[data-do=remove]')) {
         actions.remove(Number(event.target.closest('li').dataset.key));
       }

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "calibrate/for_each_stop.hpp"
+#include "calibrate/normal_equations.hpp"
 
 namespace octurn {
 namespace {
 
-using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
@@ -34,65 +33,6 @@ constexpr std::array schedule = {
 };
 
 constexpr std::size_t last_stage = schedule.size() - 1;
-
-/// The normal equations, and what weighs them.
-struct Sums {
-  Matrix4d normal_matrix = Matrix4d::Zero();
-  Vector4d right = Vector4d::Zero();
-  double weight = 0;
-  double squares = 0;
-  std::size_t count = 0;
-
-  void operator+=(const Sums& other) {
-    normal_matrix += other.normal_matrix;
-    right += other.right;
-    weight += other.weight;
-    squares += other.squares;
-    count += other.count;
-  }
-};
-
-Sums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std::size_t stop,
-                  const ResidualLimits& limits) {
-  Sums sums;
-  const std::vector<double> as_told(turn.angles.size(), 0.0);
-  for_each_residual(turn, pose, as_told, stop, limits, [&](const StopResidual& residual) {
-    const Vector3d turning = residual.point_from.cross(residual.normal_from) -
-                             residual.point_to.cross(residual.normal_to);
-    const Vector3d moving = residual.normal_from - residual.normal_to;
-    const Vector4d row(turning.x(), turning.y(), moving.x(), moving.y());
-    const double weight = limits.weight(residual.distance);
-    sums.normal_matrix += weight * row * row.transpose();
-    sums.right -= weight * residual.distance * row;
-    sums.weight += weight;
-    sums.squares += weight * residual.distance * residual.distance;
-    ++sums.count;
-  });
-  return sums;
-}
-
-/// Over all stops. Their sums are added in their order, so that threads change no bit.
-Sums sums_of_turn(const TurnViews& turn, const Eigen::Isometry3d& pose,
-                  const ResidualLimits& limits, int threads) {
-  std::vector<Sums> of_stops(turn.views.size());
-  for_each_stop(of_stops.size(), threads,
-                [&](std::size_t stop) { of_stops[stop] = sums_of_stop(turn, pose, stop, limits); });
-  Sums all;
-  for (const Sums& sums : of_stops) {
-    all += sums;
-  }
-  return all;
-}
-
-/// Adds the plane as a measurement of the axis's direction: the normal's x and y should be 0.
-void add_plane(Sums& scaled, const Vector3d& normal, double sigma) {
-  const double information = 1 / (sigma * sigma);
-  // A small rotation w takes a normal near z to n + (w_y, -w_x, 0).
-  scaled.normal_matrix(1, 1) += information;
-  scaled.right(1) -= information * normal.x();
-  scaled.normal_matrix(0, 0) += information;
-  scaled.right(0) += information * normal.y();
-}
 
 double step_of(const Vector4d& motion) {
   return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
@@ -135,16 +75,17 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
   std::size_t stage = 0;
   for (int i = 0; i < max_iterations; ++i) {
     const ResidualLimits& limits = schedule[stage];
-    const Sums sums = sums_of_turn(turn, solution.platform_from_sensor, limits, threads);
+    const NormalEquations sums =
+        normal_equations<4>(turn, solution.platform_from_sensor, limits, threads, axis_row);
     if (sums.count < min_residuals) {
       return std::nullopt;
     }
-    // In units of the measurements' own variance, so that the plane's sigma has its meaning.
     const double variance = sums.squares / sums.weight * turn.correlation;
-    Sums scaled{.normal_matrix = sums.normal_matrix / variance, .right = sums.right / variance};
-    add_plane(scaled, solution.platform_from_sensor.linear() * plane.normal, direction_sigma);
-    solution.covariance = scaled.normal_matrix.inverse();
-    const Vector4d wanted = scaled.normal_matrix.ldlt().solve(scaled.right);
+    NormalEquations scaled = sums.scaled(variance);
+    scaled.add_plane(solution.platform_from_sensor.linear() * plane.normal,
+                     1 / (direction_sigma * direction_sigma));
+    solution.covariance = scaled.matrix.inverse();
+    const Vector4d wanted = scaled.matrix.ldlt().solve(scaled.right);
     if (!wanted.allFinite()) {
       return std::nullopt;
     }

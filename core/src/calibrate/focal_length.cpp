@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
-#include "calibrate/for_each_stop.hpp"
+#include "calibrate/normal_equations.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -60,53 +60,6 @@ class Widening {
   double rise_ = 0;
 };
 
-struct Sums {
-  Matrix5d normal_matrix = Matrix5d::Zero();
-  Vector5d right = Vector5d::Zero();
-  double weight = 0;
-  double squares = 0;
-  std::size_t count = 0;
-};
-
-Sums sums_of_stop(const TurnViews& turn, const Isometry3d& pose, const Widening& widening,
-                  std::size_t stop, const ResidualLimits& limits) {
-  Sums sums;
-  const std::vector<double> as_told(turn.angles.size(), 0.0);
-  for_each_residual(turn, pose, as_told, stop, limits, [&](const StopResidual& residual) {
-    const Vector3d turning = residual.point_from.cross(residual.normal_from) -
-                             residual.point_to.cross(residual.normal_to);
-    const Vector3d moving = residual.normal_from - residual.normal_to;
-    Vector5d row;
-    row << turning.x(), turning.y(), moving.x(), moving.y(),
-        residual.normal_from.dot(widening(residual.point_from)) -
-            residual.normal_to.dot(widening(residual.point_to));
-    const double weight = limits.weight(residual.distance);
-    sums.normal_matrix += weight * row * row.transpose();
-    sums.right -= weight * residual.distance * row;
-    sums.weight += weight;
-    sums.squares += weight * residual.distance * residual.distance;
-    ++sums.count;
-  });
-  return sums;
-}
-
-Sums sums_of_turn(const TurnViews& turn, const Isometry3d& pose, const Widening& widening,
-                  const ResidualLimits& limits, int threads) {
-  std::vector<Sums> of_stops(turn.views.size());
-  for_each_stop(of_stops.size(), threads, [&](std::size_t stop) {
-    of_stops[stop] = sums_of_stop(turn, pose, widening, stop, limits);
-  });
-  Sums all;
-  for (const Sums& sums : of_stops) {  // in their order, so that threads change no bit
-    all.normal_matrix += sums.normal_matrix;
-    all.right += sums.right;
-    all.weight += sums.weight;
-    all.squares += sums.squares;
-    all.count += sums.count;
-  }
-  return all;
-}
-
 /// A normal of a surface that becomes wider. Not of length one.
 Vector3d widened_normal(const Vector3d& normal, double factor) {
   return {normal.x() / factor, normal.y() / factor, normal.z()};
@@ -140,19 +93,21 @@ std::optional<FocalLength> solve_focal_length(TurnViews& turn, PlatformPlane pla
   double sigma = 0;
   for (const ResidualLimits& limits : schedule) {
     const Widening widening(plane, platform_from_sensor);
-    const Sums sums = sums_of_turn(turn, platform_from_sensor, widening, limits, threads);
+    const NormalEquations sums = normal_equations<5>(
+        turn, platform_from_sensor, limits, threads, [&](const StopResidual& residual) {
+          Vector5d row;
+          row << axis_row(residual), residual.normal_from.dot(widening(residual.point_from)) -
+                                         residual.normal_to.dot(widening(residual.point_to));
+          return row;
+        });
     if (sums.count < min_residuals) {
       return std::nullopt;
     }
     const double variance = sums.squares / sums.weight * turn.correlation;
-    Matrix5d normal_matrix = sums.normal_matrix / variance;
-    Vector5d right = sums.right / variance;
-    // The axis is the plane's normal. A small rotation w takes a normal near z to n + (w_y, -w_x).
-    const Vector3d normal = platform_from_sensor.linear() * plane.normal;
-    normal_matrix.topLeftCorner<2, 2>() += information * Eigen::Matrix2d::Identity();
-    right.head<2>() += information * Eigen::Vector2d(normal.y(), -normal.x());
-    const Eigen::LDLT<Matrix5d> factors(normal_matrix);
-    const Vector5d motion = factors.solve(right);
+    NormalEquations scaled = sums.scaled(variance);
+    scaled.add_plane(platform_from_sensor.linear() * plane.normal, information);
+    const Eigen::LDLT<Matrix5d> factors(scaled.matrix);
+    const Vector5d motion = factors.solve(scaled.right);
     if (!motion.allFinite() || std::abs(motion[4]) > max_change) {
       return std::nullopt;
     }

@@ -11,6 +11,7 @@
 #include "parallel/fork_join.hpp"
 #include "register/contact.hpp"
 #include "register/rigid_fit.hpp"
+#include "register/seen_turn.hpp"
 
 namespace octurn {
 namespace {
@@ -18,12 +19,17 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t rotations = 4416;
-constexpr std::size_t kept = 250;
-constexpr int shifts = 4;
-constexpr double min_agreement = 0.6;  // cosine between two normals of one surface
-constexpr double far_limit = 0.012;    // metres, at the first iterations
-constexpr double near_limit = 0.004;   // at the last
-constexpr int approach = 8;            // iterations from the one to the other
+constexpr std::size_t rough_points = 100;
+constexpr int rough_shifts = 4;
+constexpr std::size_t rough_kept = 500;
+constexpr std::size_t fine_points = 300;
+constexpr int fine_shifts = 1;
+constexpr std::size_t kept = 100;
+constexpr double search_agreement = 0.3;  // cosine, rotations are 15 degrees apart
+constexpr double min_agreement = 0.6;     // cosine between two normals of one surface
+constexpr double far_limit = 0.012;       // metres, at the first iterations
+constexpr double near_limit = 0.004;      // at the last
+constexpr int approach = 8;               // iterations from the one to the other
 constexpr double cauchy_scale = 0.002;
 constexpr double settled = 1e-5;      // metres
 constexpr double contact_weight = 4;  // of a point of a flat foot: platforms are known well
@@ -46,41 +52,88 @@ Eigen::Matrix3d to_rotation(std::size_t i) {
       .toRotationMatrix();
 }
 
-/// Shifts turned points to where the target is nearest.
-PoseCandidate shifted(const NearestPoints& target, const std::vector<SurfacePoint>& points,
-                      const Eigen::Matrix3d& rotation) {
-  std::vector<Vector3d> turned;
-  Eigen::AlignedBox3d box;
+std::vector<SurfacePoint> turned(const std::vector<SurfacePoint>& points,
+                                 const Eigen::Matrix3d& rotation) {
+  std::vector<SurfacePoint> turned;
+  turned.reserve(points.size());
   for (const SurfacePoint& point : points) {
-    turned.emplace_back(rotation * point.point);
-    box.extend(turned.back());
+    turned.push_back({.point = rotation * point.point, .normal = rotation * point.normal});
   }
-  Vector3d shift = target.middle() - box.center();
-  double distance = 0;
-  for (int i = 0; i <= shifts; ++i) {
-    Vector3d sum = Vector3d::Zero();
-    int near = 0;
-    distance = 0;
-    for (const Vector3d& point : turned) {
-      const SurfacePoint* const nearest = target.find(point + shift);
-      if (nearest == nullptr) {
-        distance += NearestPoints::cap;
-        continue;
-      }
-      const Vector3d to_nearest = nearest->point - point - shift;
-      distance += std::min(to_nearest.norm(), NearestPoints::cap);
-      sum += to_nearest;
+  return turned;
+}
+
+/// How far shifted points are from where one side of a search allows them to be.
+struct Misfit {
+  double distance = 0;                     ///< metres, mean, capped
+  Vector3d to_surface = Vector3d::Zero();  ///< mean, of those near a surface that looks their way
+};
+
+/// What lies where nobody looked is no misfit: what one turn sees of an underside, the other hid.
+Misfit measure_misfit(const SearchedSide& side, const std::vector<SurfacePoint>& points,
+                      const Vector3d& shift) {
+  Misfit misfit;
+  int near = 0;
+  for (const SurfacePoint& point : points) {
+    const Vector3d at = point.point + shift;
+    const SurfacePoint* const nearest = side.nearest.find(at);
+    if (nearest != nullptr && nearest->normal.dot(point.normal) > search_agreement) {
+      const Vector3d to_nearest = nearest->point - at;
+      misfit.distance += std::min(to_nearest.norm(), NearestPoints::cap);
+      misfit.to_surface += to_nearest;
       ++near;
-    }
-    if (i < shifts && near > 0) {
-      shift += sum / near;
+    } else if (side.free.is_free(at)) {
+      misfit.distance += NearestPoints::cap;
     }
   }
-  PoseCandidate candidate;
-  candidate.target_from_points.linear() = rotation;
-  candidate.target_from_points.translation() = shift;
-  candidate.distance = distance / static_cast<double>(points.size());
-  return candidate;
+  misfit.distance /= static_cast<double>(points.size());
+  misfit.to_surface /= std::max(near, 1);
+  return misfit;
+}
+
+/// Some points of both sides of a search.
+struct Sample {
+  std::vector<SurfacePoint> target;
+  std::vector<SurfacePoint> turn;
+};
+
+/// Shifts a candidate to where both sides fit best, and measures how well.
+void shift(PoseCandidate& candidate, const SearchedSide& target, const SearchedSide& turn,
+           const Sample& sample, int shifts) {
+  Eigen::Isometry3d& pose = candidate.target_from_points;
+  const std::vector<SurfacePoint> points = turned(sample.turn, pose.linear());
+  for (int i = 0; i < shifts; ++i) {
+    pose.translation() += measure_misfit(target, points, pose.translation()).to_surface;
+  }
+  const Eigen::Isometry3d back = pose.inverse();
+  candidate.distance =
+      measure_misfit(target, points, pose.translation()).distance +
+      measure_misfit(turn, turned(sample.target, back.linear()), back.translation()).distance;
+}
+
+/// Shifts all candidates, and keeps the best.
+void keep_best(std::vector<PoseCandidate>& candidates, const SearchedSide& target,
+               const SearchedSide& turn, const Sample& sample, int shifts, std::size_t count,
+               int threads, const std::stop_token& stop) {
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t i = next++; i < candidates.size(); i = next++) {
+      throw_if_stopped(stop);
+      shift(candidates[i], target, turn, sample, shifts);
+    }
+  });
+  std::ranges::stable_sort(candidates, {}, &PoseCandidate::distance);
+  candidates.resize(count);
+}
+
+/// Of each rotation, with the middle on the middle.
+std::vector<PoseCandidate> centred_candidates(const SearchedSide& target, const Sample& sample) {
+  std::vector<PoseCandidate> candidates(rotations);
+  for (std::size_t i = 0; i < rotations; ++i) {
+    Eigen::Isometry3d& pose = candidates[i].target_from_points;
+    pose.linear() = to_rotation(i);
+    pose.translation() = target.nearest.middle() - middle_of(turned(sample.turn, pose.linear()));
+  }
+  return candidates;
 }
 
 /// Sums the distances of the points that lie within `limit` of the target.
@@ -112,20 +165,17 @@ void add_contacts(RigidFit& fit, const Stands& stands, const std::vector<Surface
 
 }  // namespace
 
-std::vector<PoseCandidate> search_poses(const NearestPoints& target,
-                                        const std::vector<SurfacePoint>& points, int threads,
-                                        const std::stop_token& stop) {
-  std::vector<PoseCandidate> all(rotations);
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t i = next++; i < all.size(); i = next++) {
-      throw_if_stopped(stop);
-      all[i] = shifted(target, points, to_rotation(i));
-    }
-  });
-  std::ranges::stable_sort(all, {}, &PoseCandidate::distance);
-  all.resize(kept);
-  return all;
+std::vector<PoseCandidate> search_poses(const SearchedSide& target, const SearchedSide& turn,
+                                        int threads, const std::stop_token& stop) {
+  const auto sample = [&](std::size_t count) {
+    return Sample{.target = thinned(target.nearest.points(), count),
+                  .turn = thinned(turn.nearest.points(), count)};
+  };
+  const Sample rough = sample(rough_points);
+  std::vector<PoseCandidate> candidates = centred_candidates(target, rough);
+  keep_best(candidates, target, turn, rough, rough_shifts, rough_kept, threads, stop);
+  keep_best(candidates, target, turn, sample(fine_points), fine_shifts, kept, threads, stop);
+  return candidates;
 }
 
 PoseCandidate refine(const NearestPoints& target, const Stands& stands,

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,11 +10,9 @@
 #include "octurn/register.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
-#include "parallel/fork_join.hpp"
-#include "register/nearest_points.hpp"
-#include "register/pose_search.hpp"
+#include "register/compare_rivals.hpp"
+#include "register/find_candidates.hpp"
 #include "register/reading_fit.hpp"
-#include "register/same_shape.hpp"
 #include "register/seen_turn.hpp"
 
 namespace octurn {
@@ -23,98 +21,17 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t min_points = 300;  // of a turn: 3 cm2 to 12 cm2 of surface
-constexpr std::size_t searched_points = 300;
-constexpr std::size_t refined_points = 1500;
-constexpr int rough_iterations = 6;
-constexpr std::size_t refined_poses = 60;
-constexpr int iterations = 40;
+constexpr std::size_t min_points = 300;     // of a turn: 3 cm2 to 12 cm2 of surface
+constexpr std::size_t shown_points = 4000;  // of a turn, for people to look at
 
-// A pose is accepted below this contradiction, and if no other one that gives another shape comes
-// near to it.
-constexpr double max_contradiction = 0.25;
-constexpr double min_lead = 0.10;
-constexpr double similar_overlap = 0.85;  // of the best one's
-constexpr double similar_residual = 1.5;
+// A pose is accepted below this contradiction.
+constexpr double max_contradiction = 0.2;
 constexpr double min_overlap = 0.15;
 constexpr double max_residual = 0.0015;  // metres
 
-/// What all placed turns saw, in the object's frame.
-struct Target {
-  std::vector<PlacedTurn> turns;
-  NearestPoints points;
-};
-
-Target make_target(std::vector<PlacedTurn> turns) {
-  std::vector<SurfacePoint> points;
-  for (const PlacedTurn& placed : turns) {
-    for (const SurfacePoint& point : placed.turn->points) {
-      points.push_back({.point = placed.object_from_turn * point.point,
-                        .normal = placed.object_from_turn.linear() * point.normal});
-    }
-  }
-  return {.turns = std::move(turns), .points = NearestPoints(std::move(points))};
-}
-
-/// How much a pose of a turn contradicts what the target's turns saw, and they what it saw.
-double contradiction(const Target& target, const SeenTurn& turn,
-                     const std::vector<SurfacePoint>& points,
-                     const std::vector<SurfacePoint>& target_points, const Isometry3d& pose) {
-  double worst = 0;
-  for (const PlacedTurn& placed : target.turns) {
-    worst = std::max(
-        worst, contradicted_share(*placed.turn, points, placed.object_from_turn.inverse() * pose));
-  }
-  return worst + contradicted_share(turn, target_points, pose.inverse());
-}
-
-/// @param points  some of the turn's
-Stands make_stands(const Target& target, const SeenTurn& turn,
-                   const std::vector<SurfacePoint>& points, std::size_t point_count) {
-  const auto share = [](const auto& some, const auto& all) {
-    return static_cast<double>(some.size()) /
-           static_cast<double>(std::max<std::size_t>(all.size(), 1));
-  };
-  Stands stands{.target_from_platforms = {},
-                .target_points = thinned(target.points.points(), point_count)};
-  stands.target_share = share(stands.target_points, target.points.points());
-  stands.share = share(points, turn.points);
-  for (const PlacedTurn& placed : target.turns) {
-    stands.target_from_platforms.push_back(placed.object_from_turn);
-  }
-  return stands;
-}
-
-/// Refines and judges candidates with so many points. @return the distinct ones, the best first
-std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const Target& target,
-                                  const SeenTurn& turn, std::size_t point_count, int steps,
-                                  int threads, const std::stop_token& stop) {
-  const std::vector<SurfacePoint> points = thinned(turn.points, point_count);
-  const Stands stands = make_stands(target, turn, points, point_count);
-  std::atomic<std::size_t> next = 0;
-  fork_join(threads, [&](int) {
-    for (std::size_t i = next++; i < candidates.size(); i = next++) {
-      throw_if_stopped(stop);
-      PoseCandidate& candidate = candidates[i];
-      candidate = refine(target.points, stands, points, candidate, steps);
-      candidate.contradiction =
-          contradiction(target, turn, points, stands.target_points, candidate.target_from_points);
-    }
-  });
-  std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
-  return distinct(candidates, NearestPoints(points).middle());
-}
-
-/// The poses that fit, the best first.
-std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn& turn, int threads,
-                                           const std::stop_token& stop) {
-  auto candidates =
-      search_poses(target.points, thinned(turn.points, searched_points), threads, stop);
-  candidates =
-      judged(std::move(candidates), target, turn, searched_points, rough_iterations, threads, stop);
-  candidates.resize(std::min(candidates.size(), refined_poses));
-  return judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
-}
+// Of a symmetric object, the ways to turn it over that are tried.
+constexpr int turns_over = 8;
+constexpr double max_upright = 0.3;  // cosine: less, and the underside is seen
 
 std::string text(const char* format, double value) {
   std::array<char, 96> buffer{};
@@ -128,6 +45,7 @@ std::string percent(double share) { return text("%.0f %%", 100 * share); }
 struct Answer {
   RegisteredPose pose = {};
   std::string reason = {};  // empty if it fits
+  std::vector<RegistrationCandidate> candidates = {};
 };
 
 std::string refuse(const PoseCandidate& best) {
@@ -143,68 +61,101 @@ std::string refuse(const PoseCandidate& best) {
   return {};
 }
 
-/// Whether a candidate fits about as well as the best one, and did not slide beside it.
-bool is_rival(const PoseCandidate& candidate, const PoseCandidate& best) {
-  return candidate.contradiction <= best.contradiction + min_lead &&
-         candidate.residual <= similar_residual * best.residual &&
-         candidate.overlap >= similar_overlap * best.overlap;
-}
-
-/// What the candidates beside the best one, the first, say.
-struct Rivals {
-  bool symmetric = false;
-  std::string reason = {};  // to refuse, or empty
-};
-
-Rivals compare_rivals(const Target& target, const NearestPoints& turn,
-                      const std::vector<PoseCandidate>& candidates) {
-  const PoseCandidate& best = candidates.front();
-  Rivals rivals;
-  for (auto other = candidates.begin() + 1; other != candidates.end(); ++other) {
-    if (!is_rival(*other, best)) {
-      continue;
-    }
-    if (!same_shape(target.points, turn, best.target_from_points, other->target_from_points)) {
-      const Eigen::AngleAxisd between(best.target_from_points.linear().transpose() *
-                                      other->target_from_points.linear());
-      rivals.reason = "two poses that are " + text("%.0f", degrees_from_radians(between.angle())) +
-                      " degrees apart fit alike, and give different shapes";
-      break;
-    }
-    rivals.symmetric = true;
+/// The poses that a person can choose from.
+std::vector<RegistrationCandidate> to_choice(const std::vector<PoseCandidate>& candidates,
+                                             const Target& target, const NearestPoints& turn) {
+  std::vector<RegistrationCandidate> choice;
+  for (const PoseCandidate& candidate : without_same_shapes(candidates, target, turn)) {
+    choice.push_back({.object_from_platform = candidate.target_from_points,
+                      .overlap = candidate.overlap,
+                      .residual = candidate.residual,
+                      .contradiction = candidate.contradiction});
   }
-  return rivals;
+  return choice;
 }
 
-Answer answer(const Target& target, const SeenTurn& turn, int threads,
+/// The accepted candidate, refined on readings.
+RegisteredPose refined(const Target& target, const SeenTurn& turn, const PoseCandidate& best,
+                       const Vector3d& turn_middle, int threads, const std::stop_token& stop) {
+  const ReadingFit fit = fit_readings(target.turns, turn, best.target_from_points,
+                                      best.target_from_points * turn_middle, threads, stop);
+  return {.object_from_platform = fit.object_from_turn,
+          .position_sigma = fit.position_sigma,
+          .direction_sigma = fit.direction_sigma,
+          .overlap = best.overlap,
+          .residual = fit.residual,
+          .contradiction = best.contradiction};
+}
+
+/// Of a symmetric object, a pose that fits like the best one and has its top down: who turned it
+/// over wants to see its underside, and one that is upright again would leave that unseen.
+PoseCandidate turned_over(const Target& target, const SeenTurn& turn, const NearestPoints& points,
+                          const PoseCandidate& best) {
+  const Vector3d middle = best.target_from_points * points.middle();
+  for (int i = 0; i < turns_over; ++i) {
+    const double angle = std::numbers::pi * i / turns_over;
+    const Eigen::AngleAxisd over(std::numbers::pi, Vector3d(std::cos(angle), std::sin(angle), 0));
+    PoseCandidate other =
+        refine_candidate(target, turn,
+                         Eigen::Translation3d(middle) * over * Eigen::Translation3d(-middle) *
+                             best.target_from_points);
+    if (refuse(other).empty() && fits_alike(other, best)) {
+      return other;
+    }
+  }
+  return best;
+}
+
+/// Whether a pose leaves the turn's way up nearly as it was in the first placed turn.
+bool is_upright(const Target& target, const PoseCandidate& candidate) {
+  return target.turns.size() == 1 &&
+         candidate.target_from_points.linear().col(2).dot(
+             target.turns.front().object_from_turn.linear().col(2)) > max_upright;
+}
+
+/// Looks for the turn's pose.
+Answer search(const Target& target, const SeenTurn& turn, int threads,
               const std::stop_token& stop) {
-  if (turn.points.size() < min_points) {
-    return {.pose = {}, .reason = "too little of an object is seen"};
-  }
-  const auto candidates = find_candidates(target, turn, threads, stop);
+  const NearestPoints points(turn.points);
+  const auto candidates = find_candidates(target, turn, points, threads, stop);
   if (candidates.empty()) {
     return {.pose = {}, .reason = "too little of an object is seen"};
   }
+  Answer answer{.candidates = to_choice(candidates, target, points)};
   const PoseCandidate& best = candidates.front();
-  if (std::string reason = refuse(best); !reason.empty()) {
-    return {.pose = {}, .reason = std::move(reason)};
+  answer.reason = refuse(best);
+  Rivals rivals;
+  if (answer.reason.empty()) {
+    rivals = compare_rivals(target, turn, points, candidates, threads, stop);
+    answer.reason = rivals.reason;
   }
-  const NearestPoints points(turn.points);
-  const Rivals rivals = compare_rivals(target, points, candidates);
-  if (!rivals.reason.empty()) {
-    return {.pose = {}, .reason = rivals.reason};
+  if (answer.reason.empty()) {
+    const bool is_shown = !rivals.symmetric || !is_upright(target, best);
+    answer.pose = refined(target, turn, is_shown ? best : turned_over(target, turn, points, best),
+                          points.middle(), threads, stop);
+    answer.pose.symmetric = rivals.symmetric;
   }
-  const Vector3d middle = best.target_from_points * points.middle();
-  const ReadingFit fit =
-      fit_readings(target.turns, turn, best.target_from_points, middle, threads, stop);
-  return {.pose = {.object_from_platform = fit.object_from_turn,
-                   .position_sigma = fit.position_sigma,
-                   .direction_sigma = fit.direction_sigma,
-                   .overlap = best.overlap,
-                   .residual = fit.residual,
-                   .contradiction = best.contradiction,
-                   .symmetric = rivals.symmetric},
-          .reason = {}};
+  return answer;
+}
+
+/// Refines the pose that a person has told.
+Answer refine_told(const Target& target, const SeenTurn& turn, const Isometry3d& told, int threads,
+                   const std::stop_token& stop) {
+  const PoseCandidate candidate = refine_candidate(target, turn, told);
+  Answer answer{.reason = refuse(candidate)};
+  if (answer.reason.empty()) {
+    answer.pose = refined(target, turn, candidate, middle_of(turn.points), threads, stop);
+  }
+  return answer;
+}
+
+Answer place(const Target& target, const SeenTurn& turn, const std::optional<Isometry3d>& told,
+             int threads, const std::stop_token& stop) {
+  if (turn.points.size() < min_points) {
+    return {.pose = {}, .reason = "too little of an object is seen"};
+  }
+  return told ? refine_told(target, turn, *told, threads, stop)
+              : search(target, turn, threads, stop);
 }
 
 /// Turns that are placed already.
@@ -220,10 +171,12 @@ std::vector<PlacedTurn> placed_turns(const std::vector<SeenTurn>& seen,
 }
 
 /// Places all turns that fit to those which are placed, until no more does.
+/// @param[out] candidates  of the last turn
 /// @return of the first that does not fit, its number and why
 std::optional<std::pair<std::size_t, std::string>> place_all(
-    const std::vector<SeenTurn>& seen, std::vector<std::optional<RegisteredPose>>& poses,
-    int threads, const std::stop_token& stop) {
+    std::span<const RegistrationTurn> turns, const std::vector<SeenTurn>& seen,
+    std::vector<std::optional<RegisteredPose>>& poses,
+    std::vector<RegistrationCandidate>& candidates, int threads, const std::stop_token& stop) {
   for (bool progress = true; progress;) {
     progress = false;
     std::optional<std::pair<std::size_t, std::string>> refused;
@@ -231,7 +184,11 @@ std::optional<std::pair<std::size_t, std::string>> place_all(
       if (poses[i]) {
         continue;
       }
-      Answer found = answer(make_target(placed_turns(seen, poses)), seen[i], threads, stop);
+      Answer found = place(make_target(placed_turns(seen, poses)), seen[i],
+                           turns[i].told_object_from_platform, threads, stop);
+      if (i + 1 == seen.size()) {
+        candidates = std::move(found.candidates);
+      }
       if (found.reason.empty()) {
         poses[i] = found.pose;
         progress = true;
@@ -246,26 +203,35 @@ std::optional<std::pair<std::size_t, std::string>> place_all(
   return std::nullopt;
 }
 
+std::vector<Eigen::Vector3f> shown(const SeenTurn& turn) {
+  std::vector<Eigen::Vector3f> points;
+  for (const SurfacePoint& point : thinned(turn.points, shown_points)) {
+    points.emplace_back(point.point.cast<float>());
+  }
+  return points;
+}
+
 }  // namespace
 
 Registration register_turns(std::span<const RegistrationTurn> turns, int threads,
                             const std::stop_token& stop) {
   std::vector<SeenTurn> seen;
   std::vector<std::optional<RegisteredPose>> poses(turns.size());
+  Registration registration;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     seen.push_back(read_turn(turns[i], threads, stop));
+    registration.points.push_back(shown(seen.back()));
     if (i == 0 || turns[i].object_from_platform) {
       poses[i].emplace();
       poses[i]->object_from_platform =
           turns[i].object_from_platform.value_or(Isometry3d::Identity());
     }
   }
-  Registration registration;
   if (!seen.empty() && seen.front().points.size() < min_points) {
     registration.reason = "turn 0: too little of an object is seen";
     return registration;
   }
-  if (const auto refused = place_all(seen, poses, threads, stop)) {
+  if (const auto refused = place_all(turns, seen, poses, registration.candidates, threads, stop)) {
     registration.reason = "turn " + std::to_string(refused->first) + ": " + refused->second;
     return registration;
   }

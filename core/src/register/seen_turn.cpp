@@ -60,20 +60,6 @@ std::vector<SurfacePoint> mean_points(const std::vector<std::vector<SurfacePoint
   return points;
 }
 
-bool contradicts(const SeenTurn& turn, const Vector3d& point) {
-  if (point.z() < -max_below) {
-    return true;
-  }
-  int witnesses = 0;
-  for (const StopView& view : turn.stops) {
-    witnesses += view.saw_through(point) ? 1 : 0;
-    if (witnesses == min_witnesses) {
-      return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_token& stop) {
@@ -107,6 +93,28 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::
     some.push_back(points[i * points.size() / count]);
   }
   return some;
+}
+
+Vector3d middle_of(const std::vector<SurfacePoint>& points) {
+  Eigen::AlignedBox3d box;
+  for (const SurfacePoint& point : points) {
+    box.extend(point.point);
+  }
+  return box.center();
+}
+
+bool contradicts(const SeenTurn& turn, const Vector3d& point) {
+  if (point.z() < -max_below) {
+    return true;
+  }
+  int witnesses = 0;
+  for (const StopView& view : turn.stops) {
+    witnesses += view.saw_through(point) ? 1 : 0;
+    if (witnesses == min_witnesses) {
+      return true;
+    }
+  }
+  return false;
 }
 
 double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,

@@ -21,8 +21,15 @@ SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_to
 /// About so many of the points, spread evenly over them.
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::size_t count);
 
-/// Share of the points where a turn saw that nothing is: several of its stops saw through them, or
-/// they lie below its platform.
+/// The middle of the points' bounding box.
+Eigen::Vector3d middle_of(const std::vector<SurfacePoint>& points);
+
+/// Whether a turn saw that nothing is at a point: several of its stops saw through it, or it lies
+/// below its platform.
+/// @param point  metres, the turn's frame
+bool contradicts(const SeenTurn& turn, const Eigen::Vector3d& point);
+
+/// Share of the points where a turn saw that nothing is.
 /// @param turn_from_points  takes the points to the turn's frame
 double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,
                           const Eigen::Isometry3d& turn_from_points);

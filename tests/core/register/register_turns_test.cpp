@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "core/register/laid_down.hpp"
 #include "octurn/register.hpp"
@@ -37,6 +39,35 @@ TEST(RegisterTurns, FindsHowAFigureWasTurnedOver) {
   EXPECT_FALSE(found.poses[1].symmetric);
   EXPECT_GT(found.poses[1].overlap, 0.35);
   EXPECT_LT(found.poses[1].position_sigma, 0.0003);
+}
+
+/// Some 12 cm long, and smooth all over: balls that run into each other.
+Shape lump() {
+  return [](const Eigen::Vector3d& p) {
+    constexpr double blend = 0.012;  // metres
+    double sum = 0;
+    for (const Shape& part : {ball({0.02, 0.005, 0.05}, 0.04), ball({-0.035, -0.01, 0.045}, 0.03),
+                              ball({0, 0.03, 0.06}, 0.028), ball({0.01, -0.025, 0.035}, 0.025)}) {
+      sum += std::exp(-part(p) / blend);
+    }
+    return -blend * std::log(sum);
+  };
+}
+
+// Most of what the second turn sees of it, the first one could not: what lies there is no misfit.
+TEST(RegisterTurns, FindsASmoothLumpThatSharesLittle) {
+  const Eigen::Translation3d middle(0, 0, 0.055);
+  const Eigen::Isometry3d truth =
+      middle *
+      Eigen::AngleAxisd(radians_from_degrees(160), Eigen::Vector3d(1, 0.4, 0.2).normalized()) *
+      middle.inverse();
+
+  const Registration found =
+      register_turns(std::array{laid_turn(lump(), 6), laid_turn(lump(), 6, truth)});
+
+  ASSERT_TRUE(found.accepted) << found.reason;
+  expect_near(found.poses[1].object_from_platform, truth, 0.5, 1);
+  EXPECT_LT(found.poses[1].overlap, 0.5);
 }
 
 TEST(RegisterTurns, IsTheSameForAnyNumberOfThreads) {
@@ -114,6 +145,8 @@ TEST(RegisterTurns, TellsThatABlockIsSymmetric) {
 
   ASSERT_TRUE(found.accepted) << found.reason;
   EXPECT_TRUE(found.poses[1].symmetric);
+  ASSERT_GT(found.candidates.size(), 1U);  // the other three give the same shape, and are none
+  EXPECT_GT(found.candidates[1].contradiction, found.candidates[0].contradiction + 0.1);
   const Eigen::Isometry3d error = found.poses[1].object_from_platform * truth.inverse();
   for (const double z : {0.0, size.z()}) {
     const Eigen::Vector3d corner(size.x() / 2, size.y() / 2, z);
@@ -134,6 +167,8 @@ TEST(RegisterTurns, TellsThatABallIsSymmetric) {
 
   ASSERT_TRUE(found.accepted) << found.reason;
   EXPECT_TRUE(found.poses[1].symmetric);
+  // Of all rotations one is taken that shows the underside, for which it was turned over.
+  EXPECT_LT(found.poses[1].object_from_platform(2, 2), 0.3);
   const Eigen::Vector3d middle(0, 0, 0.04);
   const Eigen::Vector3d found_middle =
       found.poses[1].object_from_platform * (truth.inverse() * middle);
@@ -146,11 +181,74 @@ TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
   const Shape dented = [whole = block({0.08, 0.08, 0.05}), dent = ball({0.018, 0.018, 0}, 0.015)](
                            const Eigen::Vector3d& p) { return std::max(whole(p), -dent(p)); };
 
-  const Registration found = register_turns(
-      std::array{laid_turn(dented, stops), laid_turn(dented, stops, turned_over(0.05))});
+  std::array turns{laid_turn(dented, stops), laid_turn(dented, stops, turned_over(0.05))};
+
+  const Registration found = register_turns(turns);
 
   EXPECT_FALSE(found.accepted);
   EXPECT_NE(found.reason.find("different shapes"), std::string::npos) << found.reason;
+  ASSERT_GE(found.candidates.size(), 4U);  // a corner each
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LT(found.candidates[i].contradiction, 0.1);
+  }
+  // A person who has seen the object chooses, and that is not refused for the others.
+  turns[1].told_object_from_platform = found.candidates[2].object_from_platform;
+  const Registration told = register_turns(turns);
+  ASSERT_TRUE(told.accepted) << told.reason;
+  expect_near(told.poses[1].object_from_platform, found.candidates[2].object_from_platform, 1, 1);
+  EXPECT_TRUE(told.candidates.empty());
+}
+
+// Ten degrees and 7 mm off at the middle, as three clicked pairs may be.
+TEST(RegisterTurns, RefinesAPoseThatIsToldRoughly) {
+  const Eigen::Isometry3d truth = turned_over(figure_height);
+  std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};
+  const Eigen::Translation3d middle(0, 0, figure_height / 2);
+  turns[1].told_object_from_platform =
+      truth * Eigen::Translation3d(0.004, -0.003, 0.005) * middle *
+      Eigen::AngleAxisd(radians_from_degrees(10), Eigen::Vector3d(1, 2, 2) / 3) * middle.inverse();
+
+  const Registration found = register_turns(turns);
+
+  ASSERT_TRUE(found.accepted) << found.reason;
+  expect_near(found.poses[1].object_from_platform, truth, 0.15, 0.15);
+}
+
+TEST(RegisterTurns, RefusesAToldPoseThatContradictsWhatWasSeen) {
+  const Eigen::Isometry3d truth = turned_over(figure_height);
+  std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};
+  turns[1].told_object_from_platform =
+      truth * Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+
+  const Registration found = register_turns(turns);
+
+  EXPECT_FALSE(found.accepted);
+  EXPECT_NE(found.reason, "");
+}
+
+TEST(PoseFromPairs, IsThePoseThatThreePairsHaveInCommon) {
+  const Eigen::Isometry3d truth = turned_over(0.1, 70);
+  std::vector<PointPair> pairs;
+  for (const Eigen::Vector3d& point :
+       {Eigen::Vector3d(0.03, 0.01, 0.02), Eigen::Vector3d(-0.04, 0.02, 0.05),
+        Eigen::Vector3d(0.01, -0.03, 0.08)}) {
+    pairs.push_back({.object = truth * point, .platform = point});
+  }
+
+  const auto pose = pose_from_pairs(pairs);
+
+  ASSERT_TRUE(pose);
+  EXPECT_TRUE(pose->isApprox(truth, 1e-12));
+}
+
+TEST(PoseFromPairs, IsUnknownOfPointsOnALine) {
+  std::vector<PointPair> pairs;
+  for (const double at : {0.0, 0.02, 0.06}) {
+    pairs.push_back({.object = {at, at, 0}, .platform = {0, at, at}});
+  }
+
+  EXPECT_FALSE(pose_from_pairs(pairs));
+  EXPECT_FALSE(pose_from_pairs({}));
 }
 
 TEST(RegisterTurns, StopsWhenAsked) {

@@ -1,0 +1,85 @@
+#include "register/compare_rivals.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "octurn/units.hpp"
+#include "register/reading_fit.hpp"
+#include "register/same_shape.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double min_lead = 0.10;
+constexpr double similar_overlap = 0.85;  // of the best one's
+constexpr double similar_residual = 1.5;
+
+constexpr double near_angle = 0.26;        // radians, 15 degrees: readings join what is nearer
+constexpr double joined_angle = 0.01;      // radians
+constexpr double joined_distance = 0.001;  // metres
+
+/// Whether a candidate fits about as well as the best one, and did not slide beside it.
+bool is_rival(const PoseCandidate& candidate, const PoseCandidate& best) {
+  return fits_alike(candidate, best) && candidate.overlap >= similar_overlap * best.overlap;
+}
+
+double angle_between(const Isometry3d& one, const Isometry3d& other) {
+  return Eigen::AngleAxisd(one.linear().transpose() * other.linear()).angle();
+}
+
+/// Whether two candidates are one pose once they are refined on readings: the points of few or
+/// noisy stops leave a pose open by a few degrees, and the readings do not.
+bool readings_join(const Target& target, const SeenTurn& turn, const Vector3d& middle,
+                   const Isometry3d& one, const Isometry3d& other, int threads,
+                   const std::stop_token& stop) {
+  const auto fit = [&](const Isometry3d& start) {
+    return fit_readings(target.turns, turn, start, start * middle, threads, stop).object_from_turn;
+  };
+  const Isometry3d fitted = fit(one);
+  const Isometry3d other_fitted = fit(other);
+  return angle_between(fitted, other_fitted) < joined_angle &&
+         (fitted * middle - other_fitted * middle).norm() < joined_distance;
+}
+
+std::string ambiguous(double angle) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(),
+                "two poses that are %.0f degrees apart fit alike, and give different shapes",
+                degrees_from_radians(angle));
+  return text.data();
+}
+
+}  // namespace
+
+bool fits_alike(const PoseCandidate& candidate, const PoseCandidate& best) {
+  return candidate.contradiction <= best.contradiction + min_lead &&
+         candidate.residual <= similar_residual * best.residual;
+}
+
+Rivals compare_rivals(const Target& target, const SeenTurn& turn, const NearestPoints& points,
+                      const std::vector<PoseCandidate>& candidates, int threads,
+                      const std::stop_token& stop) {
+  const PoseCandidate& best = candidates.front();
+  Rivals rivals;
+  for (auto other = candidates.begin() + 1; other != candidates.end(); ++other) {
+    if (!is_rival(*other, best)) {
+      continue;
+    }
+    if (same_shape(target.points, points, best.target_from_points, other->target_from_points)) {
+      rivals.symmetric = true;
+      continue;
+    }
+    const double angle = angle_between(best.target_from_points, other->target_from_points);
+    if (angle > near_angle || !readings_join(target, turn, points.middle(), best.target_from_points,
+                                             other->target_from_points, threads, stop)) {
+      rivals.reason = ambiguous(angle);
+      break;
+    }
+  }
+  return rivals;
+}
+
+}  // namespace octurn

@@ -1,0 +1,131 @@
+#include "register/find_candidates.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "octurn/snapshot.hpp"
+#include "parallel/fork_join.hpp"
+#include "register/same_shape.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+
+constexpr std::size_t rough_points = 300;
+constexpr std::size_t refined_points = 1500;
+constexpr int rough_iterations = 6;
+constexpr std::size_t refined_poses = 60;
+constexpr int iterations = 40;
+constexpr std::size_t max_shapes = 5;  // that a person can choose from
+
+/// How much a pose of a turn contradicts what the target's turns saw, and they what it saw.
+double contradiction(const Target& target, const SeenTurn& turn,
+                     const std::vector<SurfacePoint>& points,
+                     const std::vector<SurfacePoint>& target_points, const Isometry3d& pose) {
+  double worst = 0;
+  for (const PlacedTurn& placed : target.turns) {
+    worst = std::max(
+        worst, contradicted_share(*placed.turn, points, placed.object_from_turn.inverse() * pose));
+  }
+  return worst + contradicted_share(turn, target_points, pose.inverse());
+}
+
+/// @param points  some of the turn's
+Stands make_stands(const Target& target, const SeenTurn& turn,
+                   const std::vector<SurfacePoint>& points, std::size_t point_count) {
+  const auto share = [](const auto& some, const auto& all) {
+    return static_cast<double>(some.size()) /
+           static_cast<double>(std::max<std::size_t>(all.size(), 1));
+  };
+  Stands stands{.target_from_platforms = {},
+                .target_points = thinned(target.points.points(), point_count)};
+  stands.target_share = share(stands.target_points, target.points.points());
+  stands.share = share(points, turn.points);
+  for (const PlacedTurn& placed : target.turns) {
+    stands.target_from_platforms.push_back(placed.object_from_turn);
+  }
+  return stands;
+}
+
+/// Refines and judges candidates with so many points. @return the distinct ones, the best first
+std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const Target& target,
+                                  const SeenTurn& turn, std::size_t point_count, int steps,
+                                  int threads, const std::stop_token& stop) {
+  const std::vector<SurfacePoint> points = thinned(turn.points, point_count);
+  const Stands stands = make_stands(target, turn, points, point_count);
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int) {
+    for (std::size_t i = next++; i < candidates.size(); i = next++) {
+      throw_if_stopped(stop);
+      PoseCandidate& candidate = candidates[i];
+      candidate = refine(target.points, stands, points, candidate, steps);
+      candidate.contradiction =
+          contradiction(target, turn, points, stands.target_points, candidate.target_from_points);
+    }
+  });
+  std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
+  return distinct(candidates, middle_of(points));
+}
+
+/// Poses in which target and turn may fit, roughly.
+std::vector<PoseCandidate> searched(const Target& target, const SeenTurn& turn,
+                                    const NearestPoints& points, int threads,
+                                    const std::stop_token& stop) {
+  const FreeSpace target_free(target.turns, threads, stop);
+  const PlacedTurn own{.turn = &turn, .object_from_turn = Isometry3d::Identity()};
+  const FreeSpace turn_free({&own, 1}, threads, stop);
+  return search_poses({.nearest = target.points, .free = target_free},
+                      {.nearest = points, .free = turn_free}, threads, stop);
+}
+
+}  // namespace
+
+Target make_target(std::vector<PlacedTurn> turns) {
+  std::vector<SurfacePoint> points;
+  for (const PlacedTurn& placed : turns) {
+    for (const SurfacePoint& point : placed.turn->points) {
+      points.push_back({.point = placed.object_from_turn * point.point,
+                        .normal = placed.object_from_turn.linear() * point.normal});
+    }
+  }
+  return {.turns = std::move(turns), .points = NearestPoints(std::move(points))};
+}
+
+std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn& turn,
+                                           const NearestPoints& points, int threads,
+                                           const std::stop_token& stop) {
+  auto candidates = searched(target, turn, points, threads, stop);
+  candidates =
+      judged(std::move(candidates), target, turn, rough_points, rough_iterations, threads, stop);
+  candidates.resize(std::min(candidates.size(), refined_poses));
+  return judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
+}
+
+PoseCandidate refine_candidate(const Target& target, const SeenTurn& turn,
+                               const Isometry3d& start) {
+  PoseCandidate candidate;
+  candidate.target_from_points = start;
+  return judged({candidate}, target, turn, refined_points, iterations, 1, {}).front();
+}
+
+std::vector<PoseCandidate> without_same_shapes(const std::vector<PoseCandidate>& candidates,
+                                               const Target& target, const NearestPoints& turn) {
+  std::vector<PoseCandidate> shapes;
+  for (const PoseCandidate& candidate : candidates) {
+    const bool is_new = std::ranges::none_of(shapes, [&](const PoseCandidate& shape) {
+      return same_shape(target.points, turn, shape.target_from_points,
+                        candidate.target_from_points);
+    });
+    if (is_new) {
+      shapes.push_back(candidate);
+    }
+    if (shapes.size() == max_shapes) {
+      break;
+    }
+  }
+  return shapes;
+}
+
+}  // namespace octurn

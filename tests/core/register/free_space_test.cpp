@@ -1,0 +1,45 @@
+#include "register/free_space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "core/register/laid_down.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr double margin = 0.02;  // a voxel's diagonal, and what a surface must be behind
+
+/// Whether a point is free that a turn saw, turned as told.
+bool is_free(const SeenTurn& turn, const Eigen::Isometry3d& object_from_turn,
+             const Eigen::Vector3d& point) {
+  const std::array turns{PlacedTurn{.turn = &turn, .object_from_turn = object_from_turn}};
+  return FreeSpace(turns, 1, {}).is_free(point);
+}
+
+TEST(FreeSpace, IsAboveAndBesideABlockAndBelowItsPlatform) {
+  const Eigen::Vector3d size(0.09, 0.06, 0.05);
+  const SeenTurn turn = read_turn(laid_turn(block(size), 4), 1, {});
+  const Eigen::Isometry3d stands = Eigen::Isometry3d::Identity();
+
+  EXPECT_TRUE(is_free(turn, stands, {0, 0, size.z() + margin}));
+  EXPECT_TRUE(is_free(turn, stands, {0, size.y() / 2 + margin, 0.03}));
+  EXPECT_TRUE(is_free(turn, stands, {0, 0, -0.01}));
+  EXPECT_TRUE(is_free(turn, stands, {1, 0, 0.02}));
+  EXPECT_FALSE(is_free(turn, stands, {0, 0, 0.02}));
+  EXPECT_FALSE(is_free(turn, stands, {0, 0, size.z()}));
+  EXPECT_FALSE(is_free(turn, stands, {0, 0, 0.003}));
+}
+
+TEST(FreeSpace, IsWhereTheTurnLay) {
+  const SeenTurn turn = read_turn(laid_turn(block({0.09, 0.06, 0.05}), 4), 1, {});
+  Eigen::Isometry3d upside_down = Eigen::Isometry3d::Identity();
+  upside_down.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+
+  EXPECT_TRUE(is_free(turn, upside_down, {0, 0, 0.01}));
+  EXPECT_FALSE(is_free(turn, upside_down, {0, 0, -0.02}));
+}
+
+}  // namespace
+}  // namespace octurn

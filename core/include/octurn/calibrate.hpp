@@ -68,4 +68,21 @@ struct CalibrationReport {
 /// @throws std::invalid_argument  if a depth image has another size than the intrinsics say
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads = 1);
 
+/// Where the platform's surface lies, in the platform frame as told.
+struct PlatformSurface {
+  double height = 0;  ///< metres, where the told axis meets it
+  /// How it rises along x and y: 0 if it is as told, else the tangents of its angles.
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  double tilt = 0;  ///< radians, between its normal and the told axis
+};
+
+/// Fits the platform's plane to one look, as `calibrate` does to those of a turn. An object may
+/// stand on it.
+/// @param platform_from_sensor  as told: optical frame to platform frame, metres
+/// @return nothing if no surface is seen within 60 mm and 6 degrees of the told one
+/// @throws std::invalid_argument  if the frame has another size than the intrinsics say
+std::optional<PlatformSurface> measure_platform_surface(
+    const DepthFrame& frame, const Intrinsics& intrinsics,
+    const Eigen::Isometry3d& platform_from_sensor);
+
 }  // namespace octurn

@@ -21,6 +21,10 @@ constexpr double platform_radius = 0.13;  // metres, in which heights are counte
 constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
 constexpr double min_cut_height =
     0.01;  // metres above the box's bottom: the platform's rim is lower
+// Readings of one surface: of the eight around a pixel so many, and of a slope of 74 degrees at
+// the most. A reading between an edge and what is behind it has fewer.
+constexpr int min_beside = 5;
+constexpr double max_slope_step = 0.012;  // of the depth, two pixels on
 
 /// Of the image whose pixels are blocks of `size` x `size` pixels of another.
 Intrinsics merged(Intrinsics lens, int size) {
@@ -73,6 +77,8 @@ std::size_t side_between(const Box& box, const Vector3d& outside) {
   return 5;
 }
 
+constexpr std::array<std::array<int, 2>, 4> next_to = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+
 /// The points that a depth image reads, in the object's frame.
 class Points {
  public:
@@ -91,6 +97,39 @@ class Points {
  private:
   const Snapshot& snapshot_;
 };
+
+/// Adds a point once for each neighbour in the picture from which the box cuts it off.
+/// @param inside  metres, object's frame, of the pixel (u, v)
+/// @param cut     as `ScanCheck::Stop::cut`
+void add_cuts(const Points& points, const Box& clip, const Vector3d& inside, int u, int v,
+              std::array<std::vector<Eigen::Vector3f>, 5>& cut) {
+  if (inside.z() < clip.min.z() + min_cut_height) {
+    return;
+  }
+  for (const auto& [du, dv] : next_to) {
+    const double depth = points.depth(u + du, v + dv);
+    const Vector3d other = points.at(u + du, v + dv);
+    if (!(depth > nearest_z) || std::abs(depth - points.depth(u, v)) > max_cut_step ||
+        contains(clip, other)) {
+      continue;
+    }
+    const std::size_t side = side_between(clip, other);
+    if (side < cut.size()) {
+      cut[side].emplace_back(inside.cast<float>());
+    }
+  }
+}
+
+/// Whether most of the pixels around one lie beside it on a surface.
+bool is_of_a_surface(const Points& points, int u, int v, double z) {
+  int beside = -1;  // itself
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      beside += std::abs(points.depth(u + column, v + row) - z) < max_slope_step * z ? 1 : 0;
+    }
+  }
+  return beside >= min_beside;
+}
 
 /// The smallest depth in each block, metres; 0 if one of its pixels has none.
 std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& lens) {
@@ -114,23 +153,11 @@ ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
 
 ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask)
     : object_from_sensor(thin.object_from_sensor),
-      block_lens(merged(thin.intrinsics, block)),
+      blocks{.lens = merged(thin.intrinsics, block)},
       view(thin.frame, thin.intrinsics, mask),
       heights(static_cast<std::size_t>(std::lround(2 * highest / height_step))) {
   const Points points(thin);
-  nearest_in_block = nearest_in_blocks(points, block_lens);
-  const auto count_cut = [&](const Vector3d& inside, int u, int v, double z) {
-    const double depth = points.depth(u, v);
-    const Vector3d other = points.at(u, v);
-    if (!(depth > nearest_z) || std::abs(depth - z) > max_cut_step ||
-        inside.z() < clip.min.z() + min_cut_height || contains(clip, other)) {
-      return;
-    }
-    const std::size_t side = side_between(clip, other);
-    if (side < cut.size()) {
-      cut[side].emplace_back(inside.cast<float>());
-    }
-  };
+  blocks.nearest = nearest_in_blocks(points, blocks.lens);
   for (int v = 1; v + 1 < thin.frame.height; ++v) {
     for (int u = 1; u + 1 < thin.frame.width; ++u) {
       const double z = points.depth(u, v);
@@ -144,13 +171,16 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
       if (contains(clip, point)) {
         object_pixels += pixels_for_one;
         depths += z * static_cast<double>(pixels_for_one);
-        count_cut(point, u - 1, v, z);
-        count_cut(point, u + 1, v, z);
-        count_cut(point, u, v - 1, z);
-        count_cut(point, u, v + 1, z);
+        if (is_of_a_surface(points, u, v, z)) {
+          seen.push_back(to_object_cell(point));
+        }
+        add_cuts(points, clip, point, u, v, cut);
       }
     }
   }
+  std::ranges::sort(seen);
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+  seen.shrink_to_fit();
   const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / readings_wanted)));
   readings = view.readings(step);
   std::erase_if(readings, [&](const SurfaceReading& reading) {
@@ -162,18 +192,18 @@ double ScanCheck::Stop::empty_depth(const Vector3d& point) const {
   if (!(point.z() > nearest_z)) {
     return 0;
   }
-  const Eigen::Vector2d pixel = project(block_lens, point);
+  const Eigen::Vector2d pixel = project(blocks.lens, point);
   const double u = pixel.x();
   const double v = pixel.y();
-  if (!(u >= 1 && v >= 1 && u < block_lens.width - 2 && v < block_lens.height - 2)) {
+  if (!(u >= 1 && v >= 1 && u < blocks.lens.width - 2 && v < blocks.lens.height - 2)) {
     return 0;
   }
   float nearest = std::numeric_limits<float>::max();
   for (int row = -1; row <= 1; ++row) {
     for (int column = -1; column <= 1; ++column) {
-      const auto at = static_cast<std::size_t>((std::lround(v) + row) * block_lens.width +
+      const auto at = static_cast<std::size_t>((std::lround(v) + row) * blocks.lens.width +
                                                std::lround(u) + column);
-      nearest = std::min(nearest, nearest_in_block[at]);
+      nearest = std::min(nearest, blocks.nearest[at]);
     }
   }
   return static_cast<double>(nearest);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibrate/object_view.hpp"
+#include "calibrate/seen_cells.hpp"
 #include "octurn/box.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/snapshot.hpp"
@@ -25,16 +26,22 @@ struct ScanCheck::Stop {
   /// @param point  metres, optical frame
   double empty_depth(const Eigen::Vector3d& point) const;
 
+  /// An image whose pixels are blocks of others.
+  struct Blocks {
+    Intrinsics lens = {};
+    std::vector<float> nearest = {};  ///< metres along z, row by row; 0 as `empty_depth`
+  };
+
   Eigen::Isometry3d object_from_sensor;
-  Intrinsics block_lens;                      ///< of the image whose pixels are blocks
-  std::vector<float> nearest_in_block = {};   ///< metres along z, row by row; 0 as `empty_depth`
+  Blocks blocks;
   ObjectView view;                            ///< of every other row and column
   std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
   std::size_t object_pixels = 0;              ///< inside the box
   double depths = 0;                          ///< metres, the sum of theirs
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
-  std::vector<std::size_t> heights;  ///< of readings near z = 0, a count for each step
+  std::vector<ObjectCell> seen = {};  ///< with readings inside the box that others lie beside
+  std::vector<std::size_t> heights;   ///< of readings near z = 0, a count for each step
 
  private:
   Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double min_height = 0.004;  // metres above the platform, whose noise is below
 constexpr double max_height = 0.4;
 constexpr double max_radius = 0.2;
 // Surfaces that are seen from the side tell how far off the axis is: at 0.65 m one of 75 degrees
@@ -55,15 +54,19 @@ std::optional<SurfaceReading> ObjectView::read(int u, int v) const {
   float nearest = at(u, v);
   float farthest = nearest;
   InverseDepthSums sums;
+  static_assert(normal_reach == 2);  // five values in a row
   for (int dv = -normal_reach; dv <= normal_reach; ++dv) {
-    for (int du = -normal_reach; du <= normal_reach; ++du) {
-      const float value = at(u + du, v + dv);
-      nearest = std::max(nearest, value);
-      farthest = std::min(farthest, value);
-      sums.sum += static_cast<double>(value);
-      sums.sum_u += du * static_cast<double>(value);
-      sums.sum_v += dv * static_cast<double>(value);
-    }
+    // Half of a calibration's time is spent here: the sums of a row do not wait for each other.
+    const float* row = &inverse_depth_[index(u - normal_reach, v + dv)];
+    nearest = std::max(std::max(nearest, row[2]),
+                       std::max(std::max(row[0], row[4]), std::max(row[1], row[3])));
+    farthest = std::min(std::min(farthest, row[2]),
+                        std::min(std::min(row[0], row[4]), std::min(row[1], row[3])));
+    const auto value = [&](int i) { return static_cast<double>(row[i]); };
+    const double sum = (value(0) + value(4)) + (value(1) + value(3)) + value(2);
+    sums.sum += sum;
+    sums.sum_u += 2 * (value(4) - value(0)) + (value(3) - value(1));
+    sums.sum_v += dv * sum;
   }
   if (!(farthest > 0) ||
       1 / static_cast<double>(farthest) - 1 / static_cast<double>(nearest) > max_step) {

@@ -23,6 +23,7 @@ class ObjectView {
   struct Mask {
     PlatformPlane plane = {};
     Eigen::Vector3d axis_point = Eigen::Vector3d::Zero();  ///< metres, optical frame
+    double min_height = 0.004;  ///< metres above the platform, whose noise is below
     bool contains(const Eigen::Vector3d& point) const;
   };
 
@@ -44,10 +45,11 @@ class ObjectView {
 
  private:
   std::optional<SurfaceReading> read(int u, int v) const;
-  float at(int u, int v) const {
-    return inverse_depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(window_.width) +
-                          static_cast<std::size_t>(u)];
+  std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(window_.width) +
+           static_cast<std::size_t>(u);
   }
+  float at(int u, int v) const { return inverse_depth_[index(u, v)]; }
 
   Intrinsics intrinsics_;
   Mask mask_;

@@ -6,32 +6,21 @@
 
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/object_view.hpp"
-#include "depth/depth_limits.hpp"
-#include "depth/pinhole.hpp"
+#include "calibrate/platform_samples.hpp"
 
 namespace octurn {
 namespace {
 
-constexpr std::size_t plane_stops = 6;    // tell the plane well enough to find the object
-constexpr int platform_step = 4;          // pixels between readings that the plane is fitted to
-constexpr double readings_wanted = 300;   // of the object at a stop: more cost time and tell little
-constexpr int max_step = 6;               // pixels
+constexpr std::size_t plane_stops = 6;  // tell the plane well enough to find the object
+// Metres. Of the readings near this height the mask takes those that err towards the sensor, which
+// draws the axis away from it: the lower it is, the fewer are of a flat object's walls.
+constexpr double min_height = 0.0025;
+// Of the object: at a stop, and at all stops of a turn. More cost time and tell little.
+constexpr double readings_wanted = 300;
+constexpr double turn_readings_wanted = 24 * readings_wanted;
+constexpr int max_step = 8;               // pixels
 constexpr double correlated_pixels = 50;  // the sensor's errors are alike in some 7 x 7 pixels
 constexpr double uses = 8;                // comparisons that share a reading and its error
-
-/// A coarse grid of pixels.
-PlatformSamples make_samples(const Intrinsics& lens, std::size_t stops) {
-  PlatformSamples samples{
-      .columns = static_cast<std::size_t>((lens.width + platform_step - 1) / platform_step),
-      .rays = {},
-      .depths = std::vector<std::vector<float>>(stops)};
-  for (int v = 0; v < lens.height; v += platform_step) {
-    for (int u = 0; u < lens.width; u += platform_step) {
-      samples.rays.push_back(to_ray(lens, u, v));
-    }
-  }
-  return samples;
-}
 
 /// Stops all around the turn.
 std::vector<std::size_t> spread_stops(std::size_t stops) {
@@ -48,30 +37,15 @@ std::vector<std::size_t> spread_stops(std::size_t stops) {
 TurnReader::TurnReader(const CalibrationTurn& turn, int threads)
     : turn_(turn),
       threads_(threads),
-      samples_(make_samples(turn.intrinsics, turn.angles.size())),
+      samples_(make_platform_samples(turn.intrinsics, turn.angles.size())),
       kept_(turn.angles.size()) {}
-
-void TurnReader::sample(std::size_t stop, const DepthFrame& frame) {
-  check_size(frame, turn_.intrinsics, "calibrate");
-  std::vector<float>& depths = samples_.depths[stop];
-  depths.reserve(samples_.rays.size());
-  for (int v = 0; v < frame.height; v += platform_step) {
-    for (int u = 0; u < frame.width; u += platform_step) {
-      const auto z = static_cast<float>(
-          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
-                      static_cast<std::size_t>(u)] *
-          turn_.intrinsics.depth_unit);
-      depths.push_back(static_cast<double>(z) > nearest_z ? z : 0.0F);
-    }
-  }
-}
 
 const std::optional<PlatformPlane>& TurnReader::find_platform() {
   const std::vector<std::size_t> stops = spread_stops(turn_.angles.size());
   for_each_stop(stops.size(), threads_, [&](std::size_t i) {
     const std::size_t stop = stops[i];
     kept_[stop] = turn_.read(stop);
-    sample(stop, *kept_[stop]);
+    samples_.depths[stop] = sample_depths(*kept_[stop], turn_.intrinsics);
   });
   PlatformSamples few{.columns = samples_.columns, .rays = samples_.rays, .depths = {}};
   for (const std::size_t stop : stops) {
@@ -83,12 +57,13 @@ const std::optional<PlatformPlane>& TurnReader::find_platform() {
 
 TurnViews TurnReader::read_views() {
   const Eigen::Isometry3d levelled = level(turn_.platform_from_sensor, *plane_);
-  const ObjectView::Mask mask{.plane = *plane_, .axis_point = levelled.inverse().translation()};
+  const ObjectView::Mask mask{
+      .plane = *plane_, .axis_point = levelled.inverse().translation(), .min_height = min_height};
   std::vector<std::optional<ObjectView>> views(turn_.angles.size());
   for_each_stop(views.size(), threads_, [&](std::size_t stop) {
     if (!kept_[stop]) {
       kept_[stop] = turn_.read(stop);
-      sample(stop, *kept_[stop]);
+      samples_.depths[stop] = sample_depths(*kept_[stop], turn_.intrinsics);
     }
     views[stop].emplace(*kept_[stop], turn_.intrinsics, mask);
     kept_[stop].reset();
@@ -101,7 +76,9 @@ TurnViews TurnReader::read_views() {
     seen.views.push_back(*std::move(view));
   }
   const double each = pixels / static_cast<double>(std::max<std::size_t>(views.size(), 1));
-  const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
+  const double wanted =
+      std::min(readings_wanted, turn_readings_wanted / static_cast<double>(views.size()));
+  const int step = std::clamp(static_cast<int>(std::sqrt(each / wanted)), 1, max_step);
   seen.correlation = uses + correlated_pixels / (step * step);
   for (const ObjectView& view : seen.views) {
     seen.readings.push_back(view.readings(step));

@@ -28,8 +28,6 @@ class TurnReader {
   const PlatformSamples& samples() const { return samples_; }
 
  private:
-  void sample(std::size_t stop, const DepthFrame& frame);
-
   const CalibrationTurn& turn_;
   int threads_;
   PlatformSamples samples_;

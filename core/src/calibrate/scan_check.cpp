@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -61,6 +62,17 @@ std::optional<double> find_platform(const Stops& stops) {
   return sum / static_cast<double>(best_count);
 }
 
+/// Where more than one stop has readings, metres.
+std::vector<Eigen::Vector3d> find_seen(const Stops& stops) {
+  std::vector<const std::vector<ObjectCell>*> cells;
+  std::ranges::transform(stops, std::back_inserter(cells),
+                         [](const ScanCheck::Stop* stop) { return &stop->seen; });
+  const std::vector<ObjectCell> several = cells_of_several(cells);
+  std::vector<Eigen::Vector3d> seen;
+  std::ranges::transform(several, std::back_inserter(seen), middle_of);
+  return seen;
+}
+
 }  // namespace
 
 ScanCheck::ScanCheck(const Box& clip, std::size_t stops)
@@ -101,6 +113,7 @@ ScanFigures ScanCheck::figures(int threads) const {
   figures.distance = figures.object_pixels > 0 ? depths / figures.object_pixels : 0;
   figures.widest_gap = find_widest_gap(stops);
   figures.platform_height = find_platform(stops);
+  figures.seen = find_seen(stops);
   StopComparison comparison = compare_stops(stops, threads);
   figures.disagreement = comparison.disagreement;
   figures.disagreeing_places = std::move(comparison.disagreeing_places);

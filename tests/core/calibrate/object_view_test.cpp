@@ -87,8 +87,10 @@ TEST(ObjectView, ReadsNothingAtAGrazingAngle) {
 
 TEST(ObjectView, LeavesOutThePlatformAndWhatIsBesideIt) {
   const ObjectView::Mask mask{.plane = {.normal = Vector3d::UnitZ(), .offset = 0},
-                              .axis_point = Vector3d(0.1, 0, 0)};
-  EXPECT_FALSE(mask.contains({0.1, 0, 0.004}));
+                              .axis_point = Vector3d(0.1, 0, 0),
+                              .min_height = 0.005};
+  EXPECT_FALSE(mask.contains({0.1, 0, 0.0049}));
+  EXPECT_TRUE(mask.contains({0.1, 0, 0.0051}));
   EXPECT_TRUE(mask.contains({0.1, 0, 0.008}));
   EXPECT_TRUE(mask.contains({0.29, 0, 0.1}));
   EXPECT_FALSE(mask.contains({-0.11, 0, 0.1}));

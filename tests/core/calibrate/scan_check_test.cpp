@@ -111,6 +111,28 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   }
 }
 
+TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  const Shape with_hand = joined(figure(), moved(ball({0, 0, 0.05}, 0.03), {-0.075, 0.075, 0}));
+  std::mt19937 random(5);
+  const DepthFrame hand = rendered_frame(with_hand, turn.angles[3], random);
+  turn.read = [hand, others = turn.read](std::size_t stop) {
+    return stop == 3 ? hand : others(stop);
+  };
+  const std::vector<Eigen::Vector3d> seen = figures(turn).seen;
+  for (const Eigen::Vector3d& place : seen) {
+    // Half the diagonal of a cell, and the noise.
+    EXPECT_LT(std::abs(figure()(place)), 0.0044 + 0.0015) << place.transpose();
+  }
+  const auto is_seen = [&](const Eigen::Vector3d& point) {
+    return std::ranges::any_of(
+        seen, [&](const Eigen::Vector3d& place) { return (place - point).norm() < 0.006; });
+  };
+  EXPECT_TRUE(is_seen({0.02, 0.01, 0.12}));     // the top
+  EXPECT_TRUE(is_seen({0.035, 0.0225, 0.03}));  // an upright edge, 3 cm up
+  EXPECT_TRUE(is_seen({-0.035, 0, 0.03}));      // a side
+}
+
 TEST(ScanCheck, CountsNextToNothingOnAnEmptyPlatform) {
   const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
   EXPECT_LT(figures(rendered_turn(nothing, 4)).object_pixels, 120);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octurn {
+
+/// A cell of a grid in the object's frame, by its number along x, y and z from the origin.
+using ObjectCell = std::array<std::int16_t, 3>;
+
+/// Metres, a cell's side: what two stops see of one surface differs by less.
+inline constexpr double object_cell_side = 0.005;
+
+/// @param point  metres, object's frame
+ObjectCell to_object_cell(const Eigen::Vector3d& point);
+
+/// Metres, object's frame.
+Eigen::Vector3d middle_of(const ObjectCell& cell);
+
+/// Those that more than one stop has, in their order.
+/// @param stops  the cells of each, none twice
+std::vector<ObjectCell> cells_of_several(std::span<const std::vector<ObjectCell>* const> stops);
+
+}  // namespace octurn

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calibrate/missing_part.hpp"
 #include "calibrate/number_text.hpp"
 #include "octurn/units.hpp"
 
@@ -113,7 +114,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                    number_text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
                    " without a stop: nobody saw that side of the object",
          .hint = "Scan a whole turn.",
-         .places = model.unseen_places});
+         .places = model.places.unseen});
   } else if (model.unseen_share > look_unseen) {
     judgement.add(model.unseen_share > bad_unseen ? Verdict::bad : Verdict::look,
                   {.code = "little-seen",
@@ -121,7 +122,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                              " of the surface above the base was not seen, and is filled in",
                    .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
                            "object another way, and scan it again.",
-                   .places = model.unseen_places});
+                   .places = model.places.unseen});
   }
 }
 
@@ -139,14 +140,36 @@ void judge_box(Judgement& judgement, const ScanFigures& scan) {
   }
 }
 
-void judge_parts(Judgement& judgement, const ModelReport& model) {
-  if (model.dropped_volume > min_dropped && model.dropped_volume > max_dropped * model.volume) {
+void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  auto missing = find_missing_part(scan, model);
+  if (model.dropped.volume > min_dropped && model.dropped.volume > max_dropped * model.volume) {
     judgement.add(
-        model.dropped_volume > model.volume ? Verdict::bad : Verdict::look,
+        model.dropped.volume > model.volume ? Verdict::bad : Verdict::look,
         {.code = "parts-dropped",
-         .detail = number_text("parts of %.1f cm3 in all", cm3_from_m3(model.dropped_volume)) +
-                   " were not joined to the model, and were dropped",
-         .hint = "Scan one object at a time."});
+         .detail = std::to_string(model.dropped.count) + " parts, " +
+                   number_text("%.1f cm3 in all", cm3_from_m3(model.dropped.volume)) +
+                   ", were not joined to the model, and were dropped",
+         .hint = "Scan one object at a time, or build the model of all parts.",
+         .places = missing ? std::move(missing->places) : std::vector<Eigen::Vector3d>()});
+  } else if (missing) {
+    judgement.add(
+        Verdict::look,
+        {.code = "part-missing",
+         .detail = "a part of the object, " + mm_text(missing->length) +
+                   " long, was seen by several stops and is not in the model",
+         .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
+         .places = std::move(missing->places)});
+  }
+}
+
+/// Adds the reasons of another side: each code once.
+void add_reasons(Quality& quality, Quality other, const std::string& side) {
+  quality.verdict = std::max(quality.verdict, other.verdict);
+  for (QualityReason& reason : other.reasons) {
+    if (!std::ranges::count(quality.reasons, reason.code, &QualityReason::code)) {
+      reason.detail.insert(0, side);
+      quality.reasons.push_back(std::move(reason));
+    }
   }
 }
 
@@ -160,7 +183,7 @@ std::string_view to_string(Verdict verdict) {
 Quality judge(const ScanFigures& scan, const ModelReport& model,
               std::span<const CalibrationFinding> findings) {
   Judgement judgement;
-  if (scan.object_pixels < min_object_pixels || model.volume + model.dropped_volume < min_volume) {
+  if (scan.object_pixels < min_object_pixels || model.volume + model.dropped.volume < min_volume) {
     judgement.add(Verdict::bad, {.code = "empty",
                                  .detail = "next to nothing stands on the platform",
                                  .hint = "Stand the object on the platform's middle."});
@@ -172,9 +195,24 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_coverage(judgement, scan, model);
   if (scan.platform_height.value_or(0) <= look_height) {  // else they tell of the platform
     judge_box(judgement, scan);
-    judge_parts(judgement, model);
+    judge_parts(judgement, scan, model);
   }
   return judgement.take();
+}
+
+Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
+              std::span<const CalibrationFinding> findings) {
+  Quality quality = judge(poses.front(), model, findings);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    Judgement judgement;
+    judge_agreement(judgement, poses[i]);
+    judge_height(judgement, poses[i], {});
+    if (poses[i].platform_height.value_or(0) <= look_height) {
+      judge_box(judgement, poses[i]);
+    }
+    add_reasons(quality, judgement.take(), "side " + std::to_string(i + 1) + ": ");
+  }
+  return quality;
 }
 
 }  // namespace octurn

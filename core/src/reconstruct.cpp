@@ -18,6 +18,8 @@ std::optional<Method> method_named(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view to_string(Parts parts) { return parts == Parts::main ? "main" : "all"; }
+
 std::unique_ptr<Reconstructor> make_reconstructor(const ReconstructOptions& options) {
   switch (options.method) {
     case Method::intersection:

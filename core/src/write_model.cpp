@@ -25,11 +25,12 @@ ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
           .parts = count.parts,
           .filled_share = check.filled_share(),
           .unseen_share = check.unseen_share(),
-          .unseen_places = check.unseen_places(),
+          .places = {.unseen = check.unseen_places(), .surface = check.surface()},
           .watertight = check.closed(),
           .volume = volume,
-          .dropped_volume = volume * static_cast<double>(count.dropped_leaves) /
-                            static_cast<double>(std::max<std::uint64_t>(count.leaves, 1)),
+          .dropped = {.count = count.dropped_parts,
+                      .volume = volume * static_cast<double>(count.dropped_leaves) /
+                                static_cast<double>(std::max<std::uint64_t>(count.leaves, 1))},
           .size = {metres_from_mm(size_mm.x()), metres_from_mm(size_mm.y()),
                    metres_from_mm(size_mm.z())},
           .bottom = metres_from_mm(check.bounds_mm().min.z())};

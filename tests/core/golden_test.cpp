@@ -90,12 +90,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"tower_scan", intersection(0.002), 87336, 0xb64d3c95e521210bU},
                     Golden{"tower_scan", intersection(0.001), 348860, 0x343286fd1d4d3509U},
                     Golden{"tower_scan", intersection(0.0005, 8), 21608, 0x21cb0ba7ab681d39U},
-                    Golden{"figure_scan", solid(0.004), 5348, 0xc0458f0bdd7fa455U},
-                    Golden{"figure_scan", solid(0.002, 0), 26668, 0xdee6f431a6d5ea38U},
-                    Golden{"figure_scan", solid(0.001), 32922, 0x1782a694397862ddU},
-                    Golden{"tower_scan", solid(0.002), 7324, 0x8fdb0b92b20b1394U},
-                    Golden{"tower_scan", solid(0.001, 0), 59044, 0x7206da261c1c93a7U},
-                    Golden{"tower_scan", solid(0.001, 0.0002), 3742, 0x20283d8a3e5a2331U}),
+                    Golden{"figure_scan", solid(0.004), 5352, 0x3a6253e1f0360e73U},
+                    Golden{"figure_scan", solid(0.002, 0), 26808, 0x78eb8146b2344399U},
+                    Golden{"figure_scan", solid(0.001), 33218, 0xdb5a43258c7d6f90U},
+                    Golden{"tower_scan", solid(0.002), 7320, 0xae31ba899c96873dU},
+                    Golden{"tower_scan", solid(0.001, 0), 59040, 0xc2e82f504f219112U},
+                    Golden{"tower_scan", solid(0.001, 0.0002), 3694, 0x666532dc256c16bdU}),
     name_of_golden);
 
 }  // namespace

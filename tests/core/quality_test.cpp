@@ -22,7 +22,7 @@ ScanFigures right_scan() {
 }
 
 ModelReport right_model() {
-  return {.parts = 1, .unseen_share = 0.05, .volume = m3_from_mm3(300000), .dropped_volume = 0};
+  return {.parts = 1, .unseen_share = 0.05, .volume = m3_from_mm3(300000)};
 }
 
 std::vector<std::string> codes(const Quality& quality) {
@@ -100,10 +100,57 @@ TEST(Judge, NamesTheSideOfTheBoxThatCutsTheObject) {
 
 TEST(Judge, TellsOfPartsThatWereDropped) {
   ModelReport model = right_model();
-  model.dropped_volume = 0.05 * model.volume;
-  EXPECT_EQ(codes(judge(right_scan(), model)), Codes{"parts-dropped"});
-  model.dropped_volume = 0.001 * model.volume;  // a speck
+  model.dropped.count = 3;
+  model.dropped.volume = 0.05 * model.volume;
+  const Quality dropped = judge(right_scan(), model);
+  ASSERT_EQ(codes(dropped), Codes{"parts-dropped"});
+  EXPECT_EQ(dropped.reasons[0].detail.find("3 parts, 15.0 cm3 in all"), 0U);
+  model.dropped.volume = 0.001 * model.volume;  // a speck
   EXPECT_EQ(judge(right_scan(), model).verdict, Verdict::good);
+}
+
+/// As a sensor sees a limb of 6 cm, 2 cm wide, above the model.
+void add_seen_limb(ScanFigures& scan) {
+  for (double z = 0.1; z < 0.16; z += 0.005) {
+    for (double x = 0; x < 0.02; x += 0.005) {
+      scan.seen.emplace_back(x, 0, z);
+    }
+  }
+}
+
+TEST(Judge, TellsOfAPartThatWasSeenAndIsNotInTheModel) {
+  ScanFigures scan = right_scan();
+  add_seen_limb(scan);
+  ModelReport model = right_model();
+  model.places.surface.add(Eigen::Vector3d(0, 0, 0.05));
+  const Quality quality = judge(scan, model);
+  EXPECT_EQ(quality.verdict, Verdict::look);
+  ASSERT_EQ(codes(quality), Codes{"part-missing"});
+  EXPECT_NE(quality.reasons[0].detail.find("60.0 mm"), std::string::npos)
+      << quality.reasons[0].detail;
+  EXPECT_FALSE(quality.reasons[0].places.empty());
+}
+
+TEST(Judge, ShowsWherePartsWereDropped) {
+  ScanFigures scan = right_scan();
+  add_seen_limb(scan);
+  ModelReport model = right_model();
+  model.dropped.volume = 0.05 * model.volume;
+  const Quality quality = judge(scan, model);
+  ASSERT_EQ(codes(quality), Codes{"parts-dropped"});
+  EXPECT_FALSE(quality.reasons[0].places.empty());
+}
+
+TEST(Judge, LooksAtEachPoseOfSeveral) {
+  std::vector<ScanFigures> poses(3, right_scan());
+  EXPECT_EQ(judge(poses, right_model()), Quality{});
+  poses[1].platform_height = 0.02;
+  poses[2].cut_pixels[4] = 20;
+  poses[2].platform_height = 0.02;
+  const Quality quality = judge(poses, right_model());
+  EXPECT_EQ(quality.verdict, Verdict::bad);
+  ASSERT_EQ(codes(quality), Codes{"floats"});  // each once
+  EXPECT_EQ(quality.reasons.front().detail.find("side 2: the platform is seen 20"), 0U);
 }
 
 TEST(Judge, TakesOverWhatTheCalibrationFound) {

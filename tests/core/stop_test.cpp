@@ -16,6 +16,7 @@
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/marching_cubes.hpp"
+#include "voxel/keep_components.hpp"
 
 namespace octurn {
 namespace {
@@ -159,7 +160,7 @@ TEST(StoppedPhase, ChangesNoMask) {
   const CompactTsdf known = random_field(1, 0.4);
   VoxelMask mask = HoleFilledSdf(known, 3).inside();
   const std::uint64_t count = mask.count();
-  EXPECT_THROW(mask.keep_main_component(stopped_token()), Stopped);
+  EXPECT_THROW(keep_main_component(mask, 1, stopped_token()), Stopped);
   EXPECT_THROW(mask.remove_spurs(stopped_token()), Stopped);
   EXPECT_THROW(mask.fill_cavities(stopped_token()), Stopped);
   EXPECT_THROW(mask.component_count(stopped_token()), Stopped);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -22,6 +23,15 @@ std::vector<std::byte> encode_depth_png(const DepthFrame& frame);
 /// @throws std::invalid_argument  if it is empty, or there are not width x height samples
 std::vector<std::byte> encode_grey_png(int width, int height,
                                        std::span<const std::uint8_t> samples);
+
+/// Red, green, blue and opacity.
+using Rgba = std::array<std::uint8_t, 4>;
+
+/// Encodes a picture for people as 8-bit PNG with colour and opacity.
+///
+/// @param pixels  width x height, row by row from the top left
+/// @throws std::invalid_argument  if it is empty, or there are not width x height pixels
+std::vector<std::byte> encode_colour_png(int width, int height, std::span<const Rgba> pixels);
 
 /// Decodes a 16-bit greyscale PNG of exactly that size in pixels.
 ///

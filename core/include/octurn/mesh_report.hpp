@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -41,6 +42,47 @@ class Places {
   std::set<Cell> cells_ = {};
 };
 
+/// The cells of a grid that a surface passes through, one bit each. Their side begins with 4 mm,
+/// and doubles when there are more than `max_bricks` bricks of 8 x 8 x 8. The order of what is
+/// added has no influence.
+class SurfaceCells {
+ public:
+  static constexpr std::size_t max_bricks = 2048;  // some 250 kB; an object of 28 cm has 500
+
+  /// @param point  metres
+  void add(const Eigen::Vector3d& point);
+
+  /// A facet of any size: points spread over it, a cell's side apart.
+  /// @param corners  metres
+  void add(const std::array<Eigen::Vector3d, 3>& corners);
+
+  /// Whether a cell with a piece of the surface is within a distance.
+  /// @param point     metres
+  /// @param distance  metres, not negative
+  bool has_near(const Eigen::Vector3d& point, double distance) const;
+
+  bool empty() const { return bricks_.empty(); }
+
+ private:
+  using Cell = std::array<int, 3>;
+  using Brick = std::bitset<512>;
+
+  struct PlacedBrick {
+    Cell place = {};
+    Brick cells = {};
+  };
+
+  /// The first brick that is not before a place.
+  std::vector<PlacedBrick>::const_iterator lower_bound(const Cell& place) const;
+  bool has(const Cell& cell) const;
+  void set(const Cell& cell);
+  void make_coarser();
+
+  double side_ = 0.004;                   // metres
+  std::vector<PlacedBrick> bricks_ = {};  // in the order of their places
+  std::optional<Cell> last_ = {};         // that was added: the next point is often in the same
+};
+
 /// Checks and measures a surface while it streams by, in constant memory.
 class MeshCheck {
  public:
@@ -68,6 +110,9 @@ class MeshCheck {
   /// Metres: where the surface above the base is filled in.
   std::vector<Eigen::Vector3d> unseen_places() const { return unseen_places_.centres(); }
 
+  /// Where the surface is, coarsely.
+  const SurfaceCells& surface() const { return surface_; }
+
   /// The bounding box of all corners, millimetres.
   const Box& bounds_mm() const { return bounds_mm_; }
 
@@ -80,21 +125,34 @@ class MeshCheck {
   double base_area_ = 0;
   double filled_base_area_ = 0;
   Places unseen_places_ = {};
+  SurfaceCells surface_ = {};
   Box bounds_mm_ = {};
+};
+
+/// Where a model is what, for its verdict.
+struct ModelPlaces {
+  std::vector<Eigen::Vector3d> unseen = {};  ///< metres: where what is above the base is filled in
+  SurfaceCells surface = {};
+};
+
+/// Connected components that are not in a model.
+struct DroppedParts {
+  std::uint64_t count = 0;
+  double volume = 0.0;  ///< cubic metres
 };
 
 /// The figures of a finished model.
 struct ModelReport {
   std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t triangles = 0;
-  std::uint64_t bytes = 0;                          ///< of the STL
-  std::uint64_t parts = 0;                          ///< connected components; 0: not counted
-  double filled_share = 0;                          ///< of the area, made by hole filling, 0 to 1
-  double unseen_share = 0;                          ///< the same of the area above the base
-  std::vector<Eigen::Vector3d> unseen_places = {};  ///< metres: where that area is
-  bool watertight = false;                          ///< as `MeshCheck::closed`
-  double volume = 0.0;                              ///< cubic metres
-  double dropped_volume = 0.0;  ///< cubic metres of components that are not in the model
+  std::uint64_t bytes = 0;  ///< of the STL
+  std::uint64_t parts = 0;  ///< connected components; 0: not counted
+  double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
+  double unseen_share = 0;  ///< the same of the area above the base
+  ModelPlaces places = {};
+  bool watertight = false;  ///< as `MeshCheck::closed`
+  double volume = 0.0;      ///< cubic metres
+  DroppedParts dropped = {};
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
   double bottom = 0.0;                             ///< metres, of that box, above z = 0
 };

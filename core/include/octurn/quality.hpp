@@ -30,7 +30,7 @@ std::string_view to_string(Verdict verdict);
 /// Why a model is not good.
 struct QualityReason {
   /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "cut-by-box",
-  /// "parts-dropped"
+  /// "parts-dropped", "part-missing"
   std::string code = {};
   std::string detail = {};  ///< what was found and its size, for people
   std::string hint = {};    ///< what to do about it
@@ -66,6 +66,8 @@ struct ScanFigures {
   std::vector<double> contradicted = {};
   /// Metres: where that is, at the stop with the largest share.
   std::vector<Eigen::Vector3d> contradicted_places = {};
+  /// Metres, object's frame: where several stops saw the object, coarsely.
+  std::vector<Eigen::Vector3d> seen = {};
 };
 
 /// Checks the depth images of a scan while they are read for its model.
@@ -99,6 +101,12 @@ class ScanCheck {
 /// @param model     its figures
 /// @param findings  of the calibration from the same depth images, if there was one
 Quality judge(const ScanFigures& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings = {});
+
+/// Judges a finished model of several poses.
+/// @param poses     what the depth images of each say, places in the object's frame; at least one
+/// @param findings  of the first one's calibration
+Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings = {});
 
 }  // namespace octurn

@@ -35,6 +35,15 @@ std::string_view to_string(Method method);
 /// The method of that name, if there is one.
 std::optional<Method> method_named(std::string_view name);
 
+/// Which connected components the method `solid` keeps.
+enum class Parts {
+  main,  ///< the object
+  all,   ///< all that stand on the platform
+};
+
+/// The choice's name in settings: "main", "all".
+std::string_view to_string(Parts parts);
+
 /// Options of both methods, but where one is named.
 struct ReconstructOptions {
   Method method = Method::intersection;
@@ -67,6 +76,9 @@ struct ReconstructOptions {
   /// the triangles that it replaces; from a single one it may be farther. 0 keeps all triangles.
   double target_error = 0.00004;
 
+  /// `solid` only. Of several poses one is kept: what was turned over is one object.
+  Parts parts = Parts::main;
+
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;
 
@@ -78,12 +90,23 @@ struct ReconstructOptions {
   std::size_t program_memory = 0;
 };
 
+/// What memory a model takes.
+struct MemoryNeed {
+  std::size_t bytes = 0;         ///< of the whole process
+  double fitting_leaf_size = 0;  ///< metres: the options', doubled until it fits in their limit
+};
+
+/// What the method `solid` takes, as far as clip box and leaves tell, for an object of 10 cm.
+/// @throws Error "bad-settings"  that says which option is out of its range
+MemoryNeed expected_memory(const ReconstructOptions& options);
+
 /// The size of a surface.
 struct SurfaceCount {
   std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
   std::uint64_t facets = 0;
   std::uint64_t parts = 0;           ///< connected components; 0: not counted
-  std::uint64_t dropped_leaves = 0;  ///< voxels of components that are not in the model
+  std::uint64_t dropped_parts = 0;   ///< components that are not in the model
+  std::uint64_t dropped_leaves = 0;  ///< their voxels
 };
 
 /// A reconstruction in progress: snapshots are added, then its surface is asked for. Not

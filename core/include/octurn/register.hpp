@@ -26,6 +26,9 @@ struct RegistrationTurn {
   std::function<DepthFrame(std::size_t stop)> read = {};
   /// How the object lay, if it is known: platform frame at angle 0 to the object's frame, metres.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
+  /// The same, as a person says, right to a centimetre and some 15 degrees: it is refined from
+  /// there, and other poses that fit as well are no reason to refuse it.
+  std::optional<Eigen::Isometry3d> told_object_from_platform = {};
 };
 
 /// How the object lay in one turn, and how well that is known.
@@ -42,13 +45,38 @@ struct RegisteredPose {
   bool symmetric = false;  ///< other poses give the same shape
 };
 
+/// A pose of a turn that was found to fit, for a person to choose.
+struct RegistrationCandidate {
+  /// Platform frame at angle 0 to the object's frame, metres.
+  Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
+  double overlap = 0;        ///< as of `RegisteredPose`
+  double residual = 0;       ///< metres, root mean square along the normals
+  double contradiction = 0;  ///< as of `RegisteredPose`
+};
+
 /// How all turns fit together.
 struct Registration {
   bool accepted = false;
   std::string reason = {};  ///< why not, for people; empty if accepted
   /// Of each turn, if accepted. The first, and those that were known, have no sigma.
   std::vector<RegisteredPose> poses = {};
+  /// Of the last turn, if it was looked for: some five, each of another shape, the best first.
+  std::vector<RegistrationCandidate> candidates = {};
+  /// Some of what each turn saw, at most 4,000 points: metres, its platform's frame at angle 0.
+  std::vector<std::vector<Eigen::Vector3f>> points = {};
 };
+
+/// A place of the object as two turns saw it.
+struct PointPair {
+  Eigen::Vector3d object = Eigen::Vector3d::Zero();    ///< metres, object's frame
+  Eigen::Vector3d platform = Eigen::Vector3d::Zero();  ///< metres, the other turn's platform frame
+};
+
+/// The rotation and translation that take the second points of pairs to the first with the
+/// smallest squared distances (Kabsch 1976).
+/// @return object's frame from the platform's; nothing if there are fewer than three, or they lie
+/// nearly on a line
+std::optional<Eigen::Isometry3d> pose_from_pairs(std::span<const PointPair> pairs);
 
 /// Finds how one object lay on the platform in each of several turns. Nothing is assumed of how it
 /// was laid down.

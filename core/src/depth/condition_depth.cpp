@@ -16,7 +16,7 @@ namespace {
 
 constexpr int border = fit_window_side / 2;  // pixels at the image's edges that observe nothing
 constexpr float min_cosine = 0.15F;          // of incidence: 81 degrees
-constexpr float reference_distance = 0.65F;  // metres, at which a whole window weighs one
+constexpr double object_share = 0.9;         // of the depth of the platform's middle
 constexpr double platform_slack = 0.0015;    // metres above the platform that may be the platform
 
 // The same of one of several poses: another one sees the foot. Readings up to the second height
@@ -138,7 +138,7 @@ class ObjectVolume {
 /// The weight follows the inverse variance of the distance to the plane: depth noise grows with z^2
 /// (Khoshelham and Elberink 2012), and the more readings were averaged, the less is left of it.
 void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intrinsics& intrinsics,
-                 const Ray& ray, float z) {
+                 const Ray& ray, float reference_depth, float z) {
   if (fit.inverse_depth <= 0) {
     return;
   }
@@ -152,11 +152,23 @@ void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intri
     return;
   }
   constexpr auto window_samples = static_cast<float>(fit_window_side * fit_window_side);
-  const float close = reference_distance / z;
+  const float close = reference_depth / z;
   const float share = static_cast<float>(fit.samples) / window_samples;
   observation.normal = {-a / norm, -b / norm, -c / norm};
   observation.offset = 1 / norm;
   observation.weight = close * close * close * close * share * share / cosine;
+}
+
+/// The depth at which a whole window weighs one, metres. It follows the depth of the platform's
+/// middle, which is the same at all stops of a turn: so weights do not depend on how near the
+/// sensor stands.
+/// @param placement  of one of several poses; null for one pose
+float reference_depth(const Snapshot& snapshot, const Placement* placement) {
+  const Eigen::Vector3d middle = placement == nullptr
+                                     ? Eigen::Vector3d::Zero()
+                                     : placement->object_from_platform.translation().eval();
+  const double z = (snapshot.object_from_sensor.inverse() * middle).z();
+  return static_cast<float>(object_share * std::max(z, nearest_z));
 }
 
 /// @param placement  of one of several poses; null for one pose
@@ -167,6 +179,8 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Bo
   const DepthImage image = remove_speckle(to_metres(snapshot));
   const std::vector<float> inverse_depth = to_inverse_depth(image);
   const ObjectVolume volume(snapshot, clip, placement);
+
+  const float reference = reference_depth(snapshot, placement);
 
   const auto width = static_cast<std::size_t>(intrinsics.width);
   std::vector<float> ray_x(width);
@@ -194,7 +208,7 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Bo
       }
       if (const auto fit = fit_plane(image, inverse_depth, u, v)) {
         const Ray ray{ray_x[column], ray_y, 1.0F};
-        set_surface(observation, *fit, intrinsics, ray, z);
+        set_surface(observation, *fit, intrinsics, ray, reference, z);
         observation.weight *= volume.share(ray, z);
       }
     }

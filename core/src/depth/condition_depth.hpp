@@ -11,7 +11,9 @@
 namespace octurn {
 
 /// A snapshot conditioned for integration: speckle is removed, noise is smoothed by a plane fitted
-/// at each pixel, and each surface has a weight that falls with distance and grazing incidence.
+/// at each pixel, and each surface has a weight: its inverse variance, relative to that of a whole
+/// window that faces the sensor where an object stands, at nine tenths of the depth of the
+/// platform's middle.
 class ConditionedDepth {
  public:
   /// @param clip  metres, object's frame: readings outside make no surface, but show free space

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/file.hpp"
 
 namespace octurn {
@@ -73,6 +74,18 @@ void set_text(spng_ctx* context, PngText& text) {
   check_encoded(spng_set_text(context, &chunk, 1));
 }
 
+/// The bits of a sample, and what a pixel is made of.
+template <typename Sample>
+void describe(spng_ihdr& header) {
+  header.bit_depth = 8 * sizeof(Sample);
+  header.color_type = SPNG_COLOR_TYPE_GRAYSCALE;
+}
+template <>
+void describe<Rgba>(spng_ihdr& header) {
+  header.bit_depth = 8;
+  header.color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
+}
+
 template <typename Sample>
 std::vector<std::byte> encode(int width, int height, std::span<const Sample> samples,
                               PngText& text) {
@@ -84,8 +97,7 @@ std::vector<std::byte> encode(int width, int height, std::span<const Sample> sam
   spng_ihdr header{};
   header.width = static_cast<std::uint32_t>(width);
   header.height = static_cast<std::uint32_t>(height);
-  header.bit_depth = 8 * sizeof(Sample);
-  header.color_type = SPNG_COLOR_TYPE_GRAYSCALE;
+  describe<Sample>(header);
   check_encoded(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
   check_encoded(spng_set_ihdr(context.get(), &header));
   set_text(context.get(), text);
@@ -146,6 +158,11 @@ std::vector<std::byte> encode_grey_png(int width, int height,
 std::vector<std::byte> encode_grey_png(int width, int height, std::span<const std::uint8_t> samples,
                                        PngText text) {
   return encode(width, height, samples, text);
+}
+
+std::vector<std::byte> encode_colour_png(int width, int height, std::span<const Rgba> pixels) {
+  PngText none;
+  return encode(width, height, pixels, none);
 }
 
 void write_png(const std::filesystem::path& file, std::span<const std::byte> png) {

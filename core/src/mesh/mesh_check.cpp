@@ -53,6 +53,11 @@ void MeshCheck::add(std::span<const Facet> facets) {
     }
     const double area = (points[1] - points[0]).cross(points[2] - points[0]).norm();
     area_ += area;
+    std::array<Eigen::Vector3d, 3> metres;
+    std::ranges::transform(points, metres.begin(), [](const Eigen::Vector3d& point) {
+      return Eigen::Vector3d(point.unaryExpr(&metres_from_mm));
+    });
+    surface_.add(metres);
     const double filled_area = facet.attributes == filled_in ? area : 0;
     filled_area_ += filled_area;
     if (std::ranges::all_of(points, [](const Eigen::Vector3d& point) {
@@ -61,10 +66,6 @@ void MeshCheck::add(std::span<const Facet> facets) {
       base_area_ += area;
       filled_base_area_ += filled_area;
     } else if (filled_area > 0) {
-      std::array<Eigen::Vector3d, 3> metres;
-      std::ranges::transform(points, metres.begin(), [](const Eigen::Vector3d& point) {
-        return Eigen::Vector3d(point.unaryExpr(&metres_from_mm));
-      });
       unseen_places_.add(metres);
     }
     six_volumes_ += points[0].dot(points[1].cross(points[2]));

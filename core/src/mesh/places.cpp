@@ -1,6 +1,4 @@
-#include <algorithm>
-#include <cmath>
-
+#include "mesh/spread_points.hpp"
 #include "octurn/mesh_report.hpp"
 
 namespace octurn {
@@ -20,15 +18,7 @@ void Places::add(const Eigen::Vector3d& point) {
 }
 
 void Places::add(const std::array<Eigen::Vector3d, 3>& corners) {
-  const Eigen::Vector3d along = corners[1] - corners[0];
-  const Eigen::Vector3d across = corners[2] - corners[0];
-  const double longest = std::max({along.norm(), across.norm(), (across - along).norm()});
-  const int pieces = std::max(1, static_cast<int>(std::ceil(longest / side_)));
-  for (int i = 0; i < pieces; ++i) {
-    for (int j = 0; i + j < pieces; ++j) {
-      add(corners[0] + (i + 1.0 / 3) / pieces * along + (j + 1.0 / 3) / pieces * across);
-    }
-  }
+  spread_points(corners, side_, [this](const Eigen::Vector3d& point) { add(point); });
 }
 
 std::vector<Eigen::Vector3d> Places::centres() const {

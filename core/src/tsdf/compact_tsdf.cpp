@@ -1,6 +1,9 @@
 #include "tsdf/compact_tsdf.hpp"
 
+#include <algorithm>
+
 #include "octurn/snapshot.hpp"
+#include "tsdf/integration_model.hpp"
 
 namespace octurn {
 namespace {
@@ -8,26 +11,34 @@ namespace {
 /// A surface is observed from this weight on: a tenth of that of one good reading.
 constexpr float min_weight = 0.1F;
 
-/// A voxel is observed if its weight reaches the minimum, and one for each ray that passed through.
-/// @param free  snapshots whose ray passed through the voxel
-/// @param min_free  that make it free space
-VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int free, int min_free) {
-  const float w = static_cast<float>(brick.weight[sample]) / TsdfVolume::weight_ticks;
-  if (w >= min_weight && w >= static_cast<float>(free)) {
-    return VoxelState::observed;
-  }
-  if (free >= min_free) {
+/// A voxel is free if enough rays passed through it, and they outweigh the surface: as many
+/// readings of weight one as rays that ended on a surface.
+/// @param votes  of rays that passed through the voxel
+/// @param min_votes  that make it free space
+VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int votes, int min_votes) {
+  const float w = unpack(brick.weight[sample]);
+  const bool is_surface = w >= min_weight;
+  if (votes >= min_votes &&
+      !(is_surface && w * votes_of_surface_ray >= static_cast<float>(votes))) {
     return VoxelState::free;
+  }
+  if (is_surface) {
+    return VoxelState::observed;
   }
   return brick.distance[sample] < 0 && w > 0 ? VoxelState::occluded : VoxelState::unknown;
 }
 
+/// Whether any snapshot observed a surface in a brick, and did not only see through a part of it.
+bool has_surface(const TsdfBrick& brick) {
+  return std::ranges::any_of(brick.weight, [](PackedWeight weight) { return weight != 0; });
+}
+
 CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index,
-                     int min_free) {
+                     int min_votes) {
   constexpr int side = VoxelGrid::brick_side;
   const int per_brick = volume.grid().blocks_per_brick();
   const int voxels = volume.grid().block_voxels();
-  std::array<int, side> free{};  // counts of the blocks that a row of voxels crosses
+  std::array<int, side> free{};  // votes of the blocks that a row of voxels crosses
   CompactBrick brick{.distance = from.distance, .states = {}};
   std::size_t sample = 0;
   for (int z = 0; z < side; ++z) {
@@ -40,7 +51,7 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
         }
       }
       for (const int of_block : free) {
-        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample], min_free));
+        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample], min_votes));
         ++sample;
       }
     }
@@ -50,8 +61,8 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
 
 }  // namespace
 
-CompactTsdf::CompactTsdf(const VoxelGrid& grid, int min_free)
-    : grid_(grid), min_free_(min_free), bricks_(grid.brick_count()), free_(grid.block_count()) {}
+CompactTsdf::CompactTsdf(const VoxelGrid& grid, int min_votes)
+    : grid_(grid), min_votes_(min_votes), bricks_(grid.brick_count()), free_(grid.block_count()) {}
 
 void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
   const auto& [low, end] = volume.layers();
@@ -60,17 +71,25 @@ void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
     throw_if_stopped(stop);
     for (int y = 0; y < size.y; ++y) {
       for (int x = 0; x < size.x; ++x) {
-        if (const TsdfBrick* brick = volume.find({x, y, z})) {
-          bricks_.add(grid_.brick_index({x, y, z})) = compact(volume, *brick, {x, y, z}, min_free_);
+        if (const TsdfBrick* brick = volume.find({x, y, z});
+            brick != nullptr && has_surface(*brick)) {
+          bricks_.add(grid_.brick_index({x, y, z})) =
+              compact(volume, *brick, {x, y, z}, min_votes_);
         }
       }
     }
   }
+  add_free_blocks(volume);
+}
+
+void CompactTsdf::add_free_blocks(const TsdfVolume& volume) {
+  const auto& [low, end] = volume.layers();
+  const Index3& size = grid_.size();
   const int per_brick = grid_.blocks_per_brick();
   for (int z = low * per_brick; z < end * per_brick; ++z) {
     for (int y = 0; y < size.y * per_brick; ++y) {
       for (int x = 0; x < size.x * per_brick; ++x) {
-        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) >= min_free_ ? 1 : 0;
+        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) >= min_votes_ ? 1 : 0;
       }
     }
   }

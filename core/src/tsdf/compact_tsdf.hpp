@@ -35,12 +35,13 @@ struct CompactBrick {
   }
 };
 
-/// A finished TSDF without its weights: less than half the size of a `TsdfVolume`, so that a volume
+/// A finished TSDF without its weights, and without bricks in which no surface was observed: less
+/// than half the size of a `TsdfVolume`, so that a volume
 /// which was integrated in slabs fits in memory as a whole.
 class CompactTsdf {
  public:
-  /// @param min_free  snapshots that must see through a voxel for it to be free
-  explicit CompactTsdf(const VoxelGrid& grid, int min_free = 1);
+  /// @param min_votes  of rays that passed through a voxel (`votes_of_any_ray`), for it to be free
+  explicit CompactTsdf(const VoxelGrid& grid, int min_votes = 1);
 
   const VoxelGrid& grid() const { return grid_; }
 
@@ -52,14 +53,16 @@ class CompactTsdf {
     return bricks_.find(grid_.brick_index(brick));
   }
 
-  /// Whether any snapshot saw through a whole block.
+  /// Whether enough snapshots saw through a whole block.
   bool is_free(const Index3& block) const { return free_[grid_.block_index(block)] != 0; }
 
   std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }
 
  private:
+  void add_free_blocks(const TsdfVolume& volume);
+
   VoxelGrid grid_;
-  int min_free_;
+  int min_votes_;
   BrickMap<CompactBrick> bricks_;
   std::vector<std::uint8_t> free_;
 };

@@ -15,6 +15,10 @@ constexpr int brick_side = VoxelGrid::brick_side;
 // a millimetre or so.
 constexpr double observed_slack = 0.001;  // metres
 
+// Of several poses, what is lower above its platform is hardly seen: its readings mix foot and
+// platform.
+constexpr double unseen_foot = 0.004;  // metres
+
 std::size_t sample_index(const Index3& voxel) {
   return static_cast<std::size_t>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
 }
@@ -124,27 +128,57 @@ const CompactBrick* HoleFilledSdf::brick_at(const Index3& voxel) const {
   return known_.find({(voxel.x >> 3) - low.x, (voxel.y >> 3) - low.y, (voxel.z >> 3) - low.z});
 }
 
-HoleFilledSdf::Value HoleFilledSdf::at(const Index3& voxel) const {
-  const Index3 above{voxel.x, voxel.y, std::max(voxel.z, base_layer_)};
-  const CompactBrick* const brick = brick_at(above);
-  const VoxelState state = state_at(above, brick);
-  Value value;
-  if (state == VoxelState::observed) {
-    value.distance = static_cast<float>(brick->distance[sample_index(above)]);
-    value.observed = true;
-  } else if (state == VoxelState::free) {
-    value.distance = VoxelGrid::ticks;
-  } else {
-    value.distance = filled_at(above);
+/// The value of a voxel, cut by nothing.
+HoleFilledSdf::Value HoleFilledSdf::sample(const Index3& voxel) const {
+  const CompactBrick* const brick = brick_at(voxel);
+  switch (state_at(voxel, brick)) {
+    case VoxelState::observed:
+      return {static_cast<float>(brick->distance[sample_index(voxel)]), true};
+    case VoxelState::free:
+      return {VoxelGrid::ticks, false};
+    default:
+      return {filled_at(voxel), false};
   }
+}
+
+bool HoleFilledSdf::is_seen_empty(const Index3& voxel) const {
+  const Value value = sample({voxel.x, voxel.y, std::max(voxel.z, base_layer_)});
+  return value.distance >= VoxelGrid::ticks || (value.observed && value.distance > 0);
+}
+
+HoleFilledSdf::Value HoleFilledSdf::at(const Index3& voxel) const {
+  Value value = sample({voxel.x, voxel.y, std::max(voxel.z, base_layer_)});
   if (!platforms_.empty()) {
-    return cut_by_platforms(voxel, value);
+    return cut_by_platforms(voxel, fill_foot(voxel, value));
   }
   // The intersection with the half-space above the platform.
   const auto below = static_cast<float>(-(voxel.z + 0.5) * grid().voxel_side() /
                                         grid().truncation() * VoxelGrid::ticks);
   if (below > value.distance) {
     value = {below, false};
+  }
+  return value;
+}
+
+float HoleFilledSdf::foot_ticks() const {
+  return static_cast<float>(unseen_foot / grid().truncation() * VoxelGrid::ticks);
+}
+
+/// What no pose saw right above a platform is as what is above it there: a foot goes straight down.
+HoleFilledSdf::Value HoleFilledSdf::fill_foot(const Index3& voxel, Value value) const {
+  if (value.observed || state_at(voxel, brick_at(voxel)) == VoxelState::free) {
+    return value;
+  }
+  for (const PlatformCut& platform : platforms_) {
+    if (platform.height(voxel) >= foot_ticks()) {
+      continue;
+    }
+    const Index3 above = platform.raised(voxel, foot_ticks());
+    const bool is_here = above.x >= low_.x && above.y >= low_.y && above.z >= low_.z &&
+                         above.x < end_.x && above.y < end_.y && above.z < end_.z;
+    if (is_here) {
+      return {sample(above).distance, false};
+    }
   }
   return value;
 }
@@ -163,8 +197,9 @@ HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value 
 }
 
 bool HoleFilledSdf::is_above_platforms(const Index3& low, const Index3& size) const {
-  return std::ranges::all_of(
-      platforms_, [&](const PlatformCut& platform) { return platform.is_below(low, size); });
+  return std::ranges::all_of(platforms_, [&, margin = foot_ticks()](const PlatformCut& platform) {
+    return platform.is_below(low, size, margin);
+  });
 }
 
 /// The side of the surface that a whole brick, counted from the box's lowest corner, lies on; both,

@@ -17,7 +17,8 @@ namespace octurn {
 ///
 /// The distances of blocks of voxels are filled by Laplace's equation (`laplace_fill`) and
 /// interpolated trilinearly at unknown and occluded voxels. Below the base layer each layer repeats
-/// it, and the field is cut at the platform's plane, so that the model gets a flat base.
+/// it, and the field is cut at the platform's plane, so that the model gets a flat base. Of several
+/// poses, what no pose saw right above a platform repeats what is above it there.
 class HoleFilledSdf {
  public:
   /// @param known       must outlive this
@@ -53,6 +54,9 @@ class HoleFilledSdf {
   /// The value at the centre of a voxel of that box, or of one below it.
   Value at(const Index3& voxel) const;
 
+  /// Whether a ray passed through a voxel of that box, or ended behind it.
+  bool is_seen_empty(const Index3& voxel) const;
+
   /// The voxels of that box with a negative distance, but for those on its sides and top.
   /// @throws Stopped
   VoxelMask inside(const std::stop_token& stop = {}) const;
@@ -71,7 +75,10 @@ class HoleFilledSdf {
   float filled_at(const Index3& voxel) const;
   VoxelState state_at(const Index3& voxel, const CompactBrick* brick) const;
   const CompactBrick* brick_at(const Index3& voxel) const;
+  Value sample(const Index3& voxel) const;
+  Value fill_foot(const Index3& voxel, Value value) const;
   Value cut_by_platforms(const Index3& voxel, Value value) const;
+  float foot_ticks() const;
   bool is_above_platforms(const Index3& low, const Index3& size) const;
   Side side_of(const Index3& brick) const;
   std::uint64_t inside_bits(const Index3& first) const;

@@ -1,8 +1,12 @@
 #include "tsdf/integrate.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <vector>
 
 #include "octurn/snapshot.hpp"
+#include "parallel/fork_join.hpp"
+#include "tsdf/integration_model.hpp"
 #include "tsdf/node_classifier.hpp"
 #include "tsdf/sample_batch.hpp"
 
@@ -12,8 +16,9 @@ namespace {
 constexpr int brick_side = VoxelGrid::brick_side;
 constexpr int root_bricks = 8;  // along a side of the largest nodes
 
-void increment(std::uint8_t& counter, int by = 1) {
-  counter = static_cast<std::uint8_t>(counter + (counter < 255 ? by : 0));
+/// Adds the votes of rays that passed through, up to 255.
+void add_votes(std::uint8_t& count, int votes) {
+  count = static_cast<std::uint8_t>(std::min(count + votes, 255));
 }
 
 class TsdfIntegrator {
@@ -26,18 +31,26 @@ class TsdfIntegrator {
         sampler_(grid_, depth, sensor_from_voxel_),
         stop_(stop) {}
 
-  void run() {
-    const Index3& size = grid_.size();
-    for (int z = 0; z < size.z; z += root_bricks) {
-      for (int y = 0; y < size.y; y += root_bricks) {
-        for (int x = 0; x < size.x; x += root_bricks) {
-          descend({x, y, z}, root_bricks);
-        }
-      }
-    }
+  /// The number of the largest nodes.
+  static int root_count(const VoxelGrid& grid) {
+    const Index3 roots = roots_of(grid);
+    return roots.x * roots.y * roots.z;
+  }
+
+  /// Integrates into one of them.
+  void run(int root) {
+    const Index3 roots = roots_of(grid_);
+    descend({root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
+             root / (roots.x * roots.y) * root_bricks},
+            root_bricks);
   }
 
  private:
+  static Index3 roots_of(const VoxelGrid& grid) {
+    const auto roots = [](int bricks) { return (bricks + root_bricks - 1) / root_bricks; };
+    return {roots(grid.size().x), roots(grid.size().y), roots(grid.size().z)};
+  }
+
   /// @param bricks  along the node's side
   void descend(const Index3& brick, int bricks) {
     const Index3& size = grid_.size();
@@ -51,7 +64,10 @@ class TsdfIntegrator {
       case NodeClass::outside:
         return;
       case NodeClass::free:
-        count_free(brick, bricks);
+        count_free(brick, bricks, votes_of_any_ray);
+        return;
+      case NodeClass::free_to_surface:
+        count_free(brick, bricks, votes_of_surface_ray);
         return;
       case NodeClass::partial:
       case NodeClass::near_surface:
@@ -70,8 +86,8 @@ class TsdfIntegrator {
     }
   }
 
-  /// Counts all blocks of a node as seen through.
-  void count_free(const Index3& brick, int bricks) {
+  /// Counts votes for all blocks of a node.
+  void count_free(const Index3& brick, int bricks, int votes) {
     const int per_brick = grid_.blocks_per_brick();
     const Index3& size = grid_.size();
     const int end_x = std::min(brick.x + bricks, size.x) * per_brick;
@@ -81,7 +97,7 @@ class TsdfIntegrator {
     for (int z = low_z; z < end_z; ++z) {
       for (int y = brick.y * per_brick; y < end_y; ++y) {
         for (int x = brick.x * per_brick; x < end_x; ++x) {
-          increment(volume_.free_count({x, y, z}));
+          add_votes(volume_.free_count({x, y, z}), votes);
         }
       }
     }
@@ -102,7 +118,9 @@ class TsdfIntegrator {
           const NodeClass node =
               classifier_.classify({block.x * voxels, block.y * voxels, block.z * voxels}, voxels);
           if (node == NodeClass::free) {
-            increment(volume_.free_count(block));
+            add_votes(volume_.free_count(block), votes_of_any_ray);
+          } else if (node == NodeClass::free_to_surface) {
+            add_votes(volume_.free_count(block), votes_of_surface_ray);
           } else if (node == NodeClass::near_surface) {
             integrate_block(brick, block, samples);
           }
@@ -116,19 +134,22 @@ class TsdfIntegrator {
     const int voxels = grid_.block_voxels();
     SampleBatch batch;
     sampler_.sample({block.x * voxels, block.y * voxels, block.z * voxels}, batch);
-    if (batch.near_count > 0) {
-      if (samples == nullptr) {
-        samples = volume_.make(brick);
-      }
-      if (samples != nullptr) {
-        sampler_.average(*samples, batch);
-      }
+    const bool is_all_free = batch.free_count == static_cast<int>(batch.count);
+    // A brick is made for votes too, or it would be the order of the snapshots that decides whether
+    // they count.
+    if (samples == nullptr && (batch.near_count > 0 || (batch.free_count > 0 && !is_all_free))) {
+      samples = volume_.make(brick);
     }
-    if (batch.free_count == static_cast<int>(batch.count)) {
-      increment(volume_.free_count(block));
+    if (batch.near_count > 0 && samples != nullptr) {
+      sampler_.average(*samples, batch);
+    }
+    if (is_all_free) {
+      const int votes = *std::min_element(
+          batch.free.begin(), batch.free.begin() + static_cast<std::ptrdiff_t>(batch.count));
+      add_votes(volume_.free_count(block), votes);
     } else if (batch.free_count > 0 && samples != nullptr) {
       for (std::size_t i = 0; i < batch.count; ++i) {
-        increment(samples->free[sampler_.index_in_brick(batch, i)], batch.free[i]);
+        add_votes(samples->free[sampler_.index_in_brick(batch, i)], batch.free[i]);
       }
     }
   }
@@ -144,7 +165,29 @@ class TsdfIntegrator {
 }  // namespace
 
 void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::stop_token& stop) {
-  TsdfIntegrator(volume, depth, stop).run();
+  TsdfIntegrator integrator(volume, depth, stop);
+  const int roots = TsdfIntegrator::root_count(volume.grid());
+  for (int root = 0; root < roots; ++root) {
+    integrator.run(root);
+  }
+}
+
+void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths, int threads,
+               const std::stop_token& stop) {
+  const int roots = TsdfIntegrator::root_count(volume.grid());
+  std::atomic<int> next = 0;
+  fork_join(threads, [&](int) {
+    std::vector<TsdfIntegrator> integrators;
+    integrators.reserve(depths.size());
+    for (const ConditionedDepth* depth : depths) {
+      integrators.emplace_back(volume, *depth, stop);
+    }
+    for (int root = next++; root < roots; root = next++) {
+      for (TsdfIntegrator& integrator : integrators) {
+        integrator.run(root);
+      }
+    }
+  });
 }
 
 }  // namespace octurn

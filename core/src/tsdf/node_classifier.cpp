@@ -63,7 +63,8 @@ NodeClass NodeClassifier::classify(const Index3& low, int voxels) const {
     return NodeClass::outside;
   }
   if (far < depth.min_free - free_margin * truncation_) {
-    return NodeClass::free;
+    // What makes no surface, the platform or the room, mostly lies behind what does.
+    return depth.max_free <= depth.max_surface ? NodeClass::free_to_surface : NodeClass::free;
   }
   const bool near_surface = near <= depth.max_surface + max_behind * truncation_ &&
                             far >= depth.min_surface - max_behind * truncation_;

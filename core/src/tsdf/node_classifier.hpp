@@ -8,10 +8,11 @@ namespace octurn {
 
 /// What a snapshot says of a cube of voxels.
 enum class NodeClass {
-  outside,       ///< nothing: outside the view, or behind all surfaces
-  free,          ///< each ray passed through
-  partial,       ///< free in part, and no surface near
-  near_surface,  ///< a surface may lie within the truncation
+  outside,          ///< nothing: outside the view, or behind all surfaces
+  free,             ///< each ray passed through
+  free_to_surface,  ///< the same, and each ended on a surface
+  partial,          ///< free in part, and no surface near
+  near_surface,     ///< a surface may lie within the truncation
 };
 
 /// Classifies cubes of voxels by conservative bounds: those of their pixels, and the minimum and

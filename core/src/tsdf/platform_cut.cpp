@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace octurn {
@@ -17,15 +18,24 @@ PlatformCut::PlatformCut(const VoxelGrid& grid, const Placement& placement) {
     offset += along * grid.centre(0, axis);
   }
   offset_ = static_cast<float>(offset * ticks_per_metre);
+  square_ = step_[0] * step_[0] + step_[1] * step_[1] + step_[2] * step_[2];
 }
 
-bool PlatformCut::is_below(const Index3& low, const Index3& size) const {
+bool PlatformCut::is_below(const Index3& low, const Index3& size, float margin) const {
   float lowest = height(low);
   const std::array<int, 3> steps{size.x - 1, size.y - 1, size.z - 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lowest += std::min(step_[axis] * static_cast<float>(steps[axis]), 0.0F);
   }
-  return lowest >= 0;
+  return lowest >= margin;
+}
+
+Index3 PlatformCut::raised(const Index3& voxel, float to_height) const {
+  const float steps = (to_height - height(voxel)) / square_;
+  const auto moved = [&](int at, std::size_t axis) {
+    return at + static_cast<int>(std::lround(step_[axis] * steps));
+  };
+  return {moved(voxel.x, 0), moved(voxel.y, 1), moved(voxel.z, 2)};
 }
 
 }  // namespace octurn

@@ -19,12 +19,18 @@ class PlatformCut {
            step_[1] * static_cast<float>(voxel.y) + step_[2] * static_cast<float>(voxel.z);
   }
 
-  /// Whether all centres of the half-open box of voxels from `low` on are above the platform.
-  bool is_below(const Index3& low, const Index3& size) const;
+  /// Whether all centres of the half-open box of voxels from `low` on are so far above the
+  /// platform.
+  /// @param margin  ticks
+  bool is_below(const Index3& low, const Index3& size, float margin) const;
+
+  /// The voxel right above a lower one, at that height in ticks.
+  Index3 raised(const Index3& voxel, float to_height) const;
 
  private:
   std::array<float, 3> step_ = {};  // ticks for a voxel along each axis
   float offset_ = 0;                // of the voxel (0, 0, 0)
+  float square_ = 1;                // of the steps
 };
 
 }  // namespace octurn

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "depth/depth_limits.hpp"
 #include "tsdf/integration_model.hpp"
@@ -135,9 +134,11 @@ void BlockSampler::classify(SampleBatch& batch) const {
     const int before = z < free_space_depth - truncation_ ? 1 : 0;
     const int far_before = z < free_space_depth - free_margin * truncation_ ? 1 : 0;
     batch.near[i] = in_front & surface & within & not_deep;
-    batch.free[i] = in_front & ((outside & before) | ((surface ^ 1) & far_before));
+    const int passed = in_front & ((outside & before) | ((surface ^ 1) & far_before));
+    batch.free[i] =
+        passed * (votes_of_any_ray + surface * (votes_of_surface_ray - votes_of_any_ray));
     near += batch.near[i];
-    free += batch.free[i];
+    free += passed;
   }
   batch.near_count = near;
   batch.free_count = free;
@@ -145,27 +146,26 @@ void BlockSampler::classify(SampleBatch& batch) const {
 
 void BlockSampler::average(TsdfBrick& brick, SampleBatch& batch) const {
   static_assert(falloff_power == 3);
-  constexpr float max_weight = std::numeric_limits<std::uint16_t>::max();
+  constexpr float min_weight = 1.0F / 2048;
   for (std::size_t i = 0; i < batch.count; i += 4) {
     const Eigen::Array4f distance = four(batch.distance, i);
     const Eigen::Array4f behind = (-distance - voxel_side_).max(0.0F);
     const Eigen::Array4f left = (1 - behind / (truncation_ - voxel_side_)).max(0.0F);
-    four(batch.weight, i) =
-        (four(batch.weight, i) * (left * left * left) * TsdfVolume::weight_ticks + 0.5F).floor();
+    four(batch.weight, i) *= left * left * left;
     four(batch.distance, i) = distance / truncation_ * TsdfVolume::ticks;
   }
   for (std::size_t i = 0; i < batch.count; ++i) {
     const float added = batch.weight[i];
-    if (batch.near[i] == 0 || added <= 0) {
+    if (batch.near[i] == 0 || added < min_weight) {
       continue;
     }
     std::int16_t& distance = brick.distance[index_in_brick(batch, i)];
-    std::uint16_t& weight = brick.weight[index_in_brick(batch, i)];
-    const float had = weight;
+    PackedWeight& weight = brick.weight[index_in_brick(batch, i)];
+    const float had = unpack(weight);
     const float mean =
         (static_cast<float>(distance) * had + batch.distance[i] * added) / (had + added);
     distance = static_cast<std::int16_t>(static_cast<int>(mean + 32768.5F) - 32768);
-    weight = static_cast<std::uint16_t>(std::min(had + added, max_weight));
+    weight = pack(had + added);
   }
 }
 

@@ -24,7 +24,7 @@ struct SampleBatch {
   Each<float> weight;                             // of the reading; 0: the pixel has no surface
   Each<float> free_space_depth;                   // metres
   Each<int> near;                                 // 1: to be integrated
-  Each<int> free;                                 // 1: the ray passed through
+  Each<int> free;                                 // votes of the ray that passed through, or 0
   int near_count;
   int free_count;
 };

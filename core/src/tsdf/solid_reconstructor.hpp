@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <stop_token>
 
 #include "depth/condition_depth.hpp"
 #include "octurn/reconstruct.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
+#include "tsdf/kept_facets.hpp"
+#include "tsdf/standing_parts.hpp"
 #include "tsdf/tsdf_volume.hpp"
 #include "voxel/voxel_mask.hpp"
 
@@ -15,9 +18,9 @@ namespace octurn {
 ///
 /// Each snapshot is conditioned (`ConditionedDepth`) and integrated (`integrate`) into a
 /// `TsdfVolume`, in the order of the scan; each voxel's distance and state are kept
-/// (`CompactTsdf`). Then holes are filled (`HoleFilledSdf`), the main connected component is kept
-/// without spurs and cavities (`VoxelMask`), marching cubes draw its surface (`marching_cubes`) and
-/// edges are collapsed (`StreamSimplifier`), all of it streamed.
+/// (`CompactTsdf`). Then holes are filled (`HoleFilledSdf`), what stands on the platform is kept
+/// (`standing_parts`) without spurs and cavities (`VoxelMask`), marching cubes draw its surface
+/// (`marching_cubes`) and edges are collapsed (`StreamSimplifier`), all of it streamed.
 ///
 /// Where the volume does not fit in the memory limit it holds a slab, and the snapshots are read
 /// again for each further one. Neither slabs nor threads change a byte of the surface.
@@ -26,7 +29,8 @@ namespace octurn {
 /// the largest component is kept, and its foot is flat only where nothing saw it.
 ///
 /// Facets in holes have the attribute `filled_in`. The contract of the members is
-/// `Reconstructor`'s; `count` takes as long as `surface`.
+/// `Reconstructor`'s; `count` makes the surface, and keeps it for `surface` where the memory limit
+/// leaves room for it.
 class SolidReconstructor final : public Reconstructor {
  public:
   explicit SolidReconstructor(const ReconstructOptions& options);
@@ -39,16 +43,29 @@ class SolidReconstructor final : public Reconstructor {
                const std::stop_token& stop = {}) const override;
 
  private:
+  void fill_slab(const CompactTsdf& known, int low, const SnapshotSource& snapshots,
+                 const std::stop_token& stop);
+  void integrate_all(const SnapshotSource& snapshots, const std::stop_token& stop);
+  int min_votes() const;
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
-  void expect_room_for_masks(const CompactTsdf& known, const HoleFilledSdf& sdf) const;
   int base_layer() const;
   ConditionedDepth condition(const Snapshot& snapshot) const;
   HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop) const;
+  StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop) const;
+  SurfaceCount make_surface(const CompactTsdf& known, const HoleFilledSdf& sdf,
+                            const FacetSink& sink, const std::stop_token& stop) const;
   void draw(const VoxelMask& solid, const HoleFilledSdf& sdf, const FacetSink& sink,
             const std::stop_token& stop) const;
 
   ReconstructOptions options_;
   TsdfVolume volume_;
+  std::size_t added_ = 0;  // snapshots
+
+  struct Counted {
+    SurfaceCount count = {};
+    KeptFacets facets;
+  };
+  std::optional<Counted> counted_ = {};  // since the last snapshot was added
 };
 
 }  // namespace octurn

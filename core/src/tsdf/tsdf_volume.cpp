@@ -20,12 +20,19 @@ void TsdfVolume::reset_to_slab(int low, std::size_t max_bytes) {
   std::ranges::fill(free_, std::uint8_t{0});
 }
 
+bool TsdfVolume::holds_all() const {
+  const std::size_t blocks = grid_.brick_count() / BlockPool<TsdfBrick>::block_items + 2;
+  const std::size_t tables = bytes() - bricks_.brick_bytes();
+  return tables < max_bytes_ && blocks <= (max_bytes_ - tables) / BlockPool<TsdfBrick>::block_bytes;
+}
+
 TsdfBrick* TsdfVolume::make(const Index3& brick) {
   const std::size_t index = grid_.brick_index(brick);
   TsdfBrick* const existing = bricks_.find(index);
   if (existing != nullptr) {
     return existing;
   }
+  const std::lock_guard lock(making_);
   while (brick.z < layers_.end && bricks_.is_full() &&
          bytes() + BlockPool<TsdfBrick>::block_bytes > max_bytes_) {
     drop_top_layers();

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <vector>
 
+#include "tsdf/packed_weight.hpp"
 #include "tsdf/voxel_grid.hpp"
 #include "voxel/brick_map.hpp"
 
@@ -15,21 +17,20 @@ namespace octurn {
 struct TsdfBrick {
   static constexpr std::size_t samples = 512;
   std::array<std::int16_t, samples> distance = {};  // to the surface, ticks, positive outside
-  std::array<std::uint16_t, samples> weight = {};   // accumulated, ticks
-  std::array<std::uint8_t, samples> free = {};      // snapshots whose ray passed through, up to 255
+  std::array<PackedWeight, samples> weight = {};    // accumulated
+  std::array<std::uint8_t, samples> free = {};      // votes of rays that passed through
 };
 
 /// A truncated signed distance function (Curless and Levoy 1996) as a dense table of bricks.
 ///
-/// A brick exists where some snapshot observed a surface within the truncation. Elsewhere each
-/// block counts the snapshots that saw through it.
+/// A brick exists where some snapshot observed a surface within the truncation, or saw through a
+/// part of a block. Blocks count the votes of the snapshots that saw through the whole of them.
 ///
 /// Under a memory limit the volume holds a slab: as many layers of bricks as fit, from the slab's
 /// lowest layer up.
 class TsdfVolume {
  public:
   static constexpr int ticks = VoxelGrid::ticks;
-  static constexpr int weight_ticks = 1024;  ///< in a weight of one
 
   /// @param max_bytes  that bricks and tables may take
   explicit TsdfVolume(const VoxelGrid& grid,
@@ -49,12 +50,16 @@ class TsdfVolume {
   }
   TsdfBrick* find(const Index3& brick) { return bricks_.find(grid_.brick_index(brick)); }
 
+  /// Whether all bricks of its layers would fit: then `make` drops no layers, and threads may call
+  /// it at once, for different bricks.
+  bool holds_all() const;
+
   /// The same, made where it is missing. Where it does not fit, the volume drops its top layers;
   /// null if the brick lies in one of them.
   /// @throws OutOfBudget  if only one layer is left
   TsdfBrick* make(const Index3& brick);
 
-  /// Snapshots that saw through a block, up to 255.
+  /// Votes (`votes_of_any_ray`) of the snapshots that saw through a whole block, up to 255.
   std::uint8_t& free_count(const Index3& block) { return free_[grid_.block_index(block)]; }
   std::uint8_t free_count(const Index3& block) const { return free_[grid_.block_index(block)]; }
 
@@ -68,6 +73,7 @@ class TsdfVolume {
   BrickLayers layers_ = {};
   BrickMap<TsdfBrick> bricks_;
   std::vector<std::uint8_t> free_;
+  std::mutex making_ = {};  // a brick
 };
 
 }  // namespace octurn

@@ -19,6 +19,10 @@ class BlockPool {
 
   BlockPool() { add(); }
 
+  /// Makes room for the table of so many items, so that no `add` moves it: then one thread may add
+  /// items while others use those that they have the index of.
+  void reserve(std::size_t items) { blocks_.reserve(items / block_items + 2); }
+
   /// The index of a new item, equal to `Item{}`.
   std::uint32_t add() {
     if (!free_.empty()) {

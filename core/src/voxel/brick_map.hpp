@@ -14,7 +14,7 @@ namespace octurn {
 template <typename Item>
 class BrickMap {
  public:
-  explicit BrickMap(std::size_t size) : indices_(size) {}
+  explicit BrickMap(std::size_t size) : indices_(size) { bricks_.reserve(size); }
 
   /// The brick of that position in the table, if it exists.
   const Item* find(std::size_t at) const {
@@ -32,11 +32,15 @@ class BrickMap {
 
   void clear() {
     bricks_ = {};
+    bricks_.reserve(indices_.size());
     std::ranges::fill(indices_, 0U);
   }
 
   /// Whether the next `add` allocates `BlockPool<Item>::block_bytes`.
   bool is_full() const { return bricks_.is_full(); }
+
+  /// Of the bricks, without the table.
+  std::size_t brick_bytes() const { return bricks_.bytes(); }
 
   std::size_t bytes() const {
     return bricks_.bytes() + indices_.capacity() * sizeof(std::uint32_t);

@@ -12,6 +12,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::bad_settings, what); }
 
+}  // namespace
+
 std::string mm_text(double metres) {
   std::string text = std::to_string(mm_from_metres(metres));
   text.erase(text.find_last_not_of('0') + 1);
@@ -20,8 +22,6 @@ std::string mm_text(double metres) {
   }
   return text + " mm";
 }
-
-}  // namespace
 
 int checked_levels(const ReconstructOptions& options) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };

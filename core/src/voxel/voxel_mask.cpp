@@ -9,17 +9,9 @@
 #include "voxel/connected_components.hpp"
 
 namespace octurn {
-namespace {
-
-// How many times its volume a component counts that stands on the platform. Something above the
-// object is not it, though larger; nor is a speck on the platform below a ball, whose foot is
-// hardly seen.
-constexpr std::uint64_t base_weight = 8;
-
-/// Sets or clears the bits of a run.
-void assign(std::span<std::uint64_t> row, const Run& run, bool value) {
-  for (int x = run.first; x < run.end;) {
-    const int next = std::min((x / 64 + 1) * 64, run.end);
+void assign(std::span<std::uint64_t> row, int first, int end, bool value) {
+  for (int x = first; x < end;) {
+    const int next = std::min((x / 64 + 1) * 64, end);
     const std::uint64_t ones =
         next - x == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (next - x)) - 1;
     std::uint64_t& word = row[static_cast<std::size_t>(x) / 64];
@@ -27,8 +19,6 @@ void assign(std::span<std::uint64_t> row, const Run& run, bool value) {
     x = next;
   }
 }
-
-}  // namespace
 
 VoxelMask::VoxelMask(const Index3& low, const Index3& end)
     : low_(low),
@@ -42,29 +32,6 @@ std::uint64_t VoxelMask::count() const {
     count += static_cast<std::uint64_t>(std::popcount(word));
   }
   return count;
-}
-
-void VoxelMask::keep_main_component(const std::stop_token& stop) {
-  ConnectedComponents components(*this, ConnectedComponents::Of::voxels, stop);
-  if (components.count() == 0) {
-    return;
-  }
-  std::vector<std::uint64_t> volumes(components.count());
-  std::vector<char> at_base(components.count());
-  components.for_each([&](int, int z, std::uint32_t i, const Run& run) {
-    const std::uint32_t root = components.root(i);
-    volumes[root] += static_cast<std::uint64_t>(run.end - run.first);
-    at_base[root] = static_cast<char>(at_base[root] | (z == 0 ? 1 : 0));
-  });
-  for (std::size_t i = 0; i < volumes.size(); ++i) {
-    volumes[i] *= at_base[i] != 0 ? base_weight : 1;
-  }
-  const auto kept = static_cast<std::size_t>(std::ranges::max_element(volumes) - volumes.begin());
-  components.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
-    if (components.root(i) != kept) {
-      assign(row(y, z), run, false);
-    }
-  });
 }
 
 void VoxelMask::remove_spurs(const std::stop_token& stop) {
@@ -188,7 +155,7 @@ void VoxelMask::fill_cavities(const std::stop_token& stop) {
   });
   gaps.for_each([&](int y, int z, std::uint32_t i, const Run& run) {
     if (outside[gaps.root(i)] == 0) {
-      assign(row(y, z), run, true);
+      assign(row(y, z), run.first, run.end, true);
     }
   });
 }

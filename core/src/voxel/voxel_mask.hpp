@@ -9,6 +9,9 @@
 
 namespace octurn {
 
+/// Sets or clears the half-open range of bits from `first` to `end`.
+void assign(std::span<std::uint64_t> row, int first, int end, bool value);
+
 /// A set of voxels in a box of a grid, as a bitmap in rows along x.
 ///
 /// What takes a stop token throws `Stopped` between two layers, and is then left incomplete.
@@ -35,10 +38,6 @@ class VoxelMask {
 
   std::uint64_t count() const;
   std::size_t bytes() const { return bits_.size() * sizeof bits_[0]; }
-
-  /// Keeps one connected component (voxels that share faces): the largest, where those that reach
-  /// the box's lowest layer count eightfold.
-  void keep_main_component(const std::stop_token& stop = {});
 
   /// Removes spurs, which are one voxel thick along two axes, from their ends: voxels with at most
   /// one face neighbour, until there are none. Plates, thin along one axis only, stay.

@@ -11,6 +11,7 @@
 #include "core/tsdf/random_field.hpp"
 #include "core/tsdf/rendered.hpp"
 #include "octurn/units.hpp"
+#include "voxel/keep_components.hpp"
 
 namespace octurn {
 namespace {
@@ -121,7 +122,7 @@ TEST(MarchingCubes, OfAKeptPartIsOnePart) {
     const CompactTsdf field = random_field(seed, 0.2 * seed);
     const HoleFilledSdf filled(field, 3);
     VoxelMask part = filled.inside();
-    part.keep_main_component();
+    keep_main_component(part);
     part.fill_cavities();
     EXPECT_EQ(part.component_count(), 1U);
     const std::vector<Facet> facets = surface_of(part, filled);
@@ -160,7 +161,7 @@ TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
       const double share = std::clamp(distance / grid.truncation(), -1.0, 1.0);
       brick.distance[static_cast<std::size_t>(i)] =
           static_cast<std::int16_t>(std::lround(share * TsdfVolume::ticks));
-      brick.weight[static_cast<std::size_t>(i)] = TsdfVolume::weight_ticks;
+      brick.weight[static_cast<std::size_t>(i)] = pack(1);
     }
   });
   CompactTsdf known(grid);

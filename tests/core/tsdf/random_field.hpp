@@ -31,8 +31,8 @@ inline CompactTsdf random_field(std::uint32_t seed, double density) {
       const int max_ticks = random.chance(0.3) ? 3 : TsdfVolume::ticks;
       const int ticks = random.between(1, max_ticks);
       brick.distance[i] = static_cast<std::int16_t>(random.chance(density) ? -ticks : ticks);
-      brick.weight[i] = random.chance(0.9) ? TsdfVolume::weight_ticks : 0;
-      brick.free[i] = random.chance(0.05) ? 2 : 0;
+      brick.weight[i] = pack(random.chance(0.9) ? 1.0F : 0.0F);
+      brick.free[i] = random.chance(0.05) ? 3 : 0;
     }
   });
   CompactTsdf known(volume.grid());

@@ -103,6 +103,10 @@ TEST(SolidOfSeveralPoses, HasAFlatFootWhereNothingSawIt) {
   EXPECT_TRUE(topology_of(model.facets).manifold);
   EXPECT_NEAR(model.check.bounds_mm().min.z(), 0, 1e-3);
   EXPECT_NEAR(cm3_from_m3(m3_from_mm3(model.check.volume_mm3())), 90 * 70 * height, 0.03 * 315);
+  // What nothing saw right above the platform broadens by the width of the truncation, no more.
+  const Eigen::Vector3d size = model.check.bounds_mm().max - model.check.bounds_mm().min;
+  EXPECT_NEAR(size.x(), 90, 6);
+  EXPECT_NEAR(size.y(), 70, 6);
 }
 
 TEST(SolidOfSeveralPoses, IsTheSameInSlabs) {

@@ -39,13 +39,14 @@ MeshCheck checked(const std::vector<Facet>& facets) {
 
 /// The greatest distance of an observed corner to the shape, but for those near the platform,
 /// metres.
-double worst_of(const std::vector<Facet>& facets, const Shape& shape) {
+/// @param lowest  metres above the platform
+double worst_of(const std::vector<Facet>& facets, const Shape& shape, double lowest = 0.006) {
   double worst = 0;
   for (const Facet& facet : facets) {
     const auto corners = facet.corners;
     for (const auto& corner : corners) {
       const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
-      if (facet.attributes != filled_in && point.z() > 0.006) {
+      if (facet.attributes != filled_in && point.z() > lowest) {
         worst = std::max(worst, std::abs(shape(point)));
       }
     }
@@ -75,7 +76,10 @@ TEST(Solid, StaysOnABall) {
   const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
   // Samples are 3 mm apart: planes fitted over five of them lie up to 6^2 / (2 * 45) = 0.4 mm
   // inside, and where they graze the ball a slanted window reaches three times as far.
-  EXPECT_LT(worst_of(facets, shape), 0.0012);
+  EXPECT_LT(worst_of(facets, shape, 0.022), 0.0012);
+  // Below it single snapshots look past the ball onto the platform. None of them opens space alone,
+  // so the outermost that is observed turns into what is filled within a voxel.
+  EXPECT_LT(worst_of(facets, shape), 0.002);
 }
 
 TEST(Solid, KeepsWhatIsHollowHollow) {
@@ -161,12 +165,50 @@ TEST(Solid, GivesTheSameBytesInSlabs) {
   tight.memory_limit = std::size_t{32} << 20U;
   EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
   EXPECT_GT(reads, all.count);
+  tight.threads = 4;  // whose memory the volume would lack
+  EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
+  tight.threads = 1;
 
   SolidReconstructor solid(tight);
   solid.add(counted);
   const SurfaceCount first = solid.count(counted);
   EXPECT_EQ(first.facets, whole.size());
   EXPECT_EQ(solid.count(counted).facets, first.facets);
+}
+
+TEST(Solid, IsMadeOnceIfItIsCountedFirst) {
+  const SnapshotSource all = rendered(block({0.06, 0.05, 0.06}), 4);
+  std::size_t reads = 0;
+  const SnapshotSource counted{.count = all.count, .read = [&](std::size_t i) {
+                                 ++reads;
+                                 return all.read(i);
+                               }};
+  const auto reads_of = [&](double target_error) {
+    ReconstructOptions tight = options(0.0005);
+    tight.target_error = target_error;
+    tight.memory_limit = std::size_t{30} << 20U;
+    SolidReconstructor solid(tight);
+    solid.add(counted);
+    const std::uint64_t facets = solid.count(counted).facets;
+    reads = 0;
+    std::uint64_t streamed = 0;
+    solid.surface(counted, [&](std::span<const Facet> some) { streamed += some.size(); });
+    EXPECT_EQ(streamed, facets);
+    return reads;
+  };
+  EXPECT_EQ(reads_of(options().target_error), 0U);  // slabs are built once
+  EXPECT_GT(reads_of(0), 0U);                       // 183,000 facets do not fit, and are made again
+}
+
+TEST(Solid, CountsAnewWhatIsAddedLater) {
+  const SnapshotSource snapshots = rendered(hollowed_block({0.08, 0.06, 0.04}, 0.025), 3);
+  SolidReconstructor solid(options());
+  solid.add(snapshots.read(0));
+  const std::uint64_t first = solid.count(snapshots).facets;
+  solid.add(snapshots.read(1));
+  solid.add(snapshots.read(2));
+  EXPECT_NE(solid.count(snapshots).facets, first);
+  EXPECT_EQ(solid.count(snapshots).facets, part_of(options(), snapshots).size());
 }
 
 TEST(Solid, GivesTheSameBytesOneByOne) {

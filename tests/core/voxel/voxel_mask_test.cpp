@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "voxel/keep_components.hpp"
+
 namespace octurn {
 namespace {
 
@@ -186,14 +188,14 @@ TEST(VoxelMask, KeepsWhatStandsOnTheBaseBelowALargerThingButNotASpeck) {
   VoxelMask stands({0, 0, 0}, {16, 16, 16});
   set_box(stands, {1, 1, 0}, {7, 7, 4});
   set_box(stands, {1, 1, 8}, {9, 9, 16});
-  stands.keep_main_component();
+  keep_main_component(stands);
   EXPECT_EQ(stands.count(), 6U * 6 * 4);
   EXPECT_TRUE(stands.contains(3, 3, 0));
 
   VoxelMask hovers({0, 0, 0}, {16, 16, 16});
   set_box(hovers, {12, 12, 0}, {14, 14, 1});
   set_box(hovers, {1, 1, 1}, {9, 9, 9});
-  hovers.keep_main_component();
+  keep_main_component(hovers);
   EXPECT_EQ(hovers.count(), 8U * 8 * 8);
 }
 
@@ -230,7 +232,7 @@ TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestWithTheBaseWeighed) {
     }
 
     VoxelMask after = before;
-    after.keep_main_component();
+    keep_main_component(after);
 
     EXPECT_EQ(after.count(), largest) << "seed " << seed;
     EXPECT_EQ(after.component_count(), 1U);

@@ -96,19 +96,21 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   options.level = settings.level;
   options.clip = clip_of(scan, input);
   options.placements = placements(scan);
-  ScanCheck check(scan.poses.empty() ? options.clip : scan.poses.front().clip, scan.shots.size());
+  PoseChecks checks(options.placements, options.clip, scan.shots.size());
   const SnapshotSource stored = readable_snapshots(input.folder, scan, stop);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   progress(Phase::rebuilding, 0);
-  reconstruction->add(counted(checked_snapshots(stored, check), progress), stop);
+  reconstruction->add(counted(checked_snapshots(stored, checks), progress), stop);
   progress(Phase::building, all);
-  const auto report = write_model(*reconstruction, stored, file, stop);
+  auto report = write_model(*reconstruction, stored, file, stop);
   if (!report) {
     return std::nullopt;
   }
-  build.model = {.report = *report,
+  Quality quality = judge(checks.figures(limits.threads), *report, findings);
+  report->places = {};  // a job's figures are copied for each look at them
+  build.model = {.report = *std::move(report),
                  .build_time = Clock::now() - begin,
-                 .quality = judge(check.figures(limits.threads), *report, findings)};
+                 .quality = std::move(quality)};
   return build;
 } catch (const Stopped&) {
   return std::nullopt;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <vector>
 
 #include "octurn/quality.hpp"
 #include "octurn/snapshot.hpp"
@@ -13,8 +15,25 @@ namespace octurn {
 ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
                                    std::size_t snapshots);
 
-/// The same snapshots; `check` looks at each of the first pose, whose platform it knows, that is
-/// read, and has to outlive them.
-SnapshotSource checked_snapshots(SnapshotSource snapshots, ScanCheck& check);
+/// Checks the depth images of a scan, each by the platform and clip box of its pose.
+class PoseChecks {
+ public:
+  /// @param placements  of the poses; none: there is one, with that clip box
+  /// @param stops       of all poses
+  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops);
+
+  /// @param stop  below the number of stops. @throws  as `ScanCheck::add`; called as that is
+  void add(std::size_t stop, const Snapshot& snapshot);
+
+  /// Of each pose, places in the object's frame.
+  std::vector<ScanFigures> figures(int threads) const;
+
+ private:
+  std::vector<Placement> placements_;
+  std::vector<std::unique_ptr<ScanCheck>> checks_;
+};
+
+/// The same snapshots; `checks` look at each that is read, and have to outlive them.
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
 
 }  // namespace octurn

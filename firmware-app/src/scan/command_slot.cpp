@@ -82,8 +82,14 @@ void CommandSlot::want_camera(Clock::time_point until) {
   changed_.notify_all();
 }
 
-void CommandSlot::stop_scan() {
+ScanStop CommandSlot::scan_stop() const {
   const std::lock_guard lock(mutex_);
+  return scan_stop_;
+}
+
+void CommandSlot::stop_scan(ScanStop why) {
+  const std::lock_guard lock(mutex_);
+  scan_stop_ = why;
   if (waiting_ && to_rank(waiting_->command) == scan_rank) {
     waiting_->stop.request_stop();
   }

@@ -16,6 +16,7 @@
 #include "scan/build_run.hpp"
 #include "scan/job.hpp"
 #include "scan/model_pipe.hpp"
+#include "scan/pose_choice.hpp"
 #include "scan/rig.hpp"
 
 namespace octurn {
@@ -40,6 +41,7 @@ struct RebuildCommand {
 struct BuildCommand {
   BuildRun run = {};
   bool becomes_model = false;
+  std::optional<PoseChoice> pose = {};  ///< a pose is registered again, for a model of all
 };
 
 /// Run a scan that has just been created.
@@ -65,6 +67,9 @@ struct WallCommand {
 /// What the worker can be asked to do, the least urgent first.
 using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand,
                              ScanCommand, ResumeCommand, CalibrateCommand, WallCommand>;
+
+/// Why a scan is stopped.
+enum class ScanStop { end, pause };
 
 /// The one command that waits, and the one that is carried out. A scan, or a measurement of the
 /// rig, ends whatever else is carried out and takes the place of what waits; a build takes the
@@ -98,7 +103,9 @@ class CommandSlot {
   void want_camera(Clock::time_point until);
 
   /// Asks the scan that waits or runs to stop.
-  void stop_scan();
+  void stop_scan(ScanStop why);
+  /// Why the scan that was stopped last was.
+  ScanStop scan_stop() const;
   /// The same for a build. @return whether it waits still, so that it will never begin
   bool stop_build();
 
@@ -133,6 +140,7 @@ class CommandSlot {
   std::optional<Taken> waiting_;
   std::optional<std::size_t> rank_;  // of the command that is carried out
   std::stop_source stop_;            // of the same
+  ScanStop scan_stop_ = ScanStop::end;
   Clock::time_point camera_wanted_until_ = {};
   bool rebuild_waits_ = false;  // for the model before it
   bool ended_ = false;

@@ -55,7 +55,8 @@ void expect_room(const fs::path& data, std::uint64_t available, std::uint64_t ne
                  const std::string& what) {
   if (available < needed) {
     const auto mb = [](std::uint64_t bytes) {
-      return std::to_string(static_cast<int>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
+      return std::to_string(static_cast<std::uint64_t>(mb_from_bytes(static_cast<double>(bytes)))) +
+             " MB";
     };
     throw Error(ErrorCode::disk_full,
                 mb(available) + " free in " + data.string() + ", " + what + " needs " + mb(needed),

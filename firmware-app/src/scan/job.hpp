@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -38,7 +39,7 @@ enum class Phase {
   done,
 };
 
-/// Whether a scan in that state can go on where it stopped.
+/// Whether a scan in that state waits to go on where it stopped.
 bool is_resumable(JobState state);
 
 std::string_view to_string(JobState state);
@@ -84,8 +85,11 @@ struct Build {
 /// How a turn fits together with those before it.
 struct PoseRegistration {
   bool accepted = false;
-  std::string reason = {};   ///< why not, for people; empty if accepted
-  RegisteredPose pose = {};  ///< of the turn, if accepted
+  std::string reason = {};                             ///< why not, for people; empty if accepted
+  RegisteredPose pose = {};                            ///< of the turn, if accepted
+  std::vector<RegistrationCandidate> candidates = {};  ///< to choose from, the best first
+  /// From which of them the pose was refined; nothing: from pairs of points, or it does not fit.
+  std::optional<std::size_t> candidate = {};
 };
 
 /// What a scan is that has the object of another scan lie otherwise.

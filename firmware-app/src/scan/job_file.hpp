@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 
 #include "scan/job.hpp"
 
 namespace octurn {
+
+/// A hundred times what is written.
+inline constexpr std::size_t max_job_bytes = std::size_t{1} << 20U;
 
 /// A scan as `job.json` has it. A reader passes over keys that it does not know, and every version
 /// of this program reads what an earlier one wrote.

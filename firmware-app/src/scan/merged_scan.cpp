@@ -152,7 +152,8 @@ Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
                          .angles = {},
                          .clip = turn.scan.clip,
                          .read = {},
-                         .object_from_platform = turn.object_from_platform};
+                         .object_from_platform = turn.object_from_platform,
+                         .told_object_from_platform = turn.told_object_from_platform};
     for (const Shot& shot : turn.scan.shots) {
       one.angles.push_back(shot.angle);
     }

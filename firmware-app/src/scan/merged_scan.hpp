@@ -15,6 +15,8 @@ struct StoredTurn {
   Scan scan = {};  ///< of this turn alone: its shots, rig and clip box, and no poses
   /// How the object lay, if the folder tells it.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
+  /// The same, roughly, as a person says: it is refined from there.
+  std::optional<Eigen::Isometry3d> told_object_from_platform = {};
 };
 
 /// The turns of scan folders, in their order. How the object lay is known of the first folder's

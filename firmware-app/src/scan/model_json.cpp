@@ -43,16 +43,19 @@ json to_json(const Model& model) {
   for (const double side : report.size) {
     size_mm.push_back(rounded(mm_from_metres(side)));
   }
-  return {{"parts", counted ? json(report.parts) : json()},
-          {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
-          {"bytes", report.bytes},
-          {"triangles", report.triangles},
-          {"leaves", report.leaves},
-          {"watertight", report.watertight},
-          {"volume_cm3", rounded(cm3_from_m3(report.volume))},
-          {"size_mm", std::move(size_mm)},
-          {"seconds", rounded(model.build_time.count())},
-          {"quality", model.quality ? to_json(*model.quality) : json()}};
+  return {
+      {"parts", counted ? json(report.parts) : json()},
+      {"dropped_parts", counted ? json(report.dropped.count) : json()},
+      {"dropped_volume_cm3", counted ? json(rounded(cm3_from_m3(report.dropped.volume))) : json()},
+      {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
+      {"bytes", report.bytes},
+      {"triangles", report.triangles},
+      {"leaves", report.leaves},
+      {"watertight", report.watertight},
+      {"volume_cm3", rounded(cm3_from_m3(report.volume))},
+      {"size_mm", std::move(size_mm)},
+      {"seconds", rounded(model.build_time.count())},
+      {"quality", model.quality ? to_json(*model.quality) : json()}};
 }
 
 Model to_model(const JsonValue& object) {
@@ -64,7 +67,11 @@ Model to_model(const JsonValue& object) {
                  .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
                  .filled_share = number_or_none(keys, "filled_share", 1),
                  .watertight = keys.flag("watertight").value_or(false),
-                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most))},
+                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most)),
+                 .dropped = {.count = static_cast<std::uint64_t>(
+                                 number_or_none(keys, "dropped_parts", most_whole)),
+                             .volume =
+                                 m3_from_cm3(number_or_none(keys, "dropped_volume_cm3", most))}},
       .build_time = Seconds(keys.at("seconds").number(0, most)),
       .quality = quality_from(keys.value("quality"))};
   const std::vector<JsonValue> size = keys.at("size_mm").elements(3);

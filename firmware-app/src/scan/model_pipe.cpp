@@ -39,7 +39,7 @@ void ModelPipe::close() {
   changed_.notify_all();
 }
 
-void ModelPipe::fail(std::exception_ptr reason) {
+void ModelPipe::fail(Failure reason) {
   {
     const std::lock_guard lock(mutex_);
     failure_ = std::move(reason);
@@ -52,7 +52,7 @@ std::uint64_t ModelPipe::length() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, stop_.get_token(), [&] { return length_ || closed_; });
   if (failure_) {
-    std::rethrow_exception(failure_);
+    throw to_error(*failure_);
   }
   if (!length_ || stop_.stop_requested()) {
     throw Error(ErrorCode::busy, "a scan has started", "Wait for its end.");

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,6 +11,8 @@
 #include <span>
 #include <stop_token>
 #include <vector>
+
+#include "failure.hpp"
 
 namespace octurn {
 
@@ -31,7 +32,7 @@ class ModelPipe {
   /// All is written.
   void close();
   /// There will be no more, because of that.
-  void fail(std::exception_ptr reason);
+  void fail(Failure reason);
 
   // The end that sends it.
 
@@ -48,7 +49,7 @@ class ModelPipe {
   std::deque<std::vector<std::byte>> blocks_;
   std::size_t held_bytes_ = 0;
   bool closed_ = false;
-  std::exception_ptr failure_;
+  std::optional<Failure> failure_;
 };
 
 /// A model that is made while it is sent: the sending end of a pipe. Gives the model up when it is

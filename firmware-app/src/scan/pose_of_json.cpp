@@ -1,6 +1,7 @@
 #include "scan/pose_of_json.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "octurn/units.hpp"
 #include "scan/pose_json.hpp"
@@ -9,6 +10,28 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
+
+RegistrationCandidate to_candidate(const JsonValue& object) {
+  JsonObject keys(object);
+  return {.object_from_platform = to_pose(keys.at("object_from_platform")),
+          .overlap = keys.at("overlap").number(0, 1),
+          .residual = metres_from_mm(keys.at("residual_mm").number()),
+          .contradiction = keys.at("contradiction").number(0, 2)};
+}
+
+/// Candidates and choice, which an earlier version did not keep.
+void read_candidates(JsonObject& keys, PoseRegistration& registration) {
+  if (const auto candidates = keys.value("candidates")) {
+    for (const JsonValue& candidate : candidates->elements()) {
+      registration.candidates.push_back(to_candidate(candidate));
+    }
+  }
+  const auto chosen = keys.value("candidate");
+  if (chosen && !chosen->json().is_null()) {
+    const auto count = static_cast<int>(registration.candidates.size());
+    registration.candidate = static_cast<std::size_t>(chosen->whole_number(0, count - 1));
+  }
+}
 
 PoseRegistration to_registration(const JsonValue& object) {
   JsonObject keys(object);
@@ -24,13 +47,28 @@ PoseRegistration to_registration(const JsonValue& object) {
                          .contradiction = keys.at("contradiction").number(0, 2),
                          .symmetric = keys.at("symmetric").flag()};
   }
+  read_candidates(keys, registration);
   return registration;
 }
 
 }  // namespace
 
+json to_json(const RegistrationCandidate& candidate) {
+  return {{"object_from_platform", to_rows(candidate.object_from_platform)},
+          {"overlap", candidate.overlap},
+          {"residual_mm", mm_from_metres(candidate.residual)},
+          {"contradiction", candidate.contradiction}};
+}
+
 json to_json(const PoseRegistration& registration) {
-  json object{{"accepted", registration.accepted}, {"reason", registration.reason}};
+  json candidates = json::array();
+  for (const RegistrationCandidate& candidate : registration.candidates) {
+    candidates.push_back(to_json(candidate));
+  }
+  json object{{"accepted", registration.accepted},
+              {"reason", registration.reason},
+              {"candidates", std::move(candidates)},
+              {"candidate", registration.candidate ? json(*registration.candidate) : json()}};
   if (registration.accepted) {
     const RegisteredPose& pose = registration.pose;
     object.update({{"object_from_platform", to_rows(pose.object_from_platform)},

@@ -7,6 +7,9 @@
 
 namespace octurn {
 
+/// A pose to choose, as the API and `job.json` have it: millimetres.
+nlohmann::json to_json(const RegistrationCandidate& candidate);
+
 /// How a pose was registered, as the API and `job.json` have it: millimetres and degrees.
 nlohmann::json to_json(const PoseRegistration& registration);
 

@@ -1,6 +1,7 @@
 #include "scan/rebuild.hpp"
 
 #include <span>
+#include <utility>
 
 #include "failure.hpp"
 #include "log.hpp"
@@ -41,9 +42,9 @@ void rebuild(const RebuildCommand& command) {
   } catch (const Stopped&) {
     command.pipe->stop().request_stop();
   } catch (...) {
-    log::error("scanner",
-               "model from " + command.folder.string() + ": " + current_failure().detail);
-    command.pipe->fail(std::current_exception());
+    Failure failure = current_failure();
+    log::error("scanner", "model from " + command.folder.string() + ": " + failure.detail);
+    command.pipe->fail(std::move(failure));
   }
 }
 

@@ -8,13 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
 #include "octurn/platform_pose.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "scan/checked_snapshots.hpp"
+#include "scan/coverage.hpp"
 #include "scan/depth_scale.hpp"
+#include "scan/fitting_reconstruction.hpp"
 #include "scan/last_look.hpp"
 #include "scan/plan.hpp"
 #include "scan/solve_pose.hpp"
@@ -28,24 +29,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto wait_interval = std::chrono::milliseconds(500);
 
-// A sensor that is well sees about as much at every stop: what turns is a part of the picture.
-constexpr double min_coverage = 0.6;  // of the readings in the scan's first snapshot
-
-/// Stores one more snapshot: first its image, then the scan.json that names it.
-void store(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
-           const DepthFrame& frame) {
-  write_depth_png(folder / shot.file, frame);
-  scan.shots.push_back(shot);
-  write_scan(folder, scan);
-}
-
 /// The angle that a reader of scan.json gets, to the last bit: a model built from the folder later
 /// has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
-
-std::ptrdiff_t readings_in(const DepthFrame& frame) {
-  return std::ranges::count_if(frame.depth, [](std::uint16_t depth) { return depth > 0; });
-}
 
 ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
                                const Limits& limits) {
@@ -68,9 +54,8 @@ class Run {
         stop_(stop),
         observer_(observer),
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
-        options_(options_for(scan_, settings, limits)),
-        check_(options_.clip, static_cast<std::size_t>(settings.snapshots)),
-        reconstruction_(make_reconstructor(options_)) {}
+        reconstruction_(options_for(scan_, settings, limits)),
+        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
   /// @return false if stopped first
@@ -81,13 +66,15 @@ class Run {
 
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
+  int threads() const { return reconstruction_.options().threads; }
+  std::optional<ModelReport> write();
   void begin();
   void resume();
-  void require_coverage(const DepthFrame& frame);
   SnapshotSource checked();
+  void add_stored();
   void rebuild();
   template <typename Tell>
-  void wait_for_added(Tell tell);
+  bool wait_for_added(Tell tell);
   template <typename Add>
   void add(Add add_to);
 
@@ -98,9 +85,8 @@ class Run {
   const ScanObserver& observer_;
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
-  ReconstructOptions options_;
-  ScanCheck check_;  // of the snapshots that the reconstruction was given
-  std::unique_ptr<Reconstructor> reconstruction_;
+  FittingReconstruction reconstruction_;
+  PoseChecks check_;          // of the snapshots that the reconstruction was given
   int added_ = 0;             // snapshots that the reconstruction was given
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
 };
@@ -120,10 +106,12 @@ bool Run::take_snapshots() {
     if (!frame) {
       return false;
     }
-    require_coverage(*frame);
+    const std::ptrdiff_t readings = readings_in(*frame);
+    first_readings_ = done() == 0 ? readings : first_readings_;
+    expect_coverage(readings, first_readings_, scan_.sensor_name);
     const Shot shot{.file = shot_file(done()),
                     .angle = radians_from_degrees(angle_deg_at(position, steps))};
-    store(folder_, scan_, shot, *frame);
+    store_snapshot(folder_, scan_, shot, *frame);
     add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
                           .intrinsics = scan_.intrinsics,
                           .object_from_sensor =
@@ -155,24 +143,14 @@ void Run::resume() {
                 "this scan was begun with another sensor: " + scan_.sensor_name,
                 "Plug in the one that it was begun with.");
   }
-  const SnapshotSource stored = checked();
-  first_readings_ = readings_in(stored.read(0).frame);
-  add([stored, this](Reconstructor& reconstruction) { reconstruction.add(stored, stop_); });
+  first_readings_ = readings_in(checked().read(0).frame);
+  add_stored();
 }
 
-void Run::require_coverage(const DepthFrame& frame) {
-  const std::ptrdiff_t readings = readings_in(frame);
-  if (done() == 0) {
-    first_readings_ = readings;
-  }
-  if (readings == 0 ||
-      static_cast<double>(readings) < min_coverage * static_cast<double>(first_readings_)) {
-    throw Error(ErrorCode::sensor_blind,
-                scan_.sensor_name + ": has " + std::to_string(readings) +
-                    " readings in its picture, and had " + std::to_string(first_readings_) +
-                    " at the first stop",
-                "Look for something before its lenses, and for sunlight.");
-  }
+void Run::add_stored() {
+  add([stored = checked(), this](Reconstructor& reconstruction) {
+    reconstruction.add(stored, stop_);
+  });
 }
 
 /// Solves the sensor's pose from the snapshots. Where that is another than the told one, what was
@@ -183,15 +161,14 @@ std::vector<CalibrationFinding> Run::calibrate() {
   }
   observer_.on_progress(Phase::calibrating, done());
   const CalibrationReport report =
-      solve_pose(scan_, readable_snapshots(folder_, scan_, stop_), options_.threads);
+      solve_pose(scan_, readable_snapshots(folder_, scan_, stop_), threads());
   throw_if_stopped(stop_);
   observer_.on_calibrated(report);
   if (report.accepted && !report.confirms_told()) {
     wait_for_added([] {});
     scan_.solved = to_solved_pose(report);
     write_solved_pose(folder_, *scan_.solved);
-    reconstruction_.reset();  // its memory is the next one's
-    reconstruction_ = make_reconstructor(options_);
+    reconstruction_.start_again();
     added_ = 0;
   }
   return report.findings;
@@ -210,25 +187,38 @@ void Run::rebuild() {
                                  ++*read;
                                  return stored.read(shot);
                                }};
-  add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
-  wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); });
+  do {
+    *read = 0;
+    add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
+  } while (!wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); }));
   observer_.on_rebuilt(done());
 }
 
 /// @param tell  called now and then
+/// @return false if it did not fit: the reconstruction is a coarser one, to which nothing was added
 template <typename Tell>
-void Run::wait_for_added(Tell tell) {
+bool Run::wait_for_added(Tell tell) {
   while (adding_.valid() && adding_.wait_for(wait_interval) != std::future_status::ready) {
     tell();
   }
-  if (adding_.valid()) {
-    adding_.get();
+  try {
+    if (adding_.valid()) {
+      adding_.get();
+    }
+    return true;
+  } catch (const Error& error) {
+    reconstruction_.make_coarser(error);
+    added_ = 0;
+    return false;
   }
 }
 
 template <typename Add>
 void Run::add(Add add_to) {
-  wait_for_added([this] { observer_.on_wait(); });
+  if (!wait_for_added([this] { observer_.on_wait(); })) {
+    add_stored();  // what is to be added among it
+    return;
+  }
   added_ = done();
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
     add_to(*reconstruction_);
@@ -238,28 +228,46 @@ void Run::add(Add add_to) {
   });
 }
 
+/// Adds what is missing and writes the model, a coarser one where it does not fit.
+/// @return nothing if stopped first
+std::optional<ModelReport> Run::write() {
+  for (;;) {
+    if (added_ < done()) {
+      rebuild();
+    }
+    observer_.on_progress(Phase::building, done());
+    if (!wait_for_added([] {})) {
+      continue;
+    }
+    if (stop_.stop_requested()) {
+      return std::nullopt;  // before all was added
+    }
+    try {
+      return write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
+                         folder_ / "Scan.stl", stop_);
+    } catch (const Error& error) {
+      reconstruction_.make_coarser(error);
+      added_ = 0;
+    }
+  }
+}
+
 /// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
 /// again for each part.
 /// @param captured  when the last snapshot was stored
 /// @param findings  of the calibration
 std::optional<Model> Run::build(Clock::time_point captured,
                                 const std::vector<CalibrationFinding>& findings) {
-  if (added_ < done()) {
-    rebuild();
-  }
-  observer_.on_progress(Phase::building, done());
-  wait_for_added([] {});
-  if (stop_.stop_requested()) {
-    return std::nullopt;  // before all was added
-  }
-  const auto report = write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
-                                  folder_ / "Scan.stl", stop_);
+  std::optional<ModelReport> report = write();
   if (!report) {
     return std::nullopt;
   }
-  return Model{.report = *report,
+  Quality quality = judge(check_.figures(threads()), *report, findings);
+  reconstruction_.tell(quality);
+  report->places = {};  // a job's figures are copied for each look at them
+  return Model{.report = *std::move(report),
                .build_time = Clock::now() - captured,
-               .quality = judge(check_.figures(options_.threads), *report, findings)};
+               .quality = std::move(quality)};
 }
 
 }  // namespace

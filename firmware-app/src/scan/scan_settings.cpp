@@ -131,6 +131,11 @@ std::vector<Field> model_fields(ScanSettings& s) {
                "them all",
        .access = number(s.target_error, 0, 1000, millimetres),
        .method = "solid"},
+      {.key = "parts",
+       .help = "main: the object, one connected part; all: every part that stands on the platform, "
+               "unless the object was turned over",
+       .access = choice(s.parts, {Parts::main, Parts::all}),
+       .method = "solid"},
       {.key = "threshold_m2",
        .unit = "m2",
        .help = "square of the longest side that a triangle may have",
@@ -201,6 +206,7 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
           .threshold = settings.threshold,
           .clip = settings.clip,
           .target_error = settings.target_error,
+          .parts = settings.parts,
           .threads = limits.threads,
           .memory_limit = limits.memory_bytes,
           .program_memory =

@@ -42,6 +42,7 @@ struct ScanSettings {
   double leaf_size = 0.001;   ///< metres
   double threshold = 0.0001;  ///< square metres, of a triangle's longest side; intersection
   double target_error = ReconstructOptions{}.target_error;  ///< metres; solid
+  Parts parts = Parts::main;                                ///< solid
   double root_size = 1.0;                                   ///< metres
   /// Metres, platform frame. Below 5 mm lies what a Kinect v1 sees of the platform, with its noise.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};

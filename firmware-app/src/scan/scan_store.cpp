@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
@@ -27,11 +26,7 @@ using nlohmann::json;
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
-constexpr double most = std::numeric_limits<double>::max();
-
-constexpr std::size_t max_job_bytes = std::size_t{1} << 20U;  // a hundred times what is written
 constexpr std::size_t max_name_bytes = 4096;
-constexpr std::size_t max_platform_bytes = 4096;
 
 int stored_snapshots(const fs::path& folder) {
   try {
@@ -83,6 +78,23 @@ Job load(const fs::path& folder) {
   return job;
 }
 
+/// @param scans  a folder in it
+FileDescriptor make_and_lock(const fs::path& data, const fs::path& scans) {
+  std::error_code error;
+  fs::create_directories(scans, error);
+  if (error) {
+    throw_data_error(scans, "make the folder", error);
+  }
+  return lock_data_folder(data);
+}
+
+/// Milliseconds since 1970, so that a client that has seen an earlier process lists the scans
+/// again.
+std::uint64_t first_revision() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::floor<std::chrono::milliseconds>(now).count());
+}
+
 [[noreturn]] void throw_no_such_scan(std::string_view id) {
   throw Error(ErrorCode::no_such_scan, "there is no scan " + std::string(id),
               "GET /api/v1/scans lists them.");
@@ -91,13 +103,12 @@ Job load(const fs::path& folder) {
 }  // namespace
 
 ScanStore::ScanStore(fs::path data)
-    : data_(std::move(data)), scans_(data_ / "scans"), platform_(data_ / "platform.json") {
-  std::error_code error;
-  fs::create_directories(scans_, error);
-  if (error) {
-    throw_data_error(scans_, "make the folder", error);
-  }
-  lock_ = lock_data_folder(data_);
+    : data_(std::move(data)),
+      scans_(data_ / "scans"),
+      platform_(data_ / "platform.json"),
+      lock_(make_and_lock(data_, scans_)),
+      bin_(data_ / "bin", load),
+      revision_(first_revision()) {
   clear_unfinished_json(data_);
   clear_unfinished(scans_);
   for (const std::string& id : names_in(scans_)) {
@@ -107,11 +118,12 @@ ScanStore::ScanStore(fs::path data)
     }
   }
   recover();
+  finish_discards();
 }
 
 Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of) {
-  expect_room(data_, free_bytes(), max_scan_bytes(settings),
-              "a scan of " + std::to_string(settings.snapshots) + " snapshots");
+  make_room(max_scan_bytes(settings),
+            "a scan of " + std::to_string(settings.snapshots) + " snapshots");
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
   Job job{.id = to_scan_id(now),
@@ -125,7 +137,14 @@ Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>&
   if (error) {
     throw_data_error(beginning, "make the folder", error);
   }
+  enter(beginning, job);
+  return job;
+}
+
+/// Makes a folder that was begun that of a scan. `writing_` is held.
+void ScanStore::enter(const fs::path& beginning, const Job& job) {
   write_file(beginning / "job.json", to_text(job));
+  std::error_code error;
   fs::rename(beginning, folder(job.id), error);
   if (error) {
     throw_data_error(folder(job.id), "make the folder", error);
@@ -133,13 +152,13 @@ Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>&
   sync_folder(scans_);
   const std::lock_guard lock(mutex_);
   jobs_.emplace(job.id, job);
-  return job;
+  ++revision_;
 }
 
 ScanTime ScanStore::next_time() const {
   const auto now = std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now());
-  const std::lock_guard lock(mutex_);
-  return jobs_.empty() ? now : std::max(now, to_time(jobs_.begin()->first) + ScanTime::duration(1));
+  const std::string newest = newest_id();
+  return newest.empty() ? now : std::max(now, to_time(newest) + ScanTime::duration(1));
 }
 
 void ScanStore::save(const Job& job) {
@@ -149,6 +168,9 @@ void ScanStore::save(const Job& job) {
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
   const std::string name = held.name;  // given meanwhile
+  if (job.state != JobState::running || held.state != job.state) {
+    ++revision_;
+  }
   held = job;
   held.name = name;
 }
@@ -167,6 +189,7 @@ Job ScanStore::interrupt(std::string_view id) {
     throw_no_such_scan(id);
   }
   found->second = to_interrupted(found->second, snapshots);
+  ++revision_;
   return found->second;
 }
 
@@ -194,6 +217,11 @@ Job ScanStore::get(std::string_view id) const {
   return *std::move(job);
 }
 
+std::string ScanStore::newest_id() const {
+  const std::lock_guard lock(mutex_);
+  return std::max(jobs_.empty() ? "" : jobs_.begin()->first, bin_.newest_id());
+}
+
 std::optional<Job> ScanStore::newest_finished() const {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(jobs_, [](const auto& entry) {
@@ -208,6 +236,7 @@ void ScanStore::rename(std::string_view id, std::string_view name) {
   write_file(folder(id) / "name.txt", name);
   const std::lock_guard lock(mutex_);
   jobs_.find(id)->second.name = name;
+  ++revision_;
 }
 
 void ScanStore::remove(std::string_view id) {
@@ -223,6 +252,7 @@ void ScanStore::remove(std::string_view id) {
     }
     const std::lock_guard lock(mutex_);
     jobs_.erase(jobs_.find(id));
+    ++revision_;
   }
   fs::remove_all(leaving, error);
   if (error) {
@@ -232,25 +262,12 @@ void ScanStore::remove(std::string_view id) {
 
 fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }
 
-double ScanStore::platform_angle_deg() const {
-  try {
-    const json document =
-        parse_json(read_regular_file(platform_, max_platform_bytes).value_or("{}"),
-                   ErrorCode::platform_malformed, platform_.string());
-    return JsonObject(document, ErrorCode::platform_malformed, "")
-        .number("angle_deg", -most, most)
-        .value_or(0);
-  } catch (const Error& error) {
-    log::warning("store", error.what());
-    return 0;  // as before the first move
-  }
-}
-
-void ScanStore::save_platform_angle_deg(double angle_deg) const {
-  write_file(platform_, json{{"angle_deg", angle_deg}}.dump() + "\n");
-}
-
 std::uint64_t ScanStore::free_bytes() const { return free_bytes_in(scans_); }
+
+std::uint64_t ScanStore::revision() const {
+  const std::lock_guard lock(mutex_);
+  return revision_;
+}
 
 void ScanStore::recover() {
   for (auto& [id, job] : jobs_) {

@@ -13,6 +13,7 @@
 #include "file_descriptor.hpp"
 #include "scan/data_folder.hpp"
 #include "scan/job.hpp"
+#include "scan/scan_bin.hpp"
 #include "scan/scan_id.hpp"
 
 namespace octurn {
@@ -55,12 +56,44 @@ class ScanStore {
   /// The scans of other poses of that scan, the oldest first.
   std::vector<Job> poses(std::string_view id) const;
 
+  /// The id of the scan that was begun last, whatever has become of it; empty if there is none.
+  std::string newest_id() const;
+
   /// The newest finished scan that is no other pose of one, if there is one.
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
   void rename(std::string_view id, std::string_view name);
+
+  /// Removes a scan for good.
   void remove(std::string_view id);
+
+  /// The scans that were deleted, and can be restored for some days, unless their space is needed.
+  const ScanBin& bin() const { return bin_; }
+
+  /// Moves a scan into the bin, with the scans of its object in other poses.
+  /// @throws Error "no-such-scan", "data-failed", "disk-full"
+  void discard(std::string_view id);
+
+  /// Brings a scan back that is in the bin, with those of other poses.
+  /// @throws Error "no-such-scan", "data-failed"
+  void restore(std::string_view id);
+
+  /// Removes what is in the bin for good.
+  void empty_bin();
+
+  /// Empties the bin, what was deleted first going first, until so much is free.
+  /// @param what  is to be written, such as "a model"
+  /// @throws Error "disk-full"  if it is empty and that may still not fit
+  void make_room(std::uint64_t needed, const std::string& what);
+
+  /// Makes a folder for a scan that comes from another Octurn, which the next start clears away.
+  /// @throws Error "data-failed", "disk-full"
+  std::filesystem::path begin_import();
+
+  /// Takes a whole scan folder in that `begin_import` has made: a scan that waits for its model.
+  /// @throws Error  if it cannot be read, "disk-full", "write-failed"
+  Job adopt(const std::filesystem::path& beginning);
 
   /// Makes the folder of a build to come, which the next start clears away if it stays unfinished.
   /// @return where its `Scan.stl` belongs
@@ -110,18 +143,28 @@ class ScanStore {
 
   std::uint64_t free_bytes() const;
 
+  /// Another number after every scan that came, ended, was renamed, built again or removed: who has
+  /// listed the scans at the same number need not do it again. Not the same in another process.
+  std::uint64_t revision() const;
+
  private:
   ScanTime next_time() const;
+  void enter(const std::filesystem::path& beginning, const Job& job);
   void recover();
+  void finish_discards();
+  void bring_back(const BinnedScan& scan);
+  void take_away(const Job& job);
   void write_job(const Job& job) const;
 
   std::filesystem::path data_;
   std::filesystem::path scans_;
   std::filesystem::path platform_;
-  FileDescriptor lock_;       // locked while it is open
+  FileDescriptor lock_;  // locked while it is open
+  ScanBin bin_;
   std::mutex writing_;        // held by who writes a scan's files; taken before mutex_
-  mutable std::mutex mutex_;  // guards jobs_, and is never held while the disk is used
+  mutable std::mutex mutex_;  // guards what follows, and is never held while the disk is used
   std::map<std::string, Job, std::greater<>> jobs_;
+  std::uint64_t revision_;
 };
 
 }  // namespace octurn

@@ -36,7 +36,7 @@ int ScanStore::next_build(std::string_view id) const {
 
 fs::path ScanStore::begin_build(std::string_view id, int number) {
   get(id);  // or there is no such scan
-  expect_room(data_, free_bytes(), max_model_bytes(), "a model");
+  make_room(max_model_bytes(), "a model");
   const fs::path beginning = unfinished_in(folder(id) / builds_folder, number);
   std::error_code error;
   fs::create_directories(beginning, error);
@@ -62,6 +62,7 @@ void ScanStore::add_build(std::string_view id, const Build& build) {
   sync_folder(folder(id));  // which may be new to it
   const std::lock_guard lock(mutex_);
   jobs_.find(id)->second.builds.all.push_back(build);
+  ++revision_;
 }
 
 void ScanStore::drop_build(std::string_view id, int number) {
@@ -79,6 +80,7 @@ void ScanStore::choose_build(std::string_view id, int number) {
   write_job(job);
   const std::lock_guard lock(mutex_);
   jobs_.find(id)->second.builds.chosen = number;
+  ++revision_;
 }
 
 void ScanStore::remove_build(std::string_view id, int number) {
@@ -104,6 +106,7 @@ void ScanStore::remove_build(std::string_view id, int number) {
     const std::lock_guard lock(mutex_);
     std::erase_if(jobs_.find(id)->second.builds.all,
                   [&](const Build& build) { return build.number == number; });
+    ++revision_;
   }
   fs::remove_all(leaving, error);
   if (error) {

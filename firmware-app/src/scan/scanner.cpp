@@ -57,9 +57,15 @@ std::optional<Job> Scanner::resume(std::string_view id) {
     return std::nullopt;
   }
   Job job = store_.get(id);
-  if (!is_resumable(job.state)) {
-    throw Error(ErrorCode::not_paused, "this scan is " + std::string(to_string(job.state)),
-                "Only a scan that was paused or interrupted can be resumed.");
+  if (!can_resume(job)) {
+    throw Error(ErrorCode::not_paused,
+                "this scan is " + std::string(to_string(job.state)) +
+                    (job.state == JobState::cancelled ? ", and another one was started since" : ""),
+                "Only a scan that was paused or interrupted can be resumed, or the last one if it "
+                "was ended.");
+  }
+  if (job.state == JobState::cancelled) {
+    job.builds.chosen = 0;  // a model of a part: the whole one takes its place
   }
   job.state = JobState::running;
   job.phase = Phase::starting;
@@ -84,10 +90,24 @@ bool Scanner::is_running(std::string_view id) const {
   return now.is_scanning() && now.job->id == id;
 }
 
+bool Scanner::can_resume(const Job& job) const {
+  const bool is_ended = job.state == JobState::cancelled && !job.model;
+  return is_resumable(job.state) || (is_ended && store_.newest_id() == job.id);
+}
+
+bool Scanner::pause(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  if (!is_running(id)) {
+    return false;
+  }
+  slot_.stop_scan(ScanStop::pause);
+  return true;
+}
+
 bool Scanner::cancel(std::string_view id) {
   const std::lock_guard lock(scans_);
   if (is_running(id)) {
-    slot_.stop_scan();
+    slot_.stop_scan(ScanStop::end);
     return true;
   }
   std::optional<Job> job = store_.find(id);
@@ -102,34 +122,6 @@ bool Scanner::cancel(std::string_view id) {
   store_.save(*job);
   board_.set_job(*job);
   return true;
-}
-
-void Scanner::remove(std::string_view id) {
-  const std::lock_guard lock(scans_);
-  const Job job = store_.get(id);
-  if (job.pose_of && store_.find(job.pose_of->scan)) {
-    take_back(job);
-    return;
-  }
-  const std::vector<Job> poses = store_.poses(id);
-  for (const Job& pose : poses) {
-    expect_idle(pose.id);
-  }
-  expect_idle(id);
-  store_.remove(id);
-  for (const Job& pose : poses) {
-    store_.remove(pose.id);
-  }
-}
-
-/// Before a scan is removed. @throws Error "busy"
-void Scanner::expect_idle(std::string_view id) const {
-  if (is_running(id)) {
-    throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
-  }
-  if (is_building(id)) {
-    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
-  }
 }
 
 void Scanner::rename(std::string_view id, std::string_view name) {
@@ -255,7 +247,7 @@ bool Scanner::cancel_calibration() {
   if (!status().is_measuring) {
     return false;
   }
-  slot_.stop_scan();
+  slot_.stop_scan(ScanStop::end);
   return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -23,11 +25,12 @@ namespace octurn {
 ///              start                  every snapshot taken, and the model built
 ///     (none) --------> running ------------------------------------------------> finished
 ///                      |  ^  |  disk full, nothing in the clip box, ... --------> failed
-///      device fails,   |  |  |  cancel ----------------------------------------> cancelled
-///      also when tried |  |  |                                                       ^
-///      again: paused <-+  |  +-> interrupted, when this program ends or the          |
-///                 |       |            |      outcome cannot be saved                |
-///                 +-------+------------+---- resume; or cancel ----------------------+
+///  pause, or a device  |  |  |  cancel ----------------------------------------> cancelled
+///  fails, also when    |  |  |                                                    |  ^
+///  tried again: paused<+  |  +-> interrupted, when this program ends or the       |  |
+///                 |       |            |      outcome cannot be saved             |  |
+///                 +-------+------------+---- resume; or cancel -------------------|--+
+///                         +---- resume, unless another scan was started ----------+
 ///
 /// Who owns what:
 ///
@@ -60,24 +63,59 @@ class Scanner {
   /// The scans of other poses of that scan as they are now, the oldest first.
   std::vector<Job> poses(std::string_view id) const;
 
+  /// One of them, as it is stored.
+  /// @param number  from 1
+  /// @throws Error "no-such-scan", "not-found"  if there is no such pose
+  Job find_pose(std::string_view id, int number) const;
+
   /// Takes a pose back: the model is again what it was before, and the scan of the pose is removed.
   /// @param number  of the pose, from 1
   /// @throws Error "no-such-scan", "not-found"  if there is no such pose; "busy"  if it is being
   ///               scanned, or a later one was merged with it
   void remove_pose(std::string_view id, int number);
 
+  /// Has the worker register a scan of another pose again, from where a person says that it lay,
+  /// and build the model of all poses anew: a build, which ends as failed if it does not fit.
+  /// @param number  of the pose, from 1
+  /// @return nothing while a scan runs or a build goes on
+  /// @throws Error  as `remove_pose` and `build`
+  std::optional<BuildRun> choose_pose(std::string_view id, int number, const PoseChoice& choice);
+
   /// Goes on with a scan that was paused or interrupted, at the stop where that was, unless one
-  /// runs: nothing then.
+  /// runs: nothing then. Also with one that was cancelled, as long as no other was started: its
+  /// object may be on the platform still.
   /// @throws Error "no-such-scan", "not-paused", "disk-full", "write-failed"
   std::optional<Job> resume(std::string_view id);
+
+  /// Whether `resume` takes that scan.
+  bool can_resume(const Job& job) const;
+
+  /// Asks the scan of that id to stop, so that it is paused.
+  /// @return false if it does not run
+  bool pause(std::string_view id);
 
   /// Asks the scan of that id to stop, or ends it if it is paused or interrupted.
   /// @return false if it has ended already
   bool cancel(std::string_view id);
 
-  /// Removes a scan that does not run, with its other poses. One of another pose is taken back.
+  /// Moves a scan that does not run into the bin, with its other poses. One of another pose is
+  /// taken back.
   /// @throws Error "no-such-scan", "busy"
   void remove(std::string_view id);
+
+  /// Takes a scan in that another Octurn has taken, and builds its model unless a scan runs.
+  /// @param fill   fills the folder that it is given with a whole scan folder; what it throws comes
+  ///               out here
+  /// @param bytes  that this may take
+  /// @throws Error "disk-full", "data-failed"
+  Job adopt(const std::function<void(const std::filesystem::path& folder)>& fill,
+            std::uint64_t bytes);
+
+  /// Brings a scan back from the bin. @throws Error "no-such-scan"
+  void restore(std::string_view id);
+
+  /// Removes the scans in the bin for good.
+  void empty_bin() { store_.empty_bin(); }
 
   /// @throws Error "no-such-scan"
   void rename(std::string_view id, std::string_view name);
@@ -176,7 +214,9 @@ class Scanner {
   bool is_running(std::string_view id) const;
   bool is_building(std::string_view id) const;
   void expect_idle(std::string_view id) const;
+  void expect_last_pose(const Job& pose) const;
   void take_back(const Job& pose);
+  std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);
 

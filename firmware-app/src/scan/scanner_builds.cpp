@@ -17,18 +17,23 @@ std::optional<BuildRun> Scanner::build(std::string_view id, const BuildOrder& or
   if (job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
-  expect_room(store_.data(), store_.free_bytes(), max_model_bytes(), "a model");
+  return offer_build(
+      {.run = {.scan = job.id, .snapshots = job.snapshots_done, .settings = order.settings},
+       .becomes_model = order.becomes_model});
+}
+
+/// `scans_` is held.
+std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
+  store_.make_room(max_model_bytes(), "a model");
   const auto last = build_run();
   if (slot_.has_scan() || slot_.has_ended() || (*last && !(*last)->has_ended())) {
     return std::nullopt;
   }
-  const BuildRun run{.scan = job.id,
-                     .number = store_.next_build(id),
-                     .created = utc_text(std::chrono::system_clock::now(), rfc3339),
-                     .snapshots = job.snapshots_done,
-                     .settings = order.settings};
+  BuildRun& run = command.run;
+  run.number = store_.next_build(run.scan);
+  run.created = utc_text(std::chrono::system_clock::now(), rfc3339);
   board_.set_build_run(run);
-  if (!slot_.offer_build({.run = run, .becomes_model = order.becomes_model})) {
+  if (!slot_.offer_build(command)) {
     board_.drop_waiting_build({});  // this is ending
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "scan/build_file.hpp"
+#include "scan/merged_model.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
@@ -50,15 +51,47 @@ std::vector<Job> Scanner::poses(std::string_view id) const {
   return poses;
 }
 
-void Scanner::remove_pose(std::string_view id, int number) {
-  const std::lock_guard lock(scans_);
+Job Scanner::find_pose(std::string_view id, int number) const {
   store_.get(id);  // or there is no such scan
   const std::vector<Job> poses = store_.poses(id);
   if (number < 1 || number > static_cast<int>(poses.size())) {
     throw Error(ErrorCode::not_found, "this scan has no other pose " + std::to_string(number),
                 "GET its poses lists them.");
   }
-  take_back(poses[static_cast<std::size_t>(number) - 1]);
+  return poses[static_cast<std::size_t>(number) - 1];
+}
+
+void Scanner::expect_last_pose(const Job& pose) const {
+  if (is_built_on(store_.get(pose.pose_of->scan), pose.id)) {
+    throw Error(ErrorCode::busy, "a later pose was merged with this one",
+                "Take the last pose back first.");
+  }
+}
+
+std::optional<BuildRun> Scanner::choose_pose(std::string_view id, int number,
+                                             const PoseChoice& choice) {
+  const std::lock_guard lock(scans_);
+  const Job pose = find_pose(id, number);
+  expect_idle(pose.id);
+  if (pose.state != JobState::finished) {
+    throw Error(ErrorCode::no_model, "this pose is " + std::string(to_string(pose.state)),
+                "Only one that was scanned can be joined.");
+  }
+  expect_last_pose(pose);
+  const Job first = store_.get(id);
+  int snapshots = first.snapshots_done + pose.snapshots_done;
+  for (const std::string& other : merged_poses(first, pose.id)) {
+    snapshots += store_.get(other).snapshots_done;
+  }
+  return offer_build(
+      {.run = {.scan = first.id, .snapshots = snapshots, .settings = merged_settings(first, pose)},
+       .becomes_model = true,
+       .pose = choice});
+}
+
+void Scanner::remove_pose(std::string_view id, int number) {
+  const std::lock_guard lock(scans_);
+  take_back(find_pose(id, number));
 }
 
 /// `scans_` is held.
@@ -68,10 +101,7 @@ void Scanner::take_back(const Job& pose) {
   if (is_building(first)) {
     throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
   }
-  if (is_built_on(store_.get(first), pose.id)) {
-    throw Error(ErrorCode::busy, "a later pose was merged with this one",
-                "Take the last pose back first.");
-  }
+  expect_last_pose(pose);
   store_.withdraw_pose(first, pose.id);
   store_.remove(pose.id);
 }

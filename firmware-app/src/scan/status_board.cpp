@@ -44,7 +44,7 @@ Status StatusBoard::status() const {
     const Clock::time_point now = Clock::now();
     status.job->times.elapsed = now - status.job_started;
     if (status.job_end) {
-      status.job->times.left = std::max(*status.job_end - now, Clock::duration::zero());
+      status.job->times.left = status.job_end->left(now);
     }
   }
   return status;
@@ -59,7 +59,7 @@ void StatusBoard::begin_scan(const Job& job, Clock::time_point started) {
   mesh_preview_.set({.id = job.id});
 }
 
-void StatusBoard::set_job(const Job& job, const std::optional<Clock::time_point>& expected_end) {
+void StatusBoard::set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end) {
   status_.update([&](Status& status) {
     if (status.job && status.job->id == job.id) {
       std::string name = std::move(status.job->name);

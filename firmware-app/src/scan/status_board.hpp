@@ -13,6 +13,7 @@
 #include "scan/latest.hpp"
 #include "scan/rig.hpp"
 #include "scan/sensor_map_files.hpp"
+#include "scan/time_left.hpp"
 
 namespace octurn {
 
@@ -36,7 +37,7 @@ struct Status {
   DeviceStatus turntable = {};
   std::optional<Job> job = {};
   Clock::time_point job_started = {};
-  std::optional<Clock::time_point> job_end = {};  ///< as expected
+  std::optional<ExpectedEnd> job_end = {};
 
   bool is_measuring = false;  ///< the rig, with a turn or a wall
   bool is_building = false;   ///< a model from a stored scan, to be kept
@@ -89,7 +90,7 @@ class StatusBoard {
   void begin_scan(const Job& job, Status::Clock::time_point started);
 
   /// What has become of the scan that was begun last. Its name stays.
-  void set_job(const Job& job, const std::optional<Status::Clock::time_point>& expected_end = {});
+  void set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end = {});
 
   /// What a person called a scan.
   void rename(std::string_view id, std::string_view name);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "log.hpp"
+#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -33,6 +34,13 @@ SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Sca
               return empty_snapshot(scan, scan.shots[index]);
             }
           }};
+}
+
+void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
+                    const DepthFrame& frame) {
+  write_depth_png(folder / shot.file, frame);
+  scan.shots.push_back(shot);
+  write_scan(folder, scan);
 }
 
 }  // namespace octurn

@@ -14,4 +14,9 @@ namespace octurn {
 SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Scan& scan,
                                   const std::stop_token& stop);
 
+/// Stores one more snapshot: first its image, then the scan.json that names it.
+/// @throws Error "disk-full", "write-failed"
+void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
+                    const DepthFrame& frame);
+
 }  // namespace octurn

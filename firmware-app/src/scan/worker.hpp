@@ -13,6 +13,7 @@
 #include "scan/run_scan.hpp"
 #include "scan/scan_store.hpp"
 #include "scan/status_board.hpp"
+#include "scan/time_left.hpp"
 
 namespace octurn {
 
@@ -62,6 +63,7 @@ class Worker {
   void show_frame(const DepthFrame& frame);
   void show_progress(Phase phase, int snapshots_done);
   void begin(Phase phase);
+  void save_progress();
   void keep_calibration(const CalibrationReport& report);
   void show_rebuilt(int snapshots);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
@@ -79,6 +81,7 @@ class Worker {
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs
   Clock::time_point job_started_ = {};
+  std::optional<TimeLeft> time_left_ = {};            // of it
   Clock::time_point rebuild_started_ = {};            // of its model
   std::optional<Clock::time_point> introduced_ = {};  // when the sensor opened that is on the board
   bool turntable_is_ready_ = false;

@@ -4,6 +4,7 @@
 
 #include "log.hpp"
 #include "scan/build_model.hpp"
+#include "scan/merged_model.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -14,13 +15,16 @@ namespace {
 bool build_and_keep(const BuildCommand& command, const Limits& limits, const WorkerPorts& ports,
                     const std::stop_token& stop) {
   const BuildRun& run = command.run;
-  const Job job = ports.store.get(run.scan);
   const auto show = [&](Phase phase, int done) {
     BuildRun now = run;
     now.phase = phase;
     now.snapshots_done = done;
     ports.board.set_build_run(std::move(now));
   };
+  if (command.pose) {
+    return refit_pose(ports.store, run, *command.pose, limits, stop, show);
+  }
+  const Job job = ports.store.get(run.scan);
   const std::filesystem::path file = ports.store.begin_build(run.scan, run.number);
   const Build* const chosen = find_build(job, job.builds.chosen);
   const auto poses = chosen != nullptr ? chosen->poses : std::vector<std::string>{};

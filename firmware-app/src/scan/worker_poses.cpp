@@ -5,38 +5,24 @@
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/build_file.hpp"
-#include "scan/build_model.hpp"
 #include "scan/depth_scale.hpp"
-#include "scan/merged_scan.hpp"
+#include "scan/merged_model.hpp"
+#include "scan/pose_points.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
 
-/// Turns that fit together.
-struct MergedTurns {
-  const std::vector<StoredTurn>& turns;
-  const Registration& registration;
-  const std::vector<std::string>& poses;  // ids of the scans of other poses that are among them
-};
-
 namespace {
 
-/// The other poses of a scan that are merged already.
-std::vector<std::string> merged_poses(const Job& first) {
-  std::vector<std::string> poses;
-  for (const Build& build : first.builds.all) {
-    if (build.poses.size() > poses.size()) {
-      poses = build.poses;
-    }
-  }
-  return poses;
-}
-
 PoseRegistration to_pose_registration(const Registration& registration) {
-  return registration.accepted
-             ? PoseRegistration{.accepted = true, .pose = registration.poses.back()}
-             : PoseRegistration{.reason = registration.reason};
+  PoseRegistration found{.accepted = registration.accepted,
+                         .reason = registration.reason,
+                         .candidates = registration.candidates};
+  if (registration.accepted) {
+    found.pose = registration.poses.back();
+    found.candidate = 0;
+  }
+  return found;
 }
 
 }  // namespace
@@ -70,11 +56,12 @@ bool Worker::join(const std::stop_token& stop) try {
   show_join(Phase::registering);
   ports_.store.withdraw_pose(job_.pose_of->scan, job_.id);  // of an earlier attempt
   const Job first = ports_.store.get(job_.pose_of->scan);
-  std::vector<std::string> poses = merged_poses(first);
+  std::vector<std::string> poses = merged_poses(first, job_.id);
   const std::vector<StoredTurn> turns =
       read_turns({ports_.store.merged_scan(first.id, poses), ports_.store.folder(job_.id)});
   poses.push_back(job_.id);
   const Registration registration = register_turns(turns, limits_.threads, stop);
+  write_pose_points(ports_.store.folder(job_.id), turns, registration.points);
   job_.pose_of->registration = to_pose_registration(registration);
   log::info("scanner", "scan " + job_.id + " as a pose of " + first.id + ": " +
                            (registration.accepted ? "it fits" : registration.reason));
@@ -88,21 +75,15 @@ bool Worker::join(const std::stop_token& stop) try {
 bool Worker::keep_merged(const Job& first, const MergedTurns& merged, const std::stop_token& stop) {
   show_join(Phase::building);
   const int number = ports_.store.next_build(first.id);
-  const std::filesystem::path file = ports_.store.begin_build(first.id, number);
-  const std::filesystem::path folder = file.parent_path() / merged_folder;
-  write_merged_scan(folder, merged.turns, merged.registration);
-  BuildSettings settings{.scan = job_.settings};
-  settings.scan.clip = first.settings.clip;
-  std::optional<Build> build = build_model({.job = first, .folder = folder, .settings = settings},
-                                           limits_, file, stop, [](Phase, int) {});
+  std::optional<Build> build =
+      build_merged(ports_.store, first, merged, merged_settings(first, job_), number, limits_, stop,
+                   [](Phase, int) {});
   if (!build) {
     ports_.store.drop_build(first.id, number);
     job_.pose_of->registration.reset();
     return false;
   }
-  build->number = number;
   build->created = job_.times.created;
-  build->poses = merged.poses;
   build->replaced = first.builds.chosen;
   ports_.store.add_build(first.id, *build);
   ports_.store.choose_build(first.id, number);

@@ -8,6 +8,7 @@
 
 #include "log.hpp"
 #include "octurn/stl.hpp"
+#include "scan/earlier_scans.hpp"
 #include "scan/sensor_map_files.hpp"
 #include "scan/worker.hpp"
 
@@ -42,6 +43,10 @@ std::size_t to_pose_index(const ScanStore& store, const Job& job) {
   return static_cast<std::size_t>(own - poses.begin()) + 1;
 }
 
+bool is_of_turn(Phase phase) {
+  return phase == Phase::starting || phase == Phase::turning || phase == Phase::capturing;
+}
+
 MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruction, int snapshots,
                          const std::stop_token& stop) {
   std::vector<Facet> facets;
@@ -59,6 +64,9 @@ void Worker::run(Job job, const std::stop_token& stop) {
   ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
   job_ = std::move(job);
   job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.times.elapsed);
+  time_left_.emplace(estimate_scan(earlier_scans(ports_.store), job_.settings),
+                     job_.settings.snapshots, job_.snapshots_done, Clock::now());
+  ports_.board.set_job(job_, time_left_->expected());
   log::info("scanner", "scan " + job_.id +
                            " started, snapshots=" + std::to_string(job_.settings.snapshots) +
                            ", of which taken=" + std::to_string(job_.snapshots_done));
@@ -71,6 +79,8 @@ void Worker::run(Job job, const std::stop_token& stop) {
   }
   if (job_.state == JobState::cancelled && ports_.slot.has_ended()) {
     job_ = to_interrupted(job_, job_.snapshots_done);
+  } else if (job_.state == JobState::cancelled && ports_.slot.scan_stop() == ScanStop::pause) {
+    job_.state = JobState::paused;
   }
   release_rig();
   job_.times.late_pulses += rig_.late_pulses() - late_before;
@@ -99,6 +109,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
       return;
     }
     job_.state = JobState::running;
+    time_left_->lose_pace();
     ports_.board.set_job(job_);
     ports_.heartbeat.beat();
     ports_.slot.wait_for_command(at_speed(attempt_interval));
@@ -144,22 +155,35 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
 }
 
 void Worker::show_progress(Phase phase, int snapshots_done) {
-  if (snapshots_done > job_.snapshots_done) {
+  const Clock::time_point now = Clock::now();
+  const bool is_stop_done = snapshots_done > job_.snapshots_done;
+  if (is_stop_done) {
     job_.failure.reset();
   }
+  if (is_of_turn(job_.phase) && !is_of_turn(phase)) {
+    time_left_->begin_model(now);
+  }
+  time_left_->count(snapshots_done, now);
   job_.phase = phase;
   job_.snapshots_done = snapshots_done;
   if (phase == Phase::rebuilding) {
-    rebuild_started_ = Clock::now();
+    rebuild_started_ = now;
   }
-  std::optional<Clock::time_point> expected_end;
-  if (snapshots_done > 0) {
-    const Clock::time_point now = Clock::now();
-    const auto each = (now - job_started_) / snapshots_done;
-    expected_end = now + each * (job_.settings.snapshots - snapshots_done);
+  ports_.board.set_job(job_, time_left_->expected());
+  if (is_stop_done) {
+    save_progress();
   }
-  ports_.board.set_job(job_, expected_end);
   begin(phase);
+}
+
+/// So that a scan that is cut off here goes on with the time that it has taken so far.
+void Worker::save_progress() {
+  job_.times.elapsed = Clock::now() - job_started_;
+  try {
+    ports_.store.save(job_);
+  } catch (...) {
+    log::warning("scanner", current_failure().detail);
+  }
 }
 
 /// What every phase of a scan or a turn begins with.
@@ -178,7 +202,7 @@ void Worker::begin(Phase phase) {
 void Worker::keep_calibration(const CalibrationReport& report) {
   job_.calibration = to_scan_calibration(report);
   log::info("scanner", "scan " + job_.id + ": " + to_text(report));
-  ports_.board.set_job(job_);
+  ports_.board.set_job(job_, time_left_->expected());
   try {
     ports_.store.save(job_);
     if (report.accepted && !report.confirms_told()) {
@@ -190,15 +214,14 @@ void Worker::keep_calibration(const CalibrationReport& report) {
 }
 
 void Worker::show_rebuilt(int snapshots) {
-  const Clock::time_point now = Clock::now();
   if (job_.calibration) {
     job_.calibration->rebuilt = snapshots;
   }
-  std::optional<Clock::time_point> expected_end;
-  if (snapshots > 0) {
-    expected_end = now + (now - rebuild_started_) / snapshots * (job_.snapshots_done - snapshots);
+  if (job_.snapshots_done > 0) {
+    time_left_->count_model(static_cast<double>(snapshots) / job_.snapshots_done, rebuild_started_,
+                            Clock::now());
   }
-  ports_.board.set_job(job_, expected_end);
+  ports_.board.set_job(job_, time_left_->expected());
 }
 
 void Worker::close_device(const Failure& failure) {

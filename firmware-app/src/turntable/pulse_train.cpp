@@ -12,10 +12,6 @@ using std::chrono::steady_clock;
 // The A4988 needs 1 us (datasheet, figure 1); long wires and level shifters may want more.
 constexpr auto shortest_level = 20us;
 
-// A wake-up takes up to 0.1 ms on a Pi. At 800 steps/s, 0.5 ms more than the 1.25 ms of a step
-// takes a quarter of the speed.
-constexpr auto late_after = 500us;
-
 }  // namespace
 
 PulseTrain::PulseTrain(const Motion& motion, std::int64_t steps, Time start)

@@ -8,6 +8,10 @@
 
 namespace octurn {
 
+/// From here on a pulse is late. A wake-up takes up to 0.1 ms on a Pi; at 800 steps/s, 0.5 ms more
+/// than the 1.25 ms of a step take a quarter of the speed.
+inline constexpr std::chrono::microseconds late_after(500);
+
 /// Pulses that came late because the system had no time for this program.
 struct LatePulses {
   int count = 0;

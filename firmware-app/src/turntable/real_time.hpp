@@ -11,6 +11,12 @@ inline constexpr int real_time_priority = 40;
 /// @return 0, or the errno value of the kernel's refusal
 int ask_for_real_time_priority();
 
+/// Has the calling thread wake up in time, as far as the system allows it: with
+/// `real_time_priority`, or without the 50 us by which the kernel delays ordinary threads to save
+/// power.
+/// @return 0, or the errno value of the kernel's refusal of the priority
+int ask_for_punctual_wake_ups();
+
 /// Gives the calling thread the ordinary time-sharing policy (SCHED_OTHER) again.
 void give_up_real_time_priority();
 

@@ -1,7 +1,5 @@
 #include "turntable/stepper.hpp"
 
-#include <sys/prctl.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
@@ -23,18 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 // The rotor jumps by up to two full steps and swings when its current comes on.
 constexpr auto grip_time = 100ms;
-
-/// Has this thread wake up in time, as far as the system allows it.
-void ask_for_punctual_wake_ups() {
-  const int failure = ask_for_real_time_priority();
-  if (failure == 0) {
-    return;
-  }
-  ::prctl(PR_SET_TIMERSLACK,
-          1UL);  // without real-time priority, wake-ups are 50 us late to save power
-  log::info("turntable", "no real-time priority (" + std::generic_category().message(failure) +
-                             "): on a busy machine the platform turns more slowly");
-}
 
 }  // namespace
 
@@ -65,7 +51,7 @@ bool Stepper::move_to(std::int64_t position, std::stop_token stop) {
     wake_.wait(lock, [&] { return order.done; });  // within a step of a stop request
   }
   if (order.failure) {
-    std::rethrow_exception(order.failure);
+    throw to_error(*order.failure);
   }
   return order.arrived && sleep_for(order.stop, motion_.settle_time);
 }
@@ -81,7 +67,10 @@ LatePulses Stepper::late() const {
 }
 
 void Stepper::work(const std::stop_token& end) {
-  ask_for_punctual_wake_ups();
+  if (const int failure = ask_for_punctual_wake_ups(); failure != 0) {
+    log::info("turntable", "no real-time priority (" + std::generic_category().message(failure) +
+                               "): on a busy machine the platform turns more slowly");
+  }
   std::unique_lock lock(mutex_);
   while (true) {
     const bool ordered =
@@ -111,7 +100,7 @@ void Stepper::carry_out(Order& order) {
       order.arrived = order.arrived && turn_to(position, order.stop);
     }
   } catch (...) {
-    order.failure = std::current_exception();
+    order.failure = current_failure();
   }
   order.done = true;
 }

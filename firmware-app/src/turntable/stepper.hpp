@@ -3,13 +3,13 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "failure.hpp"
 #include "turntable/pulse_train.hpp"
 #include "turntable/stepper_settings.hpp"
 #include "turntable/turntable.hpp"
@@ -63,7 +63,7 @@ class Stepper final : public Turntable {
     std::stop_token stop = {};
     bool done = false;
     bool arrived = false;
-    std::exception_ptr failure = {};
+    std::optional<Failure> failure = {};
   };
 
   void work(const std::stop_token& end);

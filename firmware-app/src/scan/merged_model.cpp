@@ -1,0 +1,97 @@
+#include "scan/merged_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "octurn/error.hpp"
+#include "scan/build_file.hpp"
+
+namespace octurn {
+namespace {
+
+bool has_pose(const Build& build, const std::string& pose) {
+  return std::ranges::find(build.poses, pose) != build.poses.end();
+}
+
+/// Keeps a build of all poses in place of those that have the last one otherwise.
+void replace_builds(ScanStore& store, const Job& first, Build build, const std::string& pose) {
+  const auto& all = first.builds.all;
+  const auto before =
+      std::ranges::find_if(all, [&](const Build& other) { return has_pose(other, pose); });
+  build.replaced = before == all.end() ? first.builds.chosen : before->replaced;
+  store.add_build(first.id, build);
+  store.choose_build(first.id, build.number);
+  for (const Build& other : all) {
+    if (has_pose(other, pose)) {
+      store.remove_build(first.id, other.number);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> merged_poses(const Job& first, const std::string& without) {
+  std::vector<std::string> poses;
+  for (const Build& build : first.builds.all) {
+    const auto end = std::ranges::find(build.poses, without);
+    if (std::distance(build.poses.begin(), end) > std::ssize(poses)) {
+      poses.assign(build.poses.begin(), end);
+    }
+  }
+  return poses;
+}
+
+BuildSettings merged_settings(const Job& first, const Job& pose) {
+  BuildSettings settings{.scan = pose.settings};
+  settings.scan.clip = first.settings.clip;
+  return settings;
+}
+
+std::optional<Build> build_merged(ScanStore& store, const Job& first, const MergedTurns& merged,
+                                  const BuildSettings& settings, int number, const Limits& limits,
+                                  const std::stop_token& stop, const BuildProgress& progress) {
+  const std::filesystem::path file = store.begin_build(first.id, number);
+  const std::filesystem::path folder = file.parent_path() / merged_folder;
+  write_merged_scan(folder, merged.turns, merged.registration);
+  auto build = build_model({.job = first, .folder = folder, .settings = settings}, limits, file,
+                           stop, progress);
+  if (build) {
+    build->number = number;
+    build->poses = merged.poses;
+  }
+  return build;
+}
+
+bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
+                const Limits& limits, const std::stop_token& stop, const BuildProgress& progress) {
+  progress(Phase::registering, 0);
+  const Job first = store.get(run.scan);
+  Job pose = store.get(choice.pose);
+  std::vector<std::string> poses = merged_poses(first, pose.id);
+  std::vector<StoredTurn> turns =
+      read_turns({store.merged_scan(first.id, poses), store.folder(pose.id)});
+  turns.back().told_object_from_platform = choice.object_from_platform;
+  const Registration registration = register_turns(turns, limits.threads, stop);
+  if (!registration.accepted) {
+    throw Error(ErrorCode::no_model, registration.reason, "The model stayed as it was.");
+  }
+  poses.push_back(pose.id);
+  auto build =
+      build_merged(store, first, {.turns = turns, .registration = registration, .poses = poses},
+                   run.settings, run.number, limits, stop, progress);
+  if (!build) {
+    return false;
+  }
+  build->created = run.created;
+  replace_builds(store, first, *std::move(build), pose.id);
+  auto& known = pose.pose_of->registration;
+  known = PoseRegistration{
+      .accepted = true,
+      .pose = registration.poses.back(),
+      .candidates = known ? known->candidates : std::vector<RegistrationCandidate>{},
+      .candidate = choice.candidate};
+  store.save(pose);
+  return true;
+}
+
+}  // namespace octurn

@@ -1,0 +1,87 @@
+#include "scan/scan_archive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/data_folder.hpp"
+#include "zip_reader.hpp"
+#include "zip_writer.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 4> single_files{"scan.json", "job.json", "name.txt",
+                                                       "sensor-map.png"};
+constexpr std::string_view snapshots = "snapshots/";
+constexpr std::size_t max_file_bytes = std::size_t{32} << 20U;
+
+bool is_plain(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+         c == '_';
+}
+
+/// The names of the files of a scan, in an order that is always the same.
+std::vector<std::string> files_of(const fs::path& scan) {
+  std::vector<std::string> files(single_files.begin(), single_files.end());
+  for (const std::string& name : names_in(scan / snapshots)) {
+    files.push_back(std::string(snapshots) + name);
+  }
+  std::ranges::sort(files);
+  std::erase_if(files, [](const std::string& name) { return !is_scan_file(name); });
+  return files;
+}
+
+}  // namespace
+
+bool is_scan_file(std::string_view name) {
+  if (std::ranges::find(single_files, name) != single_files.end()) {
+    return true;
+  }
+  constexpr std::string_view ending = ".png";
+  if (!name.starts_with(snapshots) || !name.ends_with(ending) ||
+      name.size() <= snapshots.size() + ending.size()) {
+    return false;
+  }
+  name.remove_prefix(snapshots.size());
+  name.remove_suffix(ending.size());
+  return std::ranges::all_of(name, is_plain);
+}
+
+void write_scan_archive(const fs::path& scan, const fs::path& archive) {
+  ZipWriter zip(archive);
+  for (const std::string& name : files_of(scan)) {
+    if (const auto content = read_regular_file(scan / name, max_file_bytes)) {
+      zip.begin(name, name.ends_with(".png") ? ZipMethod::stored : ZipMethod::deflated);
+      zip.write(*content);
+    }
+  }
+  zip.commit();
+}
+
+void read_scan_archive(const fs::path& archive, const fs::path& scan) {
+  unpack_zip(archive, scan, is_scan_file);
+  try {
+    const Scan read = read_scan(scan);
+    const SnapshotSource stored = stored_snapshots(scan, read, {});
+    for (std::size_t i = 0; i < stored.count; ++i) {
+      stored.read(i);
+    }
+    if (stored.count == 0) {
+      throw Error(ErrorCode::bad_request, "there is no snapshot in it");
+    }
+  } catch (const Error& error) {
+    throw Error(ErrorCode::bad_request,
+                std::string("the archive is no whole scan: ") + error.what(),
+                "Send a file that an Octurn has made: scan.zip.");
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace octurn {
+
+/// Whether a scan's archive may have a file of that name: `scan.json`, `job.json`, `name.txt`,
+/// `sensor-map.png`, and PNGs in `snapshots/`.
+bool is_scan_file(std::string_view name);
+
+/// Writes what a scan was taken as, without what was made of it, to a zip archive: all that another
+/// Octurn needs to make the same model. The same scan gives the same bytes.
+/// @throws Error "disk-full", "write-failed", "read-failed"
+void write_scan_archive(const std::filesystem::path& scan, const std::filesystem::path& archive);
+
+/// Unpacks such an archive into a folder that exists, and reads it to its last snapshot.
+/// @throws Error "bad-request"  if it is no whole scan; "disk-full", "write-failed"
+void read_scan_archive(const std::filesystem::path& archive, const std::filesystem::path& scan);
+
+}  // namespace octurn

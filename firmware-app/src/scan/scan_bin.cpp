@@ -1,0 +1,130 @@
+#include "scan/scan_bin.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "log.hpp"
+#include "octurn/file.hpp"
+#include "scan/data_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The time and the id of a folder's name; nothing of what is none of the bin's.
+std::optional<std::pair<ScanTime, std::string>> parts_of(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (dot == name.npos || !is_scan_id(name.substr(0, dot)) || !is_scan_id(name.substr(dot + 1))) {
+    return std::nullopt;
+  }
+  return std::pair(to_time(name.substr(0, dot)), name.substr(dot + 1));
+}
+
+}  // namespace
+
+ScanBin::ScanBin(fs::path folder, const std::function<Job(const fs::path& folder)>& load)
+    : folder_(std::move(folder)) {
+  clear_unfinished(folder_);
+  for (const std::string& name : names_in(folder_)) {
+    const auto parts = parts_of(name);
+    std::error_code unknown;
+    if (parts && fs::is_directory(folder_ / name, unknown)) {
+      Job job = load(folder_ / name);
+      job.id = parts->second;
+      scans_.emplace(parts->second, BinnedScan{.job = std::move(job), .deleted = parts->first});
+    }
+  }
+}
+
+fs::path ScanBin::folder_of(const BinnedScan& scan) const {
+  return folder_ / (to_scan_id(scan.deleted) + "." + scan.job.id);
+}
+
+std::vector<BinnedScan> ScanBin::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<BinnedScan> scans;
+  for (const auto& [id, scan] : scans_) {
+    scans.push_back(scan);
+  }
+  std::ranges::stable_sort(scans, std::ranges::greater(), &BinnedScan::deleted);
+  return scans;
+}
+
+std::optional<BinnedScan> ScanBin::find(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = scans_.find(id);
+  return found == scans_.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool ScanBin::is_empty() const {
+  const std::lock_guard lock(mutex_);
+  return scans_.empty();
+}
+
+std::string ScanBin::newest_id() const {
+  const std::lock_guard lock(mutex_);
+  return scans_.empty() ? "" : scans_.rbegin()->first;
+}
+
+void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  const BinnedScan binned{.job = job, .deleted = now};
+  if (!error) {
+    fs::rename(scan, folder_of(binned), error);
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw_data_error(scan, "move into the bin", error);
+  }
+  if (error) {
+    return;  // somebody has removed its folder: there is nothing to keep
+  }
+  sync_folder(folder_);
+  sync_folder(scan.parent_path());
+  const std::lock_guard lock(mutex_);
+  scans_.insert_or_assign(job.id, binned);
+}
+
+void ScanBin::put_back(std::string_view id, const fs::path& scan) {
+  const auto binned = find(id);
+  std::error_code error;
+  fs::rename(folder_of(binned.value()), scan, error);
+  if (error) {
+    throw_data_error(folder_of(*binned), "restore", error);
+  }
+  sync_folder(scan.parent_path());
+  sync_folder(folder_);
+  const std::lock_guard lock(mutex_);
+  scans_.erase(scans_.find(id));
+}
+
+void ScanBin::remove(std::string_view id) {
+  const auto binned = find(id);
+  const fs::path leaving = folder_ / ("." + std::string(id));
+  std::error_code error;
+  // Renamed first: a scan that is half removed is never seen.
+  fs::rename(folder_of(binned.value()), leaving, error);
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw_data_error(folder_of(*binned), "remove", error);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    scans_.erase(scans_.find(id));
+  }
+  fs::remove_all(leaving, error);
+  if (error) {
+    log::warning("store", leaving.string() + ": cannot remove: " + error.message());
+  }
+}
+
+void ScanBin::remove_before(ScanTime time) {
+  for (const BinnedScan& scan : list()) {
+    if (scan.deleted < time) {
+      remove(scan.job.id);
+    }
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,126 @@
+#include "scan/scan_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace octurn {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr std::size_t max_looked_at = 5;  // of the scans that are most like the one to come
+
+// Before any scan was made: a Kinect's rate, and what a simulated rig takes for the rest.
+constexpr double rate_hz = 30;
+constexpr Seconds unmeasured_stop{0.7};
+constexpr Seconds unmeasured_model{1.0};
+constexpr Seconds unmeasured_snapshot{0.1};
+constexpr double unmeasured_leaf = 0.001;              // metres
+constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's picture, packed
+constexpr double unmeasured_model_bytes = 1'500'000;   // with those leaves
+
+int frames_of(const ScanSettings& settings) {
+  return settings.filter == DepthFilter::basic ? 1 : settings.frames;
+}
+
+/// How much longer, or larger, a model gets with other leaves.
+double growth(double leaf, double measured_leaf) {
+  return (measured_leaf / leaf) * (measured_leaf / leaf);
+}
+
+/// Those that are most like what is wanted, the newest first, and of the same likeness.
+/// @param unlikeness  0 where it is the same
+template <typename Unlikeness>
+std::vector<const EarlierScan*> most_alike(const std::vector<const EarlierScan*>& scans,
+                                           Unlikeness unlikeness) {
+  std::vector<const EarlierScan*> alike;
+  for (const EarlierScan* const scan : scans) {
+    const double difference = alike.empty() ? 0 : unlikeness(*scan) - unlikeness(*alike.front());
+    if (difference < 0) {
+      alike.clear();
+    }
+    if (difference <= 0 && alike.size() < max_looked_at) {
+      alike.push_back(scan);
+    }
+  }
+  return alike;
+}
+
+template <typename Fits>
+std::vector<const EarlierScan*> those(const std::vector<EarlierScan>& scans, Fits fits) {
+  std::vector<const EarlierScan*> found;
+  for (const EarlierScan& scan : scans) {
+    if (scan.job.state == JobState::finished && scan.job.model && scan.job.settings.snapshots > 0 &&
+        !scan.job.pose_of && fits(scan.job.settings)) {
+      found.push_back(&scan);
+    }
+  }
+  return found;
+}
+
+template <typename Value>
+Seconds median_of(const std::vector<const EarlierScan*>& scans, Value value) {
+  std::vector<Seconds> values;
+  values.reserve(scans.size());
+  for (const EarlierScan* const scan : scans) {
+    values.emplace_back(value(*scan));
+  }
+  return median(std::move(values));
+}
+
+}  // namespace
+
+Seconds median(std::vector<Seconds> values) {
+  if (values.empty()) {
+    return {};
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings) {
+  const int snapshots = settings.snapshots;
+  const auto stops = most_alike(
+      those(earlier,
+            [&](const ScanSettings& other) {
+              return other.filter == settings.filter && frames_of(other) == frames_of(settings);
+            }),
+      [&](const EarlierScan& scan) {
+        return std::abs(std::log(static_cast<double>(scan.job.settings.snapshots) / snapshots));
+      });
+  const auto models = most_alike(
+      those(earlier, [&](const ScanSettings& other) { return other.method == settings.method; }),
+      [&](const EarlierScan& scan) {
+        return std::abs(std::log(scan.job.settings.leaf_size / settings.leaf_size));
+      });
+  const double unmeasured_growth = growth(settings.leaf_size, unmeasured_leaf);
+  ScanEstimate estimate{
+      .stop = unmeasured_stop + Seconds(frames_of(settings) / rate_hz),
+      .build = unmeasured_growth * unmeasured_model + snapshots * unmeasured_snapshot,
+      .is_measured = !stops.empty() && !models.empty()};
+  double bytes = snapshots * unmeasured_snapshot_bytes + unmeasured_growth * unmeasured_model_bytes;
+  if (!stops.empty()) {
+    estimate.stop = median_of(stops, [](const EarlierScan& scan) {
+      const Job& job = scan.job;
+      return (job.times.elapsed - job.model->build_time) / (job.settings.snapshots + 1);
+    });
+  }
+  if (!models.empty()) {
+    estimate.build = median_of(models, [&](const EarlierScan& scan) {
+      const ScanSettings& other = scan.job.settings;
+      return scan.job.model->build_time * growth(settings.leaf_size, other.leaf_size) * snapshots /
+             other.snapshots;
+    });
+    const EarlierScan& last = *models.front();
+    const ScanSettings& other = last.job.settings;
+    bytes = static_cast<double>(last.snapshot_bytes) * snapshots / other.snapshots +
+            static_cast<double>(last.job.model->report.bytes) *
+                growth(settings.leaf_size, other.leaf_size);
+  }
+  estimate.bytes = static_cast<std::uint64_t>(bytes);
+  return estimate;
+}
+
+}  // namespace octurn

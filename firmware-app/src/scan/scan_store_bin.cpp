@@ -1,0 +1,98 @@
+// The scans of the store that were deleted.
+
+#include <chrono>
+
+#include "log.hpp"
+#include "scan/scan_store.hpp"
+
+namespace octurn {
+namespace {
+
+ScanTime now() { return std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()); }
+
+}  // namespace
+
+/// `writing_` is held.
+void ScanStore::take_away(const Job& job) {
+  bin_.take(folder(job.id), job, now());
+  const std::lock_guard lock(mutex_);
+  jobs_.erase(job.id);
+  ++revision_;
+}
+
+/// `writing_` is held.
+void ScanStore::bring_back(const BinnedScan& scan) {
+  bin_.put_back(scan.job.id, folder(scan.job.id));
+  const std::lock_guard lock(mutex_);
+  jobs_.insert_or_assign(scan.job.id, scan.job);
+  ++revision_;
+}
+
+/// The scan goes first, and its poses after it: so the next start knows what a power cut has left
+/// half done.
+void ScanStore::discard(std::string_view id) {
+  const std::lock_guard writing(writing_);
+  const Job job = get(id);
+  const std::vector<Job> others = poses(id);
+  take_away(job);
+  for (const Job& other : others) {
+    take_away(other);
+  }
+  bin_.remove_before(now() - days_in_bin);
+}
+
+void ScanStore::restore(std::string_view id) {
+  const std::lock_guard writing(writing_);
+  const auto scan = bin_.find(id);
+  if (!scan) {
+    throw Error(ErrorCode::no_such_scan, "there is no scan " + std::string(id) + " in the bin",
+                "GET /api/v1/bin lists them.");
+  }
+  bring_back(*scan);
+  for (const BinnedScan& other : bin_.list()) {
+    if (other.job.pose_of && other.job.pose_of->scan == id) {
+      bring_back(other);
+    }
+  }
+}
+
+void ScanStore::empty_bin() {
+  const std::lock_guard writing(writing_);
+  for (const BinnedScan& scan : bin_.list()) {
+    bin_.remove(scan.job.id);
+  }
+}
+
+void ScanStore::make_room(std::uint64_t needed, const std::string& what) {
+  const std::lock_guard writing(writing_);
+  while (free_bytes() < needed && !bin_.is_empty()) {
+    const std::string oldest = bin_.list().back().job.id;
+    log::info("store", std::string("scan ")
+                           .append(oldest)
+                           .append(" leaves the bin: its space is needed for ")
+                           .append(what));
+    bin_.remove(oldest);
+  }
+  expect_room(data_, free_bytes(), needed, what);
+}
+
+/// Ends what the power cut off: poses are where their scan is. Removes what is too old.
+void ScanStore::finish_discards() {
+  try {
+    for (const Job& job : list()) {
+      if (job.pose_of && !find(job.pose_of->scan) && bin_.find(job.pose_of->scan)) {
+        take_away(job);
+      }
+    }
+    for (const BinnedScan& scan : bin_.list()) {
+      if (scan.job.pose_of && find(scan.job.pose_of->scan)) {
+        bring_back(scan);
+      }
+    }
+    bin_.remove_before(now() - days_in_bin);
+  } catch (const Error& error) {
+    log::warning("store", error.what());  // a full or read-only disk: the next start tries again
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,81 @@
+// Scans that another Octurn has taken.
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "octurn/file.hpp"
+#include "octurn/json_object.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/job_file.hpp"
+#include "scan/scan_store.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view unfinished = ".new-import-";
+constexpr std::size_t max_name = 400;  // bytes of 100 characters
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
+
+/// What the other Octurn tells of the scan; of a folder that only has the scan itself, the usual
+/// settings.
+Job read_adopted_job(const fs::path& folder) {
+  const auto text = read_regular_file(folder / "job.json", max_job_bytes);
+  Job job = text ? to_job(parse_json(*text, ErrorCode::bad_request, "job.json")) : Job{};
+  job.name = read_regular_file(folder / "name.txt", max_name).value_or("");
+  if (std::ranges::any_of(job.name, is_control)) {
+    job.name.clear();
+  }
+  return job;
+}
+
+/// A scan that has all its snapshots, and waits for its model.
+Job to_waiting(Job job, const Scan& scan) {
+  job.state = JobState::interrupted;
+  job.phase = Phase::done;
+  job.snapshots_done = static_cast<int>(scan.shots.size());
+  job.settings.snapshots = job.snapshots_done;
+  job.settings.clip = scan.clip;
+  job.failure = Failure{.code = ErrorCode::interrupted,
+                        .detail = "this scan came from a file, and its model is not built yet",
+                        .hint = "Resume it: nothing moves for that."};
+  job.model.reset();
+  job.builds = {};
+  job.pose_of.reset();
+  return job;
+}
+
+}  // namespace
+
+fs::path ScanStore::begin_import() {
+  for (int attempt = 0;; ++attempt) {
+    fs::path folder = scans_ / (std::string(unfinished) + std::to_string(attempt));
+    std::error_code error;
+    if (fs::create_directory(folder, error)) {
+      return folder;
+    }
+    if (error) {
+      throw_data_error(folder, "make the folder", error);
+    }
+  }
+}
+
+Job ScanStore::adopt(const fs::path& beginning) {
+  const Scan scan = read_scan(beginning);
+  Job job = to_waiting(read_adopted_job(beginning), scan);
+  const std::lock_guard writing(writing_);
+  const ScanTime now = next_time();
+  job.id = to_scan_id(now);
+  if (job.times.created.empty()) {
+    job.times.created = utc_text(now, rfc3339);
+  }
+  enter(beginning, job);
+  return job;
+}
+
+}  // namespace octurn

@@ -1,0 +1,56 @@
+// How a scanner deletes scans, brings them back, and takes others' in.
+
+#include <mutex>
+#include <system_error>
+
+#include "scan/scanner.hpp"
+
+namespace octurn {
+
+void Scanner::remove(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  const Job job = store_.get(id);
+  if (job.pose_of && store_.find(job.pose_of->scan)) {
+    take_back(job);
+    return;
+  }
+  const std::vector<Job> poses = store_.poses(id);
+  for (const Job& pose : poses) {
+    expect_idle(pose.id);
+  }
+  expect_idle(id);
+  store_.discard(id);
+}
+
+void Scanner::restore(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  store_.restore(id);
+}
+
+/// Before a scan is removed. @throws Error "busy"
+void Scanner::expect_idle(std::string_view id) const {
+  if (is_running(id)) {
+    throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
+  }
+  if (is_building(id)) {
+    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  }
+}
+
+Job Scanner::adopt(const std::function<void(const std::filesystem::path& folder)>& fill,
+                   std::uint64_t bytes) {
+  store_.make_room(bytes, "a scan from a file");
+  const std::filesystem::path folder = store_.begin_import();
+  Job job;
+  try {
+    fill(folder);
+    job = store_.adopt(folder);
+  } catch (...) {
+    std::error_code ignored;  // the next start clears it away
+    std::filesystem::remove_all(folder, ignored);
+    throw;
+  }
+  return resume(job.id).value_or(job);
+}
+
+}  // namespace octurn

@@ -184,15 +184,25 @@ Appliance::Upload::Turn::Turn(std::atomic<bool>& is_taken) : is_taken_(is_taken)
   }
 }
 
-Appliance::Upload::Upload(Appliance& appliance, std::uint64_t bytes)
-    : turn_(appliance.is_receiving_), file_(appliance.place_for_update(bytes), for_root_alone) {}
+Appliance::Upload::Upload(Appliance& appliance, std::uint64_t bytes, UpdateAge age)
+    : turn_(appliance.is_receiving_),
+      file_(appliance.place_for_update(bytes), for_root_alone),
+      older_(appliance.request("update.older")),
+      age_(age) {}
 
 void Appliance::Upload::write(std::span<const std::byte> bytes) {
   in_memory([&] { file_.write(bytes); });
 }
 
 void Appliance::Upload::commit() {
-  in_memory([&] { file_.commit(); });
+  in_memory([&] {
+    if (age_ == UpdateAge::any) {
+      write_file(older_, "", for_root_alone);
+    } else {
+      fs::remove(older_);
+    }
+    file_.commit();
+  });
 }
 
 fs::path Appliance::place_for_update(std::uint64_t bytes) const {

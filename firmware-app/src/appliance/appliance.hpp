@@ -38,6 +38,9 @@ struct WifiState {
   std::vector<WifiNetwork> networks = {};
 };
 
+/// Which versions of an update root takes: those that are no older than what runs, or any.
+enum class UpdateAge : std::uint8_t { not_older, any };
+
 /// Interface to the root services of Octurn's image. This program is not root: it writes requests
 /// into a folder, root carries them out and writes answers beside them. Thread-safe.
 class Appliance {
@@ -73,7 +76,7 @@ class Appliance {
     static constexpr std::uint64_t max_bytes = std::uint64_t{160} << 20U;
 
     /// @throws Error "busy", "too-large", "no-space"
-    Upload(Appliance& appliance, std::uint64_t bytes);
+    Upload(Appliance& appliance, std::uint64_t bytes, UpdateAge age);
 
     /// @throws Error "no-space"
     void write(std::span<const std::byte> bytes);
@@ -94,6 +97,8 @@ class Appliance {
 
     Turn turn_;
     AtomicFile file_;
+    std::filesystem::path older_;  // there for root if an older version is asked for
+    UpdateAge age_;
   };
 
  private:

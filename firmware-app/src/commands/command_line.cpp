@@ -59,7 +59,8 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
   command
       .add_option("--pose-of", arguments.pose_of,
                   "the object of this scan in the folder of scans, turned over: make one model of "
-                  "both; its settings apply where none are given")
+                  "both, which is kept with that scan; its settings apply where none are given. A "
+                  "scan folder elsewhere is left as it is: scan, then octurn merge both")
       ->type_name("ID|DIR")
       ->excludes(resume);
   command.callback([&arguments, simulate] {
@@ -214,6 +215,14 @@ void add_merge(CLI::App& program, MergeArguments& arguments, int& status) {
       ->type_name("SCAN_DIR")
       ->required();
   command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
+  auto* const candidate =
+      command.add_option("--candidate", arguments.candidate,
+                         "take this of the poses that --json lists; 0 is the best");
+  command
+      .add_option(
+          "--pairs", arguments.pairs,
+          "three or more points of the object, mm: X Y Z in the first scan, in the last one")
+      ->excludes(candidate);
   command.footer(
       "It ends with 0 if the scans fit together, with 1 and the reason if they do not, or in "
       "several ways that give different shapes.");
@@ -230,12 +239,14 @@ void add_password(CLI::App& program, std::filesystem::path& file) {
   command.callback([&file] { set_password(file); });
 }
 
-void add_update(CLI::App& program, std::filesystem::path& file) {
+void add_update(CLI::App& program, UpdateArguments& arguments) {
   CLI::App& command =
       *program.add_subcommand("update", "installs an update of the appliance's image, as root");
-  command.add_option("FILE", file, "octurn.update, as image-build makes it")->required();
+  command.add_flag("--older", arguments.takes_older,
+                   "also if it is older than the version that runs");
+  command.add_option("FILE", arguments.file, "octurn.update, as image-build makes it")->required();
   command.footer("The page does the same. The scanner then starts again.");
-  command.callback([&file] { install_update(file); });
+  command.callback([&arguments] { install_update(arguments); });
 }
 
 int fail(const std::string& message, const std::string& hint, int status) {
@@ -260,7 +271,7 @@ int run(int argc, char** argv) {
   SetArguments set_arguments;
   MergeArguments merge_arguments;
   std::filesystem::path password_file;
-  std::filesystem::path update_file;
+  UpdateArguments update;
   int status = 0;
   add_serve(program, serve_arguments);
   add_scan(program, scan_arguments);
@@ -271,7 +282,7 @@ int run(int argc, char** argv) {
   add_set(program, set_arguments);
   add_merge(program, merge_arguments, status);
   add_password(program, password_file);
-  add_update(program, update_file);
+  add_update(program, update);
 
   block_signals();
   try {

@@ -146,6 +146,10 @@ struct MergeArguments {
   std::vector<std::filesystem::path> folders = {};
   std::filesystem::path output = {};  ///< folder, which must not exist yet
   bool json = false;                  ///< one line of JSON in place of text
+  /// Of the poses that fit the last scan, the one to take, the best 0; none: what is accepted.
+  std::optional<int> candidate = {};
+  /// Or points of the object: x, y, z in the first scan's frame, then in the last one's; mm.
+  std::vector<double> pairs = {};
 };
 
 /// `octurn merge`: one scan folder of several scans of one object, laid down in several ways.
@@ -156,9 +160,15 @@ bool merge(const MergeArguments& arguments);
 /// `password_file` of the configuration.
 void set_password(const std::filesystem::path& file);
 
+/// What `octurn update` installs.
+struct UpdateArguments {
+  std::filesystem::path file = {};
+  bool takes_older = false;  ///< also a version that is older than the one that runs
+};
+
 /// `octurn update`: executes the appliance's program that installs an update, in this process.
 /// @throws Error  if this is no appliance, or not root
-[[noreturn]] void install_update(const std::filesystem::path& file);
+[[noreturn]] void install_update(const UpdateArguments& arguments);
 
 /// Parses the command line and runs the command.
 /// @return the exit status: 0 for success, 1 for a failure, 2 for bad usage. One line on standard

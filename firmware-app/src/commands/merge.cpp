@@ -8,6 +8,7 @@
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "scan/merged_scan.hpp"
+#include "scan/pose_of_json.hpp"
 #include "scan/scan_settings.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
@@ -42,10 +43,15 @@ Json to_json(const Registration& registration) {
     poses.push_back(to_json(pose));
     symmetric = symmetric || pose.symmetric;
   }
+  Json candidates = Json::array();
+  for (const RegistrationCandidate& candidate : registration.candidates) {
+    candidates.emplace_back(octurn::to_json(candidate));
+  }
   return {{"accepted", registration.accepted},
           {"reason", registration.reason},
           {"symmetric", symmetric},
-          {"poses", std::move(poses)}};
+          {"poses", std::move(poses)},
+          {"candidates", std::move(candidates)}};
 }
 
 /// The answer as lines for people.
@@ -75,6 +81,52 @@ std::string to_text(const Registration& registration, const std::vector<StoredTu
   return text.str();
 }
 
+/// The pose that points of the object tell. @throws Error "bad-settings"
+Eigen::Isometry3d pose_from(const std::vector<double>& coordinates) {
+  constexpr std::size_t coordinates_of_pair = 6;
+  std::vector<PointPair> pairs;
+  const auto point = [&](std::size_t first) {
+    return Eigen::Vector3d(metres_from_mm(coordinates[first]),
+                           metres_from_mm(coordinates[first + 1]),
+                           metres_from_mm(coordinates[first + 2]));
+  };
+  for (std::size_t i = 0; i + coordinates_of_pair <= coordinates.size(); i += coordinates_of_pair) {
+    pairs.push_back({.object = point(i), .platform = point(i + 3)});
+  }
+  const auto pose = pose_from_pairs(pairs);
+  if (coordinates.size() % coordinates_of_pair != 0 || !pose) {
+    throw Error(ErrorCode::bad_settings,
+                "--pairs: must be six numbers a pair, of at least three pairs of points that do "
+                "not lie on a line");
+  }
+  return *pose;
+}
+
+/// Registers the turns, from where the arguments say that the last one lay.
+Registration register_as_told(std::vector<StoredTurn>& turns, const MergeArguments& arguments,
+                              int threads, const std::stop_token& stop) {
+  auto& told = turns.back().told_object_from_platform;
+  if (!arguments.pairs.empty()) {
+    told = pose_from(arguments.pairs);
+  }
+  Registration registration = register_turns(turns, threads, stop);
+  if (!arguments.candidate) {
+    return registration;
+  }
+  const auto count = static_cast<int>(registration.candidates.size());
+  if (*arguments.candidate < 0 || *arguments.candidate >= count) {
+    throw Error(ErrorCode::bad_settings,
+                "--candidate " + std::to_string(*arguments.candidate) + ": there are " +
+                    std::to_string(count),
+                "--json lists them; 0 is the first.");
+  }
+  const std::vector<RegistrationCandidate> candidates = std::move(registration.candidates);
+  told = candidates[static_cast<std::size_t>(*arguments.candidate)].object_from_platform;
+  registration = register_turns(turns, threads, stop);
+  registration.candidates = candidates;
+  return registration;
+}
+
 void expect_absent(const std::filesystem::path& folder) {
   std::error_code error;
   if (folder.empty()) {
@@ -98,7 +150,7 @@ bool merge(const MergeArguments& arguments) try {
                 "Name the folders of two scans of the object.");
   }
   solve_rigs(turns, threads, signal.token());
-  const Registration registration = register_turns(turns, threads, signal.token());
+  const Registration registration = register_as_told(turns, arguments, threads, signal.token());
   if (registration.accepted) {
     write_merged_scan(arguments.output, turns, registration);
   }

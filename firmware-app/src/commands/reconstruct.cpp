@@ -17,6 +17,7 @@
 #include "octurn/units.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
+#include "scan/checked_snapshots.hpp"
 #include "scan/last_look.hpp"
 #include "scan/quality_json.hpp"
 #include "scan/solve_pose.hpp"
@@ -104,6 +105,8 @@ Json to_json(const ModelReport& report, const Quality& quality, const ModelSetti
             {"size_mm", mm(report.size)}};
   if (settings.scan.method == Method::solid) {
     json["parts"] = report.parts;
+    json["dropped_parts"] = report.dropped.count;
+    json["dropped_volume_cm3"] = cm3_from_m3(report.dropped.volume);
     json["seen_share"] = 1 - report.filled_share;
     json["filled_share"] = report.filled_share;
   }
@@ -147,18 +150,14 @@ class ModelOutput {
   std::optional<StlFile> file_ = {};
 };
 
-/// The scan's snapshots. Reading one updates the progress bar, shows it to the check, and throws
-/// Stopped once `stop` is requested.
+/// The scan's snapshots. Reading one updates the progress bar, and throws Stopped once `stop` is
+/// requested.
 SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& scan,
-                               ProgressBar& bar, ScanCheck& check, const std::stop_token& stop) {
+                               ProgressBar& bar, const std::stop_token& stop) {
   return {.count = scan.shots.size(),
-          .read = [&bar, &check, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
+          .read = [&bar, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
             bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
-            Snapshot snapshot = stored.read(i);
-            if (snapshot.pose == 0) {  // whose platform the check looks for
-              check.add(i, snapshot);
-            }
-            return snapshot;
+            return stored.read(i);
           }};
 }
 
@@ -220,14 +219,14 @@ void reconstruct(const ReconstructArguments& arguments) try {
     return_freed_memory();
   }
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
-  ScanCheck scan_check(scan.poses.empty() ? options.clip : scan.poses.front().clip,
-                       scan.shots.size());
+  PoseChecks scan_checks(options.placements, options.clip, scan.shots.size());
   MeshCheck check;
   std::optional<SurfaceCount> count;
   Times times;
   {
     ProgressBar bar;
-    const SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, scan_check, stop);
+    const SnapshotSource snapshots =
+        checked_snapshots(shown_snapshots(arguments.folder, scan, bar, stop), scan_checks);
     const Clock::time_point start = Clock::now();
     reconstruction->add(snapshots, stop);
     const Clock::time_point seen = Clock::now();
@@ -246,7 +245,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
   const ModelReport report = report_of(*count, check);
-  const Quality quality = judge(scan_check.figures(options.threads), report, findings);
+  const Quality quality = judge(scan_checks.figures(options.threads), report, findings);
   if (quality.verdict != Verdict::good) {
     std::cerr << to_text(quality);
   }

@@ -89,8 +89,11 @@ std::string to_id(const std::string& told, const ScanStore& store) {
   const auto folder = std::filesystem::canonical(told);
   std::string id = folder.filename();
   if (!store.find(id) || std::filesystem::canonical(store.folder(id)) != folder) {
-    throw Error(ErrorCode::no_such_scan, told + ": is no scan in " + store.data().string(),
-                "Scan the object as it lies now, and join the two folders with octurn merge.");
+    throw Error(ErrorCode::no_such_scan,
+                told + ": is no scan in " + store.data().string() +
+                    ", and the model of both poses is kept with a scan there",
+                "Scan the object as it lies now without --pose-of, and join the two folders with "
+                "octurn merge.");
   }
   return id;
 }

@@ -11,7 +11,7 @@
 
 namespace octurn {
 
-void install_update(const std::filesystem::path& file) {
+void install_update(const UpdateArguments& arguments) {
   constexpr const char* program = "/usr/lib/octurn/update";  // of the image
   if (::access(program, F_OK) != 0) {
     throw Error(ErrorCode::not_an_appliance,
@@ -23,8 +23,12 @@ void install_update(const std::filesystem::path& file) {
                 "Use the page, which asks root for it.");
   }
   std::string name = program;
-  std::string argument = std::filesystem::absolute(file);  // which begins with no hyphen
-  std::array<char*, 3> words{name.data(), argument.data(), nullptr};
+  std::string older = "--older";
+  std::string file = std::filesystem::absolute(arguments.file);  // which begins with no hyphen
+  std::array<char*, 4> words{name.data(), older.data(), file.data(), nullptr};
+  if (!arguments.takes_older) {
+    words = {name.data(), file.data(), nullptr};
+  }
   unblock_signals();
   ::execv(program, words.data());
   throw Error(ErrorCode::update_failed,

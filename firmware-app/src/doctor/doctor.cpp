@@ -7,10 +7,15 @@
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
 #include "scan/calibration_store.hpp"
+#include "turntable/pulse_train.hpp"
 #include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
+
+// Like the pulses of half a second at full speed.
+constexpr int wake_ups = 400;
+constexpr std::chrono::microseconds wake_up_interval(1250);
 
 /// Whether the URI names a USB device, and neither a simulated sensor nor a file.
 bool is_on_usb(const std::string& uri) {
@@ -27,12 +32,14 @@ std::string real_time_refusal() {
 }
 
 std::vector<Finding> check_turntable(const DoctorInput& input) {
+  const Lateness lateness = measure_wake_ups(wake_ups, wake_up_interval);
   if (!input.rig.stepper) {
-    return {check_simulated_turntable()};
+    return {check_simulated_turntable(), check_wake_ups(lateness, Lateness::value_type::max())};
   }
   const HeaderState header = read_gpio_header(lines_of(*input.rig.stepper));
   return {check_gpio_chip(header), check_gpio_lines(header, input.lines),
-          check_gpio_permission(input.root), check_real_time(real_time_refusal())};
+          check_gpio_permission(input.root), check_real_time(real_time_refusal()),
+          check_wake_ups(lateness, late_after)};
 }
 
 /// What is wrong with the files that the page's settings and the sensor's pose are kept in.

@@ -15,36 +15,44 @@ namespace {
 
 using nlohmann::json;
 
-Finding finding(const Check& check, Finding::State state, std::string measured,
-                std::string advice) {
+Finding finding(const Check& check, Finding::State state, std::string measured, std::string advice,
+                Action action) {
   return {.check = std::string(check.id),
           .name = std::string(check.name),
           .state = state,
           .measured = std::move(measured),
-          .advice = std::move(advice)};
+          .advice = std::move(advice),
+          .action = action};
 }
 
 }  // namespace
 
 Finding Check::ok(std::string measured) const {
-  return finding(*this, Finding::State::ok, std::move(measured), {});
+  return finding(*this, Finding::State::ok, std::move(measured), {}, Action::none);
 }
 
-Finding Check::warning(std::string measured, std::string advice) const {
-  return finding(*this, Finding::State::warning, std::move(measured), std::move(advice));
+Finding Check::warning(std::string measured, std::string advice, Action action) const {
+  return finding(*this, Finding::State::warning, std::move(measured), std::move(advice), action);
 }
 
-Finding Check::fault(std::string measured, std::string advice) const {
-  return finding(*this, Finding::State::fault, std::move(measured), std::move(advice));
+Finding Check::fault(std::string measured, std::string advice, Action action) const {
+  return finding(*this, Finding::State::fault, std::move(measured), std::move(advice), action);
 }
 
 Finding Check::unknown(std::string measured, std::string advice) const {
-  return finding(*this, Finding::State::unknown, std::move(measured), std::move(advice));
+  return finding(*this, Finding::State::unknown, std::move(measured), std::move(advice),
+                 Action::none);
 }
 
 std::string_view to_string(Finding::State state) {
   constexpr std::array<std::string_view, 4> names{"ok", "warning", "fault", "unknown"};
   return names[static_cast<std::size_t>(state)];
+}
+
+std::string_view to_string(Action action) {
+  constexpr std::array<std::string_view, 5> names{"", "measure-turn", "set-pose", "open-settings",
+                                                  "choose-scans"};
+  return names.at(static_cast<std::size_t>(action));
 }
 
 Finding::State overall_state(std::span<const Finding> findings) {
@@ -77,7 +85,8 @@ json to_json(std::span<const Finding> findings) {
                    {"name", finding.name},
                    {"state", to_string(finding.state)},
                    {"measured", finding.measured},
-                   {"advice", finding.advice}});
+                   {"advice", finding.advice},
+                   {"action", to_string(finding.action)}});
   }
   return {{"version", version()},
           {"time", utc_text(std::chrono::system_clock::now(), rfc3339)},

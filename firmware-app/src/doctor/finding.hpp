@@ -7,6 +7,15 @@
 
 namespace octurn {
 
+/// What the page can do about a finding by itself.
+enum class Action {
+  none,
+  measure_turn,   ///< solve the sensor's pose with one turn of the platform
+  set_pose,       ///< set it by hand, where it is too far off for a turn
+  open_settings,  ///< look through the settings and save them
+  choose_scans,   ///< delete some
+};
+
 /// Result of one check of the doctor.
 struct Finding {
   enum class State {
@@ -20,6 +29,7 @@ struct Finding {
   State state = State::unknown;
   std::string measured = {};  ///< with units
   std::string advice = {};    ///< what to do, in one sentence; empty: nothing
+  Action action = Action::none;
 };
 
 /// One check of the doctor, and the maker of its findings.
@@ -28,12 +38,15 @@ struct Check {
   std::string_view name;
 
   Finding ok(std::string measured) const;
-  Finding warning(std::string measured, std::string advice) const;
-  Finding fault(std::string measured, std::string advice) const;
+  Finding warning(std::string measured, std::string advice, Action action = Action::none) const;
+  Finding fault(std::string measured, std::string advice, Action action = Action::none) const;
   Finding unknown(std::string measured, std::string advice = {}) const;
 };
 
 std::string_view to_string(Finding::State state);
+
+/// Its name for programs: "measure-turn"; empty for none.
+std::string_view to_string(Action action);
 
 /// The worst state: fault or warning if any finding has it, otherwise ok.
 Finding::State overall_state(std::span<const Finding> findings);

@@ -92,7 +92,8 @@ Finding check_settings(const std::string& trouble) {
   return trouble.empty()
              ? settings.ok("as they were stored")
              : settings.warning(trouble + "; the last ones that can be used are in force",
-                                "Look through the page's settings and save them again.");
+                                "Look through the page's settings and save them again.",
+                                Action::open_settings);
 }
 
 Finding check_disk(std::uint64_t free, std::uint64_t bytes_each) {
@@ -100,8 +101,8 @@ Finding check_disk(std::uint64_t free, std::uint64_t bytes_each) {
   const std::uint64_t scans = free / bytes_each;
   const std::string measured = readable_bytes(static_cast<double>(free)) + " free, enough for " +
                                std::to_string(scans) + (scans == 1 ? " scan" : " scans");
-  return scans == 0          ? disk.fault(measured, advice)
-         : scans < few_scans ? disk.warning(measured, advice)
+  return scans == 0          ? disk.fault(measured, advice, Action::choose_scans)
+         : scans < few_scans ? disk.warning(measured, advice, Action::choose_scans)
                              : disk.ok(measured);
 }
 

@@ -13,106 +13,24 @@ namespace {
 constexpr Check sensor{"sensor", "Sensor"};
 constexpr Check frame_rate{"frame-rate", "Frame rate"};
 constexpr Check lost_frames{"lost-frames", "Lost frames"};
-constexpr Check platform{"platform", "Platform"};
-constexpr Check depth_noise{"depth-noise", "Depth noise"};
 constexpr Check tilt_check{"tilt", "Tilt of the sensor"};
 
-constexpr const char* stand_it_right =
-    "Set the sensor up as docs/wiring.md says, or correct platform_from_sensor in octurn.json.";
+constexpr const char* measure_it = "Measure where the sensor stands with a turn of any object.";
+constexpr const char* place_it =
+    "Turn the sensor back to where it stood, or set its pose until the ring in the picture lies on "
+    "the platform.";
 
 // Every supported sensor delivers 30 Hz in the mode that Octurn chooses.
 constexpr double nominal_rate_hz = 30;
 constexpr double low_rate_hz = 27;
 
-constexpr int few_rays = 500;  // a platform of 28 cm, 2 m away, has ten times as many
-
-// With its noise, a platform this high reaches into a clip box that begins at 5 mm.
-constexpr double much_too_high = 0.004;
-
-// Steps of a Kinect's depth are 1 mm at 0.6 m and 3 mm at 1 m (reference: 345489 / (1089.4 - raw)),
-// and its noise is less than a step.
-constexpr double much_noise = 0.003;
-constexpr double too_much_noise = 0.01;
-
 // One degree moves a point at 0.7 m by 12 mm.
 constexpr double small_turn = radians_from_degrees(1.5);
 constexpr double large_turn = radians_from_degrees(5);
 
-std::string mm(double metres, int digits) {
-  return rounded(mm_from_metres(metres), digits) + " mm";
-}
-
-std::string percent(int part, int whole) {
-  return std::to_string(whole == 0 ? 0 : 100 * part / whole) + " %";
-}
-
 double seconds_between(const SensorSample& sample, std::size_t from, std::size_t to) {
   return std::chrono::duration<double>(sample.times[to] - sample.times[from]).count();
 }
-
-/// The value that `share` of the others lie below. @param values  at least one; put in another
-/// order
-double quantile(std::vector<double>& values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + at);
-  return values[static_cast<std::size_t>(at)];
-}
-
-/// A pixel's ray in the platform frame: `direction` is the way of one metre of depth.
-struct Ray {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-
-  Eigen::Vector3d at(double depth) const { return origin + depth * direction; }
-  double depth_of_surface() const { return -origin.z() / direction.z(); }
-};
-
-Ray make_ray(int u, int v, const Intrinsics& lens, const Eigen::Isometry3d& platform_from_sensor) {
-  const Eigen::Vector3d in_sensor((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
-  return {.origin = platform_from_sensor.translation(),
-          .direction = platform_from_sensor.linear() * in_sensor};
-}
-
-/// Radius of the largest circle about the platform's axis inside the box.
-double radius_within(const Box& clip) {
-  return std::min(std::min(-clip.min.x(), clip.max.x()), std::min(-clip.min.y(), clip.max.y()));
-}
-
-bool meets_platform(const Ray& ray, double radius) {
-  return ray.direction.z() < 0 && ray.at(ray.depth_of_surface()).head<2>().norm() <= radius;
-}
-
-/// Depths of one pixel in all frames, metres, without missing readings.
-std::vector<double> readings_at(const SensorSample& sample, std::size_t pixel) {
-  std::vector<double> depths;
-  for (const DepthFrame& frame : sample.frames) {
-    if (frame.depth[pixel] != 0) {
-      depths.push_back(frame.depth[pixel] * sample.intrinsics.depth_unit);
-    }
-  }
-  return depths;
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) {
-    sum += value;
-  }
-  return sum / static_cast<double>(values.size());
-}
-
-/// Heights of pixels on the surface, and deviations of their depths from each pixel's mean.
-struct Surface {
-  std::vector<double> heights = {};
-  std::vector<double> deviations = {};
-
-  void add(const std::vector<double>& depths, double mean_depth, double height) {
-    heights.push_back(height);
-    for (const double depth : depths) {
-      deviations.push_back(std::abs(depth - mean_depth));
-    }
-  }
-};
 
 }  // namespace
 
@@ -152,79 +70,6 @@ Finding check_lost_frames(const SensorSample& sample) {
              : lost_frames.ok(measured);
 }
 
-PlatformView measure_platform(const SensorSample& sample, const Box& clip,
-                              const Eigen::Isometry3d& platform_from_sensor) {
-  PlatformView view;
-  Surface surface;
-  const Intrinsics& lens = sample.intrinsics;
-  const double radius = radius_within(clip);
-  std::size_t pixel = 0;
-  for (int v = 0; v < lens.height; ++v) {
-    for (int u = 0; u < lens.width; ++u, ++pixel) {
-      const Ray ray = make_ray(u, v, lens, platform_from_sensor);
-      if (!meets_platform(ray, radius)) {
-        continue;
-      }
-      ++view.rays;
-      const std::vector<double> depths = readings_at(sample, pixel);
-      if (depths.empty() || 2 * depths.size() < sample.frames.size()) {
-        continue;
-      }
-      ++view.readings;
-      const double depth = mean(depths);
-      const double height = ray.at(depth).z();
-      if (std::abs(height) <= surface_tolerance) {
-        ++view.on_surface;
-        surface.add(depths, depth, height);
-      }
-    }
-  }
-  if (view.on_surface > 0) {
-    view.height = quantile(surface.heights, 0.5);
-    view.noise = quantile(surface.deviations, 0.683);  // that part of a normal distribution is
-                                                       // within its standard deviation
-  }
-  return view;
-}
-
-Finding check_platform(const PlatformView& view) {
-  if (view.rays < few_rays) {
-    return platform.fault("not in the picture, by the calibration", stand_it_right);
-  }
-  const std::string seen = percent(view.readings, view.rays) + " of it has readings";
-  if (10 * view.readings < view.rays) {
-    return platform.fault(seen,
-                          "See that nothing stands before the sensor, that it is 0.5 to 1 m away, "
-                          "and that no sun shines on the platform.");
-  }
-  if (10 * view.on_surface < view.readings) {
-    return platform.fault("nothing is where the calibration has it", stand_it_right);
-  }
-  const std::string measured = mm(std::abs(view.height), 1) +
-                               (view.height < 0 ? " below" : " above") +
-                               " where the calibration has it, " + seen;
-  if (std::abs(view.height) > much_too_high) {
-    return platform.warning(measured, stand_it_right);
-  }
-  return 2 * view.readings < view.rays
-             ? platform.warning(measured,
-                                "Take large objects off, and cover a black or shiny platform with "
-                                "matt paper.")
-             : platform.ok(measured);
-}
-
-Finding check_depth_noise(const PlatformView& view) {
-  if (view.on_surface < few_rays) {
-    return depth_noise.unknown("too little of the platform is seen");
-  }
-  const std::string measured = mm(view.noise, 2) + " on the platform";
-  constexpr const char* advice =
-      "Keep sunlight and other depth cameras away, and let the sensor stand still and warm up.";
-  return view.noise > too_much_noise ? depth_noise.fault(measured, advice)
-         : view.noise > much_noise   ? depth_noise.warning(measured, advice)
-                                     : depth_noise.ok(measured);
-}
-
 Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& platform_from_sensor) {
   if (!tilt) {
     return tilt_check.unknown("this sensor does not tell it");
@@ -239,8 +84,8 @@ Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& pla
   const auto degrees = [](double angle) { return rounded(degrees_from_radians(angle), 1) + "°"; };
   const std::string measured = "pitch " + degrees(tilt->pitch) + ", roll " + degrees(tilt->roll) +
                                "; calibrated at " + degrees(pitch) + ", " + degrees(roll);
-  return off > large_turn   ? tilt_check.fault(measured, stand_it_right)
-         : off > small_turn ? tilt_check.warning(measured, stand_it_right)
+  return off > large_turn   ? tilt_check.fault(measured, place_it, Action::set_pose)
+         : off > small_turn ? tilt_check.warning(measured, measure_it, Action::measure_turn)
                             : tilt_check.ok(measured);
 }
 
@@ -250,7 +95,8 @@ std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
     const bool busy = failure->code == ErrorCode::busy;
     std::vector<Finding> findings{busy ? sensor.unknown(failure->detail, failure->hint)
                                        : sensor.fault(failure->detail, failure->hint)};
-    for (const Check& check : {frame_rate, lost_frames, platform, depth_noise, tilt_check}) {
+    for (const Check& check :
+         {frame_rate, lost_frames, platform_check, depth_noise_check, tilt_check}) {
       findings.push_back(check.unknown(busy ? "not measured" : "no sensor to measure"));
     }
     return findings;

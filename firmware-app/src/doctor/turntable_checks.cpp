@@ -7,6 +7,7 @@ namespace {
 
 constexpr Check gpio_chip{"gpio-chip", "GPIO chip"};
 constexpr Check gpio_lines{"gpio-lines", "GPIO lines"};
+constexpr Check wake_ups{"wake-ups", "Pulses in time"};
 constexpr Check turntable{"turntable", "Turntable"};
 
 void append(std::string& list, const std::string& item) {
@@ -62,6 +63,20 @@ Finding check_gpio_lines(const HeaderState& header, LineOwner owner) {
   return gpio_lines.ok(held.empty()   ? free + " free"
                        : free.empty() ? held + " held by Octurn"
                                       : held + " held by Octurn, " + free + " free");
+}
+
+Finding check_wake_ups(const Lateness& lateness, std::chrono::steady_clock::duration limit) {
+  const auto milliseconds = [](std::chrono::steady_clock::duration time) {
+    return rounded(std::chrono::duration<double, std::milli>(time).count(), 2) + " ms";
+  };
+  const std::string measured = std::to_string(lateness.size()) + " wake-ups, half of them within " +
+                               milliseconds(lateness[lateness.size() / 2]) + " and all within " +
+                               milliseconds(lateness.back());
+  return lateness.back() <= limit
+             ? wake_ups.ok(measured)
+             : wake_ups.warning(measured,
+                                "End other programs on this machine: late pulses lose no step, but "
+                                "the platform turns more slowly.");
 }
 
 Finding check_simulated_turntable() { return turntable.ok("simulated: it needs no GPIO"); }

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <variant>
 
 #include "doctor/finding.hpp"
 #include "scan/job.hpp"
 #include "turntable/gpio_lines.hpp"
+#include "turntable/wake_ups.hpp"
 
 namespace octurn {
 
@@ -22,6 +24,10 @@ HeaderState read_gpio_header(const std::vector<NamedLine>& lines);
 
 Finding check_gpio_chip(const HeaderState& header);
 Finding check_gpio_lines(const HeaderState& header, LineOwner owner);
+
+/// Whether the thread that makes the pulses would wake up in time, now, beside all else that runs.
+/// @param limit  how late a wake-up may be
+Finding check_wake_ups(const Lateness& lateness, std::chrono::steady_clock::duration limit);
 
 /// The finding in place of both for a simulated turntable.
 Finding check_simulated_turntable();

@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 
@@ -42,44 +44,69 @@ std::optional<ino_t> socket_inode(int descriptor) {
   return info.st_ino;
 }
 
-std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
-  const auto inode = socket_inode(descriptor);
-  if (!inode) {
-    return std::nullopt;
-  }
+bool is_at_port(int descriptor, int local_port) {
   sockaddr_storage local{};
   socklen_t size = sizeof local;
-  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&local), &size) != 0 ||
-      to_port(local) != local_port) {
+  return ::getsockname(descriptor, reinterpret_cast<sockaddr*>(&local), &size) == 0 &&
+         to_port(local) == local_port;
+}
+
+std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
+  const auto inode = socket_inode(descriptor);
+  if (!inode || !is_at_port(descriptor, local_port)) {
     return std::nullopt;
   }
   sockaddr_storage peer{};
-  size = sizeof peer;
+  socklen_t size = sizeof peer;
   std::array<char, NI_MAXHOST> address{};
   if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
       ::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), size, address.data(), address.size(),
                     nullptr, 0, NI_NUMERICHOST) != 0) {
     return std::nullopt;  // it listens, or its peer has gone
   }
-  return AcceptedSocket{
-      .descriptor = descriptor, .inode = *inode, .address = address.data(), .port = to_port(peer)};
+  int unread = 0;  // bytes
+  return AcceptedSocket{.descriptor = descriptor,
+                        .inode = *inode,
+                        .address = address.data(),
+                        .port = to_port(peer),
+                        .has_unread = ::ioctl(descriptor, FIONREAD, &unread) == 0 && unread > 0};
+}
+
+/// @throws Error "no-descriptors"
+std::vector<int> open_descriptors() {
+  const std::unique_ptr<DIR, Closer> folder(::opendir("/proc/self/fd"));
+  if (!folder) {
+    throw Error(ErrorCode::no_descriptors, "/proc/self/fd cannot be read", "Is /proc mounted?");
+  }
+  std::vector<int> descriptors;
+  while (const dirent* const entry = ::readdir(folder.get())) {
+    descriptors.push_back(std::atoi(entry->d_name));  // "." and "..": 0, which is no socket
+  }
+  return descriptors;
 }
 
 }  // namespace
 
 std::vector<AcceptedSocket> accepted_sockets(int local_port) {
-  const std::unique_ptr<DIR, Closer> folder(::opendir("/proc/self/fd"));
-  if (!folder) {
-    throw Error(ErrorCode::no_descriptors, "/proc/self/fd cannot be read", "Is /proc mounted?");
-  }
   std::vector<AcceptedSocket> sockets;
-  while (const dirent* const entry = ::readdir(folder.get())) {
-    const int descriptor = std::atoi(entry->d_name);  // "." and "..": 0, which is no such socket
+  for (const int descriptor : open_descriptors()) {
     if (auto socket = accepted_socket(descriptor, local_port)) {
       sockets.push_back(*std::move(socket));
     }
   }
   return sockets;
+}
+
+void defer_accept(int local_port, std::chrono::seconds time) {
+  const auto seconds = static_cast<int>(time.count());
+  for (const int descriptor : open_descriptors()) {
+    int listens = 0;
+    socklen_t size = sizeof listens;
+    if (::getsockopt(descriptor, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) == 0 && listens != 0 &&
+        is_at_port(descriptor, local_port)) {
+      ::setsockopt(descriptor, IPPROTO_TCP, TCP_DEFER_ACCEPT, &seconds, sizeof seconds);
+    }
+  }
 }
 
 void shut_down(const AcceptedSocket& socket, Cut cut) {

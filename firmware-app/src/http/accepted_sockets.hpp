@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,17 @@ struct AcceptedSocket {
   ino_t inode = 0;           ///< tells it from a later one that has the same descriptor
   std::string address = {};  ///< of the peer, numeric, as getnameinfo(3) writes it
   int port = 0;              ///< of the peer
+  bool has_unread = false;   ///< bytes have come that nobody has read yet
 };
 
 /// The connections that came in at this port and are still open, whatever their state.
 /// @throws Error "no-descriptors"  if /proc/self/fd cannot be read
 std::vector<AcceptedSocket> accepted_sockets(int local_port);
+
+/// Has the kernel keep new connections at this port to itself until their first bytes have come, or
+/// for this long (TCP_DEFER_ACCEPT, tcp(7)): so a client that says nothing takes no one's place.
+/// @param time  0 hands them over at once again
+void defer_accept(int local_port, std::chrono::seconds time);
 
 /// How a connection is cut.
 enum class Cut {

@@ -7,14 +7,18 @@
 #include <variant>
 
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/archives.hpp"
+#include "http/handlers/bin.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/handlers/calibration.hpp"
+#include "http/handlers/formats.hpp"
 #include "http/handlers/models.hpp"
 #include "http/handlers/poses.hpp"
 #include "http/handlers/scans.hpp"
 #include "http/handlers/settings.hpp"
 #include "http/handlers/system.hpp"
 #include "http/handlers/turntable.hpp"
+#include "http/json_body.hpp"
 #include "http/problem.hpp"
 #include "http/same_origin.hpp"
 #include "log.hpp"
@@ -23,6 +27,7 @@ namespace octurn {
 namespace {
 
 constexpr std::string_view update_path = "/api/v1/update";
+constexpr std::string_view import_path = "/api/v1/scans/import";
 
 /// The parts of a path for which its route has `{id}` and `{number}`; empty if it has not.
 struct PathParts {
@@ -115,6 +120,12 @@ class Place {
   std::counting_semaphore<>* places_;
 };
 
+/// Adds a method to those that a path takes.
+void allow(std::string_view method, std::string& allowed) {
+  allowed.append(allowed.empty() ? "" : ", ").append(method);
+  allowed.append(method == "GET" ? ", HEAD" : "");
+}
+
 Response wrong_method(const Request& request, const std::string& allowed) {
   Response response = problem({.code = ErrorCode::wrong_method,
                                .detail = request.method + " is not for " + request.path,
@@ -136,10 +147,11 @@ Api::Api(App app) : app_(std::move(app)) {}
 
 Response Api::answer(const Request& request) {
   try {
-    const std::string_view body_type =
-        request.path == update_path ? upload_type : "application/json";
+    const std::string_view body_type = request.path == update_path || request.path == import_path
+                                           ? upload_type
+                                           : "application/json";
     const auto refused = refusal(request, app_.settings.config().host_names, body_type);
-    return refused ? problem(*refused) : dispatch(request);
+    return refused ? problem(*refused) : tagged(request, dispatch(request));
   } catch (const Error& error) {
     return problem(to_failure(error));
   } catch (const std::exception& error) {
@@ -149,9 +161,47 @@ Response Api::answer(const Request& request) {
   }
 }
 
-std::span<const Api::Route> Api::routes() {
+std::span<const Api::Route> Api::scan_routes() {
+  static const std::array all{
+      Route{"GET", "/api/v1/scans", list_scans},
+      Route{"POST", "/api/v1/scans", start_scan, WaitsFor::start},
+      Route{"POST", "/api/v1/scans/estimate", send_estimate},
+      Route{"GET", "/api/v1/scans/{id}", send_scan},
+      Route{"PATCH", "/api/v1/scans/{id}", rename_scan},
+      Route{"DELETE", "/api/v1/scans/{id}", remove_scan},
+      Route{"POST", "/api/v1/scans/{id}/cancel", cancel_scan},
+      Route{"POST", "/api/v1/scans/{id}/end", cancel_scan},
+      Route{"POST", "/api/v1/scans/{id}/pause", pause_scan},
+      Route{"POST", "/api/v1/scans/{id}/restore", restore_scan},
+      Route{"POST", "/api/v1/scans/{id}/resume", resume_scan, WaitsFor::start},
+      Route{"GET", "/api/v1/scans/{id}/Scan.stl", send_model},
+      Route{"POST", import_path, import_scan, WaitsFor::start},
+      Route{"GET", "/api/v1/scans/{id}/scan.zip", send_archive},
+      Route{"GET", "/api/v1/scans/{id}/Scan.3mf", send_mesh},
+      Route{"GET", "/api/v1/scans/{id}/Scan.ply", send_mesh},
+      Route{"GET", "/api/v1/scans/{id}/Scan.glb", send_mesh},
+      Route{"GET", "/api/v1/scans/{id}/thumbnail.png", send_thumbnail},
+      Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
+      Route{"GET", "/api/v1/scans/{id}/builds", list_builds},
+      Route{"POST", "/api/v1/scans/{id}/builds", start_build},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}", send_build},
+      Route{"DELETE", "/api/v1/scans/{id}/builds/{number}", remove_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{number}/cancel", cancel_build},
+      Route{"POST", "/api/v1/scans/{id}/builds/{number}/choose", choose_build},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.stl", send_build_model},
+      Route{"GET", "/api/v1/scans/{id}/poses", list_poses},
+      Route{"POST", "/api/v1/scans/{id}/poses", start_pose, WaitsFor::start},
+      Route{"POST", "/api/v1/scans/{id}/poses/{number}", choose_pose},
+      Route{"DELETE", "/api/v1/scans/{id}/poses/{number}", remove_pose},
+      Route{"GET", "/api/v1/scans/{id}/poses/{number}/points", send_pose_points},
+  };
+  return all;
+}
+
+std::span<const Api::Route> Api::other_routes() {
   static const std::array all{
       Route{"GET", "/Scan.stl", send_newest_model},
+      Route{"GET", "/api/v1/openapi.json", send_description},
       Route{"GET", "/api/v1/status", send_status},
       Route{"GET", "/api/v1/settings", send_settings},
       Route{"PATCH", "/api/v1/settings", change_settings},
@@ -170,25 +220,8 @@ std::span<const Api::Route> Api::routes() {
       Route{"GET", "/api/v1/doctor", send_findings, WaitsFor::look},
       Route{"GET", "/api/v1/diagnostics.zip", send_diagnostics, WaitsFor::look},
       Route{"GET", "/api/v1/preview/depth.png", send_depth_picture, WaitsFor::look},
-      Route{"GET", "/api/v1/scans", list_scans},
-      Route{"POST", "/api/v1/scans", start_scan, WaitsFor::start},
-      Route{"GET", "/api/v1/scans/{id}", send_scan},
-      Route{"PATCH", "/api/v1/scans/{id}", rename_scan},
-      Route{"DELETE", "/api/v1/scans/{id}", remove_scan},
-      Route{"POST", "/api/v1/scans/{id}/cancel", cancel_scan},
-      Route{"POST", "/api/v1/scans/{id}/resume", resume_scan, WaitsFor::start},
-      Route{"GET", "/api/v1/scans/{id}/Scan.stl", send_model},
-      Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
-      Route{"GET", "/api/v1/scans/{id}/builds", list_builds},
-      Route{"POST", "/api/v1/scans/{id}/builds", start_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}", send_build},
-      Route{"DELETE", "/api/v1/scans/{id}/builds/{number}", remove_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{number}/cancel", cancel_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{number}/choose", choose_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.stl", send_build_model},
-      Route{"GET", "/api/v1/scans/{id}/poses", list_poses},
-      Route{"POST", "/api/v1/scans/{id}/poses", start_pose, WaitsFor::start},
-      Route{"DELETE", "/api/v1/scans/{id}/poses/{number}", remove_pose},
+      Route{"GET", "/api/v1/bin", send_bin},
+      Route{"DELETE", "/api/v1/bin", empty_bin},
       Route{"GET", update_path, send_update_state},
       Route{"PUT", update_path, take_update},
       Route{"GET", "/api/v1/machine", send_machine},
@@ -197,6 +230,16 @@ std::span<const Api::Route> Api::routes() {
       Route{"PUT", "/api/v1/wifi", join_wifi},
   };
   return all;
+}
+
+std::vector<RouteName> Api::routes() {
+  std::vector<RouteName> names;
+  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
+    for (const Route& route : part) {
+      names.push_back({.method = route.method, .path = route.path});
+    }
+  }
+  return names;
 }
 
 /// What counts those who wait as this route may; null: it waits for nothing.
@@ -215,23 +258,24 @@ std::counting_semaphore<>* Api::places_for(const Route& route) {
 Response Api::dispatch(const Request& request) {
   const std::string_view method = request.is_read() ? std::string_view("GET") : request.method;
   std::string allowed;
-  for (const Route& route : routes()) {
-    const auto parts = match(route.path, request.path);
-    if (parts && route.method == method) {
-      const Place place(places_for(route));
-      return std::visit(Call{app_, request, *parts}, route.handler);
-    }
-    if (parts) {
-      allowed.append(allowed.empty() ? "" : ", ").append(route.method);
-      allowed.append(route.method == "GET" ? ", HEAD" : "");
+  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
+    for (const Route& route : part) {
+      const auto parts = match(route.path, request.path);
+      if (parts && route.method == method) {
+        const Place place(places_for(route));
+        return std::visit(Call{app_, request, *parts}, route.handler);
+      }
+      if (parts) {
+        allow(route.method, allowed);
+      }
     }
   }
-  if (allowed.empty() && request.is_read()) {
+  if (allowed.empty() && request.is_read() && !request.path.starts_with("/api/")) {
     return app_.page.file(request);
   }
   if (allowed.empty()) {
     throw Error(ErrorCode::not_found, "there is no " + request.path,
-                "web/API.md lists what there is.");
+                "Check the address. Those of this version begin with /api/v1/.");
   }
   return wrong_method(request, allowed);
 }

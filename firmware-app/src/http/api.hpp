@@ -2,11 +2,19 @@
 
 #include <semaphore>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "http/app.hpp"
 #include "http/message.hpp"
 
 namespace octurn {
+
+/// A method, and a path with `{id}` and `{number}` for its variable parts.
+struct RouteName {
+  std::string_view method;
+  std::string_view path;
+};
 
 /// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
 /// thread may call it.
@@ -17,10 +25,14 @@ class Api {
   /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
   Response answer(const Request& request);
 
+  /// All that it answers but the page, so that its description can be compared.
+  static std::vector<RouteName> routes();
+
  private:
   struct Route;
 
-  static std::span<const Route> routes();
+  static std::span<const Route> scan_routes();
+  static std::span<const Route> other_routes();
   std::counting_semaphore<>* places_for(const Route& route);
   Response dispatch(const Request& request);
 

@@ -13,6 +13,9 @@ using Clock = std::chrono::steady_clock;
 // How often the debts are looked at; small beside the patience of seconds.
 constexpr std::chrono::milliseconds tick(100);
 
+// The same while there are too many connections: whoever is in the queue behind them waits for it.
+constexpr std::chrono::milliseconds crowded_tick(10);
+
 }  // namespace
 
 ConnectionGuard::ConnectionGuard(int port, const ConnectionLimits& limits)
@@ -75,7 +78,7 @@ void ConnectionGuard::watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     changed_.wait(lock, stop, [this] { return !table_.is_empty(); });
-    changed_.wait_for(lock, stop, tick, [] { return false; });
+    changed_.wait_for(lock, stop, table_.is_crowded() ? crowded_tick : tick, [] { return false; });
     look();
   }
 }

@@ -10,6 +10,9 @@ namespace {
 // Who has kept the server waiting for longer than a lost packet takes to be sent again goes first.
 constexpr double noticeable_debt = 1;  // seconds
 
+// A thread knows what a whole head asks for in less than this after it has read it.
+constexpr std::chrono::milliseconds reading_time(10);
+
 /// What a slow reader has not taken would stay in the kernel's memory for minutes.
 Cut final_cut(Wait wait) { return wait == Wait::reader ? Cut::reset : Cut::finish; }
 
@@ -20,6 +23,10 @@ void ConnectionTable::refresh(std::span<const AcceptedSocket> open, Time now) {
   for (const AcceptedSocket& socket : open) {
     const auto known = connections_.find(socket.inode);
     if (known != connections_.end()) {
+      if (known->second.socket.has_unread && !socket.has_unread) {
+        known->second.since = now;
+      }
+      known->second.socket.has_unread = socket.has_unread;
       still_open.insert(connections_.extract(known));
     } else {
       still_open.emplace(socket.inode, Connection{.socket = socket, .since = now, .settled = now});
@@ -42,6 +49,13 @@ std::optional<ConnectionTable::Key> ConnectionTable::claim(std::string_view addr
   return found->first;
 }
 
+/// A head that has come and that no thread has read yet is in the queue: so is every visitor while
+/// others hold all threads.
+bool ConnectionTable::waits_for_server(const Connection& connection) {
+  return connection.wait == Wait::server ||
+         (connection.wait == Wait::head && connection.socket.has_unread);
+}
+
 /// Bytes a second; nothing where only the deadline counts.
 std::optional<double> ConnectionTable::min_rate(Wait wait) const {
   switch (wait) {
@@ -55,7 +69,7 @@ std::optional<double> ConnectionTable::min_rate(Wait wait) const {
 }
 
 void ConnectionTable::settle(Connection& connection, Time now, std::uint64_t bytes) const {
-  if (connection.wait != Wait::server) {
+  if (!waits_for_server(connection)) {
     connection.debt += std::chrono::duration<double>(now - connection.settled).count();
   }
   if (const auto rate = min_rate(connection.wait)) {
@@ -125,12 +139,10 @@ std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
       endings.push_back({.socket = connection.socket, .cut = *cut});
     }
   }
-  auto held = static_cast<std::size_t>(
-      std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.ended; }));
-  for (; held > limits_.max_connections; --held) {
-    Connection* const connection = worst();
+  for (std::size_t held = count_held(); held > limits_.max_connections; --held) {
+    Connection* const connection = worst(now);
     if (connection == nullptr) {
-      break;  // all of them wait for the server
+      break;  // all of them wait for the server, or are new
     }
     connection->ended = true;
     endings.push_back({.socket = connection->socket, .cut = final_cut(connection->wait)});
@@ -138,11 +150,17 @@ std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
   return endings;
 }
 
-/// The connections that wait for their clients.
-std::vector<ConnectionTable::Connection*> ConnectionTable::candidates() {
+std::size_t ConnectionTable::count_held() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.ended; }));
+}
+
+/// The connections that wait for their clients, and have for a while.
+std::vector<ConnectionTable::Connection*> ConnectionTable::candidates(Time now) {
   std::vector<Connection*> waiting;
   for (auto& [key, connection] : connections_) {
-    if (!connection.ended && connection.wait != Wait::server) {
+    if (!connection.ended && !waits_for_server(connection) &&
+        now - connection.since >= reading_time) {
       waiting.push_back(&connection);
     }
   }
@@ -151,8 +169,8 @@ std::vector<ConnectionTable::Connection*> ConnectionTable::candidates() {
 
 /// The connection with the most debt; where none has any to speak of, the oldest of the address
 /// that holds the most. Null if all wait for the server.
-ConnectionTable::Connection* ConnectionTable::worst() {
-  const std::vector<Connection*> waiting = candidates();
+ConnectionTable::Connection* ConnectionTable::worst(Time now) {
+  const std::vector<Connection*> waiting = candidates(now);
   if (waiting.empty()) {
     return nullptr;
   }

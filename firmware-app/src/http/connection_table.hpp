@@ -49,6 +49,9 @@ class ConnectionTable {
 
   bool is_empty() const { return connections_.empty(); }
 
+  /// Whether there are too many, also after `cut_all_due`.
+  bool is_crowded() const { return count_held() > limits_.max_connections; }
+
   /// Takes up the connections that are new, and forgets those that are closed.
   void refresh(std::span<const AcceptedSocket> open, Time now);
 
@@ -82,7 +85,7 @@ class ConnectionTable {
  private:
   struct Connection {
     AcceptedSocket socket = {};
-    Time since = {};
+    Time since = {};  // new, or read from after it was in the queue
     Wait wait = Wait::head;
     double debt = 0;  // seconds, at the time `settled`
     Time settled = {};
@@ -90,11 +93,13 @@ class ConnectionTable {
     bool ended = false;  // shut wholly
   };
 
+  static bool waits_for_server(const Connection& connection);
   std::optional<double> min_rate(Wait wait) const;
   void settle(Connection& connection, Time now, std::uint64_t bytes) const;
   std::optional<Cut> due(Connection& connection, Time now) const;
-  std::vector<Connection*> candidates();
-  Connection* worst();
+  std::size_t count_held() const;
+  std::vector<Connection*> candidates(Time now);
+  Connection* worst(Time now);
 
   ConnectionLimits limits_;
   std::unordered_map<Key, Connection> connections_ = {};

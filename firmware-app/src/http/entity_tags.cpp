@@ -1,6 +1,9 @@
 #include "http/entity_tags.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
 #include <optional>
 
 namespace octurn {
@@ -48,6 +51,17 @@ bool matches(std::string_view field, Compare is_same) {
 
 }  // namespace
 
+// 64-bit FNV-1a
+std::string to_entity_tag(std::string_view content) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : content) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  }
+  std::array<char, 16> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16).ptr;
+  return "\"" + std::string(digits.data(), end) + "\"";
+}
+
 bool matches_strongly(std::string_view field, std::string_view tag) {
   return matches(field,
                  [&](const EntityTag& other) { return !other.is_weak && other.text == tag; });
@@ -55,6 +69,11 @@ bool matches_strongly(std::string_view field, std::string_view tag) {
 
 bool matches_weakly(std::string_view field, std::string_view tag) {
   return matches(field, [&](const EntityTag& other) { return other.text == tag; });
+}
+
+bool client_has(const Request& request, std::string_view tag) {
+  const auto known = request.header("If-None-Match");
+  return known && matches_weakly(*known, tag);
 }
 
 }  // namespace octurn

@@ -90,7 +90,9 @@ std::string percent_encoded(std::string_view text) {
 
 std::string attachment(std::string_view name) {
   const std::string encoded = percent_encoded(name);
-  const std::string plain = encoded == name ? encoded : "Scan.stl";  // for clients without RFC 8187
+  const std::string ending(name.substr(std::min(name.rfind('.'), name.size())));
+  const std::string plain =
+      encoded == name ? encoded : "Scan" + ending;  // for clients without RFC 8187
   return "attachment; filename=\"" + plain + "\"; filename*=UTF-8''" + encoded;
 }
 
@@ -109,7 +111,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
     throw Error(ErrorCode::changed, "the model is not the one that was asked for",
                 "Download it again.");
   }
-  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, tag)) {
+  if (client_has(request, tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
 

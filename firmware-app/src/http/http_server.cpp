@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "http/accepted_sockets.hpp"
 #include "http/connection_guard.hpp"
 #include "http/exchange.hpp"
 #include "http/login.hpp"
@@ -187,6 +188,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer)
   server_->context = start_civetweb(address + ":" + std::to_string(options.port), options, service);
   service.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,
                                                  .patience = options.patience});
+  defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.patience));
   service.started.count_down();
 }
 
@@ -195,6 +197,7 @@ HttpServer::~HttpServer() {
   // civetweb looks whether it shall stop only between connections, or after 2 s without one: so it
   // gets connections until it has.
   const int own_port = port();
+  defer_accept(own_port, std::chrono::seconds(0));
   const std::future<void> stopped = std::async(std::launch::async, mg_stop, server_->context);
   while (stopped.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
     std::array<char, 256> ignored{};

@@ -1,7 +1,9 @@
 #include "http/json_body.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "http/entity_tags.hpp"
 #include "octurn/json_object.hpp"
 
 namespace octurn {
@@ -10,8 +12,28 @@ using nlohmann::json;
 
 Response json_response(const json& body, int status) {
   return {.status = status,
-          .headers = {{"Content-Type", "application/json"}, {"Cache-Control", "no-store"}},
+          .headers = {{"Content-Type", "application/json"}, {"Cache-Control", "private, no-cache"}},
           .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
+}
+
+Response tagged(const Request& request, Response response) {
+  const auto type =
+      std::ranges::find(response.headers, "Content-Type", &Headers::value_type::first);
+  const auto* const body = std::get_if<std::string>(&response.body);
+  const bool has_tag =
+      std::ranges::count(response.headers, "ETag", &Headers::value_type::first) > 0;
+  if (!request.is_read() || response.status != 200 || body == nullptr || has_tag ||
+      type == response.headers.end() || type->second != "application/json") {
+    return response;
+  }
+  const std::string tag = to_entity_tag(*body);
+  if (client_has(request, tag)) {
+    response.status = 304;
+    response.headers.erase(type);
+    response.body = std::string();
+  }
+  response.headers.emplace_back("ETag", tag);
+  return response;
 }
 
 json parse_body(const Request& request) {

@@ -8,6 +8,10 @@ namespace octurn {
 
 Response json_response(const nlohmann::json& body, int status = 200);
 
+/// An answer to a GET with the entity tag of its JSON, or 304 without it where the client has that
+/// already; any other answer as it is.
+Response tagged(const Request& request, Response response);
+
 /// The body of a request, parsed; no body is an empty object. @throws Error "bad-json"
 nlohmann::json parse_body(const Request& request);
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 
@@ -33,18 +31,6 @@ constexpr std::array content_types{
     ContentType{".woff2", "font/woff2"},
     ContentType{".txt", "text/plain; charset=utf-8"},
 };
-
-/// An entity tag from the content (64-bit FNV-1a): all files of an image have the same date, so
-/// that a tag from date and size, as civetweb makes it, could outlive an update.
-std::string to_entity_tag(std::string_view content) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : content) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  }
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16).ptr;
-  return "\"" + std::string(digits.data(), end) + "\"";
-}
 
 std::string read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -83,6 +69,7 @@ Page::Page(const fs::path& folder) {
       continue;
     }
     File file{.content_type = std::string(type->name), .content = read(entry.path())};
+    // All files of an image have the same date: a tag from date and size could outlive an update.
     file.tag = to_entity_tag(file.content);
     files_.emplace("/" + fs::relative(entry.path(), folder).generic_string(), std::move(file));
   }
@@ -95,8 +82,7 @@ Response Page::file(const Request& request) const {
   }
   const File& file = found->second;
   Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match");
-      known && matches_weakly(*known, file.tag)) {
+  if (client_has(request, file.tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", file.content_type);

@@ -16,6 +16,7 @@ using nlohmann::json;
 json with_preview(const App& app, const Job& job) {
   json scan = to_json(job);
   const auto preview = app.scanner.mesh_preview();
+  scan["can_resume"] = app.scanner.can_resume(job);
   scan["preview"] = nullptr;
   if (job.state == JobState::running && preview->id == job.id && preview->snapshots > 0) {
     scan["preview"] = {{"url", "/api/v1/scans/" + job.id + "/preview.stl"},

@@ -53,7 +53,7 @@ void open_device(openni::Device& device, const std::string& uri) {
     throw Error(ErrorCode::sensor_failed, "sensor: " + openni_error_text(), simulation_hint);
   }
   throw Error(ErrorCode::sensor_missing,
-              (uri.empty() ? "sensor: none found: " : "sensor: ") + openni_error_text(),
+              (uri.empty() ? "no sensor was found: " : "sensor: ") + openni_error_text(),
               missing_sensor_hint);
 }
 

@@ -1,5 +1,8 @@
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "octurn/error.hpp"
@@ -10,6 +13,15 @@
 
 namespace octurn {
 namespace {
+
+/// An angle as people write it: "45", "9.73".
+std::string to_degrees_text(double angle) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(),
+                                 std::round(degrees_from_radians(angle) * 100) / 100)
+                       .ptr;
+  return {digits.data(), end};
+}
 
 /// Whether two angles of the platform are equal up to rounding in a file.
 bool is_same_angle(double one, double other) {
@@ -61,8 +73,7 @@ class RecordedSensor final : public DepthSensor {
       }
     }
     throw Error(ErrorCode::sensor_failed,
-                folder_.string() + ": has no frame at " +
-                    std::to_string(degrees_from_radians(angle_)) + " degrees",
+                "the recording has no frame at " + to_degrees_text(angle_) + " degrees",
                 "Scan with as many snapshots as were recorded.");
   }
 

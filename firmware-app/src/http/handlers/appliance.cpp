@@ -62,6 +62,18 @@ void copy(const ByteSource& source, Appliance::Upload& upload) {
   }
 }
 
+/// @throws Error "bad-settings"
+UpdateAge to_update_age(const Headers& parameters) {
+  UpdateAge age = UpdateAge::not_older;
+  for (const auto& [name, text] : parameters) {
+    if (name != "older" || text != "yes") {
+      throw Error(ErrorCode::bad_settings, "the query has \"" + name + "\"", "It takes older=yes.");
+    }
+    age = UpdateAge::any;
+  }
+  return age;
+}
+
 /// @throws Error "not-an-appliance"
 Appliance& expect_appliance(const App& app) {
   if (app.appliance == nullptr) {
@@ -92,13 +104,14 @@ Response take_update(App& app, const Request& request) {
     }
   };
   Appliance& machine = expect_appliance(app);
+  const UpdateAge age = to_update_age(request.parameters);
   if (!request.upload.length) {
     throw Error(ErrorCode::length_required, "the update comes without its length",
                 "Send it with Content-Length, not in chunks.");
   }
   expect_no_scan();
   {
-    Appliance::Upload upload(machine, *request.upload.length);
+    Appliance::Upload upload(machine, *request.upload.length, age);
     copy(request.upload, upload);
     expect_no_scan();  // that began meanwhile
     upload.commit();

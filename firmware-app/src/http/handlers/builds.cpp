@@ -7,6 +7,7 @@
 
 #include "http/file_response.hpp"
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/models.hpp"
 #include "http/json_body.hpp"
 #include "http/scan_json.hpp"
 #include "http/scan_view.hpp"
@@ -56,7 +57,10 @@ Response start_build(App& app, const Request& request, std::string_view id) {
   const BuildOrder order{.settings = build_settings_from(body, {.scan = job.settings}),
                          .becomes_model = becomes_model};
   expect_no_update(app);
-  const std::optional<BuildRun> run = app.scanner.build(id, order);
+  return send_begun(app.scanner.build(id, order));
+}
+
+Response send_begun(const std::optional<BuildRun>& run) {
   if (!run) {
     throw Error(ErrorCode::busy, "a scan is running, or another model is being built",
                 "Wait for its end, or cancel it.");
@@ -97,9 +101,8 @@ Response send_build_model(App& app, const Request& request, std::string_view id,
     throw Error(ErrorCode::no_model, "this build is " + found["state"].get<std::string>(),
                 "Only a finished one has a model.");
   }
-  const Job job = find_scan(app, id);
   const std::string name =
-      (job.name.empty() ? "Scan" : job.name) + "-" + std::string(build) + ".stl";
+      download_name(find_scan(app, id), "-" + std::string(build).append(".stl"));
   return file_response(request, app.store.model_file(id, number_of(found)), "model/stl", name);
 }
 

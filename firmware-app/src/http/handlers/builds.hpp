@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "http/app.hpp"
@@ -16,6 +17,10 @@ Response list_builds(App& app, std::string_view id);
 /// Begins a build with the settings of the body. 202, and its address.
 /// @throws Error "bad-json", "bad-settings", "busy", "no-model", "disk-full"
 Response start_build(App& app, const Request& request, std::string_view id);
+
+/// Tells of a build that was begun: 202, and its address.
+/// @throws Error "busy"  if none was
+Response send_begun(const std::optional<BuildRun>& run);
 
 Response send_build(App& app, std::string_view id, std::string_view build);
 

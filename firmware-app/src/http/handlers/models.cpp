@@ -47,8 +47,6 @@ json to_numbers(const Headers& parameters) {
   return numbers;
 }
 
-std::string file_name(const Job& job) { return (job.name.empty() ? "Scan" : job.name) + ".stl"; }
-
 /// A model that is made from the snapshots while it is sent.
 Response make_model(App& app, const Request& request, const Job& job) {
   json numbers = to_numbers(request.parameters);
@@ -79,13 +77,26 @@ Response make_model(App& app, const Request& request, const Job& job) {
   stream.make = std::packaged_task<void(const ByteSink&)>(
       [made = std::move(model)](const ByteSink& sink) { made->send(sink); });
   return {.headers = {{"Content-Type", "model/stl"},
-                      {"Content-Disposition", attachment(file_name(job))},
+                      {"Content-Disposition", attachment(download_name(job, ".stl"))},
                       {"Accept-Ranges", "none"},
                       {"Cache-Control", "no-store"}},
           .body = std::move(stream)};
 }
 
 }  // namespace
+
+std::string download_name(const Job& job, std::string_view ending) {
+  return std::string(job.name.empty() ? "Scan" : job.name).append(ending);
+}
+
+std::filesystem::path find_model(const App& app, const Job& job) {
+  if (chosen_model(job) == nullptr) {
+    throw Error(ErrorCode::no_model,
+                "this scan is " + std::string(to_string(job.state)) + ": it has no model",
+                "Only a finished scan has one.");
+  }
+  return app.store.model_file(job.id);
+}
 
 Response send_newest_model(App& app, const Request& request) {
   const std::optional<Job> newest = app.store.newest_finished();
@@ -101,12 +112,7 @@ Response send_model(App& app, const Request& request, std::string_view id) {
   if (!request.parameters.empty()) {
     return make_model(app, request, job);
   }
-  if (chosen_model(job) == nullptr) {
-    throw Error(ErrorCode::no_model,
-                "this scan is " + std::string(to_string(job.state)) + ": it has no model",
-                "Only a finished scan has one.");
-  }
-  return file_response(request, app.store.model_file(id), "model/stl", file_name(job));
+  return file_response(request, find_model(app, job), "model/stl", download_name(job, ".stl"));
 }
 
 Response send_preview(App& app, const Request& request, std::string_view id) {
@@ -118,7 +124,7 @@ Response send_preview(App& app, const Request& request, std::string_view id) {
   }
   const std::string tag = '"' + preview->id + '-' + std::to_string(preview->snapshots) + '"';
   Headers headers{{"ETag", tag}, {"Cache-Control", "no-cache"}};
-  if (const auto known = request.header("If-None-Match"); known && matches_weakly(*known, tag)) {
+  if (client_has(request, tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", "model/stl");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "http/app.hpp"
@@ -15,6 +17,13 @@ Response send_newest_model(App& app, const Request& request);
 /// The model of a scan; with parameters, one that is made for this answer.
 /// @throws Error "no-such-scan", "no-model", "bad-settings", "busy", "memory-limit"
 Response send_model(App& app, const Request& request, std::string_view id);
+
+/// What a file of a scan is called when it is downloaded.
+/// @param ending  with its dot, such as ".stl"
+std::string download_name(const Job& job, std::string_view ending);
+
+/// The file of a scan's model. @throws Error "no-model"
+std::filesystem::path find_model(const App& app, const Job& job);
 
 /// The surface of what the latest scan has seen so far.
 /// @throws Error "no-such-scan", "no-preview"

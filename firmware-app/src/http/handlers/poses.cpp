@@ -4,10 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "http/file_response.hpp"
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/builds.hpp"
 #include "http/json_body.hpp"
 #include "http/scan_json.hpp"
 #include "http/scan_view.hpp"
+#include "scan/pose_choice.hpp"
+#include "scan/pose_points.hpp"
 
 namespace octurn {
 namespace {
@@ -42,6 +46,21 @@ Response start_pose(App& app, const Request& request, std::string_view id) {
   Response response = json_response(to_json(app, *job), 202);
   response.headers.emplace_back("Location", "/api/v1/scans/" + job->id);
   return response;
+}
+
+Response choose_pose(App& app, const Request& request, std::string_view id,
+                     std::string_view number) {
+  const PoseChoice choice =
+      pose_choice_from(parse_body(request), app.scanner.find_pose(id, to_number(number)));
+  expect_no_update(app);
+  return send_begun(app.scanner.choose_pose(id, to_number(number), choice));
+}
+
+Response send_pose_points(App& app, const Request& request, std::string_view id,
+                          std::string_view number) {
+  const Job pose = app.scanner.find_pose(id, to_number(number));
+  return file_response(request, app.store.folder(pose.id) / pose_points_file, "application/json",
+                       "points.json");
 }
 
 Response remove_pose(App& app, std::string_view id, std::string_view number) {

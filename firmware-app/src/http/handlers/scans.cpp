@@ -1,6 +1,7 @@
 #include "http/handlers/scans.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -8,13 +9,15 @@
 #include "http/json_body.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
+#include "scan/earlier_scans.hpp"
+#include "settings/field.hpp"
 
 namespace octurn {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t max_name = 100;  // of a scan, bytes
+constexpr std::ptrdiff_t max_name = 100;  // of a scan, characters
 
 [[noreturn]] void throw_busy() {
   throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
@@ -22,6 +25,12 @@ constexpr std::size_t max_name = 100;  // of a scan, bytes
 }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
+
+/// Of UTF-8 text. Every byte of a character but its first has the bits 10 at its top.
+std::ptrdiff_t count_characters(std::string_view text) {
+  return std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+}
 
 /// Takes the places of its verdict's reasons from a model: of thousands of scans they would be most
 /// of the list.
@@ -67,8 +76,8 @@ Response rename_scan(App& app, const Request& request, std::string_view id) {
   JsonObject keys(body, ErrorCode::bad_name, "");
   const auto name = keys.text("name");
   keys.refuse_unread();
-  if (!name || name->size() > max_name || std::ranges::any_of(*name, is_control)) {
-    throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 bytes on one line");
+  if (!name || count_characters(*name) > max_name || std::ranges::any_of(*name, is_control)) {
+    throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 characters on one line");
   }
   app.scanner.rename(id, *name);
   return send_scan(app, id);
@@ -88,10 +97,35 @@ Response cancel_scan(App& app, std::string_view id) {
   return json_response(to_json(app, find_scan(app, id)), 202);
 }
 
+Response pause_scan(App& app, std::string_view id) {
+  const Job job = find_scan(app, id);
+  if (!app.scanner.pause(id)) {
+    throw Error(ErrorCode::not_running, "this scan is " + std::string(to_string(job.state)),
+                "Only a scan that runs can be paused.");
+  }
+  return json_response(to_json(app, find_scan(app, id)), 202);
+}
+
+Response send_estimate(App& app, const Request& request) {
+  const ScanSettings settings = settings_from(
+      parse_body(request), app.scanner.calibration().in_force(app.settings.config().scan));
+  const ScanEstimate estimate = estimate_scan(earlier_scans(app.store), settings);
+  json body{{"seconds", std::round(estimate.total(settings.snapshots).count())},
+            {"bytes", estimate.bytes},
+            {"measured", estimate.is_measured}};
+  if (settings.method == Method::solid) {
+    const MemoryNeed need =
+        expected_memory(reconstruct_options(settings, app.settings.config().limits));
+    body["memory_bytes"] = need.bytes;
+    body["fitting_leaf_size_mm"] = rounded_mm(need.fitting_leaf_size);
+  }
+  return json_response(body);
+}
+
 Response resume_scan(App& app, std::string_view id) {
   const Job job = find_scan(app, id);
   expect_no_update(app);
-  if (is_resumable(job.state) && job.snapshots_done < job.settings.snapshots) {
+  if (app.scanner.can_resume(job) && job.snapshots_done < job.settings.snapshots) {
     app.scanner.expect_ready();
   }
   if (job.state == JobState::running || !app.scanner.resume(id)) {

@@ -22,13 +22,19 @@ Response send_scan(App& app, std::string_view id);
 /// Gives a scan the name of the body. @throws Error "bad-json", "bad-name"
 Response rename_scan(App& app, const Request& request, std::string_view id);
 
-/// Removes a scan and its files. @throws Error "busy"  if it runs
+/// Moves a scan into the bin. @throws Error "busy"  if it runs
 Response remove_scan(App& app, std::string_view id);
 
 /// Asks a scan to stop. @throws Error "not-running"  if it has ended
 Response cancel_scan(App& app, std::string_view id);
 
-/// Goes on with a scan that was paused or interrupted.
+/// Asks a scan to stop so that it can go on later. @throws Error "not-running"
+Response pause_scan(App& app, std::string_view id);
+
+/// What a scan with the settings of the body takes. @throws Error "bad-json", "bad-settings"
+Response send_estimate(App& app, const Request& request);
+
+/// Goes on with a scan that was paused, interrupted, or ended last.
 /// @throws Error "busy", "not-paused", "sensor-...", "turntable-..."
 Response resume_scan(App& app, std::string_view id);
 

@@ -31,7 +31,8 @@ Response send_status(App& app) {
             {"appliance", app.appliance != nullptr},
             {"scan", nullptr},
             {"build", nullptr},
-            {"newest", nullptr}};
+            {"newest", nullptr},
+            {"scans_revision", app.store.revision()}};
   if (running) {
     body["scan"] = to_json(app, *running);
   }
@@ -42,6 +43,12 @@ Response send_status(App& app) {
     body["newest"] = newest->id;
   }
   return json_response(body);
+}
+
+Response send_description(App& app, const Request& request) {
+  Request file = request;
+  file.path = "/openapi.json";
+  return app.page.file(file);
 }
 
 Response send_findings(App& app) {

@@ -10,6 +10,9 @@ namespace octurn {
 /// The devices, the disk, the scan that runs and the newest that is finished.
 Response send_status(App& app);
 
+/// The description of this interface for programs, OpenAPI 3.1: a file of the page.
+Response send_description(App& app, const Request& request);
+
 /// What `octurn doctor` finds.
 Response send_findings(App& app);
 

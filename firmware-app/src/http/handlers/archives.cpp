@@ -1,0 +1,97 @@
+#include "http/handlers/archives.hpp"
+
+#include <filesystem>
+#include <future>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "http/file_response.hpp"
+#include "http/handlers/models.hpp"
+#include "http/json_body.hpp"
+#include "http/scan_view.hpp"
+#include "octurn/file.hpp"
+#include "scan/scan_archive.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t max_archive_bytes = std::uint64_t{1} << 30U;
+constexpr std::size_t part_bytes = std::size_t{16} << 10U;
+
+std::mutex packing;  // one archive at a time
+
+/// A folder or file that is gone at the end.
+class Scratch {
+ public:
+  explicit Scratch(fs::path path) : path_(std::move(path)) {}
+  ~Scratch() {
+    std::error_code ignored;  // the next start clears it away
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Writes the body of a request to a file.
+void receive(const ByteSource& body, const fs::path& target) {
+  AtomicFile file(target);
+  std::vector<std::byte> part(part_bytes);
+  std::uint64_t bytes = 0;
+  for (std::size_t got = 0; (got = body.read(part)) > 0; bytes += got) {
+    file.write(std::span(part).first(got));
+  }
+  if (bytes != body.length) {
+    throw Error(ErrorCode::cut_short, std::to_string(bytes) + " bytes came",
+                "Send the request again.");
+  }
+  file.commit();
+}
+
+}  // namespace
+
+Response send_archive(App& app, const Request& request, std::string_view id) {
+  const Job job = find_scan(app, id);
+  if (job.state == JobState::running) {
+    throw Error(ErrorCode::busy, "this scan is running", "Wait for its end.");
+  }
+  if (job.snapshots_done == 0) {
+    throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
+  }
+  const std::lock_guard lock(packing);
+  const Scratch archive(app.store.data() / "scans" / (".export-" + job.id + ".zip"));
+  std::async(std::launch::async, write_scan_archive, app.store.folder(id), archive.path()).get();
+  return file_response(request, archive.path(), "application/zip",
+                       download_name(job, ".zip"));  // open, so it stays
+}
+
+Response import_scan(App& app, const Request& request) {
+  if (!request.upload.length) {
+    throw Error(ErrorCode::length_required, "the scan comes without its length",
+                "Send it with Content-Length, not in chunks.");
+  }
+  if (*request.upload.length > max_archive_bytes) {
+    throw Error(ErrorCode::too_large, "a scan has at most 1 GiB", "Send a file scan.zip.");
+  }
+  const Job job = app.scanner.adopt(
+      [&](const fs::path& folder) {
+        const Scratch archive(folder / ".scan.zip");
+        receive(request.upload, archive.path());
+        std::async(std::launch::async, read_scan_archive, archive.path(), folder).get();
+      },
+      3 * *request.upload.length);
+  Response response = json_response(to_json(app, find_scan(app, job.id)), 201);
+  response.headers.emplace_back("Location", "/api/v1/scans/" + job.id);
+  return response;
+}
+
+}  // namespace octurn

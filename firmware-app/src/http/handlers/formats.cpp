@@ -1,0 +1,91 @@
+#include "http/handlers/formats.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <string>
+#include <system_error>
+
+#include "http/file_response.hpp"
+#include "http/handlers/models.hpp"
+#include "http/scan_view.hpp"
+#include "mesh/mesh_formats.hpp"
+#include "mesh/thumbnail.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_thumbnail_bytes = std::size_t{1} << 20U;
+
+// Memory is for one at a time. Held while a file is looked at and made.
+std::mutex making;
+
+/// When a file was written; long ago where there is none.
+fs::file_time_type written(const fs::path& file) {
+  std::error_code none;
+  const auto time = fs::last_write_time(file, none);
+  return none ? fs::file_time_type::min() : time;
+}
+
+/// Makes a file unless it is there, and not older than what it is made of. On a thread of its own:
+/// those of the HTTP server have little stack.
+void keep_fresh(const fs::path& file, fs::file_time_type source,
+                const std::function<void()>& make) {
+  const std::lock_guard lock(making);
+  if (const auto made = written(file); made == fs::file_time_type::min() || made < source) {
+    std::async(std::launch::async, make).get();
+  }
+}
+
+fs::path fresh_thumbnail(const fs::path& model) {
+  fs::path file = model.parent_path() / "thumbnail.png";
+  keep_fresh(file, written(model), [&] {
+    const std::vector<std::byte> png = draw_thumbnail(FacetFile(model));
+    write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
+  });
+  return file;
+}
+
+/// @param thumbnail  of the model, for a format that has one in it
+void write_mesh(MeshFormat format, const fs::path& model, const fs::path& thumbnail,
+                const std::string& name, const fs::path& file) {
+  const FacetFile facets(model);
+  switch (format) {
+    case MeshFormat::ply:
+      write_ply(facets, file);
+      break;
+    case MeshFormat::glb:
+      write_glb(facets, name, file);
+      break;
+    case MeshFormat::threemf:
+      write_3mf(facets, name, read_regular_file(thumbnail, max_thumbnail_bytes).value_or(""), file);
+      break;
+  }
+}
+
+}  // namespace
+
+Response send_mesh(App& app, const Request& request, std::string_view id) {
+  const Job job = find_scan(app, id);
+  const fs::path model = find_model(app, job);
+  const std::string extension = fs::path(request.path).extension().string();
+  const MeshFormat format = mesh_format_of(extension).value();  // as its route has it
+  const fs::path file = model.parent_path() / ("Scan" + extension);
+  const auto source = std::max(written(model), written(app.store.folder(id) / "name.txt"));
+  const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
+  keep_fresh(file, source,
+             [&] { write_mesh(format, model, thumbnail, download_name(job, ""), file); });
+  return file_response(request, file, std::string(media_type(format)),
+                       download_name(job, extension));
+}
+
+Response send_thumbnail(App& app, const Request& request, std::string_view id) {
+  const fs::path model = find_model(app, find_scan(app, id));
+  return file_response(request, fresh_thumbnail(model), "image/png", "thumbnail.png");
+}
+
+}  // namespace octurn

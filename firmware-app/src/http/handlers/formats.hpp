@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "http/app.hpp"
+#include "http/message.hpp"
+
+namespace octurn {
+
+// What is made of a scan's model when somebody asks for it first, and then lies beside it: other
+// formats, and a picture. Each throws Error "no-such-scan", "no-model", "disk-full".
+
+/// The model in the format that the path's ending names: 3MF, PLY or GLB.
+Response send_mesh(App& app, const Request& request, std::string_view id);
+
+/// A picture of the model.
+Response send_thumbnail(App& app, const Request& request, std::string_view id);
+
+}  // namespace octurn

@@ -1,0 +1,49 @@
+#include <cstring>
+#include <vector>
+
+#include "mesh/mesh_formats.hpp"
+#include "mesh/vertex_table.hpp"
+
+namespace octurn {
+namespace {
+
+#pragma pack(push, 1)
+struct Face {
+  std::uint8_t corners = 3;
+  std::array<std::uint32_t, 3> indices = {};
+  std::uint8_t filled = 0;
+};
+#pragma pack(pop)
+
+std::string header(std::size_t vertices, std::uint64_t faces) {
+  return "ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\nelement vertex " +
+         std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+         std::to_string(faces) +
+         "\nproperty list uchar uint vertex_indices\nproperty uchar filled\nend_header\n";
+}
+
+}  // namespace
+
+void write_ply(const FacetFile& facets, const std::filesystem::path& target) {
+  const VertexTable table(facets);
+  AtomicFile file(target);
+  const std::string head = header(table.vertices().size(), facets.count());
+  file.write(std::as_bytes(std::span(head)));
+  file.write(std::as_bytes(table.vertices()));
+  std::vector<Face> faces;
+  facets.read([&](std::span<const Facet> block) {
+    faces.clear();
+    for (const Facet& facet : block) {
+      const auto corners = facet.corners;  // which are not aligned in a facet
+      const std::array<std::uint32_t, 3> indices{table.index(corners[0]), table.index(corners[1]),
+                                                 table.index(corners[2])};
+      const bool is_filled = facet.attributes == filled_in;
+      faces.push_back({.indices = indices, .filled = static_cast<std::uint8_t>(is_filled ? 1 : 0)});
+    }
+    file.write(std::as_bytes(std::span(faces)));
+  });
+  file.commit();
+}
+
+}  // namespace octurn

@@ -1,0 +1,130 @@
+// 3MF core specification 1.3: https://github.com/3MFConsortium/spec_core
+
+#include <array>
+#include <charconv>
+#include <string>
+
+#include "mesh/mesh_formats.hpp"
+#include "mesh/vertex_table.hpp"
+#include "zip_writer.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr std::string_view content_types =
+    R"(<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/><Default Extension="png" ContentType="image/png"/></Types>
+)";
+
+constexpr std::string_view relationships_begin =
+    R"(<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>)";
+constexpr std::string_view thumbnail_relationship =
+    R"(<Relationship Target="/Metadata/thumbnail.png" Id="thumbnail" Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>)";
+
+constexpr std::size_t part_bytes = std::size_t{64} << 10U;
+
+/// Text as XML has it; what XML cannot hold is left out.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= ' ') {
+          result += c;
+        }
+    }
+  }
+  return result;
+}
+
+/// XML that goes into an archive a part at a time.
+class XmlStream {
+ public:
+  explicit XmlStream(ZipWriter& zip) : zip_(zip) {}
+
+  XmlStream& operator<<(std::string_view text) {
+    text_ += text;
+    if (text_.size() >= part_bytes) {
+      flush();
+    }
+    return *this;
+  }
+
+  /// The shortest text that is read as the same number.
+  template <typename Number>
+  XmlStream& number(Number value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return *this << std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data()));
+  }
+
+  void flush() {
+    zip_.write(text_);
+    text_.clear();
+  }
+
+ private:
+  ZipWriter& zip_;
+  std::string text_ = {};
+};
+
+void write_model(XmlStream& xml, const FacetFile& facets, const std::string& name) {
+  const VertexTable table(facets);
+  xml << R"(<?xml version="1.0" encoding="UTF-8"?>
+<model unit="millimeter" xml:lang="en" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><metadata name="Title">)"
+      << escaped(name)
+      << R"(</metadata><metadata name="Application">Octurn</metadata><resources><object id="1" type="model" name=")"
+      << escaped(name) << R"("><mesh><vertices>)";
+  for (const Vertex& vertex : table.vertices()) {
+    (xml << "<vertex x=\"").number(vertex[0]);
+    (xml << "\" y=\"").number(vertex[1]);
+    (xml << "\" z=\"").number(vertex[2]) << "\"/>";
+  }
+  xml << "</vertices><triangles>";
+  facets.read([&](std::span<const Facet> block) {
+    for (const Facet& facet : block) {
+      const auto corners = facet.corners;  // which are not aligned in a facet
+      (xml << "<triangle v1=\"").number(table.index(corners[0]));
+      (xml << "\" v2=\"").number(table.index(corners[1]));
+      (xml << "\" v3=\"").number(table.index(corners[2])) << "\"/>";
+    }
+  });
+  xml << R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)"
+      << "\n";
+  xml.flush();
+}
+
+}  // namespace
+
+void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
+               const std::filesystem::path& target) {
+  ZipWriter zip(target);
+  zip.begin("[Content_Types].xml", ZipMethod::deflated);
+  zip.write(content_types);
+  zip.begin("_rels/.rels", ZipMethod::deflated);
+  zip.write(std::string(relationships_begin) +
+            std::string(thumbnail.empty() ? "" : thumbnail_relationship) + "</Relationships>\n");
+  if (!thumbnail.empty()) {
+    zip.begin("Metadata/thumbnail.png", ZipMethod::stored);
+    zip.write(thumbnail);
+  }
+  zip.begin("3D/3dmodel.model", ZipMethod::deflated);
+  XmlStream xml(zip);
+  write_model(xml, facets, name);
+  zip.commit();
+}
+
+}  // namespace octurn

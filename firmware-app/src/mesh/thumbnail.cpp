@@ -1,0 +1,175 @@
+#include "mesh/thumbnail.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "octurn/depth_png.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr int side = 256;
+constexpr int fineness = 2;  // samples of a pixel, each way
+constexpr int samples = side * fineness;
+constexpr float margin = 0.06F;  // of the side, around the model
+
+// From the model to the eye, and to the light, in the model's frame; as web/viewer.js has them.
+const Vector3f to_eye = Vector3f(0.42F, -0.83F, 0.37F).normalized();
+const Vector3f to_light = Vector3f(-0.05F, -0.72F, 0.69F).normalized();
+constexpr std::array clay{216.0F, 210.0F, 196.0F};
+constexpr float ambient = 0.34F;
+
+constexpr float nothing = -std::numeric_limits<float>::infinity();
+
+struct Sample {
+  float depth = nothing;  // towards the eye
+  float light = 0;
+};
+
+/// The picture's axes and the depth, in the model's frame: a parallel projection.
+Eigen::Matrix3f make_view() {
+  Eigen::Matrix3f view;
+  const Vector3f right = Vector3f::UnitZ().cross(to_eye).normalized();
+  view << right.transpose(), to_eye.cross(right).transpose(), to_eye.transpose();
+  return view;
+}
+
+Vector3f to_vector(const std::array<float, 3>& corner) { return {corner[0], corner[1], corner[2]}; }
+
+/// What the light shows of a facet, 0 to 1.
+float light_on(const Vector3f& normal) {
+  return ambient + (1 - ambient) * std::max(normal.dot(to_light), 0.0F);
+}
+
+/// Twice the area of a triangle, positive where its corners go counter-clockwise.
+float area(const Vector3f& a, const Vector3f& b, const Vector3f& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// Draws triangles, the nearest of which are seen.
+class Canvas {
+ public:
+  /// @param box  around the model, in the view's frame
+  explicit Canvas(const Eigen::AlignedBox3f& box) : middle_(box.center()) {
+    const float width = std::max(box.sizes().x(), box.sizes().y());
+    scale_ = width > 0 ? (1 - 2 * margin) * samples / width : 1;
+  }
+
+  void draw(const Facet& facet) {
+    const auto packed = facet.corners;  // which are not aligned in a facet
+    std::array<Vector3f, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = place(packed[i]);
+    }
+    const float whole = area(corners[0], corners[1], corners[2]);
+    if (!(whole > 0)) {
+      return;  // seen from behind, or from its edge
+    }
+    const auto normal = facet.normal;
+    const float light = light_on(to_vector(normal));
+    const auto [left, right] = range(corners, 0);
+    const auto [low, high] = range(corners, 1);
+    for (int y = low; y <= high; ++y) {
+      for (int x = left; x <= right; ++x) {
+        put(x, y, corners, whole, light);
+      }
+    }
+  }
+
+  const std::vector<Sample>& picture() const { return picture_; }
+
+ private:
+  /// A corner in samples from the picture's lower left, and its depth.
+  Vector3f place(const std::array<float, 3>& corner) const {
+    const Vector3f seen = (view_ * to_vector(corner) - middle_) * scale_;
+    return {seen.x() + samples / 2.0F, seen.y() + samples / 2.0F, seen.z()};
+  }
+
+  /// The samples that a triangle may cover along an axis.
+  static std::pair<int, int> range(const std::array<Vector3f, 3>& corners, int axis) {
+    const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+    return {std::clamp(static_cast<int>(std::floor(low)), 0, samples - 1),
+            std::clamp(static_cast<int>(std::ceil(high)), 0, samples - 1)};
+  }
+
+  void put(int x, int y, const std::array<Vector3f, 3>& corners, float whole, float light) {
+    const Vector3f at(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, 0);
+    const float a = area(corners[1], corners[2], at) / whole;
+    const float b = area(corners[2], corners[0], at) / whole;
+    const float c = 1 - a - b;
+    const float depth = a * corners[0].z() + b * corners[1].z() + c * corners[2].z();
+    Sample& sample = picture_[static_cast<std::size_t>(y) * samples + static_cast<std::size_t>(x)];
+    if (std::min({a, b, c}) >= 0 && depth > sample.depth) {
+      sample = {.depth = depth, .light = light};
+    }
+  }
+
+  Eigen::Matrix3f view_ = make_view();
+  Vector3f middle_;
+  float scale_ = 1;
+  std::vector<Sample> picture_ = std::vector<Sample>(std::size_t{samples} * samples);
+};
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
+}
+
+/// A pixel of the mean of its samples; row 0 is the picture's top.
+Rgba pixel(const std::vector<Sample>& picture, int x, int y) {
+  float light = 0;
+  int seen = 0;
+  for (int part = 0; part < fineness * fineness; ++part) {
+    const int row = samples - 1 - (y * fineness + part / fineness);
+    const int column = x * fineness + part % fineness;
+    const Sample& sample =
+        picture[static_cast<std::size_t>(row) * samples + static_cast<std::size_t>(column)];
+    if (sample.depth > nothing) {
+      light += sample.light;
+      ++seen;
+    }
+  }
+  if (seen == 0) {
+    return {};
+  }
+  light /= static_cast<float>(seen);
+  return {to_byte(clay[0] * light), to_byte(clay[1] * light), to_byte(clay[2] * light),
+          to_byte(255.0F * static_cast<float>(seen) / (fineness * fineness))};
+}
+
+}  // namespace
+
+std::vector<std::byte> draw_thumbnail(const FacetFile& facets) {
+  const Eigen::Matrix3f view = make_view();
+  Eigen::AlignedBox3f box;
+  facets.read([&](std::span<const Facet> block) {
+    for (const Facet& facet : block) {
+      const auto corners = facet.corners;  // which are not aligned in a facet
+      for (const auto& corner : corners) {
+        box.extend(view * to_vector(corner));
+      }
+    }
+  });
+  Canvas canvas(box);
+  facets.read([&](std::span<const Facet> block) {
+    for (const Facet& facet : block) {
+      canvas.draw(facet);
+    }
+  });
+  std::vector<Rgba> picture;
+  picture.reserve(std::size_t{side} * side);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      picture.push_back(pixel(canvas.picture(), x, y));
+    }
+  }
+  return encode_colour_png(side, side, picture);
+}
+
+}  // namespace octurn

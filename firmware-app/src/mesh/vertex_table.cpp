@@ -1,0 +1,78 @@
+#include "mesh/vertex_table.hpp"
+
+#include <bit>
+#include <limits>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t first_slots = 1024;             // a power of two, as all that follow
+constexpr std::uint64_t max_facets = 40'000'000;      // half a gigabyte of table
+constexpr std::uint64_t mixer = 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio, as Fibonacci hashing
+
+std::uint64_t hash(const Vertex& vertex) {
+  std::uint64_t mixed = 0;
+  for (const float coordinate : vertex) {
+    mixed = (std::rotl(mixed, 23) ^ std::bit_cast<std::uint32_t>(coordinate)) * mixer;
+  }
+  return mixed ^ (mixed >> 32U);
+}
+
+bool is_same(const Vertex& a, const Vertex& b) {
+  return std::bit_cast<std::array<std::uint32_t, 3>>(a) ==
+         std::bit_cast<std::array<std::uint32_t, 3>>(b);
+}
+
+}  // namespace
+
+VertexTable::VertexTable(const FacetFile& facets) : slots_(first_slots, empty) {
+  if (facets.count() > max_facets) {
+    throw Error(ErrorCode::memory_limit,
+                "the model has " + std::to_string(facets.count()) +
+                    " triangles, too many for a format that lists its corners",
+                "Download the STL, or build it with a larger leaf size.");
+  }
+  facets.read([&](std::span<const Facet> block) {
+    for (const Facet& facet : block) {
+      const auto corners = facet.corners;  // which are not aligned in a facet
+      for (const Vertex& corner : corners) {
+        insert(corner);
+      }
+    }
+  });
+}
+
+/// Where a vertex is in the table, or would be.
+std::size_t VertexTable::find_slot(const Vertex& vertex) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hash(vertex) & mask;
+  while (slots_[slot] != empty && !is_same(vertices_[slots_[slot]], vertex)) {
+    slot = (slot + 1) & mask;
+  }
+  return slot;
+}
+
+void VertexTable::insert(const Vertex& vertex) {
+  const std::size_t slot = find_slot(vertex);
+  if (slots_[slot] == empty) {
+    slots_[slot] = static_cast<std::uint32_t>(vertices_.size());
+    vertices_.push_back(vertex);
+    if (vertices_.size() * 3 > slots_.size() * 2) {
+      grow();
+    }
+  }
+}
+
+void VertexTable::grow() {
+  slots_.assign(slots_.size() * 2, empty);
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    slots_[find_slot(vertices_[i])] = static_cast<std::uint32_t>(i);
+  }
+}
+
+std::uint32_t VertexTable::index(const Vertex& vertex) const { return slots_[find_slot(vertex)]; }
+
+}  // namespace octurn

@@ -23,6 +23,8 @@
  * @property {number[]} size_mm
  * @property {number} seconds
  * @property {number | null} parts
+ * @property {number | null} [dropped_parts]  that are not in the model
+ * @property {number | null} [dropped_volume_cm3]
  * @property {number | null} filled_share  of the surface's area, that nobody saw
  * @property {{verdict: 'good' | 'look' | 'bad', reasons: Reason[]} | null} [quality]
  *
@@ -38,6 +40,7 @@
  * @property {number} snapshots_total
  * @property {number} seconds_elapsed
  * @property {number | null} seconds_left
+ * @property {boolean} [can_resume]
  * @property {Settings} settings
  * @property {number} late_pulses  of the motor
  * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
@@ -63,6 +66,7 @@
  * @property {Scan | null} scan
  * @property {import('./api_builds.js').Build | null} [build]  that goes on, or the last one
  * @property {string | null} newest
+ * @property {number} scans_revision  changes with every scan that comes, ends, is renamed or goes
  *
  * @typedef {Object} Finding  of one check
  * @property {string} check  its name for programs
@@ -70,6 +74,7 @@
  * @property {'ok' | 'warning' | 'fault' | 'unknown'} state
  * @property {string} measured  with units
  * @property {string} advice  what to do, or empty
+ * @property {'' | 'measure-turn' | 'set-pose' | 'open-settings' | 'choose-scans'} action  what the page can do by itself
  *
  * @typedef {Object} Report  of the scanner's doctor
  * @property {string} version
@@ -101,6 +106,7 @@
 
 const root = '/api/v1/';
 const patience = 8000;  // milliseconds until a request counts as unanswered
+const patienceWithFile = 600000;  // while a file is sent
 const patienceWithDoctor = 60000;  // who watches the sensor first, after whoever else does
 
 /** Why the scanner did not do what it was asked, in the words of its problem+json. */
@@ -142,7 +148,7 @@ async function request(path, options = {}, timeout = patience) {
   let response;
   try {
     response = await fetch(path.startsWith('/') ? path : root + path,
-        {signal: AbortSignal.timeout(timeout), cache: 'no-store', ...options});
+        {signal: AbortSignal.timeout(timeout), cache: 'no-cache', ...options});
   } catch (error) {
     throw options.signal?.aborted ? error : unreachable();
   }
@@ -201,8 +207,18 @@ export const start = (settings) => json('scans', sending('POST', settings));
 /** @param {string} id @returns {Promise<Scan>} */
 export const cancel = (id) => json(`${scan(id)}/cancel`, sending('POST'));
 
-/** @param {string} id  of a scan that was paused or interrupted @returns {Promise<Scan>} */
+/** @param {string} id @returns {Promise<Scan>} */
+export const pause = (id) => json(`${scan(id)}/pause`, sending('POST'));
+
+/** @param {Partial<Settings>} settings @returns {Promise<{seconds: number, bytes: number, measured: boolean}>} what such a scan takes */
+export const estimate = (settings) => json('scans/estimate', sending('POST', settings));
+
+/** @param {string} id  of a scan that was paused, interrupted or ended @returns {Promise<Scan>} */
 export const resume = (id) => json(`${scan(id)}/resume`, sending('POST'));
+
+/** @param {Blob} file  a raw scan of this or another Octurn @returns {Promise<Scan>} */
+export const importScan = (file) => json('scans/import',
+    {method: 'POST', headers: {'Content-Type': 'application/octet-stream'}, body: file}, patienceWithFile);
 
 /** @param {string} id @param {string} name @returns {Promise<Scan>} */
 export const rename = (id, name) => json(scan(id), sending('PATCH', {name}));
@@ -252,11 +268,12 @@ export const joinWifi = (wanted) => json('wifi', sending('PUT', wanted));
  * @param {Blob} file
  * @param {(sent: number) => void} onProgress  bytes so far
  * @param {AbortSignal} signal
+ * @param {boolean} takesOlder  also a version that is older than the one that runs
  * @returns {Promise<Update>}
  */
-export const sendUpdate = (file, onProgress, signal) => new Promise((resolve, reject) => {
+export const sendUpdate = (file, onProgress, signal, takesOlder) => new Promise((resolve, reject) => {
   const request = new XMLHttpRequest();  // fetch does not tell how much is sent
-  request.open('PUT', `${root}update`);
+  request.open('PUT', `${root}update${takesOlder ? '?older=yes' : ''}`);
   request.setRequestHeader('Content-Type', 'application/octet-stream');
   request.upload.addEventListener('progress', ({loaded}) => onProgress(loaded));
   request.addEventListener('load', () => {

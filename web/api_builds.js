@@ -9,7 +9,7 @@ import {json, sending, withoutAnswer} from './api.js';
  * @property {string} scan  its id
  * @property {number} build  its number; 0 is what the scan itself made
  * @property {'waiting' | 'running' | 'finished' | 'failed' | 'cancelled'} state
- * @property {'starting' | 'calibrating' | 'rebuilding' | 'building' | 'done'} phase
+ * @property {'starting' | 'calibrating' | 'registering' | 'rebuilding' | 'building' | 'done'} phase
  * @property {string} created
  * @property {number} snapshots_done
  * @property {number} snapshots_total

@@ -9,6 +9,12 @@ import {json, sending} from './api.js';
  * @property {number} [overlap]  share of what the pose shows that was seen before
  * @property {number} [residual_mm]
  * @property {boolean} [symmetric]
+ * @property {number[][]} [object_from_platform]  4 x 4, metres
+ * @property {number} [contradiction]  0 to 2: share of what the pose saw where nothing is as was seen before, and the other way round
+ * @property {Candidate[]} [candidates]  other poses that were found to fit, the best first
+ * @property {number | null} [candidate]  which of them was refined; null: pairs of points
+ *
+ * @typedef {{object_from_platform: number[][], overlap: number, residual_mm: number, contradiction: number}} Candidate
  *
  * @typedef {Object} Pose
  * @property {number} pose  from 1
@@ -24,3 +30,12 @@ export const startPose = (scan) => json(path(scan), sending('POST'));
 
 /** @param {string} scan @param {number} pose @returns {Promise<import('./api.js').Scan>} as it was before that pose */
 export const removePose = (scan, pose) => json(`${path(scan)}/${pose}`, sending('DELETE'));
+
+/**
+ * Some of what was seen before, in the object's frame, and of what this pose saw, in the frame of its platform.
+ * @param {string} scan @param {number} pose @returns {Promise<{before_mm: number[][], pose_mm: number[][]}>}
+ */
+export const posePoints = (scan, pose) => json(`${path(scan)}/${pose}/points`);
+
+/** @param {string} scan @param {number} pose @param {Object} choice @returns {Promise<import('./api_builds.js').Build>} the model of all poses to come */
+export const choosePose = (scan, pose, choice) => json(`${path(scan)}/${pose}`, sending('POST', choice));

@@ -60,6 +60,7 @@ function phaseText({state, phase, snapshots_done, snapshots_total}) {
   }
   switch (phase) {
     case 'calibrating': return 'Finding out where the sensor stood';
+    case 'registering': return 'Fitting the sides together';
     case 'rebuilding': return `Reading snapshot ${Math.max(snapshots_done, 1)} of ${snapshots_total}`;
     case 'building': return 'Building the model';
     default: return 'Getting ready';

@@ -5,7 +5,7 @@ import * as api from './api.js';
 import * as requests from './api_calibration.js';
 import {changeSettings} from './api_settings.js';
 import {showCalibration, showMap, showNotice} from './calibrate_view.js';
-import {scaleOf} from './calibration.js';
+import {scaleOf, turnStops} from './calibration.js';
 import {chosenSpace, discardSpace, prepareSpace, showSpace} from './clip_form.js';
 import {element, setText} from './dom.js';
 import {sentence} from './format.js';
@@ -15,7 +15,6 @@ import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPo
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 
-const turnStops = 24;
 const wallFrames = 25;
 
 /** @type {Calibration | null} */

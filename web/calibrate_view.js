@@ -97,6 +97,7 @@ export function showMap(map) {
 function showHistory(calibration) {
   const poses = texts.historyOf(calibration);
   show(element('no-poses'), poses.length === 0);
+  setText(element('no-poses'), texts.noPosesText(calibration));
   show(element('undo'), poses.length > 0 || texts.isCalibrated(calibration));  // the settings' pose is below all
   list(element('poses'), poses, ({key}) => key, 'earlier-pose', (item, {title, text}) => {
     setText(part(item, '.pose-title'), title);

@@ -9,6 +9,7 @@ import {count, sentence, when} from './format.js';
 /** @typedef {import('./api_calibration.js').CalibrationRun} CalibrationRun */
 
 const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // less is no change: docs/calibration.md
+export const turnStops = 24;  // of a turn that measures the pose
 export const scaleLimits = {min: 0.97, max: 1.03};
 
 /** @param {number} value  millimetres */
@@ -136,6 +137,10 @@ export const historyOf = ({history}) => history.map((pose, index) => ({
     pose.before_mm !== null && pose.after_mm !== null ? `${millimetres(pose.before_mm)} → ${millimetres(pose.after_mm)}` : '',
     pose.scale === 1 ? '' : `scale ${pose.scale.toFixed(4)}`].filter(Boolean).join(', '),
 }));
+
+/** What is said where there are none. @param {Calibration} calibration */
+export const noPosesText = (calibration) => isCalibrated(calibration) ?
+  'Before this one there was the pose of the settings.' : 'None yet. Each change can be undone here.';
 
 /** @param {Calibration} calibration */
 export const mapText = ({sensor_map: map}) => map ?

@@ -1,6 +1,8 @@
 // "Check the scanner": asks the scanner's doctor, and shows what it finds.
 
 import * as api from './api.js';
+import {measure} from './api_calibration.js';
+import {turnStops} from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
 import {awaitFragment} from './fragment.js';
 import {count, sentence} from './format.js';
@@ -12,8 +14,12 @@ const order = /** @type {const} */ (['fault', 'warning', 'ok', 'unknown']);
 
 const stateNames = {fault: 'Fault', warning: 'Warning', ok: 'In order', unknown: 'Not known'};
 
-/** Checks of the rig's pose, whose cure is a page. */
-const pose = new Set(['platform', 'tilt']);
+const actionNames = {
+  'measure-turn': 'Measure with a turn',
+  'set-pose': 'Set the pose by hand',
+  'open-settings': 'Open the settings',
+  'choose-scans': 'Choose scans to delete',
+};
 
 const expected = 4;  // seconds that a check takes, two of them to watch the sensor
 
@@ -31,7 +37,8 @@ export function shownOf({findings}) {
       stateName: stateNames[finding.state],
       measured: finding.measured && finding.measured[0].toUpperCase() + finding.measured.slice(1),
       advice: sentence(finding.advice),
-      leadsToCalibrate: pose.has(finding.check) && finding.state !== 'ok' && finding.state !== 'unknown',
+      action: finding.action,
+      actionName: finding.action && actionNames[finding.action],
     })),
   };
 }
@@ -49,7 +56,10 @@ function showReport({summary, lines}) {
     setText(part(item, '.finding-state'), line.stateName);
     setText(part(item, '.finding-measured'), line.measured);
     setText(part(item, '.finding-advice'), line.advice);
-    show(part(item, 'a'), line.leadsToCalibrate);
+    const button = part(item, 'button');
+    button.dataset.action = line.action;
+    setText(button, line.actionName);
+    show(button, line.action !== '');
   });
 }
 
@@ -71,6 +81,42 @@ function startProgress() {
   return () => clearInterval(timer);
 }
 
+const goTo = (/** @type {string} */ place) => {
+  location.hash = place;
+};
+
+/** What the buttons of findings do. @type {Record<string, () => unknown>} */
+const actions = {
+  'measure-turn': async () => {
+    await measure({kind: 'turn', stops: turnStops});
+    goTo('calibrate');  // which shows how it goes
+  },
+  'set-pose': () => goTo('calibrate'),
+  'open-settings': () => goTo('settings'),
+  'choose-scans': () => element('scans-title').scrollIntoView(),
+};
+
+/** @param {string} failure  what did not happen @param {unknown} error */
+function showProblem(failure, error) {
+  const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
+  setText(part(element('doctor-problem'), 'p'), [failure, detail || title, hint].filter(Boolean).map(sentence).join(' '));
+  show(element('doctor-problem'), true);
+}
+
+/** @param {Event} event  a click on the findings */
+async function carryOut({target}) {
+  const {action} = /** @type {HTMLElement} */ (target).closest('button')?.dataset ?? {};
+  if (!action) {
+    return;
+  }
+  show(element('doctor-problem'), false);
+  try {
+    await actions[action]();
+  } catch (error) {
+    showProblem('The turn did not start', error);
+  }
+}
+
 /** @param {(report: import('./api.js').Report) => void} onReport */
 async function examine(onReport) {
   if (element('examine').getAttribute('aria-disabled') === 'true') {
@@ -85,10 +131,8 @@ async function examine(onReport) {
     showReport(shownOf(report));
     onReport(report);
   } catch (error) {
-    const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
     setText(element('doctor-summary'), 'The check did not end.');
-    setText(part(element('doctor-problem'), 'p'), [detail || title, hint].map(sentence).join(' '));
-    show(element('doctor-problem'), true);
+    showProblem('', error);
   }
   endProgress();
   showRunning(false);
@@ -98,4 +142,5 @@ async function examine(onReport) {
 export async function prepareDoctor(onReport) {
   await awaitFragment(element('doctor'), 'doctor.html');
   element('examine').addEventListener('click', () => examine(onReport));
+  element('findings').addEventListener('click', carryOut);
 }

@@ -1,10 +1,16 @@
 // The fields of the form "New scan".
 
-import {element, part, setText} from './dom.js';
+import {estimate} from './api.js';
+import {copyOf, element, part, setText} from './dom.js';
+import * as format from './format.js';
 import {offerLeaves} from './leaf_choices.js';
+import {fromKept, presetOf, presets, toKept} from './presets.js';
 import {explain, formOf, settingsOf, stepText} from './settings.js';
 
 /** @typedef {import('./api.js').Settings} Settings */
+
+const memory = 'octurn-scan';  // of the browser, for the last choice
+const calm = 400;  // milliseconds after the last change, before the scanner is asked
 
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...element('form').querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
@@ -42,6 +48,55 @@ function fill(settings) {
   explainFields();
 }
 
+/** @param {{seconds: number, bytes: number}} taken */
+const takesText = ({seconds, bytes}) => `${format.roughly(seconds)}, ${format.bytes(bytes)}`;
+
+/** @param {{memory_bytes?: number, fitting_leaf_size_mm?: number}} taken @param {number} leaf_size_mm */
+const memoryText = ({memory_bytes = 0, fitting_leaf_size_mm = 0}, leaf_size_mm) => fitting_leaf_size_mm > leaf_size_mm ?
+  `, too much memory (${format.bytes(memory_bytes)}): ${format.number(fitting_leaf_size_mm)} mm would fit` : '';
+
+/** Says what the scan takes, if the scanner can tell. */
+async function tellEstimate() {
+  if (!element('form').matches(':valid')) {
+    return;
+  }
+  const chosen = chosenSettings();
+  const text = await estimate(chosen).then((taken) => takesText(taken) + memoryText(taken, chosen.leaf_size_mm), () => '');
+  setText(element('estimate'), text);
+}
+
+/** Says of each preset what it takes. @param {Settings} defaults */
+async function tellPresets(defaults) {
+  for (const {name, settings} of presets(defaults)) {
+    const taken = await estimate(formSettings(settings)).catch(() => null);
+    setText(part(element('presets'), `[value=${name}] ~ .choice-mm`), taken ? format.roughly(taken.seconds) : '');
+  }
+}
+
+/** @param {Settings} settings  without what a start does not take */
+const formSettings = (settings) => settingsOf(formOf(settings));
+
+/** @param {Settings} defaults */
+function offerPresets(defaults) {
+  element('presets').replaceChildren(...presets(defaults).map(({name, title}) => {
+    const choice = copyOf('preset');
+    part(choice, 'input').value = name;
+    setText(part(choice, '.choice-name'), title);
+    return choice;
+  }));
+}
+
+/** Shows which preset the fields are. @param {Settings} defaults */
+function showPreset(defaults) {
+  const chosen = chosenSettings();
+  const preset = presetOf(chosen, defaults);
+  for (const radio of element('presets').querySelectorAll('input')) {
+    radio.checked = radio.value === preset?.name;
+  }
+  const {snapshots, leaf_size_mm} = chosen;
+  setText(element('preset-text'), `${preset ? '' : 'Your own choice: '}${format.count(snapshots ?? 0, 'snapshot')} a turn, detail of ${leaf_size_mm} mm.`);
+}
+
 /** Marks clip fields whose range is empty, so that the browser says so. */
 function checkClip() {
   const fields = clipFields();
@@ -63,22 +118,46 @@ export const chosenSettings = () => settingsOf({
   clip_mm: clipFields().map((field) => Number(field.value)),
 });
 
+/** Asks what a scan takes whenever the form comes into view: the scan before has told more. @param {Settings} defaults */
+function watchForEstimates(defaults) {
+  new IntersectionObserver((entries) => {
+    if (entries.some(({isIntersecting}) => isIntersecting)) {
+      tellEstimate();
+      tellPresets(defaults);
+    }
+  }).observe(element('start'));
+}
+
 /**
  * Fills the form and makes it work.
  * @param {Settings} defaults
  */
 export function prepareForm(defaults) {
   offerLeaves(element('leaves'), defaults.leaf_size_mm);
-  fill(defaults);
+  offerPresets(defaults);
+  fill(fromKept(localStorage.getItem(memory), defaults));
   const form = element('form');
-  form.addEventListener('input', (/** @type {InputEvent} */ event) => {
-    if (event.target === element('snapshots-slider')) {
+  let timer = 0;
+  const seeChange = () => {
+    showPreset(defaults);
+    localStorage.setItem(memory, toKept(chosenSettings()));
+    clearTimeout(timer);
+    timer = setTimeout(tellEstimate, calm);
+  };
+  showPreset(defaults);
+  watchForEstimates(defaults);
+  form.addEventListener('input', (/** @type {any} */ event) => {
+    const preset = presets(defaults).find(({name}) => event.target.name === 'preset' && name === event.target.value);
+    if (preset) {
+      fill(preset.settings);
+    } else if (event.target === element('snapshots-slider')) {
       element('snapshots').value = element('snapshots-slider').value;
     } else if (event.target === element('snapshots')) {
       element('snapshots-slider').value = element('snapshots').value;
     }
     explainFields();
     checkClip();
+    seeChange();
   });
   // A fault in a folded-away field can only be shown unfolded.
   form.addEventListener('invalid', (/** @type {Event} */ event) => {
@@ -87,5 +166,6 @@ export function prepareForm(defaults) {
   element('defaults').addEventListener('click', () => {
     fill(defaults);
     checkClip();
+    seeChange();
   });
 }

@@ -2,7 +2,8 @@
 
 const locale = 'en';
 const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
-const date = new Intl.DateTimeFormat(locale, {day: 'numeric', month: 'short', hour: '2-digit', minute: '2-digit', hour12: false});
+const date = new Intl.DateTimeFormat(locale,
+    {day: 'numeric', month: 'short', year: 'numeric', hour: '2-digit', minute: '2-digit', hour12: false});
 
 /** @param {number} value */
 export const number = (value) => plain.format(value);
@@ -52,6 +53,22 @@ export function timeLeft(seconds) {
     return `about ${Math.ceil(seconds / 5) * 5} s left`;
   }
   return `about ${Math.round(seconds / 60) || 1} min left`;
+}
+
+/** As a clock: "0:07", "12:34", "1:02:03". @param {number} seconds */
+export function clock(seconds) {
+  const whole = Math.round(seconds);
+  const two = (/** @type {number} */ value) => String(value).padStart(2, '0');
+  const minutes = Math.floor(whole / 60);
+  return minutes < 60 ? `${minutes}:${two(whole % 60)}` : `${Math.floor(minutes / 60)}:${two(minutes % 60)}:${two(whole % 60)}`;
+}
+
+/** How long something takes, as people say it. @param {number} seconds */
+export function roughly(seconds) {
+  if (seconds < 100) {
+    return `about ${Math.max(Math.round(seconds / 5) * 5, 5)} s`;
+  }
+  return seconds < 5400 ? `about ${Math.round(seconds / 60)} min` : `about ${plain.format(Math.round(seconds / 1800) / 2)} h`;
 }
 
 /** @param {string} iso */

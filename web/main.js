@@ -1,153 +1,24 @@
-// Asks the scanner, keeps the state, and has it shown.
+// Looks at the scanner again and again, and passes on what the user asks for.
 
 import * as api from './api.js';
 import * as requests from './api_builds.js';
-import * as poseRequests from './api_poses.js';
 import {seeStatus, watchAppliance} from './appliance.js';
+import * as bin from './bin.js';
 import {prepareBuilds} from './builds_view.js';
 import {watchCamera} from './camera.js';
 import {seeNewest, seeReport, watchSteps} from './checklist.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
-import {chosenSettings, prepareForm} from './form.js';
-import {here, preparePlaces, showPlace, titleAt} from './places.js';
+import {prepareForm} from './form.js';
+import * as library from './library.js';
+import {build, buildActions, poseActions} from './model_actions.js';
+import {asked, change, state} from './page.js';
+import {here, preparePlaces, showPlace} from './places.js';
 import {preparePoses} from './poses_view.js';
-import {nameOf, screenOf} from './screen.js';
-import {prepareStage, renderStage} from './stage.js';
+import {cancel, emptyBin, end, importScan, pause, remove, removeChosen, rename, restore, resume, start} from './scan_actions.js';
+import {screenOf} from './screen.js';
+import {prepareStage} from './stage.js';
 import * as states from './state.js';
-import {askDelete, askDeleteBuild, askName, render} from './view.js';
-
-let state = states.initial;
-let actions = 0;  // asked of the scanner so far: a status from before one is old news after it
-
-/** @param {states.State} next */
-function change(next) {
-  const wasSelected = state.selected;
-  state = next;
-  if (here() === 'scan' && wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
-    location.hash = state.selected ?? '';
-  }
-  const screen = screenOf(state);
-  render({...screen, title: titleAt(here(), screen.title)});
-  renderStage(screen.stage);
-}
-
-/**
- * Does what the user asked for, one thing at a time, and shows why if it fails.
- * @param {string} failure  what did not happen then
- * @param {() => Promise<(state: states.State) => states.State>} action  tells how its answer changes the state
- */
-async function act(failure, action) {
-  if (state.isPending) {
-    return;
-  }
-  change(states.withPending(state));
-  try {
-    const apply = await action();
-    change(apply(states.withAnswer(state)));
-  } catch (error) {
-    const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
-    change(states.withProblem(states.withAnswer(state), {title: failure, detail: detail || title, hint}));
-  }
-  ++actions;
-}
-
-const start = () => act('The scan did not start', async () => {
-  const scan = await api.start(chosenSettings());
-  return (now) => states.withStarted(now, scan);
-});
-
-const cancel = () => act('The scan was not cancelled', async () => {
-  const id = states.running(state)?.id;
-  if (id) {
-    await api.cancel(id);
-  }
-  return (now) => now;
-});
-
-const resume = () => act('The scan was not resumed', async () => {
-  const scan = await api.resume(/** @type {string} */ (state.selected));
-  return (now) => states.withStarted(now, scan);
-});
-
-const end = () => act('The scan was not ended', async () => {
-  const scan = await api.cancel(/** @type {string} */ (state.selected));
-  return (now) => states.withScan(now, scan);
-});
-
-/** @param {string | null} id */
-async function rename(id) {
-  const scan = states.scanOf(state, id);
-  const name = scan && await askName(nameOf(scan));
-  if (scan && name !== null) {
-    await act('The scan was not renamed', async () => {
-      const renamed = await api.rename(scan.id, name);
-      return (now) => states.withScan(now, renamed);
-    });
-  }
-}
-
-/** @param {string | null} id */
-async function remove(id) {
-  const scan = states.scanOf(state, id);
-  if (scan && await askDelete(nameOf(scan))) {
-    await act('The scan was not deleted', async () => {
-      await api.remove(scan.id);
-      return (now) => states.withoutScan(now, scan.id);
-    });
-  }
-}
-
-/** @param {Object} settings  of the scan that is looked at, those that are to differ */
-const build = (settings) => act('The model is not being built', async () => {
-  const begun = await requests.build(/** @type {string} */ (state.selected), settings);
-  return (now) => states.withBuild(now, begun);
-});
-
-/** @param {number} number */
-const cancelBuild = (number) => act('The build was not cancelled', async () => {
-  await requests.cancelBuild(/** @type {string} */ (state.selected), number);
-  return (now) => now;
-});
-
-/** @param {number} number */
-const chooseBuild = (number) => act('The model was not changed', async () => {
-  const scan = await requests.chooseBuild(/** @type {string} */ (state.selected), number);
-  const builds = await requests.builds(scan.id);
-  return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
-});
-
-/** @param {number} number */
-async function removeBuild(number) {
-  const id = /** @type {string} */ (state.selected);
-  if (await askDeleteBuild()) {
-    await act('The model was not deleted', async () => {
-      await requests.removeBuild(id, number);
-      const builds = await requests.builds(id);
-      return (now) => states.withBuilds(now.shownBuild === number ? states.withShownBuild(now, null) : now, id, builds);
-    });
-  }
-}
-
-const buildActions = {
-  build,
-  cancel: cancelBuild,
-  show: (/** @type {number} */ number) => change(states.withShownBuild(state, number)),
-  choose: chooseBuild,
-  remove: removeBuild,
-};
-
-const poseActions = {
-  add: () => act('The scan did not start', async () => {
-    const scan = await poseRequests.startPose(/** @type {string} */ (state.selected));
-    return (now) => states.withStarted(now, scan);
-  }),
-  remove: (/** @type {number} */ number) => act('The side was not taken back', async () => {
-    const scan = await poseRequests.removePose(/** @type {string} */ (state.selected), number);
-    const builds = await requests.builds(scan.id);
-    return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
-  }),
-};
 
 /** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
@@ -162,15 +33,16 @@ async function missingBuilds(now) {
 
 /** One look at the scanner; what changed is shown at once, the list of scans with it. */
 async function look() {
-  const before = actions;
+  const before = asked;
   try {
     const status = await api.status();
     seeStatus(status);
     seeNewest(status);
+    bin.seeRevision(status.scans_revision);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
     const builds = await missingBuilds(states.withStatus(state, status)).catch(() => null);  // of a scan that is gone
-    if (before !== actions || state.isPending) {
+    if (before !== asked || state.isPending) {
       return;
     }
     if (!state.defaults) {
@@ -213,6 +85,7 @@ function listen() {
     event.preventDefault();
     start();
   });
+  click('pause', pause);
   click('cancel', cancel);
   click('resume', resume);
   click('end', end);
@@ -222,10 +95,31 @@ function listen() {
   click('show-camera', () => change(states.withStage(state, 'camera')));
   click('details-rename', () => rename(state.selected));
   click('straighten', () => element('straighten').getAttribute('aria-disabled') !== 'true' && build({calibrate: 'auto', choose: true}));
+  click('build-first', () => {
+    const unbuilt = element('build-first').getAttribute('aria-disabled') !== 'true' && screenOf(state).details?.unbuilt;
+    unbuilt && build(unbuilt.settings);
+  });
   element('reasons').addEventListener('click', (/** @type {any} */ event) => {
     const reason = event.target.closest('.reason-places')?.closest('li').dataset.key;
     if (reason) {
       change(states.withReason(state, reason));
+    }
+  });
+  element('library-query').addEventListener('input', (/** @type {any} */ event) =>
+    change(states.withLibrary(state, {query: event.target.value, limit: library.step})));
+  element('library-order').addEventListener('change', (/** @type {any} */ event) =>
+    change(states.withLibrary(state, {order: event.target.value})));
+  element('import').addEventListener('change', (/** @type {any} */ event) => {
+    const [file] = event.target.files;
+    event.target.value = '';
+    file && importScan(file);
+  });
+  click('show-more', () => change(states.withLibrary(state, {limit: state.library.limit + library.step})));
+  click('choose', () => change(states.withLibrary(state, {chosen: state.library.chosen ? null : []})));
+  click('delete-chosen', removeChosen);
+  element('rows').addEventListener('change', (/** @type {any} */ event) => {
+    if (event.target.type === 'checkbox') {
+      change({...state, library: library.withToggled(state.library, event.target.closest('.scan').dataset.key)});
     }
   });
   element('rows').addEventListener('click', (/** @type {any} */ event) => {
@@ -248,4 +142,5 @@ prepareStage();
 watch();
 watchCamera();
 watchAppliance();
+bin.prepareBin({restore: (id) => restore([id]), empty: emptyBin});
 prepareDoctor(seeReport).then(watchSteps);  // the first step is a check

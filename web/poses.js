@@ -31,6 +31,7 @@ const rowOf = (pose, last) => ({
     pose.registration ? `Side ${pose.pose + 1} does not fit` : `Side ${pose.pose + 1} is not in the model`,
   text: textOf(pose),
   open: pose.state === 'paused' || pose.state === 'interrupted' ? `#${pose.scan}` : '',
+  canLook: pose.state === 'finished' && Boolean(pose.registration) && (!pose.registration?.accepted || pose.pose === last),
   canRemove: pose.state !== 'running' && (!pose.registration?.accepted || pose.pose === last),
 });
 

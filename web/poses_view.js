@@ -1,6 +1,7 @@
 // The other poses of a scan's object: the offer to scan one, how they fit, and to take them back.
 
 import {element, list, part, setText, show} from './dom.js';
+import {prepareFit} from './fit_view.js';
 import {fetchFragment} from './fragment.js';
 
 /** @typedef {ReturnType<import('./poses.js').posesOf>} Poses */
@@ -23,6 +24,8 @@ export function renderPoses(poses) {
     setText(part(item, 'p'), row.text);
     show(part(item, 'a'), row.open !== '');
     part(item, 'a').href = row.open;
+    show(part(item, '[data-do=fit]'), row.canLook);
+    part(item, '[data-do=fit]').setAttribute('aria-label', `See the fit: side ${row.number + 1}`);
     show(part(item, '[data-do=remove]'), row.canRemove);
     part(item, '[data-do=remove]').setAttribute('aria-label', `Take back: side ${row.number + 1}`);
   });
@@ -30,7 +33,10 @@ export function renderPoses(poses) {
   element('side-add').setAttribute('aria-disabled', String(poses.isBusy));
 }
 
-/** Fetches its part of the page, once. @param {{add: () => void, remove: (pose: number) => void}} actions */
+/**
+ * Fetches its part of the page, once.
+ * @param {{add: () => void, remove: (pose: number) => void, look: (pose: number) => void, choose: (choice: Object) => void}} actions
+ */
 export async function preparePoses(actions) {
   if (isBegun) {
     return;
@@ -41,10 +47,15 @@ export async function preparePoses(actions) {
     isHere = true;
     element('side-add').addEventListener('click', () => last?.isBusy || actions.add());
     element('side-rows').addEventListener('click', (/** @type {any} */ event) => {
-      if (event.target.closest('[data-do=remove]')) {
-        actions.remove(Number(event.target.closest('li').dataset.key));
+      const what = event.target.closest('[data-do]')?.dataset.do;
+      const pose = Number(event.target.closest('li')?.dataset.key);
+      if (what === 'remove') {
+        actions.remove(pose);
+      } else if (what === 'fit') {
+        actions.look(pose);
       }
     });
+    prepareFit(actions.choose);
     renderPoses(last);
   } catch {
     isBegun = false;  // the next look asks again

@@ -23,6 +23,8 @@ const actions = {
   'moved': again,
   'little-seen': again,
   'parts-dropped': again,
+  'part-missing': calibrate,
+  'coarser': space,
 };
 
 /** Findings of a calibration that the verdict does not have. */

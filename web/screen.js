@@ -1,13 +1,16 @@
 // What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
 
-import {asShown, buildShown, buildsOf, pictureUrl} from './builds.js';
+import {asShown, buildShown, buildsOf, isGoing, pictureUrl} from './builds.js';
 import * as format from './format.js';
+import {found, pictureOf} from './library.js';
 import {isPartOfAnother, posesOf} from './poses.js';
+import {isBuilding, phaseText, progressOf} from './progress.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
 
 /** @typedef {import('./state.js').State} State */
 /** @typedef {import('./api.js').Scan} Scan */
+/** @typedef {import('./api.js').Model} Model */
 /** @typedef {import('./api.js').Device} Device */
 /** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
 
@@ -20,7 +23,7 @@ const badges = {
   running: {tone: 'busy', text: 'Scanning'},
   paused: {tone: 'warn', text: 'Paused'},
   finished: {tone: 'good', text: 'Finished'},
-  cancelled: {tone: 'idle', text: 'Cancelled'},
+  cancelled: {tone: 'idle', text: 'Ended'},
   failed: {tone: 'bad', text: 'Failed'},
   interrupted: {tone: 'warn', text: 'Interrupted'},
 };
@@ -31,60 +34,6 @@ export const nameOf = (scan) => scan.name || `Scan of ${format.when(scan.created
 /** @param {Scan} scan */
 const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
 
-const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'registering', 'building', 'done']);
-
-/** @param {Scan} scan */
-function phaseText(scan) {
-  const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
-  if (scan.error) {
-    return `Trying ${stop} again`;
-  }
-  if (scan.snapshots_done === scan.snapshots_total && !phasesAfterTheTurn.has(scan.phase)) {
-    return 'Looking once more at the first stop';
-  }
-  switch (scan.phase) {
-    case 'starting': return 'Getting ready';
-    case 'turning': return `Turning to ${stop}`;
-    case 'capturing': return `Looking at ${stop}`;
-    case 'calibrating': return 'Checking where the sensor stands';
-    case 'rebuilding': return 'Building again, with the pose corrected';
-    case 'registering': return 'Finding out how it was turned over';
-    default: return 'Building the model';
-  }
-}
-
-/** @param {Scan} scan */
-const isBuilding = ({phase}) => phasesAfterTheTurn.has(phase);
-
-/**
- * Building takes a moment after the last stop, so the last hundredths are its own.
- * @param {Scan} scan
- */
-function percent(scan) {
-  return scan.snapshots_total > 0 ? Math.floor(97 * scan.snapshots_done / scan.snapshots_total) : 0;
-}
-
-const steps = /** @type {const} */ (['ready', 'capture', 'build']);
-
-/** @param {Scan} scan */
-function stepStates(scan) {
-  const now = scan.phase === 'starting' ? 0 : isBuilding(scan) ? 2 : 1;
-  return steps.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'}));
-}
-
-/** @param {Scan} scan */
-const progressOf = (scan) => ({
-  id: scan.id,
-  phase: scan.phase,
-  text: phaseText(scan),
-  trouble: format.sentence(scan.error?.detail ?? ''),
-  percent: percent(scan),
-  done: scan.snapshots_done,
-  total: scan.snapshots_total,
-  left: format.timeLeft(scan.seconds_left),
-  steps: stepStates(scan),
-});
-
 /** Why a scan has no model. @param {Scan} scan */
 function troubleOf(scan) {
   const said = {
@@ -94,9 +43,9 @@ function troubleOf(scan) {
   };
   switch (scan.state) {
     case 'cancelled':
-      return {...said, tone: 'idle', title: 'Scan cancelled', detail: said.detail || 'It was stopped before the turn was complete.'};
+      return {...said, tone: 'idle', title: 'Scan ended', detail: said.detail || 'It was ended before the turn was complete. What it has seen is kept.'};
     case 'paused':
-      return {...said, tone: 'warn', title: 'Scan paused'};
+      return {...said, tone: 'warn', title: 'Scan paused', detail: said.detail || 'The motor is off. Leave the object and the platform as they are.'};
     case 'interrupted':
       return {...said, tone: 'warn', title: 'Scan interrupted'};
     case 'failed':
@@ -115,6 +64,10 @@ function poseFacts({calibration}) {
   return [{label: 'Pose', text: !accepted || !solved ? `As it was: ${reason}` :
     `${confirms_told ? 'As it was, confirmed by this scan' : 'Found by this scan'}, looks agree to ${solved.after_mm.toFixed(2)} mm`}];
 }
+
+/** What was left out, but for crumbs. @param {Model} model @returns {{label: string, text: string}[]} */
+const droppedFacts = ({dropped_parts, dropped_volume_cm3}) => !dropped_parts || !(Number(dropped_volume_cm3) >= 0.1) ? [] :
+  [{label: 'Left out', text: `${format.count(dropped_parts, 'part')}, ${format.number(Number(dropped_volume_cm3))} cm³`}];
 
 /** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan) {
@@ -136,22 +89,33 @@ function factsOf(scan) {
     ...(model.filled_share === null ? [] :
       [{label: 'Seen', text: `${Math.round(100 * (1 - model.filled_share))} % of the surface, the rest is filled in`}]),
     {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
+    ...droppedFacts(model),
     {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`},
     ...capture,
   ];
 }
 
+/** @param {Scan} scan */
+const downloadOf = ({model}) => model && {url: model.url, about: format.bytes(model.bytes)};
+
 /**
- * What can be downloaded: the model, or, of a scan that has ended without one, that of the snapshots it has.
- * @param {Scan} scan
+ * The model that a scan has not got, though it has ended and has snapshots. One that did not fit into the memory is
+ * offered with leaves of twice the side, which take an eighth of it.
+ * @param {State} state @param {Scan} scan
  */
-function downloadOf({id, state, model, error, settings, ...scan}) {
-  if (model) {
-    return {url: model.url, about: format.bytes(model.bytes)};
+function unbuiltOf(state, {id, state: condition, model, error, settings, snapshots_done}) {
+  const hasEnded = condition === 'cancelled' || condition === 'failed';
+  if (model || !hasEnded || snapshots_done === 0 || error?.code === 'empty') {
+    return null;
   }
-  const hasEnded = state === 'cancelled' || state === 'failed';
-  return hasEnded && scan.snapshots_done > 0 && error?.code !== 'empty' ?
-    {url: `/api/v1/scans/${id}/Scan.stl?leaf_size_mm=${settings.leaf_size_mm}`, about: `of ${scan.snapshots_done} ${scan.snapshots_done === 1 ? 'snapshot' : 'snapshots'}`} : null;
+  const leaf_size_mm = error?.code === 'memory-limit' ? 2 * settings.leaf_size_mm : settings.leaf_size_mm;
+  const build = state.status?.build;
+  return {
+    settings: {leaf_size_mm, choose: true},
+    about: `of ${format.count(snapshots_done, 'snapshot')}, ${format.number(leaf_size_mm)} mm`,
+    isBusy: running(state) !== null || Boolean(build && isGoing(build)),
+    isGoing: Boolean(build && isGoing(build) && build.scan === id),
+  };
 }
 
 /**
@@ -163,6 +127,18 @@ function verdictShown(state, {model, calibration}) {
   return verdict && {...verdict, reasons: verdict.reasons.map((reason) => ({...reason, isShown: reason.key === state.shownReason}))};
 }
 
+/**
+ * What else can be downloaded: the scan's model in other formats, and the scan itself.
+ * @param {Scan} scan  as it is shown
+ */
+function formatsOf({id, model, state, snapshots_done}) {
+  const isModelOfScan = model?.url === `/api/v1/scans/${id}/Scan.stl`;
+  const models = isModelOfScan ? ['3mf', 'ply', 'glb'].map((ending) =>
+    ({name: ending.toUpperCase(), title: `Download ${ending.toUpperCase()}`, url: `/api/v1/scans/${id}/Scan.${ending}`})) : [];
+  const raw = {name: 'Raw scan', title: 'Download the raw scan, for another Octurn', url: `/api/v1/scans/${id}/scan.zip`};
+  return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
+}
+
 /** @param {State} state @param {Scan} scan  as it is shown */
 const detailsOf = (state, scan) => ({
   id: scan.id,
@@ -171,33 +147,53 @@ const detailsOf = (state, scan) => ({
   verdict: verdictShown(state, scan),
   size: scan.model ? format.size(scan.model.size_mm) : '',
   facts: factsOf(scan),
-  canResume: scan.state === 'paused' || scan.state === 'interrupted',
+  canResume: scan.can_resume ?? (scan.state === 'paused' || scan.state === 'interrupted'),
+  canEnd: scan.state === 'paused' || scan.state === 'interrupted',
   download: downloadOf(scan),
+  formats: formatsOf(scan),
+  unbuilt: unbuiltOf(state, scan),
 });
 
 /** @param {State} state */
 const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   id: scan.id,
-  name: scan.name || 'Untitled scan',
-  fullName: nameOf(scan),
+  name: nameOf(scan),
   badge: scan.model && badgeOf(scan.model) || badges[scan.state],
-  when: format.when(scan.created),
+  when: scan.name ? format.when(scan.created) : '',  // else it is the name
   about: scan.model ? `${format.size(scan.model.size_mm, 0)} · ${format.bytes(scan.model.bytes)}` :
     `${taken(scan)} snapshots${scan.state === 'running' ? '' : ' kept'}`,
   download: scan.model?.url ?? null,
   isCurrent: scan.id === (state.selected ?? running(state)?.id),
   isRunning: scan.state === 'running',
+  picture: pictureOf(scan),
+  isChosen: state.library.chosen?.includes(scan.id) ?? false,
 });
 
-/** @param {string} role @param {Device} device */
-function deviceOf(role, device) {
+/** The scans kept: those that are found, as many as are shown. @param {State} state */
+function libraryOf(state) {
+  const scans = state.scans.filter((scan) => !isPartOfAnother(scan));
+  const matches = found(scans, state.library, nameOf);
+  const {limit, chosen, query} = state.library;
+  return {
+    rows: matches.slice(0, limit).map(rowOf(state)),
+    isListed: state.listed !== null,
+    count: scans.length,
+    summary: query ? `${matches.length} of ${scans.length}` : scans.length > 0 ? String(scans.length) : '',
+    more: Math.max(matches.length - limit, 0),
+    isChoosing: chosen !== null,
+    chosen: chosen?.length ?? 0,
+  };
+}
+
+/** @param {string} role @param {Device} device @param {boolean} isAway  the scanner: what it said last may be over */
+function deviceOf(role, device, isAway) {
   const isReady = device.state === 'ready';
   const words = {unknown: 'being looked for', ready: 'ready', missing: 'not found', failed: 'failed'};
   return {
     role,
-    tone: isReady ? 'good' : 'bad',
+    tone: isAway ? 'idle' : isReady ? 'good' : 'bad',
     name: device.name || role,
-    text: words[device.state],
+    text: isAway ? 'not known' : words[device.state],
     message: isReady ? '' : format.sentence(device.message || `the ${role} is ${words[device.state]}`),
   };
 }
@@ -212,7 +208,7 @@ function titleOf(state) {
     return isBuilding(scan) ? 'Building · Octurn' : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
   }
   const shown = scanOf(state, state.selected);
-  return shown ? `${shown.state === 'finished' ? 'Done' : badges[shown.state].text} · Octurn` : 'Octurn';
+  return shown ? `${nameOf(shown)} · Octurn` : 'Octurn';
 }
 
 /**
@@ -223,7 +219,7 @@ function announcementOf(state) {
   const scan = running(state);
   if (scan) {
     const quarter = Math.floor(4 * scan.snapshots_done / Math.max(scan.snapshots_total, 1)) * 25;
-    return isBuilding(scan) ? `${phaseText(scan)}.` :
+    return isBuilding(scan) || scan.error ? `${phaseText(scan)}.` :
       quarter === 0 ? `Scanning, ${scan.snapshots_total} snapshots.` : `${quarter} percent of the snapshots taken.`;
   }
   const shown = scanOf(state, state.selected);
@@ -244,16 +240,17 @@ export function screenOf(state) {
   const hasModel = panel === 'details' && Boolean(shown?.model);
   const growing = panel === 'progress' && scan ? scan.preview : null;
   const has3D = hasModel || growing !== null;
-  const devices = state.status ? [deviceOf('sensor', state.status.sensor), deviceOf('turntable', state.status.turntable)] : [];
+  const away = isAway(state);
+  const devices = state.status ? [deviceOf('sensor', state.status.sensor, away), deviceOf('turntable', state.status.turntable, away)] : [];
   return {
     title: titleOf(state),
     announcement: announcementOf(state),
-    isAway: isAway(state),
+    isAway: away,
     isBusy: state.isPending,
     isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
     devices,
     panel,
-    progress: scan && progressOf(scan),
+    progress: scan && {...progressOf(scan), ...(away ? {text: 'Not known until the scanner answers', left: '', time: '', isStale: true} : {isStale: false})},
     details: shown && detailsOf(state, shown),
     builds: chosen && buildsOf(state, chosen),
     poses: chosen && posesOf(state, chosen),
@@ -273,12 +270,11 @@ export function screenOf(state) {
       growing,
       name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
       sensor: state.status?.sensor.name ?? '',
-      isReachable: !isAway(state),
-      isLive: state.status?.sensor.state === 'ready' && !isAway(state),
+      isReachable: !away,
+      isLive: state.status?.sensor.state === 'ready' && !away,
       isScanning: scan !== null,
     },
-    rows: state.scans.filter((one) => !isPartOfAnother(one)).map(rowOf(state)),
-    isListed: state.listed !== null,
+    ...libraryOf(state),
     footer: state.status ? {version: `Octurn ${state.status.version}`, disk: `${format.bytes(state.status.disk_free_bytes)} free`} : null,
   };
 }

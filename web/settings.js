@@ -8,7 +8,7 @@
 const details = [
   {mm: 4, name: 'Draft'},
   {mm: 2, name: 'Coarse'},
-  {mm: 1, name: 'Standard'},
+  {mm: 1, name: 'Medium'},
   {mm: 0.5, name: 'Fine'},
 ];
 

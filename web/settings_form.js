@@ -10,6 +10,7 @@ const names = {
   'scan.filter': 'Depth filter',
   'scan.frames': 'Depth pictures a stop',
   'scan.max_error_mm': 'Simplification',
+  'scan.parts': 'Parts',
   'scan.calibrate': 'Check of the pose',
   'scan.clip_mm': 'Scanned space',
   'turntable.gear_ratio': 'Gear ratio',
@@ -36,6 +37,7 @@ const names = {
 /** Help where the schema's is for programs. @type {Record<string, string>} */
 const help = {
   'scan.filter': 'Basic takes one depth picture, average the mean of several, and with discard only where each of them saw something.',
+  'scan.parts': 'Of several things on the platform: the object alone, or all that stand there. Solid only.',
   'scan.calibrate': 'A scan solves where the sensor stands by itself, and builds its model again if that is better.',
   'turntable.reversed': 'On if the platform turns clockwise, seen from above.',
   'turntable.take_up_steps': 'Against the play of gears: so far the platform goes back too far, and comes forward again. 0 for none.',
@@ -45,6 +47,7 @@ const help = {
 const choices = {
   'basic': 'Basic', 'average': 'Average', 'average-discard': 'Average, discard',
   'auto': 'By each scan', 'told': 'None',
+  'main': 'The object', 'all': 'All that stand',
   'solid': 'Solid', 'intersection': 'Intersection',
 };
 

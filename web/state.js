@@ -2,6 +2,7 @@
 // screen.js tells what is shown of it.
 
 import {isGoing, markOf} from './builds.js';
+import {initial as library} from './library.js';
 
 /** @typedef {import('./api.js').Status} Status */
 /** @typedef {import('./api.js').Scan} Scan */
@@ -19,6 +20,7 @@ import {isGoing, markOf} from './builds.js';
  * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan that is looked at
  * @property {number | null} shownBuild  the one that is looked at; null for the scan's model
  * @property {string | null} shownReason  of the verdict, whose places are shown
+ * @property {import('./library.js').Library} library
  * @property {'camera' | 'model'} stage  what the large picture shows when there is a choice
  * @property {boolean} isPending  something was asked of the scanner and is not yet answered
  * @property {{title: string, detail: string, hint: string} | null} problem  why the last thing asked for was not done
@@ -35,6 +37,7 @@ export const initial = {
   builds: null,
   shownBuild: null,
   shownReason: null,
+  library,
   stage: 'camera',
   isPending: false,
   problem: null,
@@ -52,9 +55,9 @@ export const running = (state) => state.status?.scan ?? null;
 export const scanOf = (state, id) => state.scans.find((scan) => scan.id === id) ?? null;
 
 /** @param {Status} status */
-const mark = (status) => `${status.scan?.id} ${status.newest} ${markOf(status.build)}`;
+const mark = (status) => `${status.scan?.id} ${status.scans_revision} ${markOf(status.build)}`;
 
-/** Whether scans came or ended since the list was read. @param {State} state */
+/** Whether scans came, ended or changed since the list was read, from here or from another browser. @param {State} state */
 export const isListStale = (state) => state.status !== null && state.listed !== mark(state.status);
 
 /** @param {Scan[]} scans @param {Scan} scan  it replaces the one it is, or is new */
@@ -72,6 +75,9 @@ export function withStatus(state, status) {
   const news = {...state, status, failures: 0, scans: status.scan ? merged(state.scans, status.scan) : state.scans};
   const shown = before?.pose_of?.scan ?? before?.id ?? null;
   const renewed = ended && before.pose_of ? {...news, builds: null, shownBuild: null} : news;
+  if (status.scan && state.selected === status.scan.id) {
+    return {...renewed, selected: null};  // by its address, or resumed from another browser: its progress is shown
+  }
   return ended && state.selected === null ? {...renewed, selected: shown, stage: 'model'} : renewed;
 }
 
@@ -139,6 +145,9 @@ export const withShownBuild = (state, shownBuild) => ({...state, shownBuild, sho
 /** Shows the places of a reason, or hides them. @param {State} state @param {string} reason @returns {State} */
 export const withReason = (state, reason) => ({...state, shownReason: state.shownReason === reason ? null : reason, stage: 'model'});
 
+/** @param {State} state @param {Partial<State['library']>} changes @returns {State} */
+export const withLibrary = (state, changes) => ({...state, library: {...state.library, ...changes}});
+
 /** @param {State} state @param {State['stage']} stage @returns {State} */
 export const withStage = (state, stage) => ({...state, stage});
 
@@ -150,6 +159,9 @@ export const withAnswer = (state) => ({...state, isPending: false});
 
 /** @param {State} state @param {State['problem']} problem @returns {State} */
 export const withProblem = (state, problem) => ({...state, problem});
+
+/** Something was refused: perhaps the list that it was asked from is not what there is. @param {State} state @returns {State} */
+export const withStaleList = (state) => ({...state, listed: null});
 
 /**
  * How long to wait before asking for the status again, milliseconds: briskly while a scan runs, ever more

@@ -107,6 +107,7 @@ function showChoice() {
   const complaint = file ? complaintOf(file.size) : '';
   show(element('update-chosen'), file !== undefined);
   show(element('update-install'), file !== undefined);
+  show(element('update-older'), file !== undefined);
   setText(part(element('update-pick'), 'span'), file ? 'Choose another file' : 'Choose a file');
   setText(part(element('update-chosen'), 'strong'), file?.name ?? '');
   setText(part(element('update-chosen'), 'span'), file ? complaint || bytes(file.size) : '');
@@ -185,8 +186,10 @@ async function install() {
   change({failure: '', isFollowed: false, sending: {sent: 0, total: file.size}});
   element('update-cancel').focus({preventScroll: true});
   try {
-    const update = await api.sendUpdate(file, (sent) => change({sending: {sent, total: file.size}}), signal);
+    const update = await api.sendUpdate(file, (sent) => change({sending: {sent, total: file.size}}), signal,
+      part(element('update-older'), 'input').checked);
     element('update-file').value = '';
+    part(element('update-older'), 'input').checked = false;
     change({sending: null, update});
   } catch (error) {
     const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));

@@ -44,7 +44,7 @@ function showPanel(name) {
 function showProgress(progress) {
   const {done, total} = progress;
   const dial = element('dial');
-  dial.dataset.phase = progress.phase;
+  dial.dataset.phase = progress.isStale ? '' : progress.phase;
   dial.setAttribute('aria-valuenow', String(progress.percent));
   dial.setAttribute('aria-valuetext', `${done} of ${total} snapshots. ${progress.text}.`);
   for (const [id, from, to] of /** @type {[string, number, number][]} */ ([
@@ -57,6 +57,7 @@ function showProgress(progress) {
   setText(element('dial-total'), `of ${total}`);
   setText(element('phase'), progress.text);
   setText(element('left'), progress.left);
+  setText(element('time'), progress.time);
   show(element('trying'), progress.trouble !== '');
   setText(part(element('trying'), 'p'), progress.trouble);
   for (const {name, state} of progress.steps) {
@@ -94,7 +95,7 @@ function showVerdict(verdict) {
 }
 
 /** @param {NonNullable<Screen['details']>} details */
-function showDetails({name, trouble, verdict, size, facts, canResume, download}) {
+function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, download, formats, unbuilt}) {
   setText(element('details-name'), name);
   show(element('trouble'), trouble !== null);
   if (trouble) {
@@ -106,11 +107,22 @@ function showDetails({name, trouble, verdict, size, facts, canResume, download})
   }
   showVerdict(verdict);
   show(element('resumable'), canResume);
+  show(element('end'), canEnd);
   show(element('size'), size !== '');
   setText(element('size'), size);
   list(element('facts'), facts, ({label}) => label, 'fact', (item, {label, ...value}) => {
     setText(part(item, 'dt'), label);
     setBadge(part(item, 'dd'), value);
+  });
+  show(element('build-first'), unbuilt !== null && !unbuilt.isGoing);
+  setText(element('build-first-about'), unbuilt?.about ?? '');
+  element('build-first').className = canResume ? 'secondary' : 'primary';
+  element('build-first').setAttribute('aria-disabled', String(Boolean(unbuilt?.isBusy)));
+  show(element('formats'), formats.length > 0);
+  list(element('formats'), formats, ({name}) => name, 'format', (item, {name, title, url}) => {
+    setText(part(item, 'a'), name);
+    part(item, 'a').href = url;
+    part(item, 'a').setAttribute('aria-label', title);
   });
   show(element('download'), download !== null);
   if (download) {
@@ -119,11 +131,35 @@ function showDetails({name, trouble, verdict, size, facts, canResume, download})
   }
 }
 
+/** @param {HTMLElement} frame @param {string} url  empty: there is no picture */
+function showPicture(frame, url) {
+  const image = part(frame, 'img');
+  show(image, url !== '');
+  show(part(frame, 'svg'), url === '');
+  if (url !== '' && image.getAttribute('src') !== url) {
+    image.src = url;
+  }
+}
+
 /** @param {Screen} screen */
-function showRows({rows, isListed}) {
-  show(element('no-scans'), isListed && rows.length === 0);
+function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
+  show(element('no-scans'), isListed && count === 0);
+  show(element('library-tools'), count > 1 || isChoosing);
+  setText(element('library-count'), summary);
+  show(element('no-match'), count > 0 && rows.length === 0);
+  show(element('show-more'), more > 0);
+  setText(element('show-more'), `Show more (${more})`);
+  element('choose').setAttribute('aria-pressed', String(isChoosing));
+  show(element('delete-chosen'), isChoosing);
+  setText(element('delete-chosen'), `Delete ${chosen}`);
+  element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
   list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
     item.classList.toggle('current', row.isCurrent);
+    showPicture(part(item, '.scan-picture'), row.picture);
+    const choice = part(item, '.scan-choice');
+    show(choice, isChoosing && !row.isRunning);
+    part(choice, 'input').checked = row.isChosen;
+    part(choice, 'input').setAttribute('aria-label', `Choose: ${row.name}`);
     const name = part(item, '.scan-name');
     setText(name, row.name);
     name.href = `#${row.id}`;
@@ -132,7 +168,7 @@ function showRows({rows, isListed}) {
     setText(part(item, '.scan-when'), row.when);
     setText(part(item, '.scan-about'), row.about);
     for (const action of item.querySelectorAll('[data-do]')) {
-      action.setAttribute('aria-label', `${action.title}: ${row.fullName}`);
+      action.setAttribute('aria-label', `${action.title}: ${row.name}`);
     }
     const download = part(item, '[data-do=download]');
     show(download, row.download !== null);
@@ -177,7 +213,7 @@ export function render(screen) {
   renderBuilds(screen.panel === 'details' ? screen.builds : null);
   showPanel(screen.panel);
   showRows(screen);
-  for (const id of ['start', 'cancel', 'resume', 'end']) {
+  for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
     element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled it keeps the focus
   }
@@ -213,8 +249,5 @@ export async function askName(name) {
 /** @returns {Promise<boolean>} whether a model is to be deleted */
 export const askDeleteBuild = () => ask(element('delete-build-dialog'));
 
-/** @param {string} name */
-export function askDelete(name) {
-  setText(element('delete-title'), `Delete “${name}”?`);
-  return ask(element('delete-dialog'));
-}
+/** @returns {Promise<boolean>} whether the bin is to be emptied */
+export const askEmptyBin = () => ask(element('empty-bin-dialog'));

@@ -4,6 +4,7 @@ import {
   BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer,
 } from './three.js';
+import {fitToCanvas} from './canvas.js';
 import {ballOf, placesMark} from './places_mark.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
@@ -108,6 +109,7 @@ export class Viewer {
     this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
     this.#lights();
     this.#controls = new OrbitControls(this.#camera, canvas);
+    canvas.style.touchAction = 'pan-y';  // a finger that goes up or down scrolls the page, which may be no wider than the picture
     this.#controls.enableDamping = true;
     this.#controls.autoRotateSpeed = 1.6;
     this.#controls.addEventListener('change', () => this.#draw());
@@ -241,12 +243,7 @@ export class Viewer {
   }
 
   #resize() {
-    const {clientWidth: width, clientHeight: height} = this.#canvas;
-    if (width > 0 && height > 0) {
-      this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-      this.#renderer.setSize(width, height, false);
-      this.#camera.aspect = width / height;
-      this.#camera.updateProjectionMatrix();
+    if (fitToCanvas(this.#renderer, this.#camera, this.#canvas)) {
       this.#draw();
     }
   }

@@ -98,6 +98,11 @@ test('earlier poses are told by their origin and what they cured', () => {
   assert.deepEqual([second.title, second.text], ['Taken from the drawing', 'scale 1.0100']);
 });
 
+test('where no earlier pose is kept, that of the settings is below', () => {
+  assert.match(texts.noPosesText(calibration), /^None yet/);
+  assert.match(texts.noPosesText({...calibration, source: 'scan'}), /pose of the settings/);
+});
+
 test('brightness tells the distance, within what the picture can show', () => {
   assert.equal(distanceOf(0), null);
   assert.ok(Math.abs(distanceOf(255) - 0.45) < 1e-9);

@@ -3,7 +3,7 @@ import {test} from 'node:test';
 
 import {progressAfter, shownOf} from '../../web/doctor.js';
 
-const finding = (check, state, more = {}) => ({check, name: check, state, measured: '1 mm', advice: '', ...more});
+const finding = (check, state, more = {}) => ({check, name: check, state, measured: '1 mm', advice: '', action: '', ...more});
 
 test('faults come first, then warnings, what is in order, and what is not known', () => {
   const {lines} = shownOf({findings: [finding('a', 'ok'), finding('b', 'unknown'), finding('c', 'warning'), finding('d', 'fault'), finding('e', 'ok')]});
@@ -22,6 +22,12 @@ test('what was measured and what to do are sentences', () => {
   const {lines: [line]} = shownOf({findings: [finding('usb', 'fault', {measured: 'no sensor', advice: 'plug it in'})]});
   assert.equal(line.measured, 'No sensor');
   assert.equal(line.advice, 'Plug it in.');
+});
+
+test('a finding that the page can do something about has a button that says what', () => {
+  const {lines} = shownOf({findings: [finding('platform', 'warning', {action: 'measure-turn'}), finding('usb', 'fault'), finding('disk', 'ok')]});
+  assert.deepEqual(lines.map(({key, action, actionName}) => [key, action, actionName]),
+    [['usb', '', ''], ['platform', 'measure-turn', 'Measure with a turn'], ['disk', '', '']]);
 });
 
 test('the bar grows and never shows the end before it is there', () => {

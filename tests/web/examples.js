@@ -7,7 +7,7 @@ export const settings = {
 
 const device = {state: 'ready', name: 'Kinect v1', simulated: false, message: ''};
 
-export const status = {version: '0.1.0', sensor: device, turntable: {...device, name: 'stepper'}, disk_free_bytes: 12.3e9, appliance: false, scan: null, newest: null};
+export const status = {version: '0.1.0', sensor: device, turntable: {...device, name: 'stepper'}, disk_free_bytes: 12.3e9, appliance: false, scan: null, newest: null, scans_revision: 1};
 
 export const running = {
   id: 'run', name: '', state: 'running', phase: 'capturing', created: '2026-11-21T08:15:00Z', snapshots_done: 9,

@@ -21,8 +21,8 @@ test('each verdict has its tone, and is never told by colour alone', () => {
 
 test('a reason leads to its cure', () => {
   const href = (code) => actionOf(code)?.href ?? null;
-  assert.deepEqual(['stops-disagree', 'cut-by-box', 'little-seen', 'something-new', undefined].map(href),
-      ['#calibrate', '#calibrate', '#', null, null]);
+  assert.deepEqual(['stops-disagree', 'cut-by-box', 'part-missing', 'little-seen', 'something-new', undefined].map(href),
+      ['#calibrate', '#calibrate', '#calibrate', '#', null, null]);
 });
 
 test('a good model of an uneven sensor leads to the wall, and stays good', () => {

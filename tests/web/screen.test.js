@@ -44,6 +44,17 @@ test('after the last snapshot the scanner looks once more at the first stop', ()
   assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Looking once more at the first stop');
 });
 
+test('what was left out of a model is told, but for crumbs', () => {
+  const leftOut = (dropped_parts, dropped_volume_cm3) => {
+    const scan = {...finished, model: {...finished.model, dropped_parts, dropped_volume_cm3}};
+    return screenOf(looking(scan)).details.facts.find(({label}) => label === 'Left out')?.text;
+  };
+  assert.equal(leftOut(2, 1.25), '2 parts, 1.3 cm³');
+  assert.equal(leftOut(70, 0.05), undefined);
+  assert.equal(leftOut(0, 0), undefined);
+  assert.equal(leftOut(null, null), undefined);
+});
+
 test('a finished scan shows its size, its facts and its download', () => {
   const {details, stage, title} = screenOf(looking(finished));
   assert.equal(details.name, 'Owl');
@@ -55,7 +66,7 @@ test('a finished scan shows its size, its facts and its download', () => {
   assert.equal(facts.Snapshots, '36 of 36, average of 10');
   assert.deepEqual(details.download, {url: finished.model.url, about: '51 MB'});
   assert.equal(stage.shows, 'model');
-  assert.equal(title, 'Done · Octurn');
+  assert.equal(title, 'Owl · Octurn');
 });
 
 test('a model with open edges is not called ready', () => {
@@ -70,15 +81,17 @@ test('a scan without a model says why, and what of it is kept', () => {
   const failed = {...running, id: 'bad', state: 'failed', error};
   const {details, rows, stage} = screenOf(looking(failed));
   assert.deepEqual(details.trouble, {tone: 'bad', title: 'Scan failed', detail: 'No frame for 2000 ms.', hint: 'Check the cable.', action: null});
-  assert.deepEqual(details.download, {url: '/api/v1/scans/bad/Scan.stl?leaf_size_mm=1', about: 'of 9 snapshots'});
+  assert.deepEqual([details.download, details.unbuilt.about], [null, 'of 9 snapshots, 1 mm']);
   assert.equal(details.canResume, false);
   assert.equal(rows[0].about, '9 of 36 snapshots kept');
   assert.equal(stage.shows, 'camera');
 });
 
 test('while the scanner is away the page keeps what it knew, and says so', () => {
-  const {isAway, title, panel, stage} = screenOf(states.withoutAnswer(states.withoutAnswer(scanning({}))));
+  const {isAway, title, panel, stage, devices, progress} = screenOf(states.withoutAnswer(states.withoutAnswer(scanning({}))));
   assert.deepEqual({isAway, title, panel, isLive: stage.isLive}, {isAway: true, title: 'No answer · Octurn', panel: 'progress', isLive: false});
+  assert.deepEqual(devices.map(({tone, text}) => `${tone} ${text}`), ['idle not known', 'idle not known']);
+  assert.deepEqual([progress.isStale, progress.left], [true, '']);
 });
 
 test('a missing sensor is told before a scan is tried', () => {
@@ -103,7 +116,7 @@ test('a paused scan says why, and can be resumed or ended', () => {
   assert.equal(details.download, null);
   assert.deepEqual(rows[0].badge, {tone: 'warn', text: 'Paused'});
   assert.equal(rows[0].isRunning, false);
-  assert.deepEqual({title, announcement, panel}, {title: 'Paused · Octurn', announcement: 'Scan paused.', panel: 'details'});
+  assert.deepEqual({title, announcement, panel}, {title: `${rows[0].name} · Octurn`, announcement: 'Scan paused.', panel: 'details'});
 });
 
 test('an interrupted scan can be resumed, a finished, failed or cancelled one cannot', () => {
@@ -112,10 +125,33 @@ test('an interrupted scan can be resumed, a finished, failed or cancelled one ca
 });
 
 test('a scan that ended without a model still gives that of its snapshots, if it has any to make one of', () => {
-  const download = (changes) => screenOf(looking({...running, id: 'end', state: 'cancelled', ...changes})).details.download;
-  assert.equal(download({}).about, 'of 9 snapshots');
-  assert.equal(download({snapshots_done: 0}), null);
-  assert.equal(download({state: 'failed', error: {code: 'empty', detail: '', hint: ''}}), null);
+  const unbuilt = (changes) => screenOf(looking({...running, id: 'end', state: 'cancelled', ...changes})).details.unbuilt;
+  assert.deepEqual([unbuilt({}).about, unbuilt({}).isBusy], ['of 9 snapshots, 1 mm', false]);
+  assert.equal(unbuilt({snapshots_done: 0}), null);
+  assert.equal(unbuilt({state: 'failed', error: {code: 'empty', detail: '', hint: ''}}), null);
+});
+
+test('a model that did not fit into the memory is offered with larger leaves', () => {
+  const failed = {...running, id: 'big', state: 'failed', error: {code: 'memory-limit', detail: '', hint: ''}};
+  assert.deepEqual(screenOf(looking(failed)).details.unbuilt.settings, {leaf_size_mm: 2, choose: true});
+});
+
+test('a model cannot be asked for while a scan runs, and its offer says so', () => {
+  const state = states.withSelected(states.withScan(scanning({}), {...running, id: 'end', state: 'cancelled'}), 'end');
+  assert.equal(screenOf(state).details.unbuilt.isBusy, true);
+});
+
+test('a finished scan is downloaded in four formats and as it was taken, one without a model only so', () => {
+  const names = (scan) => screenOf(looking(scan)).details.formats.map(({url}) => url.split('/').at(-1));
+  assert.deepEqual(names(finished), ['Scan.3mf', 'Scan.ply', 'Scan.glb', 'scan.zip']);
+  assert.deepEqual(names({...running, state: 'cancelled'}), ['scan.zip']);
+});
+
+test('a scan has one name, in its row, its heading and the title', () => {
+  const {rows, details, title} = screenOf(looking({...finished, name: ''}));
+  assert.equal(rows[0].name, details.name);
+  assert.equal(title, `${details.name} · Octurn`);
+  assert.match(details.name, /2026/);
 });
 
 test('while a device is tried again the progress says which, and at what stop', () => {
@@ -123,6 +159,8 @@ test('while a device is tried again the progress says which, and at what stop', 
   const {progress} = screenOf(scanning({error}));
   assert.equal(progress.text, 'Trying stop 10 of 36 again');
   assert.equal(progress.trouble, 'No frame for 2000 ms.');
+  assert.equal(progress.left, '', 'nobody knows how long that takes');
+  assert.equal(screenOf(scanning({error})).announcement, 'Trying stop 10 of 36 again.');
   assert.equal(screenOf(scanning({})).progress.trouble, '');
 });
 

@@ -41,7 +41,20 @@ test('the list is stale when a scan came or ended, and fresh once it is read', (
   const listed = states.withScans(scanning, [running]);
   assert.ok(!states.isListStale(listed));
   assert.ok(!states.isListStale(states.withStatus(listed, {...status, scan: {...running, snapshots_done: 30}})));
-  assert.ok(states.isListStale(states.withStatus(listed, {...status, newest: 'run'})));
+  assert.ok(states.isListStale(states.withStatus(listed, {...status, scan: running, scans_revision: 2})), 'renamed or deleted by somebody else');
+});
+
+test('after a refusal the list is read again: what was to be deleted may be gone already', () => {
+  const listed = states.withScans(states.withStatus(initial, status), [finished]);
+  assert.ok(!states.isListStale(listed));
+  assert.ok(states.isListStale(states.withStaleList(listed)));
+});
+
+test('a scan that is looked at and runs, by its address or since somebody else resumed it, shows its progress', () => {
+  const byAddress = states.withSelected(initial, 'run');
+  assert.equal(states.withStatus(byAddress, {...status, scan: running}).selected, null);
+  const paused = states.withSelected(states.withScans(states.withStatus(initial, status), [{...running, state: 'paused'}]), 'run');
+  assert.equal(states.withStatus(paused, {...status, scan: running}).selected, null);
 });
 
 test('a scan that is no longer there is no longer looked at', () => {

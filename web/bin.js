@@ -1,0 +1,77 @@
+// The bin below the list of scans: what was deleted, and can be restored.
+
+import * as requests from './api_bin.js';
+import {element, list, part, setText, show} from './dom.js';
+import * as format from './format.js';
+
+const undoLasts = 20000;  // milliseconds
+
+let revision = 0;  // of the scans, when the bin was read
+let timer = 0;
+
+/** @param {requests.Binned} scan @param {Date} now */
+export function rowOf({id, name, created, snapshots_done, kept_until}, now) {
+  const days = Math.max(Math.ceil((Date.parse(kept_until) - now.getTime()) / 86400e3), 0);
+  return {
+    id,
+    name: name || `Scan of ${format.when(created)}`,
+    about: `${format.count(snapshots_done, 'snapshot')} · kept for ${format.count(days, 'day')} more`,
+  };
+}
+
+/** @param {requests.Binned[]} scans */
+function render(scans) {
+  show(element('bin'), scans.length > 0);
+  setText(element('bin-title'), `Bin (${scans.length})`);
+  list(element('bin-rows'), scans.map((scan) => rowOf(scan, new Date())), ({id}) => id, 'bin-row', (item, row) => {
+    setText(part(item, '.scan-name'), row.name);
+    setText(part(item, '.scan-about'), row.about);
+    part(item, 'button').setAttribute('aria-label', `Restore: ${row.name}`);
+  });
+}
+
+/** Reads the bin where scans came or went. @param {number} current  revision of the scans */
+export async function seeRevision(current) {
+  if (current === revision) {
+    return;
+  }
+  const before = revision;
+  revision = current;
+  try {
+    render(await requests.bin());
+  } catch {
+    revision = before;  // the next look asks again
+  }
+}
+
+/** Reads the bin again at the next look. */
+export function refresh() {
+  revision = 0;
+}
+
+export function hideUndo() {
+  clearTimeout(timer);
+  show(element('deleted'), false);
+}
+
+/** Offers for a while to bring a scan back that has just been deleted. @param {string} name @param {() => void} undo */
+export function offerUndo(name, undo) {
+  clearTimeout(timer);
+  setText(element('deleted-text'), `In the bin: ${name}.`);
+  show(element('deleted'), true);
+  part(element('deleted'), 'button').onclick = () => {
+    hideUndo();
+    undo();
+  };
+  timer = setTimeout(hideUndo, undoLasts);
+}
+
+/** @param {{restore: (id: string) => void, empty: () => void}} actions */
+export function prepareBin(actions) {
+  element('bin-rows').addEventListener('click', (/** @type {any} */ event) => {
+    if (event.target.closest('button')) {
+      actions.restore(event.target.closest('li').dataset.key);
+    }
+  });
+  element('bin-empty').addEventListener('click', actions.empty);
+}

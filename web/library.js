@@ -1,0 +1,54 @@
+// Which scans are listed, and in what order. Pure.
+
+import * as format from './format.js';
+
+/** @typedef {import('./api.js').Scan} Scan */
+
+/**
+ * @typedef {Object} Library
+ * @property {string} query  of the search
+ * @property {'newest' | 'oldest' | 'name' | 'largest'} order
+ * @property {number} limit  cards that are shown: a thousand would take a phone seconds
+ * @property {string[] | null} chosen  ids, while several are chosen
+ */
+
+export const step = 60;  // cards that come with each "Show more"
+
+/** @type {Library} */
+export const initial = {query: '', order: 'newest', limit: step, chosen: null};
+
+/** @param {Scan} scan */
+const volume = ({model}) => model ? model.size_mm.reduce((product, side) => product * side, 1) : 0;
+
+/** @param {string} text */
+const folded = (text) => text.normalize('NFKD').replace(/\p{Diacritic}/gu, '').toLowerCase();
+
+/**
+ * @param {Scan[]} scans  newest first
+ * @param {Library} library
+ * @param {(scan: Scan) => string} nameOf
+ * @returns {Scan[]} all that are found, in their order
+ */
+export function found(scans, {query, order}, nameOf) {
+  const words = folded(query).split(/\s+/).filter(Boolean);
+  const matches = words.length === 0 ? scans :
+    scans.filter((scan) => {
+      const text = folded(`${nameOf(scan)} ${format.when(scan.created)}`);
+      return words.every((word) => text.includes(word));
+    });
+  switch (order) {
+    case 'oldest': return [...matches].reverse();
+    case 'name': return [...matches].sort((a, b) => nameOf(a).localeCompare(nameOf(b), undefined, {numeric: true}));
+    case 'largest': return [...matches].sort((a, b) => volume(b) - volume(a));
+    default: return matches;
+  }
+}
+
+/** @param {Library} library @param {string} id @returns {Library} with that one chosen, or no longer */
+export const withToggled = (library, id) => {
+  const chosen = library.chosen ?? [];
+  return {...library, chosen: chosen.includes(id) ? chosen.filter((other) => other !== id) : [...chosen, id]};
+};
+
+/** Where the picture of a model is; another address for each model. @param {Scan} scan */
+export const pictureOf = ({id, model, build}) => model ? `/api/v1/scans/${id}/thumbnail.png?build=${build ?? 0}` : '';

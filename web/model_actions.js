@@ -1,0 +1,72 @@
+// What is asked about the models of the scan that is looked at: to build them again, to choose one, to join another side.
+
+import * as requests from './api_builds.js';
+import * as poseRequests from './api_poses.js';
+import {openFit} from './fit_view.js';
+import {act, change, state} from './page.js';
+import * as states from './state.js';
+import {askDeleteBuild} from './view.js';
+
+/** @param {Object} settings  of the scan that is looked at, those that are to differ */
+export const build = (settings) => act('The model is not being built', async () => {
+  const begun = await requests.build(/** @type {string} */ (state.selected), settings);
+  return (now) => states.withBuild(now, begun);
+});
+
+/** @param {number} number */
+const cancelBuild = (number) => act('The build was not cancelled', async () => {
+  await requests.cancelBuild(/** @type {string} */ (state.selected), number);
+  return (now) => now;
+});
+
+/** @param {number} number */
+const chooseBuild = (number) => act('The model was not changed', async () => {
+  const scan = await requests.chooseBuild(/** @type {string} */ (state.selected), number);
+  const builds = await requests.builds(scan.id);
+  return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
+});
+
+/** @param {number} number */
+async function removeBuild(number) {
+  const id = /** @type {string} */ (state.selected);
+  if (await askDeleteBuild()) {
+    await act('The model was not deleted', async () => {
+      await requests.removeBuild(id, number);
+      const builds = await requests.builds(id);
+      return (now) => states.withBuilds(now.shownBuild === number ? states.withShownBuild(now, null) : now, id, builds);
+    });
+  }
+}
+
+export const buildActions = {
+  build,
+  cancel: cancelBuild,
+  show: (/** @type {number} */ number) => change(states.withShownBuild(state, number)),
+  choose: chooseBuild,
+  remove: removeBuild,
+};
+
+let lookedAt = 0;  // pose whose fit is looked at
+
+export const poseActions = {
+  add: () => act('The scan did not start', async () => {
+    const scan = await poseRequests.startPose(/** @type {string} */ (state.selected));
+    return (now) => states.withStarted(now, scan);
+  }),
+  look: (/** @type {number} */ number) => {
+    const pose = states.scanOf(state, state.selected)?.poses?.find((other) => other.pose === number);
+    if (pose && state.selected) {
+      lookedAt = number;
+      openFit(state.selected, pose);
+    }
+  },
+  choose: (/** @type {Object} */ choice) => act('The side was not fitted again', async () => {
+    const begun = await poseRequests.choosePose(/** @type {string} */ (state.selected), lookedAt, choice);
+    return (now) => states.withBuild(now, begun);
+  }),
+  remove: (/** @type {number} */ number) => act('The side was not taken back', async () => {
+    const scan = await poseRequests.removePose(/** @type {string} */ (state.selected), number);
+    const builds = await requests.builds(scan.id);
+    return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
+  }),
+};

@@ -1,0 +1,43 @@
+// The page's state, and how it changes: what is asked of the scanner, one thing at a time.
+
+import * as api from './api.js';
+import {here, titleAt} from './places.js';
+import {screenOf} from './screen.js';
+import {renderStage} from './stage.js';
+import * as states from './state.js';
+import {render} from './view.js';
+
+export let state = states.initial;
+export let asked = 0;  // of the scanner so far: a status from before one is old news after it
+
+/** @param {states.State} next */
+export function change(next) {
+  const wasSelected = state.selected;
+  state = next;
+  if (here() === 'scan' && wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
+    location.hash = state.selected ?? '';
+  }
+  const screen = screenOf(state);
+  render({...screen, title: titleAt(here(), screen.title)});
+  renderStage(screen.stage);
+}
+
+/**
+ * Does what the user asked for, one thing at a time, and shows why if it fails.
+ * @param {string} failure  what did not happen then
+ * @param {() => Promise<(state: states.State) => states.State>} action  tells how its answer changes the state
+ */
+export async function act(failure, action) {
+  if (state.isPending) {
+    return;
+  }
+  change(states.withPending(state));
+  try {
+    const apply = await action();
+    change(apply(states.withAnswer(state)));
+  } catch (error) {
+    const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
+    change(states.withStaleList(states.withProblem(states.withAnswer(state), {title: failure, detail: detail || title, hint})));
+  }
+  ++asked;
+}

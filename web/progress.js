@@ -1,0 +1,64 @@
+// What is shown of a scan while it runs. Pure.
+
+import * as format from './format.js';
+
+/** @typedef {import('./api.js').Scan} Scan */
+
+const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'registering', 'building', 'done']);
+
+/** @param {Scan} scan */
+export function phaseText(scan) {
+  const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
+  if (scan.error) {
+    return `Trying ${stop} again`;
+  }
+  if (scan.snapshots_done === scan.snapshots_total && !phasesAfterTheTurn.has(scan.phase)) {
+    return 'Looking once more at the first stop';
+  }
+  switch (scan.phase) {
+    case 'starting': return 'Getting ready';
+    case 'turning': return `Turning to ${stop}`;
+    case 'capturing': return `Looking at ${stop}`;
+    case 'calibrating': return 'Checking where the sensor stands';
+    case 'rebuilding': return 'Building again, with the pose corrected';
+    case 'registering': return 'Finding out how it was turned over';
+    default: return 'Building the model';
+  }
+}
+
+/** @param {Scan} scan */
+export const isBuilding = ({phase}) => phasesAfterTheTurn.has(phase);
+
+/**
+ * Building takes a moment after the last stop, so the last hundredths are its own.
+ * @param {Scan} scan
+ */
+function percent(scan) {
+  return scan.snapshots_total > 0 ? Math.floor(97 * scan.snapshots_done / scan.snapshots_total) : 0;
+}
+
+const steps = /** @type {const} */ (['ready', 'capture', 'build']);
+
+/** @param {Scan} scan */
+function stepStates(scan) {
+  const now = scan.phase === 'starting' ? 0 : isBuilding(scan) ? 2 : 1;
+  return steps.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'}));
+}
+
+/** How long it has taken, and will take in all. @param {Scan} scan */
+const timeOf = ({seconds_elapsed, seconds_left, error}) => seconds_left === null || error ? format.clock(seconds_elapsed) :
+    `${format.clock(seconds_elapsed)} of about ${format.clock(seconds_elapsed + seconds_left)}`;
+
+/** @param {Scan} scan */
+export const progressOf = (scan) => ({
+  id: scan.id,
+  phase: scan.phase,
+  text: phaseText(scan),
+  trouble: format.sentence(scan.error?.detail ?? ''),
+  percent: percent(scan),
+  done: scan.snapshots_done,
+  total: scan.snapshots_total,
+  left: scan.error ? '' : format.timeLeft(scan.seconds_left),  // nobody knows how long a stop is tried again
+  time: timeOf(scan),
+  steps: stepStates(scan),
+});

@@ -1,0 +1,107 @@
+// What is asked about scans: to start, end, name, delete and restore them.
+
+import * as api from './api.js';
+import * as bin from './bin.js';
+import * as binRequests from './api_bin.js';
+import {chosenSettings} from './form.js';
+import * as format from './format.js';
+import {act, state} from './page.js';
+import {nameOf} from './screen.js';
+import * as states from './state.js';
+import {askEmptyBin, askName} from './view.js';
+
+export const start = () => act('The scan did not start', async () => {
+  const scan = await api.start(chosenSettings());
+  return (now) => states.withStarted(now, scan);
+});
+
+export const pause = () => act('The scan was not paused', async () => {
+  const id = states.running(state)?.id;
+  if (id) {
+    await api.pause(id);
+  }
+  return (now) => now;
+});
+
+/** @param {File} file */
+export const importScan = (file) => act('The scan was not imported', async () => {
+  const scan = await api.importScan(file);
+  return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), scan.id);
+});
+
+export const cancel = () => act('The scan was not ended', async () => {
+  const id = states.running(state)?.id;
+  if (id) {
+    await api.cancel(id);
+  }
+  return (now) => now;
+});
+
+export const resume = () => act('The scan was not resumed', async () => {
+  const scan = await api.resume(/** @type {string} */ (state.selected));
+  return (now) => states.withStarted(now, scan);
+});
+
+export const end = () => act('The scan was not ended', async () => {
+  const scan = await api.cancel(/** @type {string} */ (state.selected));
+  return (now) => states.withScan(now, scan);
+});
+
+/** @param {string | null} id */
+export async function rename(id) {
+  const scan = states.scanOf(state, id);
+  const name = scan && await askName(nameOf(scan));
+  if (scan && name !== null) {
+    await act('The scan was not renamed', async () => {
+      const renamed = await api.rename(scan.id, name);
+      return (now) => states.withScan(now, renamed);
+    });
+  }
+}
+
+/** @param {string | null} id */
+export async function remove(id) {
+  const scan = states.scanOf(state, id);
+  if (scan) {
+    await act('The scan was not deleted', async () => {
+      await api.remove(scan.id);
+      bin.offerUndo(nameOf(scan), () => restore([scan.id]));
+      return (now) => states.withoutScan(now, scan.id);
+    });
+  }
+}
+
+/** Moves all that are chosen into the bin. */
+export async function removeChosen() {
+  const ids = state.library.chosen ?? [];
+  if (ids.length === 0) {
+    return;
+  }
+  await act('Not all scans were deleted', async () => {
+    for (const id of ids) {
+      await api.remove(id);
+    }
+    bin.offerUndo(format.count(ids.length, 'scan'), () => restore(ids));
+    return (now) => states.withLibrary(ids.reduce(states.withoutScan, now), {chosen: null});
+  });
+}
+
+/** @param {string[]} ids */
+export const restore = (ids) => act(ids.length > 1 ? 'The scans were not restored' : 'The scan was not restored', async () => {
+  for (const id of ids) {
+    await binRequests.restore(id);
+  }
+  const scans = await api.scans();
+  return (now) => states.withScans(now, scans);
+});
+
+export async function emptyBin() {
+  if (await askEmptyBin()) {
+    await act('The bin was not emptied', async () => {
+      await binRequests.emptyBin();
+      bin.hideUndo();
+      bin.refresh();
+      return (now) => now;
+    });
+  }
+}

@@ -93,7 +93,7 @@ TEST(Appliance, HandsAnUpdateOverWhole) {
   const fs::path request = folder.requests() / "update";
   folder.answer("update", "slot = a\nstate = failed\nerror = not signed\n");
   {
-    Appliance::Upload upload(appliance, 6);
+    Appliance::Upload upload(appliance, 6, UpdateAge::not_older);
     upload.write(bytes_of("bun"));
     EXPECT_EQ(appliance.update().state, "receiving");
     EXPECT_EQ(appliance.update().error, "");
@@ -115,7 +115,7 @@ TEST(Appliance, LeavesNothingOfAnUpdateThatDidNotComeWhole) {
   const Folder folder;
   Appliance appliance(folder.path());
   {
-    Appliance::Upload upload(appliance, 6);
+    Appliance::Upload upload(appliance, 6, UpdateAge::not_older);
     upload.write(bytes_of("bun"));
   }
   EXPECT_TRUE(fs::is_empty(folder.requests()));
@@ -131,9 +131,11 @@ TEST(Appliance, LeavesNothingOfAnUpdateThatDidNotComeWhole) {
 TEST(Appliance, TakesOneUpdateAtATime) {
   const Folder folder;
   Appliance appliance(folder.path());
-  const auto try_one = [&] { return code_thrown_by([&] { Appliance::Upload(appliance, 1); }); };
+  const auto try_one = [&] {
+    return code_thrown_by([&] { Appliance::Upload(appliance, 1, UpdateAge::not_older); });
+  };
   {
-    const Appliance::Upload first(appliance, 6);
+    const Appliance::Upload first(appliance, 6, UpdateAge::not_older);
     EXPECT_EQ(try_one(), "busy");
     EXPECT_EQ(appliance.update().state, "receiving");
   }
@@ -143,15 +145,16 @@ TEST(Appliance, TakesOneUpdateAtATime) {
     EXPECT_EQ(appliance.update().state, state);
   }
   folder.answer("update", "state = failed\n");
-  const Appliance::Upload again(appliance, 1);
+  const Appliance::Upload again(appliance, 1, UpdateAge::not_older);
 }
 
 TEST(Appliance, RefusesAnUpdateThatHasNoRoom) {
   const Folder folder;
   Appliance appliance(folder.path());
   const std::uint64_t most = Appliance::Upload::max_bytes;
-  EXPECT_EQ(code_thrown_by([&] { Appliance::Upload(appliance, most + 1); }), "too-large");
-  const Appliance::Upload largest(appliance, most);
+  EXPECT_EQ(code_thrown_by([&] { Appliance::Upload(appliance, most + 1, UpdateAge::not_older); }),
+            "too-large");
+  const Appliance::Upload largest(appliance, most, UpdateAge::not_older);
 }
 
 TEST(Appliance, TellsTheNewestOfManyErrors) {

@@ -65,7 +65,8 @@ TEST(Config, IsWrittenAsItIsRead) {
 TEST(Config, ReadsAFileOfVersion01AsThatDid) {
   const std::filesystem::path golden = std::filesystem::path(OCTURN_GOLDEN) / "version-0.1";
   json expected = json::parse(content_of(golden / "settings.json"));
-  expected["scan"].update({{"calibrate", "auto"}, {"depth_scale", 1.0}});  // which that had not
+  expected["scan"].update(
+      {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // which that had not
   EXPECT_EQ(to_json(read_config(golden / "octurn.json")), expected);
 }
 

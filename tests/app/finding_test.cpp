@@ -22,7 +22,8 @@ TEST(Finding, OfAWholeIsItsWorst) {
 }
 
 TEST(Finding, IsJsonThatStandsAlone) {
-  const auto json = to_json(std::vector{speed.fault("3 km/h", "Run."), speed.unknown("?")});
+  const auto json =
+      to_json(std::vector{speed.fault("3 km/h", "Run.", Action::set_pose), speed.unknown("?")});
   EXPECT_EQ(json["version"], version());
   EXPECT_EQ(json["state"], "fault");
   EXPECT_TRUE(std::regex_match(json["time"].get<std::string>(),
@@ -32,7 +33,9 @@ TEST(Finding, IsJsonThatStandsAlone) {
                                                  {"name", "Speed"},
                                                  {"state", "fault"},
                                                  {"measured", "3 km/h"},
-                                                 {"advice", "Run."}}));
+                                                 {"advice", "Run."},
+                                                 {"action", "set-pose"}}));
+  EXPECT_EQ(json["findings"][1]["action"], "");
   EXPECT_EQ(json["findings"][1]["state"], "unknown");
 }
 

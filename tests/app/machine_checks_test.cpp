@@ -56,6 +56,7 @@ TEST(DiskCheck, WarnsBeforeItIsFull) {
   const Finding full = check_disk(scan - 1, scan);
   EXPECT_EQ(full.state, State::fault);
   EXPECT_EQ(full.advice, "Delete scans that are no longer needed.");
+  EXPECT_EQ(full.action, Action::choose_scans);
 }
 
 TEST(MemoryCheck, ComparesWhatIsThereWithWhatMayBeUsed) {

@@ -1,9 +1,15 @@
 // Scans of other poses of a scan's object.
 
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
 #include "app/scanner_fixture.hpp"
 #include "octurn/file.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/build_file.hpp"
+#include "scan/pose_choice.hpp"
+#include "scan/pose_points.hpp"
 
 namespace octurn {
 namespace {
@@ -29,6 +35,39 @@ class ScanPosesTest : public ScannerTest {
     });
   }
 
+  /// What becomes of a build that registers the first other pose again.
+  static BuildRun choose(Scanner& scanner, const std::string& first, const PoseChoice& choice) {
+    EXPECT_TRUE(scanner.choose_pose(first, 1, choice));
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (!(**scanner.build_run()).has_ended() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return **scanner.build_run();
+  }
+
+  /// From near where it lay, the pose is found again; elsewhere it is refused, and all stays.
+  void choose_again(Scanner& scanner, const Job& pose) const {
+    const std::string& first = pose.pose_of->scan;
+    const Eigen::Isometry3d& found = pose.pose_of->registration->pose.object_from_platform;
+    const BuildRun refused =
+        choose(scanner, first,
+               {.pose = pose.id, .object_from_platform = Eigen::Translation3d(0.5, 0, 0) * found});
+    EXPECT_EQ(refused.state, BuildRun::State::failed);
+    ASSERT_EQ(store_.get(first).builds.all.size(), 1U);
+    const Eigen::Isometry3d near = Eigen::Translation3d(0.003, 0, -0.002) * found;
+    const BuildRun run = choose(scanner, first, {.pose = pose.id, .object_from_platform = near});
+    ASSERT_EQ(run.state, BuildRun::State::finished) << run.failure->detail;
+    const Job job = store_.get(first);
+    ASSERT_EQ(job.builds.all.size(), 1U) << "the one before it goes";
+    EXPECT_EQ(job.builds.chosen, run.number);
+    EXPECT_EQ(job.builds.all.front().replaced, 0);
+    EXPECT_EQ(job.builds.all.front().poses, std::vector{pose.id});
+    const auto kept = store_.get(pose.id).pose_of->registration;
+    EXPECT_LT((kept->pose.object_from_platform.translation() - found.translation()).norm(), 0.002);
+    EXPECT_FALSE(kept->candidate);
+    EXPECT_EQ(kept->candidates.size(), pose.pose_of->registration->candidates.size());
+  }
+
   /// A scan whose model is that of a build with another pose.
   Job merged(const std::string& pose) {
     Job job = store_.create(quick());
@@ -43,8 +82,11 @@ class ScanPosesTest : public ScannerTest {
       if (!poses.empty()) {
         fs::create_directory(file.parent_path() / merged_folder);
       }
-      store_.add_build(
-          job.id, {.number = number, .poses = poses, .replaced = store_.get(job.id).builds.chosen});
+      Build build;
+      build.number = number;
+      build.poses = poses;
+      build.replaced = store_.get(job.id).builds.chosen;
+      store_.add_build(job.id, build);
       store_.choose_build(job.id, number);
     }
     return store_.get(job.id);
@@ -93,6 +135,9 @@ TEST_F(ScanPosesTest, GoOnAfterTheProgramEndedAndAreMergedAndTakenBack) {
   ASSERT_TRUE(job.pose_of->registration->accepted) << job.pose_of->registration->reason;
   EXPECT_FALSE(model_of(first) == model);
   EXPECT_EQ(read_scan(store_.merged_scan(first, {pose})).shots.size(), 12U);
+  EXPECT_EQ(job.pose_of->registration->candidate, 0U);
+  EXPECT_TRUE(fs::exists(store_.folder(pose) / pose_points_file));
+  choose_again(scanner, job);
   scanner.remove_pose(first, 1);
   EXPECT_TRUE(model_of(first) == model);
   EXPECT_TRUE(store_.get(first).builds.all.empty());
@@ -146,7 +191,10 @@ TEST_F(ScanPosesTest, AreKeptWithWhatTheyFitTo) {
     Job job = store.create(quick(), PoseOf{.scan = first.id});
     job.state = JobState::finished;
     job.pose_of->registration =
-        PoseRegistration{.accepted = true, .pose = {.overlap = 0.5, .residual = 0.0004}};
+        PoseRegistration{.accepted = true,
+                         .pose = {.overlap = 0.5, .residual = 0.0004},
+                         .candidates = {{.overlap = 0.5}, {.overlap = 0.4, .contradiction = 0.7}},
+                         .candidate = 1};
     store.save(job);
     pose = job.id;
   }
@@ -156,7 +204,35 @@ TEST_F(ScanPosesTest, AreKeptWithWhatTheyFitTo) {
   EXPECT_TRUE(job.pose_of->registration->accepted);
   EXPECT_NEAR(job.pose_of->registration->pose.overlap, 0.5, 1e-12);
   EXPECT_NEAR(job.pose_of->registration->pose.residual, 0.0004, 1e-12);
+  ASSERT_EQ(job.pose_of->registration->candidates.size(), 2U);
+  EXPECT_NEAR(job.pose_of->registration->candidates[1].contradiction, 0.7, 1e-12);
+  EXPECT_EQ(job.pose_of->registration->candidate, 1U);
   EXPECT_EQ(store.poses(job.pose_of->scan).size(), 1U);
+}
+
+TEST(PoseChoice, IsACandidateOrPairsOfPoints) {
+  const Job pose{.pose_of = PoseOf{.registration = PoseRegistration{.candidates = {{}, {}}}}};
+  EXPECT_EQ(pose_choice_from({{"candidate", 1}}, pose).candidate, 1U);
+  const auto pairs =
+      nlohmann::json::parse("[[[10,0,0],[0,10,5]], [[0,20,0],[-20,0,5]], [[-30,0,0],[0,-30,5]]]");
+  const PoseChoice choice = pose_choice_from({{"pairs_mm", pairs}}, pose);
+  EXPECT_FALSE(choice.candidate);
+  // A quarter of a turn about Z, and 5 mm down.
+  EXPECT_LT(
+      (choice.object_from_platform * Eigen::Vector3d(0, 0.01, 0.005) - Eigen::Vector3d(0.01, 0, 0))
+          .norm(),
+      1e-9);
+}
+
+TEST(PoseChoice, RefusesWhatIsNone) {
+  const Job pose{.pose_of = PoseOf{.registration = PoseRegistration{.candidates = {{}, {}}}}};
+  for (const char* const body :
+       {"{}", R"({"candidate": 2})", R"({"candidate": -1})", R"({"candidate": 0, "pairs_mm": []})",
+        R"({"pairs_mm": []})", R"({"pairs_mm": [[[0,0,0],[0,0,0]]]})", R"({"other": 1})",
+        R"({"pairs_mm": [[[0,0,0],[0,0,0]], [[9,0,0],[9,0,0]], [[20,0,0],[20,0,0]]]})"}) {
+    EXPECT_THROW(pose_choice_from(nlohmann::json::parse(body), pose), Error) << body;
+  }
+  EXPECT_THROW(pose_choice_from({{"candidate", 0}}, Job{.pose_of = PoseOf{}}), Error);
 }
 
 }  // namespace

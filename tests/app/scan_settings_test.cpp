@@ -104,7 +104,7 @@ TEST(ScanSettings, AreReadFromAJobOfVersion01AsThatWroteThem) {
   json settings = json::parse(
       content_of(std::filesystem::path(OCTURN_GOLDEN) / "version-0.1" / "job.json"))["settings"];
   const auto with_later_keys = [](json known) {
-    known.update({{"calibrate", "auto"}, {"depth_scale", 1.0}});
+    known.update({{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});
     return known;
   };
   EXPECT_EQ(to_json(stored(settings)), with_later_keys(settings));

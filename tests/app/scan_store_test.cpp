@@ -128,6 +128,28 @@ TEST(ScanStore, NamesAScan) {
   EXPECT_EQ(store.find(job.id)->name, "Hase, groß");
 }
 
+TEST(ScanStore, HasAnotherRevisionAfterEveryChangeThatAListShows) {
+  const TemporaryFolder folder;
+  ScanStore store(folder.path());
+  std::uint64_t last = store.revision();
+  const auto expect_change = [&](const char* what) {
+    EXPECT_NE(store.revision(), last) << what;
+    last = store.revision();
+  };
+  Job job = store.create({});
+  expect_change("created");
+  job.snapshots_done = 1;
+  store.save(job);
+  EXPECT_EQ(store.revision(), last) << "of a scan that runs the status tells";
+  job.state = JobState::finished;
+  store.save(job);
+  expect_change("finished");
+  store.rename(job.id, "Hase");
+  expect_change("renamed");
+  store.remove(job.id);
+  expect_change("removed");
+}
+
 TEST(ScanStore, TouchesNothingThatIsNoScan) {
   const TemporaryFolder folder;
   put(folder.path() / "secret" / "job.json", "{}");

@@ -36,7 +36,8 @@ std::vector<Time> every_period_but(const std::vector<int>& missing) {
 
 /// A sensor at its nominal place that sees nothing but a plane so high, metres, with readings by
 /// turns so much above and below it along the ray.
-SensorSample sample_of_plane(double height, double noise) {
+/// @param rise  of the plane, along y
+SensorSample sample_of_plane(double height, double noise, double rise = 0) {
   SensorSample sample = sample_of(every_period_but({}));
   const Eigen::Isometry3d pose = nominal_platform_from_sensor();
   const Intrinsics& lens = sample.intrinsics;
@@ -46,8 +47,9 @@ SensorSample sample_of_plane(double height, double noise) {
       for (int u = 0; u < lens.width; ++u) {
         const Eigen::Vector3d direction =
             pose.linear() * Eigen::Vector3d((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+        const double to_plane = height + rise * pose.translation().y() - pose.translation().z();
         const double depth =
-            (height - pose.translation().z()) / direction.z() + (i % 2 == 0 ? noise : -noise);
+            to_plane / (direction.z() - rise * direction.y()) + (i % 2 == 0 ? noise : -noise);
         const bool is_seen = direction.z() < 0 && depth < 6;
         frame.depth.push_back(
             is_seen ? static_cast<std::uint16_t>(std::lround(depth / lens.depth_unit)) : 0);
@@ -99,8 +101,12 @@ TEST(PlatformCheck, FindsThePlatformWhereTheCalibrationHasIt) {
   const PlatformView view = view_of_plane(0);
   EXPECT_EQ(view.readings, view.rays);
   EXPECT_EQ(view.on_surface, view.rays);
-  EXPECT_NEAR(view.height, 0, 0.0001);  // the sensor's unit
-  EXPECT_EQ(check_platform(view).state, State::ok);
+  ASSERT_TRUE(view.surface);
+  EXPECT_NEAR(view.surface->height, 0, 0.00001);  // a tenth of the sensor's unit, of many readings
+  const Finding finding = check_platform(view);
+  EXPECT_EQ(finding.state, State::ok);
+  EXPECT_EQ(finding.measured,
+            "0.0 mm above where the calibration has it and level, 100 % of it has readings");
 }
 
 /// The circle of 28 cm about the axis, seen from 0.72 m, 30 degrees above it on the way there.
@@ -114,18 +120,41 @@ TEST(PlatformCheck, LooksAtTheCircleInsideTheClipBox) {
 
 TEST(PlatformCheck, WarnsOfAPlatformThatIsTooHigh) {
   const PlatformView view = view_of_plane(0.006);
-  EXPECT_NEAR(view.height, 0.006, 0.0001);
   const Finding finding = check_platform(view);
   EXPECT_EQ(finding.state, State::warning);
   EXPECT_EQ(finding.measured,
-            "6.0 mm above where the calibration has it, 100 % of it has readings");
+            "6.0 mm above where the calibration has it and level, 100 % of it has readings");
+  EXPECT_EQ(finding.action, Action::measure_turn);
   EXPECT_EQ(check_platform(view_of_plane(-0.006)).measured.substr(0, 12), "6.0 mm below");
+}
+
+/// Its middle is as high as it should be, which the median height alone would take for right.
+TEST(PlatformCheck, WarnsOfAPlatformThatIsTilted) {
+  const double rise = std::tan(radians_from_degrees(2));
+  const PlatformView view =
+      measure_platform(sample_of_plane(0, 0, rise), clip, nominal_platform_from_sensor());
+  ASSERT_TRUE(view.surface);
+  EXPECT_NEAR(view.surface->slope.y(), rise, 0.0002);  // 0.01 degrees
+  EXPECT_NEAR(view.surface->slope.x(), 0, 0.0002);
+  const Finding finding = check_platform(view);
+  EXPECT_EQ(finding.state, State::warning);
+  EXPECT_NE(finding.measured.find("tilted by 2.0 degrees, the far side up"), std::string::npos)
+      << finding.measured;
+  EXPECT_EQ(finding.action, Action::measure_turn);
+}
+
+TEST(PlatformCheck, HasItSetByHandWhereATurnWouldNotFindIt) {
+  const Finding high = check_platform(view_of_plane(0.05));
+  EXPECT_EQ(high.state, State::fault);
+  EXPECT_EQ(high.measured.substr(0, 13), "50.0 mm above");
+  EXPECT_EQ(high.action, Action::set_pose);
 }
 
 TEST(PlatformCheck, FindsThatItIsSomewhereElse) {
   const Finding finding = check_platform(view_of_plane(-0.1));
   EXPECT_EQ(finding.state, State::fault);
   EXPECT_EQ(finding.measured, "nothing is where the calibration has it");
+  EXPECT_EQ(finding.action, Action::set_pose);
 }
 
 TEST(PlatformCheck, FindsThatHalfOfItIsNotSeen) {

@@ -12,6 +12,23 @@ HeaderUse header(std::optional<std::string> user_of_dir) {
           .lines = {{.name = "GPIO17"}, {.name = "GPIO27", .user = std::move(user_of_dir)}}};
 }
 
+TEST(WakeUpsCheck, TellsTheMedianAndTheLongestAndWarnsOfAPulseThatWouldBeLate) {
+  using namespace std::chrono_literals;
+  const Finding good = check_wake_ups({20us, 60us, 140us}, 500us);
+  EXPECT_EQ(good.state, State::ok);
+  EXPECT_EQ(good.measured, "3 wake-ups, half of them within 0.06 ms and all within 0.14 ms");
+  const Finding late = check_wake_ups({20us, 60us, 1600us}, 500us);
+  EXPECT_EQ(late.state, State::warning);
+  EXPECT_EQ(late.measured, "3 wake-ups, half of them within 0.06 ms and all within 1.60 ms");
+}
+
+TEST(WakeUps, AreCountedAndNeverEarly) {
+  using namespace std::chrono_literals;
+  const Lateness lateness = measure_wake_ups(5, 100us);
+  ASSERT_EQ(lateness.size(), 5U);
+  EXPECT_GE(lateness.front(), 0us);
+}
+
 TEST(GpioChipCheck, NamesTheChip) {
   EXPECT_EQ(check_gpio_chip(header({})).state, State::ok);
   EXPECT_EQ(check_gpio_chip(header({})).measured, "pinctrl-bcm2711");

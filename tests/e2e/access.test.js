@@ -16,7 +16,7 @@ const states = {
     await page.getByRole('button', {name: 'Check now'}).click();
     await page.locator('.finding').first().waitFor();
   },
-  advanced: (page) => page.getByText('Advanced').click(),
+  advanced: (page) => page.getByText('All settings').click(),
   finished: async (page, finished) => {
     await page.goto(`${new URL('/', page.url())}#${finished.id}`);
     await page.locator('#tools').waitFor();
@@ -41,13 +41,15 @@ async function walk(scanner, browser, finished, screen, colorScheme) {
   assert.ok(await overflow(page) <= 0, 'scanning is too wide');
   await picture(page, `scanning-${screen}-${colorScheme}`);
   await ask(scanner, `scans/${id}/cancel`, 'POST');
-  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+  await page.getByText('Scan ended', {exact: true}).waitFor();
   await page.context().close();
 }
 
 /** Starts a scan without touching the mouse. */
 async function startByKeyboard(scanner, browser) {
   const {page} = await openPage(browser, scanner.url);
+  await page.locator('#all-settings > summary').focus();
+  await page.keyboard.press('Enter');
   const snapshots = page.getByLabel('Snapshots a turn', {exact: true});
   await snapshots.focus();
   await page.keyboard.press('ControlOrMeta+a');

@@ -90,7 +90,16 @@ TEST_F(Appliances, HandAnUpdateToRoot) {
   EXPECT_TRUE(content_of(requests() / "update") == bundle);
   EXPECT_EQ(std::distance(fs::directory_iterator(requests()), {}), 1);
 
+  EXPECT_FALSE(fs::exists(requests() / "update.older"));
   fs::remove(requests() / "update");
+  EXPECT_EQ(upload(scanner, bundle, {}, "?older=yes").status, 202);
+  EXPECT_TRUE(fs::exists(requests() / "update.older"));
+  fs::remove(requests() / "update");
+  EXPECT_EQ(upload(scanner, bundle).status, 202);
+  EXPECT_FALSE(fs::exists(requests() / "update.older"));
+  fs::remove(requests() / "update");
+  EXPECT_EQ(parsed(upload(scanner, bundle, {}, "?elder=yes"))["code"], "bad-settings");
+
   answer("update", "slot = a\nstate = failed\nversion = 0.2.0\nerror = It is not signed.\n");
   const json failed = parsed(scanner.get(update_path));
   EXPECT_EQ(failed["state"], "failed");

@@ -14,7 +14,7 @@ test('the page says that the scanner is gone, finds it again, and lists the scan
   await scanner.end('SIGKILL');
   await page.getByRole('alert').filter({hasText: 'The scanner does not answer'}).waitFor();
   assert.equal(await page.title(), 'No answer · Octurn');
-  assert.ok(await page.getByRole('button', {name: 'Cancel'}).isDisabled());
+  assert.ok(await page.getByRole('button', {name: 'End scan'}).isDisabled());
   await page.getByRole('button', {name: 'Try now'}).click();
   assert.ok(await page.getByRole('button', {name: 'Try now'}).isVisible());
 

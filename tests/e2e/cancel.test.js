@@ -14,16 +14,19 @@ test('a scan cancelled half way ends at once, and keeps its snapshots', async (t
   await chooseQuickScan(page, snapshots);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 5);
-  await page.getByRole('button', {name: 'Cancel'}).click();
+  await page.getByRole('button', {name: 'End scan'}).click();
 
-  await page.getByText('Scan cancelled', {exact: true}).waitFor();
-  const row = page.getByRole('listitem').filter({hasText: 'Cancelled'});
+  await page.getByText('Scan ended', {exact: true}).waitFor();
+  const row = page.getByRole('listitem').filter({hasText: 'Ended'});
   const kept = Number(/(\d+) of 200 snapshots kept/.exec(await row.innerText())?.[1]);
   assert.ok(kept >= 5 && kept < snapshots, `${kept} kept`);
   const [folder] = await scanFolders(scanner);
   assert.equal((await readdir(join(folder, 'snapshots'))).length, kept);
   assert.equal((await ask(scanner, 'status')).scan, null);
-  const [arrived] = await Promise.all([page.waitForEvent('download'), page.getByRole('link', {name: `Download STL of ${kept} snapshots`}).click()]);
+  await page.getByRole('button', {name: `Build the model of ${kept} snapshots`}).click();
+  const download = page.locator('#download');
+  await download.waitFor();
+  const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.ok(measure(await readFile(await arrived.path())).triangles > 1000);
 
   await page.getByRole('link', {name: 'New scan'}).click();

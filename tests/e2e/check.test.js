@@ -35,6 +35,22 @@ async function checkBrokenOne(scanner, browser, screen) {
   await picture(page, `check-faults-${screen}`);
 }
 
+/** A platform that is higher than told: the button of the finding starts the turn that finds its height. */
+async function measurePlatform(scanner, browser) {
+  const {platform_from_sensor: pose} = await ask(scanner, 'calibration');
+  await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: pose.map((row, i) => i === 2 ? [...row.slice(0, 3), row[3] + 0.008] : row)});
+  const {page, faults} = await openPage(browser, scanner.url);
+  await button(page).click();
+  assert.match(await line(page, 'Platform').innerText(), /\d+\.\d mm above where the calibration has it and (level|tilted by \d\.\d degrees)/);
+  await page.locator('.doctor').scrollIntoViewIfNeeded();
+  await picture(page, 'check-platform');
+  await line(page, 'Platform').getByRole('button', {name: 'Measure with a turn'}).click();
+  await page.getByRole('progressbar', {name: 'Measuring with a turn'}).waitFor();
+  assert.equal((await ask(scanner, 'calibration')).run.kind, 'turn');
+  await ask(scanner, 'calibration/cancel', 'POST');
+  assert.deepEqual(faults, []);
+}
+
 /** While a scan runs, what would disturb it is not measured. */
 async function checkDuringScan(scanner, browser) {
   const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 30, leaf_size_mm: 8});
@@ -67,6 +83,11 @@ test('the scanner is checked on the page', async (t) => {
   await t.test('by the keyboard alone, with progress and focus kept', () => checkByKeyboard(scanner, browser));
   await t.test('diagnostics are a file to download', () => downloadDiagnostics(scanner, browser));
   await t.test('a scan is not disturbed', () => checkDuringScan(scanner, browser));
+});
+
+test('a finding has the button that cures it', async (t) => {
+  const scanner = await startScanner(t);
+  await measurePlatform(scanner, await openBrowser(t));
 });
 
 test('a scanner without a sensor says what to do', async (t) => {

@@ -67,7 +67,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const noted = await page.evaluate(() => globalThis.noted);
   assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
   assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
-  assert.equal(await page.title(), 'Done · Octurn');
+  assert.equal(await page.title(), `${await page.locator('#details-name').innerText()} · Octurn`);
   assert.ok(new Set(growth).size >= 2, `a model in the making, not ${growth}`);
 
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);

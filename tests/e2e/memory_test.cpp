@@ -162,6 +162,20 @@ TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
   EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
 }
 
+// The simulated sensor takes 13 MB more, which are none of an appliance's.
+TEST(Memory, OfTheDaemonStaysBelowItsLimitWithARecordedSensor) {
+  const TemporaryFolder folder;
+  const fs::path turn = folder.path() / "turn";
+  Program record({OCTURN_PROGRAM, "record", "--simulate", "--simulate-speed", "20", "-o", turn,
+                  "--snapshots", "3", "--frames", "2"});
+  ASSERT_EQ(record.wait(), 0) << record.errors();
+  put(folder.path() / "octurn.json", R"({"memory_limit_mb": 48, "threads": 2})");
+  Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json", "--sensor", turn});
+  const std::string scan = daemon.start(R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 0.5})");
+  EXPECT_EQ(daemon.wait_until_done(scan)["state"], "finished");
+  EXPECT_LT(daemon.peak_memory(), 48 * mb);
+}
+
 TEST(Memory, HoldsNoMoreThanAPieceOfAnUpdate) {
   const TemporaryFolder folder;
   const fs::path appliance = folder.path() / "appliance";

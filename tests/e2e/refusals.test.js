@@ -22,25 +22,29 @@ test('without a sensor the page says so, and what to do', async (t) => {
 test('settings that make no sense are not sent', async (t) => {
   const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
-  await page.getByText('Advanced').click();
+  await page.getByText('All settings').click();
   await page.getByLabel('Up, to').fill('1');  // below where the space begins
-  await page.getByText('Advanced').click();
+  await page.getByText('All settings').click();
   await page.getByRole('button', {name: 'Start scan'}).click();
   assert.ok(await page.getByLabel('Up, to').isVisible(), 'the field at fault is shown');
   assert.equal(await page.evaluate(() => document.activeElement?.getAttribute('aria-label')), 'Up, to');
   assert.deepEqual((await ask(scanner, 'scans')).scans, []);
 
-  await page.getByRole('button', {name: 'Back to the presets'}).click();
+  await page.getByRole('button', {name: 'Back to Standard'}).click();
   await page.getByLabel('Snapshots a turn', {exact: true}).fill('40');
   await page.getByLabel('Coarse').check();
   await page.getByLabel('Depth filter').selectOption('basic');
   await page.getByLabel('Intersection').check();
   await page.getByLabel('Widest gap bridged').fill('20');
+  const another = await page.context().newPage();
+  await another.goto(scanner.url);
+  await another.getByText('Your own choice: 40 snapshots a turn, detail of 2 mm.').waitFor();
+  await another.close();
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   const {settings} = (await ask(scanner, 'scans')).scans[0];
   assert.deepEqual({...settings, platform_from_sensor: undefined}, {
-    snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, method: 'intersection', max_error_mm: 0.04,
+    snapshots: 40, leaf_size_mm: 2, filter: 'basic', frames: 10, method: 'intersection', max_error_mm: 0.04, parts: 'main',
     threshold_m2: 0.0004, root_size_mm: 1000, calibrate: 'auto', depth_scale: 1, clip_mm: [-140, -140, 5, 140, 140, 400], platform_from_sensor: undefined,
   });
   assert.deepEqual(faults, []);

@@ -28,6 +28,29 @@ test('a scan that was interrupted by the scanner\'s end is resumed on the page, 
   assert.equal(scan.snapshots_done, snapshots);
 });
 
+test('a scan is paused and resumed, ended and resumed, by a tap each', async (t) => {
+  const scanner = await startScanner(t, lifelike);
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
+  await chooseQuickScan(page, 200);
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  const bar = page.getByRole('button', {name: 'Pause'});
+  await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 1);
+  const {y, height} = await bar.boundingBox();
+  assert.ok(y > 0 && y + height <= 844, `in reach of a thumb, not at ${y}`);
+  await picture(page, 'progress-phone');
+  await bar.click();
+  await page.getByText('Scan paused', {exact: true}).waitFor();
+  await page.getByRole('button', {name: 'Resume'}).click();
+  await page.locator('#cancel').click();
+  await page.getByText('Scan ended', {exact: true}).waitFor();
+  await picture(page, 'ended-phone');
+  const {scans: [ended]} = await ask(scanner, 'scans');
+  await page.getByRole('button', {name: 'Resume'}).click();
+  await page.waitForFunction((done) => Number(document.getElementById('dial-done').textContent) > done, ended.snapshots_done);
+  assert.deepEqual([ended.state, (await ask(scanner, 'status')).scan.id], ['cancelled', ended.id]);
+  assert.deepEqual(faults, []);
+});
+
 test('a scan whose sensor fails pauses, says why, and can be ended with what it has', async (t) => {
   // As a sensor, a recording that has frames for every other stop only.
   const recordings = await startScanner(t);  // for its folder
@@ -38,13 +61,13 @@ test('a scan whose sensor fails pauses, says why, and can be ended with what it 
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 4);
   await page.getByRole('button', {name: 'Start scan'}).click();
-  await page.getByText('Trying stop 2 of 4 again').waitFor();
+  await page.locator('#phase').getByText('Trying stop 2 of 4 again').waitFor();
   await page.getByText('Scan paused', {exact: true}).waitFor();
   assert.match(await page.locator('#trouble').innerText(), /no frame at 90[^]*resume the scan/);
   await picture(page, 'paused');
 
   await page.getByRole('button', {name: 'End scan'}).click();
-  await page.getByText('Scan cancelled', {exact: true}).waitFor();
-  assert.ok(await page.getByRole('button', {name: 'Resume'}).isHidden());
-  assert.ok(await page.getByRole('link', {name: 'Download STL of 1 snapshot'}).isVisible());
+  await page.getByText('Scan ended', {exact: true}).waitFor();
+  assert.ok(await page.getByRole('button', {name: 'Resume'}).isVisible());
+  assert.ok(await page.getByRole('button', {name: 'Build the model of 1 snapshot'}).isVisible());
 });

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {basename} from 'node:path';
 import {test} from 'node:test';
 
-import {openBrowser, openPage} from './browser.js';
+import {openBrowser, openPage, picture} from './browser.js';
 import {ask, lifelike, scan, scanFolders, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
@@ -15,13 +15,13 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
 
   const first = await scan(scanner, draft);
   const rows = page.locator('#rows > li');
-  await rows.first().getByRole('link', {name: 'Untitled scan'}).click(); // the page may not have seen it run
+  await rows.first().locator('.scan-name').click(); // the page may not have seen it run
   await page.locator(`#download[href="${first.model.url}"]`).waitFor(); // so that nothing asks for its preview any more
   const second = await scan(scanner, draft);
   await rows.nth(1).waitFor();
   assert.ok(await page.getByText('No scans yet').isHidden());
 
-  await rows.nth(1).getByRole('link', {name: 'Untitled scan'}).click();
+  await rows.nth(1).locator('.scan-name').click();
   await page.locator(`#download[href="${first.model.url}"]`).waitFor();
   assert.equal(new URL(page.url()).hash, `#${first.id}`);
 
@@ -32,14 +32,54 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   assert.equal((await ask(scanner, `scans/${first.id}`)).name, 'Möwe <b>1</b>');
 
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
-  await page.getByRole('button', {name: 'Keep it'}).click();
-  assert.equal(await rows.count(), 2);
+  await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
+  await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
+  await rows.nth(1).getByText('Möwe <b>1</b>').waitFor();
+  await rows.nth(1).locator('.scan-name').click();
+  await page.locator(`#download[href="${first.model.url}"]`).waitFor();
+
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
-  await page.getByRole('button', {name: 'Delete', exact: true}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
   await page.getByRole('heading', {name: 'New scan'}).waitFor();
   assert.deepEqual((await scanFolders(scanner)).map((path) => basename(path)), [second.id]);
+
+  await page.getByText('Bin (1)').click();
+  await picture(page, 'bin');
+  await page.getByRole('button', {name: 'Empty the bin'}).click();
+  await page.getByRole('button', {name: 'Keep them'}).click();
+  await page.getByRole('button', {name: 'Restore: Möwe <b>1</b>'}).click();
+  await rows.nth(1).waitFor();
+  await page.locator('#bin').waitFor({state: 'hidden'});
+  assert.equal((await scanFolders(scanner)).length, 2);
   assert.deepEqual(faults, []);
+});
+
+test('what somebody else does to the scans is seen without a reload, and a refusal wherever the page is scrolled to', async (t) => {
+  const scanner = await startScanner(t);
+  const first = await scan(scanner, draft);
+  const second = await scan(scanner, draft);
+  const {page} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
+  const rows = page.locator('#rows > li');
+  await rows.nth(1).waitFor();
+  const longest = 'ü'.repeat(100);
+  await rows.nth(1).getByRole('button', {name: /^Rename/}).click();
+  await page.getByLabel('Name', {exact: true}).fill(longest);
+  await page.keyboard.press('Enter');
+  await rows.nth(1).getByText(longest).waitFor();
+
+  await ask(scanner, `scans/${first.id}`, 'PATCH', {name: 'Elsewhere'});
+  await rows.nth(1).getByText('Elsewhere').waitFor();
+  await page.route('**/api/v1/scans', (route) => route.abort());  // a list that comes too late
+  await ask(scanner, `scans/${first.id}`, 'DELETE');
+  await page.getByRole('button', {name: 'Delete: Elsewhere'}).scrollIntoViewIfNeeded();
+  await page.getByRole('button', {name: 'Delete: Elsewhere'}).click();
+  const alert = page.getByRole('alert').filter({hasText: 'The scan was not deleted'});
+  await alert.waitFor();
+  const {y, height} = await alert.boundingBox();
+  assert.ok(y >= 0 && y + height <= page.viewportSize().height, `seen where one looks, not at ${y}`);
+  await page.unroute('**/api/v1/scans');
+  await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
+  assert.equal(await rows.first().getAttribute('data-key'), second.id);
 });
 
 test('a scan that somebody else starts is followed, and can be looked away from', async (t) => {
@@ -49,12 +89,14 @@ test('a scan that somebody else starts is followed, and can be looked away from'
   await page.locator(`#rows [data-key="${earlier.id}"]`).waitFor();
   const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+  const {page: byAddress} = await openPage(await openBrowser(t), `${scanner.url}#${id}`);
+  await byAddress.getByRole('progressbar', {name: 'Scan'}).waitFor();
   await page.goto(`${scanner.url}#${earlier.id}`);
   await page.getByText('A scan is running.', {exact: true}).waitFor();
   await page.getByRole('link', {name: 'Show its progress'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   await ask(scanner, `scans/${id}/cancel`, 'POST');
-  await page.getByText('Scan cancelled', {exact: true}).waitFor();
+  await page.getByText('Scan ended', {exact: true}).waitFor();
 });
 
 test('where the browser has no WebGL, the page says so and the model can still be downloaded', async (t) => {

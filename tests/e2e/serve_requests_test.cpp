@@ -170,6 +170,29 @@ TEST(ServeRequests, MakesAModelByTheParametersOfTheQuery) {
   }
 }
 
+TEST(ServeRequests, CountsTheCharactersOfANameAndNotItsBytes) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string scan = daemon.start(quick);
+  const auto name_of = [](int characters) {
+    std::string name;
+    for (int i = 0; i < characters; ++i) {
+      name += "\u732b";  // three bytes
+    }
+    return json{{"name", name}}.dump();
+  };
+  EXPECT_EQ(request(daemon.port(), "PATCH", scan, name_of(100)).status, 200);
+  EXPECT_EQ(request(daemon.port(), "PATCH", scan, name_of(101)).status, 400);
+}
+
+TEST(ServeRequests, LeadsNobodyFromTheInterfaceToThePage) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const Reply reply = daemon.get("/api/v1/nothing");
+  EXPECT_EQ(reply.status, 404);
+  EXPECT_NE(parsed(reply)["hint"].get<std::string>().find("/api/v1/"), std::string::npos);
+}
+
 TEST(ServeRequests, UsesNoMoreThanThreeQuartersOfAStack) {
   const TemporaryFolder folder;
   Daemon daemon(folder.path());

@@ -125,6 +125,8 @@ TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {
   EXPECT_EQ(report["bytes"], stl.size());
   EXPECT_EQ(report["watertight"], true);
   EXPECT_EQ(report["parts"], 1);
+  EXPECT_EQ(report["dropped_parts"], 0);
+  EXPECT_EQ(report["dropped_volume_cm3"], 0);
   EXPECT_NEAR(report["seen_share"].get<double>() + report["filled_share"].get<double>(), 1, 1e-9);
   // What is below the ball was not seen, and is filled in.
   EXPECT_GT(report["filled_share"].get<double>(), 0.02);
@@ -140,6 +142,7 @@ TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {
   EXPECT_NEAR(report["size_mm"][0].get<double>(), 100, 2);  // a voxel
   EXPECT_EQ(report["settings"]["method"], "solid");
   EXPECT_EQ(report["settings"]["max_error_mm"], 0.04);
+  EXPECT_EQ(report["settings"]["parts"], "main");
   EXPECT_FALSE(report["settings"].contains("threshold_m2"));
 }
 
@@ -188,6 +191,7 @@ TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
   expect_failure({"--level", "8"}, 2, "--level");
   expect_failure({"--threshold-m2", "0.0001"}, 2, "--threshold-m2");
   expect_failure({"--leaf-size-mm", "0"}, 2, "leaf_size_mm");
+  expect_failure({"--parts", "some"}, 2, "parts");
   Program no_number(command({"--max-error-mm", "small"}));
   EXPECT_EQ(no_number.wait(), 2);
   EXPECT_NE(no_number.errors().find("--max-error-mm"), std::string::npos);

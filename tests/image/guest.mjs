@@ -19,6 +19,7 @@ const machines = {
       '-netdev', `user,id=net,${forward}`, '-device', 'virtio-net-pci,netdev=net,romfile=',
       '-device', 'virtio-rng-pci',
     ],
+    usb: ['-device', 'qemu-xhci'],
     kernel: ['norandmaps'],  // or QEMU 7.2 translates a library anew for each process
   },
   raspi3b: {
@@ -29,6 +30,7 @@ const machines = {
       '-drive', `if=sd,format=raw,file=${card}/card.img`,
       '-netdev', `user,id=net,${forward}`, '-device', 'usb-net,netdev=net',
     ],
+    usb: [],
     kernel: ['systemd.watchdog_sec=0'],  // the emulated watchdog fires as soon as it is set
   },
 };
@@ -63,8 +65,9 @@ export class Guest {
   #said = '';
   #commands = 0;
 
-  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img */
-  static async start(name, card) {
+  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img
+   * @param {string} [stick]  the image of a USB stick that is plugged in */
+  static async start(name, card, stick) {
     await readSystem(card);
     const port = await freePort();
     const machine = machines[name];
@@ -81,6 +84,8 @@ export class Guest {
       '-display', 'none', '-monitor', 'none', '-no-reboot', '-accel', 'tcg,thread=multi',
       '-kernel', `${card}/vmlinuz`, '-initrd', `${card}/initrd.img`, '-append', kernel.join(' '),
       ...machine.options({card, forward: `hostfwd=tcp:127.0.0.1:${port}-:80`}),
+      ...(stick ? [...machine.usb, '-drive', `if=none,id=stick,format=raw,readonly=on,file=${stick}`,
+        '-device', 'usb-storage,drive=stick'] : []),
     ], {stdio: 'pipe'});
     const end = () => guest.#qemu.kill('SIGKILL');
     process.once('exit', end);

@@ -1,5 +1,5 @@
 // Gives a scanner updates by its page's interface, and looks which system it ends on. Arguments: the machine, the folder of
-// its card, and the folder of the updates good, dying, short and strange.
+// its card, and the folder of the updates good, dying, short, older and strange, and of stick.img.
 
 import {openAsBlob} from 'node:fs';
 import {setTimeout as sleep} from 'node:timers/promises';
@@ -16,8 +16,8 @@ let guest;
 let scans;
 
 /** Switches on what is off. */
-const start = async () => {
-  guest = await Guest.start(machine, card);
+const start = async (stick) => {
+  guest = await Guest.start(machine, card, stick);
   return guest.page(patience);
 };
 const send = async (name) => {
@@ -91,12 +91,33 @@ const keeps = async () => {
   say('after a power cut the update still runs');
 };
 
+const comesByStick = async () => {
+  const stick = `${updates}/stick.img`;
+  await guest.cutPower();
+  await start(stick);
+  const begin = performance.now();
+  await guest.restarts(patience);
+  await start(stick);
+  const {update_version: version} = await reaches('kept');
+  require(version === '99.0.0', `the update of the stick is ${version}`);
+  await isOn('a');
+  const unit = 'systemctl list-units --all --plain --no-legend "octurn-stick@*"';
+  const ended = await until('the look at the stick', async () => {
+    const units = await guest.run(unit);
+    return !units.includes('activating') && guest.run('journalctl -b -o cat -u "octurn-stick@*"');
+  });
+  require(!ended.includes('installing'), `the stick's update is installed again: ${ended}`);
+  say(`update of a USB stick: kept after ${secondsSince(begin).toFixed(0)} s, and not installed again`);
+};
+
 await runTest('update-test', () => guest, async () => {
   await start();
   scans = await storedScans();
   await refuses('strange', 'not signed');
   await refuses('short', 'cut short');
+  await refuses('older', 'which is older than');
   await losesPower();
   await goesBack();
   await keeps();
+  await comesByStick();
 });

@@ -38,9 +38,13 @@ async function use(guest, radio, network) {
     `wpa_cli -i ${radio} terminate >/dev/null 2>&1; sleep 1; wpa_supplicant -B -D nl80211 -i ${radio} -c /run/${radio}.conf >/dev/null`);
 }
 
-/** A router with WPA2, whose DHCP gives addresses of 192.168.78. */
-const startRouter = (guest, name, password) => use(guest, 'wlan2', ['mode=2', `ssid="${name}"`, `psk="${password}"`,
-  'key_mgmt=WPA-PSK', 'proto=RSN', 'pairwise=CCMP', 'frequency=2412']);
+/** A router, whose DHCP gives addresses of 192.168.78: with WPA2, or with WPA3 alone. */
+const startRouter = (guest, name, password, keys = ['key_mgmt=WPA-PSK']) => use(guest, 'wlan2', ['mode=2', `ssid="${name}"`,
+  `psk="${password}"`, ...keys, 'proto=RSN', 'pairwise=CCMP', 'frequency=2412']);
+const wpa3 = ['key_mgmt=SAE', 'ieee80211w=2'];
+
+/** Words of the password as the card keeps it, of every WiFi. */
+const keptPasswords = async (guest) => (await guest.run('cut -d" " -f3 /data/wifi')).trim();
 
 const address = (guest, radio, net) => until(`address of ${radio} in ${net}`, async () =>
   (await guest.run(`ip -4 -o address show ${radio}`)).match(new RegExp(`inet (${net}\\.\\d+)/`))?.[1]);
@@ -120,6 +124,18 @@ async function testWifi(guest) {
   await request(guest, 'Workshop', 'right password');
   await reaches(guest, 'joined', 'Workshop');
   await address(guest, 'wlan0', '192.168.78');
+  await until('no password kept that WPA2 does not need', async () => await keptPasswords(guest) === '');
+
+  await guest.run('wpa_cli -i wlan2 terminate');
+  await reaches(guest, 'hotspot', 'Workshop');
+  await startRouter(guest, 'Museum', 'guided tour', wpa3);
+  await request(guest, 'Museum', 'guided tour');
+  await reaches(guest, 'joined', 'Museum');
+  await address(guest, 'wlan0', '192.168.78');
+  const key = await guest.run('wpa_cli -i wlan0 status | grep ^key_mgmt');
+  require(key === 'key_mgmt=SAE', `the scanner has joined with ${key}`);
+  require(await keptPasswords(guest) !== '', 'WPA3 needs the password again at the next start');
+  say('a router with WPA3 alone is joined');
   const left = await guest.run('ip -4 -o address show wlan0 | grep -c 192.168.77.1');
   require(left === '0', 'the hotspot\'s address is still there');
   await unite(guest);
@@ -131,10 +147,10 @@ async function testWifi(guest) {
 /** The card, after all that. */
 async function testCard(guest) {
   const settings = await readCard(card, 'octurn.txt');
-  for (const line of ['wifi_name = Workshop', 'wifi_password = ********', 'wifi_country = DE', 'rig = simulated']) {
+  for (const line of ['wifi_name = Museum', 'wifi_password = ********', 'wifi_country = DE', 'rig = simulated']) {
     require(settings.split('\n').includes(line), `octurn.txt lacks "${line}":\n${settings}`);
   }
-  require(!/IEEE|sesame|right password/.test(settings), `octurn.txt is\n${settings}`);
+  require(!/IEEE|sesame|right password|guided tour/.test(settings), `octurn.txt is\n${settings}`);
   const errors = await guest.run('setpriv --reuid=octurn --regid=octurn --clear-groups cat /run/octurn-appliance/errors');
   require(/^--- octurn [^]*IEEE was not found/m.test(errors), `of errors is kept\n${errors}`);
   await guest.run('yes old | head -n 20000 >>/data/errors; systemd-cat -t octurn -p warning echo the newest');

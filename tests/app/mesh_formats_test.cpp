@@ -1,0 +1,237 @@
+// Each format has the triangles of the STL that it is made of, bit for bit.
+
+#include "mesh/mesh_formats.hpp"
+
+#include <gtest/gtest.h>
+#include <minizip/unzip.h>
+#include <spng.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "mesh/thumbnail.hpp"
+#include "mesh/vertex_table.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using Triangle = std::array<Vertex, 3>;
+
+std::string content_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+template <typename Value>
+Value take(const std::string& bytes, std::size_t& at) {
+  Value value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  at += sizeof value;
+  return value;
+}
+
+/// A ball of 20 mm on the platform, of so many bands; its lower half was filled in.
+std::vector<Facet> ball(int bands) {
+  const auto corner = [&](int band, int sector) -> Vertex {
+    const double polar = M_PI * band / bands;
+    const double angle = 2 * M_PI * (sector % (2 * bands)) / (2 * bands);
+    const bool is_pole = band == 0 || band == bands;
+    const double radius = is_pole ? 0 : 10 * std::sin(polar);
+    return {static_cast<float>(radius * std::cos(angle)) + 0.0F,
+            static_cast<float>(radius * std::sin(angle)) + 0.0F,
+            static_cast<float>(10 + 10 * std::cos(polar))};
+  };
+  std::vector<Facet> facets;
+  for (int band = 0; band < bands; ++band) {
+    for (int sector = 0; sector < 2 * bands; ++sector) {
+      const std::uint16_t attributes = 2 * band < bands ? 0 : filled_in;
+      const Vertex a = corner(band, sector);
+      const Vertex b = corner(band + 1, sector);
+      const Vertex c = corner(band + 1, sector + 1);
+      const Vertex d = corner(band, sector + 1);
+      const auto middle = [](const Vertex& v) {
+        return std::array{v[0] / 10, v[1] / 10, v[2] / 10 - 1};
+      };
+      if (band > 0) {
+        facets.push_back({.normal = middle(a), .corners = {a, b, d}, .attributes = attributes});
+      }
+      if (band + 1 < bands) {
+        facets.push_back({.normal = middle(c), .corners = {b, c, d}, .attributes = attributes});
+      }
+    }
+  }
+  return facets;
+}
+
+class MeshFormats : public ::testing::Test {
+ protected:
+  MeshFormats() {
+    std::ofstream(folder_.path() / "Scan.stl", std::ios::binary) << stl_text(facets_);
+  }
+
+  FacetFile stl() const { return FacetFile(folder_.path() / "Scan.stl"); }
+  fs::path file(const std::string& name) const { return folder_.path() / name; }
+
+  void expect_same(const std::vector<Triangle>& triangles) const {
+    ASSERT_EQ(triangles.size(), facets_.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const auto corners = facets_[i].corners;  // which are not aligned in a facet
+      ASSERT_EQ(triangles[i], corners) << i;
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::vector<Facet> facets_ = ball(40);
+};
+
+TEST_F(MeshFormats, ListEachCornerOnce) {
+  const VertexTable table(stl());
+  EXPECT_EQ(table.vertices().size(), 2 + facets_.size() / 2) << "Euler: V - E + F = 2";
+  const auto corners = facets_.back().corners;
+  EXPECT_EQ(table.vertices()[table.index(corners[1])], corners[1]);
+}
+
+TEST_F(MeshFormats, WriteThePlyOfAnStl) {
+  write_ply(stl(), file("Scan.ply"));
+  const std::string ply = content_of(file("Scan.ply"));
+  const std::string end = "end_header\n";
+  std::size_t at = ply.find(end) + end.size();
+  std::smatch counts;
+  const std::string head = ply.substr(0, at);
+  ASSERT_TRUE(std::regex_search(head, counts, std::regex("vertex (\\d+)[^]*face (\\d+)")));
+  std::vector<Vertex> vertices(std::stoul(counts[1]));
+  for (Vertex& vertex : vertices) {
+    vertex = take<Vertex>(ply, at);
+  }
+  std::vector<Triangle> triangles(std::stoul(counts[2]));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    ASSERT_EQ(take<std::uint8_t>(ply, at), 3);
+    for (Vertex& corner : triangles[i]) {
+      corner = vertices.at(take<std::uint32_t>(ply, at));
+    }
+    ASSERT_EQ(take<std::uint8_t>(ply, at), facets_[i].attributes);
+  }
+  EXPECT_EQ(at, ply.size());
+  expect_same(triangles);
+}
+
+TEST_F(MeshFormats, WriteTheGlbOfAnStl) {
+  write_glb(stl(), "Hase \"1\"", file("Scan.glb"));
+  const std::string glb = content_of(file("Scan.glb"));
+  std::size_t at = 0;
+  EXPECT_EQ(glb.substr(0, 4), "glTF");
+  at = 4;
+  EXPECT_EQ(take<std::uint32_t>(glb, at), 2U);
+  EXPECT_EQ(take<std::uint32_t>(glb, at), glb.size());
+  const auto json_bytes = take<std::uint32_t>(glb, at);
+  EXPECT_EQ(json_bytes % 4, 0U);
+  at += 4;
+  const auto document = nlohmann::json::parse(glb.substr(at, json_bytes));
+  at += json_bytes;
+  const auto buffer_bytes = take<std::uint32_t>(glb, at);
+  at += 4;
+  EXPECT_EQ(buffer_bytes, glb.size() - at);
+  EXPECT_EQ(document["nodes"][0]["name"], "Hase \"1\"");
+  EXPECT_EQ(document["accessors"][1]["max"][2], 20);
+  const std::size_t count = document["accessors"][0]["count"];
+  std::size_t vertices = at + count * 4;
+  std::vector<Triangle> triangles(count / 3);
+  for (Triangle& triangle : triangles) {
+    for (Vertex& corner : triangle) {
+      std::size_t place = vertices + take<std::uint32_t>(glb, at) * sizeof(Vertex);
+      corner = take<Vertex>(glb, place);
+    }
+  }
+  expect_same(triangles);
+}
+
+/// The files of an archive by name.
+std::map<std::string, std::string> unzipped(const fs::path& archive) {
+  std::map<std::string, std::string> files;
+  const std::unique_ptr<void, decltype(&unzClose)> zip(unzOpen64(archive.c_str()), &unzClose);
+  for (int status = unzGoToFirstFile(zip.get()); status == UNZ_OK;
+       status = unzGoToNextFile(zip.get())) {
+    std::array<char, 200> name{};
+    unz_file_info64 info{};
+    unzGetCurrentFileInfo64(zip.get(), &info, name.data(), name.size(), nullptr, 0, nullptr, 0);
+    std::string content(info.uncompressed_size, '\0');
+    unzOpenCurrentFile(zip.get());
+    EXPECT_EQ(unzReadCurrentFile(zip.get(), content.data(), static_cast<unsigned>(content.size())),
+              static_cast<int>(content.size()));
+    EXPECT_EQ(unzCloseCurrentFile(zip.get()), UNZ_OK) << "its checksum";
+    files.emplace(name.data(), std::move(content));
+  }
+  return files;
+}
+
+/// The values of an attribute, in order.
+template <typename Number>
+std::vector<Number> values(const std::string& xml, const std::string& attribute) {
+  std::vector<Number> found;
+  const std::string begin = " " + attribute + "=\"";
+  for (std::size_t at = xml.find(begin); at != xml.npos; at = xml.find(begin, at + 1)) {
+    found.push_back(static_cast<Number>(std::strtof(xml.c_str() + at + begin.size(), nullptr)));
+  }
+  return found;
+}
+
+TEST_F(MeshFormats, WriteThe3mfOfAnStl) {
+  write_3mf(stl(), "Hase & <Igel>", "a picture", file("Scan.3mf"));
+  const auto files = unzipped(file("Scan.3mf"));
+  ASSERT_EQ(files.size(), 4U);
+  EXPECT_EQ(files.at("Metadata/thumbnail.png"), "a picture");
+  const std::string& xml = files.at("3D/3dmodel.model");
+  EXPECT_NE(xml.find("unit=\"millimeter\""), xml.npos);
+  EXPECT_NE(xml.find("name=\"Hase &amp; &lt;Igel&gt;\""), xml.npos);
+  const std::string vertices = xml.substr(0, xml.find("<triangles>"));
+  const auto x = values<float>(vertices, "x");
+  const auto y = values<float>(vertices, "y");
+  const auto z = values<float>(vertices, "z");
+  const auto v1 = values<std::size_t>(xml, "v1");
+  const auto v2 = values<std::size_t>(xml, "v2");
+  const auto v3 = values<std::size_t>(xml, "v3");
+  const auto corner = [&](std::size_t i) { return Vertex{x.at(i), y.at(i), z.at(i)}; };
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < v1.size(); ++i) {
+    triangles.push_back({corner(v1[i]), corner(v2.at(i)), corner(v3.at(i))});
+  }
+  expect_same(triangles);
+}
+
+TEST_F(MeshFormats, HaveNothingOfAnStlThatIsCutShort) {
+  fs::resize_file(file("Scan.stl"), 84 + 50);
+  EXPECT_EQ(code_thrown_by([&] { stl(); }), "no-model");
+  EXPECT_EQ(code_thrown_by([&] { FacetFile(file("nothing")); }), "no-model");
+}
+
+TEST_F(MeshFormats, DrawABallAsADiscThatIsBrighterWhereTheLightIs) {
+  const std::vector<std::byte> png = draw_thumbnail(stl());
+  const std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> context(spng_ctx_new(0),
+                                                                    &spng_ctx_free);
+  spng_set_png_buffer(context.get(), png.data(), png.size());
+  std::vector<std::uint8_t> pixels(256 * 256 * 4);
+  ASSERT_EQ(spng_decode_image(context.get(), pixels.data(), pixels.size(), SPNG_FMT_RGBA8, 0), 0);
+  std::size_t opaque = 0;
+  for (std::size_t i = 3; i < pixels.size(); i += 4) {
+    opaque += pixels[i] == 255 ? 1 : 0;
+  }
+  const double radius = 256 * (1 - 2 * 0.06) / 2;
+  EXPECT_NEAR(static_cast<double>(opaque), M_PI * radius * radius, 0.03 * M_PI * radius * radius);
+  const auto red = [&](std::size_t x, std::size_t y) { return pixels[(y * 256 + x) * 4]; };
+  EXPECT_EQ(pixels[3], 0) << "nothing is in the corner";
+  EXPECT_GT(red(110, 60), red(150, 220)) << "the light comes from above";
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,87 @@
+// What the interface says of itself.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "http/api.hpp"
+#include "octurn/file.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+json description() {
+  const std::filesystem::path file = std::filesystem::path(OCTURN_SOURCE) / "web" / "openapi.json";
+  return json::parse(read_regular_file(file, 1U << 20U).value());
+}
+
+/// "GET /api/v1/scans" and its like.
+std::set<std::string> described(const json& paths) {
+  std::set<std::string> all;
+  for (const auto& [path, item] : paths.items()) {
+    for (const auto& [key, operation] : item.items()) {
+      if (key != "parameters") {
+        std::string method = key;
+        std::ranges::transform(method, method.begin(),
+                               [](unsigned char c) { return std::toupper(c); });
+        all.insert(method + " " + path);
+      }
+    }
+  }
+  return all;
+}
+
+/// The schemas and the like that a value refers to.
+void collect_references(const json& value, std::set<std::string>& references) {
+  if (value.is_object() && value.contains("$ref")) {
+    references.insert(value.at("$ref").get<std::string>());
+  }
+  if (value.is_structured()) {
+    for (const json& part : value) {
+      collect_references(part, references);
+    }
+  }
+}
+
+TEST(OpenApi, DescribesEveryRouteAndNoOther) {
+  std::set<std::string> routes;
+  for (const RouteName& route : Api::routes()) {
+    routes.insert(std::string(route.method) + " " + std::string(route.path));
+  }
+  EXPECT_EQ(described(description().at("paths")), routes);
+}
+
+TEST(OpenApi, NamesEachOperationOnce) {
+  const json document = description();
+  std::set<std::string> names;
+  std::size_t operations = 0;
+  for (const json& item : document.at("paths")) {
+    for (const auto& [key, operation] : item.items()) {
+      if (key != "parameters") {
+        EXPECT_NE(operation.at("summary"), "");
+        names.insert(operation.at("operationId"));
+        ++operations;
+      }
+    }
+  }
+  EXPECT_EQ(names.size(), operations);
+}
+
+TEST(OpenApi, RefersToWhatItHas) {
+  const json document = description();
+  std::set<std::string> references;
+  collect_references(document, references);
+  EXPECT_FALSE(references.empty());
+  for (const std::string& reference : references) {
+    EXPECT_TRUE(document.contains(json::json_pointer(reference.substr(1)))) << reference;
+  }
+}
+
+}  // namespace
+}  // namespace octurn

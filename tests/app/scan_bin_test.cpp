@@ -1,0 +1,167 @@
+// Scans that were deleted, and come back.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scan/job_file.hpp"
+#include "scan/scan_store.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScanBinTest : public ::testing::Test {
+ protected:
+  /// A scan that is finished and has a model.
+  Job finished(ScanStore& store, const std::optional<PoseOf>& pose_of = {}) {
+    Job job = store.create({}, pose_of);
+    job.state = JobState::finished;
+    job.phase = Phase::done;
+    job.model = Model{.report = {.triangles = 4}};
+    std::ofstream(store.folder(job.id) / "Scan.stl") << "a model";
+    store.save(job);
+    return job;
+  }
+
+  fs::path scans() const { return folder_.path() / "scans"; }
+  fs::path bin() const { return folder_.path() / "bin"; }
+  /// The folder of the scan that was deleted; the only one.
+  fs::path binned() const { return fs::directory_iterator(bin())->path(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ScanBinTest, KeepsADeletedScanAsItWasAndGivesItBack) {
+  ScanStore store(folder_.path());
+  const Job job = finished(store);
+  store.rename(job.id, "Hase");
+  store.discard(job.id);
+  EXPECT_FALSE(store.find(job.id));
+  EXPECT_FALSE(fs::exists(store.folder(job.id)));
+  ASSERT_EQ(store.bin().list().size(), 1U);
+  EXPECT_EQ(store.bin().list().front().job.name, "Hase");
+
+  store.restore(job.id);
+  EXPECT_TRUE(store.bin().is_empty());
+  Job named = job;
+  named.name = "Hase";
+  EXPECT_EQ(to_job_json(*store.find(job.id)), to_job_json(named));
+  EXPECT_TRUE(fs::exists(store.model_file(job.id)));
+}
+
+TEST_F(ScanBinTest, IsThereForTheNextRunOfTheProgram) {
+  std::string id;
+  {
+    ScanStore store(folder_.path());
+    id = finished(store).id;
+    store.discard(id);
+  }
+  ScanStore store(folder_.path());
+  ASSERT_TRUE(store.bin().find(id));
+  store.restore(id);
+  EXPECT_EQ(store.find(id)->state, JobState::finished);
+}
+
+TEST_F(ScanBinTest, IsEmptiedForGood) {
+  ScanStore store(folder_.path());
+  const Job job = finished(store);
+  store.discard(job.id);
+  store.empty_bin();
+  EXPECT_TRUE(store.bin().is_empty());
+  EXPECT_TRUE(fs::is_empty(bin()));
+  EXPECT_EQ(code_thrown_by([&] { store.restore(job.id); }), "no-such-scan");
+}
+
+TEST_F(ScanBinTest, TakesTheOtherPosesWithTheirScan) {
+  ScanStore store(folder_.path());
+  const Job first = finished(store);
+  const Job pose = finished(store, PoseOf{.scan = first.id});
+  store.discard(first.id);
+  EXPECT_TRUE(store.list().empty());
+  store.restore(first.id);
+  EXPECT_EQ(store.list().size(), 2U);
+  EXPECT_EQ(store.poses(first.id).size(), 1U);
+}
+
+TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
+  Job first;
+  Job pose;
+  {
+    ScanStore store(folder_.path());
+    first = finished(store);
+    pose = finished(store, PoseOf{.scan = first.id});
+    store.discard(first.id);
+  }
+  // As if the power had gone before the pose went, too.
+  for (const auto& entry : fs::directory_iterator(bin())) {
+    if (entry.path().string().ends_with(pose.id)) {
+      fs::rename(entry.path(), scans() / pose.id);
+    }
+  }
+  {
+    ScanStore store(folder_.path());
+    EXPECT_TRUE(store.list().empty());
+    EXPECT_EQ(store.bin().list().size(), 2U);
+  }
+  // And as if it had gone while they came back.
+  for (const auto& entry : fs::directory_iterator(bin())) {
+    if (entry.path().string().ends_with(first.id)) {
+      fs::rename(entry.path(), scans() / first.id);
+    }
+  }
+  const ScanStore store(folder_.path());
+  EXPECT_EQ(store.list().size(), 2U);
+  EXPECT_TRUE(store.bin().is_empty());
+}
+
+TEST_F(ScanBinTest, LosesWhatIsThereForMoreThanThirtyDays) {
+  std::string id;
+  {
+    ScanStore store(folder_.path());
+    id = finished(store).id;
+    store.discard(id);
+  }
+  const auto rename_to = [&](std::chrono::days age) {
+    const auto then =
+        std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()) - age;
+    fs::rename(binned(), bin() / (to_scan_id(then) + "." + id));
+  };
+  rename_to(days_in_bin - std::chrono::days(1));
+  EXPECT_TRUE(ScanStore(folder_.path()).bin().find(id));
+  rename_to(days_in_bin + std::chrono::days(1));
+  EXPECT_FALSE(ScanStore(folder_.path()).bin().find(id));
+  EXPECT_TRUE(fs::is_empty(bin()));
+}
+
+TEST_F(ScanBinTest, GivesItsSpaceToANewScanWhatWasDeletedFirstGoingFirst) {
+  ScanStore store(folder_.path());
+  const Job old = finished(store);
+  const Job young = finished(store);
+  store.discard(young.id);
+  store.discard(old.id);
+  store.make_room(store.free_bytes(), "nothing more");
+  EXPECT_EQ(store.bin().list().size(), 2U) << "there is room enough";
+  EXPECT_EQ(code_thrown_by([&] { store.make_room(std::uint64_t{1} << 62U, "all"); }), "disk-full");
+  EXPECT_TRUE(store.bin().is_empty());
+}
+
+TEST_F(ScanBinTest, KeepsItsIdsFromNewScansAlthoughTheClockHasGoneBack) {
+  const auto next_year = std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()) +
+                         std::chrono::days(400);
+  {
+    ScanStore store(folder_.path());
+    const Job job = finished(store);
+    store.discard(job.id);
+    fs::rename(binned(), bin() / (to_scan_id(next_year) + "." + to_scan_id(next_year)));
+  }
+  ScanStore store(folder_.path());
+  EXPECT_GT(store.create({}).id, to_scan_id(next_year));
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,66 @@
+#include "scan/scan_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+using Seconds = std::chrono::duration<double>;
+
+EarlierScan earlier(const ScanSettings& settings, Seconds elapsed, Seconds build) {
+  Job job{.state = JobState::finished, .times = {.elapsed = elapsed}, .settings = settings};
+  job.model = Model{.report = {.bytes = 1'000'000}, .build_time = build};
+  return {.job = job, .snapshot_bytes = 100'000U * static_cast<unsigned>(settings.snapshots)};
+}
+
+const ScanSettings usual{.snapshots = 9, .leaf_size = 0.001};
+
+TEST(ScanEstimate, IsWhatTheSameScanTookBefore) {
+  const ScanEstimate estimate = estimate_scan({earlier(usual, 25s, 5s)}, usual);
+  EXPECT_TRUE(estimate.is_measured);
+  EXPECT_DOUBLE_EQ(estimate.stop.count(), 2);  // of nine stops, and one look more
+  EXPECT_DOUBLE_EQ(estimate.build.count(), 5);
+  EXPECT_DOUBLE_EQ(estimate.total(9).count(), 25);
+  EXPECT_EQ(estimate.bytes, 1'900'000U);
+}
+
+TEST(ScanEstimate, IsTheMedianOfTheLastFive) {
+  std::vector<EarlierScan> scans;
+  for (const Seconds build : {1s, 9s, 2s, 8s, 3s, 100s, 100s, 100s}) {
+    scans.push_back(earlier(usual, 20s + build, build));
+  }
+  EXPECT_DOUBLE_EQ(estimate_scan(scans, usual).build.count(), 3);
+}
+
+TEST(ScanEstimate, IsTakenFromTheScanThatIsMostAlike) {
+  ScanSettings coarse = usual;
+  coarse.leaf_size = 0.004;
+  coarse.snapshots = 18;
+  const std::vector scans{earlier(coarse, 40s, 2s), earlier(usual, 25s, 5s)};
+  EXPECT_DOUBLE_EQ(estimate_scan(scans, usual).build.count(), 5);
+  EXPECT_DOUBLE_EQ(estimate_scan(scans, usual).stop.count(), 2);
+}
+
+TEST(ScanEstimate, OfAModelGrowsAsTheSquareOfOneOverTheLeafSize) {
+  ScanSettings fine = usual;
+  fine.leaf_size = 0.0005;
+  const ScanEstimate estimate = estimate_scan({earlier(usual, 25s, 5s)}, fine);
+  EXPECT_DOUBLE_EQ(estimate.build.count(), 20);
+  EXPECT_EQ(estimate.bytes, 4'900'000U);
+}
+
+TEST(ScanEstimate, IsAGuessWhereNoScanTellsIt) {
+  ScanSettings other_filter = usual;
+  other_filter.filter = DepthFilter::basic;
+  EXPECT_FALSE(estimate_scan({}, usual).is_measured);
+  EXPECT_GT(estimate_scan({}, usual).total(9), 5s);
+  EXPECT_GT(estimate_scan({}, usual).bytes, 1'000'000U);
+  EXPECT_FALSE(estimate_scan({earlier(other_filter, 25s, 5s)}, usual).is_measured);
+  EarlierScan failed = earlier(usual, 25s, 5s);
+  failed.job.state = JobState::failed;
+  EXPECT_FALSE(estimate_scan({failed}, usual).is_measured);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,71 @@
+// The interface for programs is as it describes itself, and people can read that.
+
+import {Validator} from '@seriousme/openapi-schema-validator';
+import Ajv from 'ajv/dist/2020.js';
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {complaints, overflow} from './access.js';
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, scan, startScanner} from './scanner.js';
+
+/** Compares an answer of the scanner with what the description says of it. */
+class Answers {
+  #ajv = new Ajv({strict: false, validateFormats: false});
+  #description;
+
+  constructor(description) {
+    this.#description = description;
+    this.#ajv.addSchema(description, 'octurn');
+  }
+
+  /** @param {string} status @param {any} body  what `method` of `path` answered */
+  check(path, method, status, body) {
+    const key = path.replaceAll('~', '~0').replaceAll('/', '~1');
+    assert.ok(this.#description.paths[path]?.[method]?.responses[status], `${method} ${path} ${status}`);
+    const validate = this.#ajv.compile({$ref: `octurn#/paths/${key.replaceAll('{', '%7B').replaceAll('}', '%7D')}/${method}/responses/${status}/content/application~1json/schema`});
+    assert.ok(validate(body), `${method} ${path}: ${this.#ajv.errorsText(validate.errors)} in ${JSON.stringify(body)}`);
+  }
+}
+
+test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) => {
+  const scanner = await startScanner(t);
+  const description = await ask(scanner, 'openapi.json');
+  const validated = await new Validator().validate(description);
+  assert.ok(validated.valid, JSON.stringify(validated.errors));
+
+  const answers = new Answers(description);
+  const v1 = '/api/v1/';
+  answers.check(`${v1}status`, 'get', '200', await ask(scanner, 'status'));
+  const job = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  answers.check(`${v1}scans/{id}`, 'get', '200', job);
+  for (const path of ['status', 'scans', 'settings', 'settings/backup', 'calibration', 'turntable', 'doctor', 'bin', 'preview/points']) {
+    answers.check(v1 + path, 'get', '200', await ask(scanner, path));
+  }
+  for (const part of ['builds', 'poses']) {
+    answers.check(`${v1}scans/{id}/${part}`, 'get', '200', await ask(scanner, `scans/${job.id}/${part}`));
+  }
+  answers.check(`${v1}scans/{id}/builds/{number}`, 'get', '200', await ask(scanner, `scans/${job.id}/builds/0`));
+  answers.check(`${v1}scans/estimate`, 'post', '200', await ask(scanner, 'scans/estimate', 'POST', {snapshots: 36}));
+  assert.throws(() => answers.check(`${v1}scans/{id}`, 'get', '200', {...job, state: 'asleep'}));
+
+  const problem = await (await fetch(`${scanner.url}api/v1/scans/none`)).json();
+  const isProblem = new Ajv({strict: false, validateFormats: false}).compile(description.components.schemas.Problem);
+  assert.ok(isProblem(problem), JSON.stringify(problem));
+});
+
+test('a page shows it', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  for (const screen of ['desktop', 'phone']) {
+    const {page, faults} = await openPage(browser, scanner.url, {screen});
+    await page.getByRole('link', {name: 'For programs'}).click();
+    const start = page.locator('.operation', {hasText: 'Start a scan'});
+    await start.locator('summary').click();
+    await start.getByText('ScanSettings').waitFor();
+    assert.deepEqual(await complaints(page), []);
+    assert.ok(await overflow(page) <= 0);
+    await picture(page, `interface-${screen}`);
+    assert.deepEqual(faults, []);
+  }
+});

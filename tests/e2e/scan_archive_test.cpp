@@ -1,0 +1,69 @@
+// Scans as files, from one Octurn to another.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/daemon.hpp"
+#include "support/http_client.hpp"
+#include "support/temporary_folder.hpp"
+#include "zip_archive.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+Reply import(const Daemon& daemon, const std::string& archive) {
+  return reply_to(
+      daemon.port(),
+      "POST /api/v1/scans/import HTTP/1.1\r\nHost: localhost:" + std::to_string(daemon.port()) +
+          "\r\nContent-Type: application/octet-stream\r\nContent-Length: " +
+          std::to_string(archive.size()) + "\r\n\r\n" + archive);
+}
+
+TEST(ScanArchive, MakesTheSameModelOnAnotherOcturn) {
+  const TemporaryFolder here;
+  const TemporaryFolder there;
+  const Daemon first(here.path());
+  const std::string scan = first.start(
+      R"({"snapshots": 4, "leaf_size_mm": 6, "filter": "basic", "clip_mm": [-90, -90, 5, 90, 90, 300]})");
+  ASSERT_EQ(first.wait_until_done(scan)["state"], "finished");
+  request(first.port(), "PATCH", scan, R"({"name": "Möwe"})");
+  const Reply archive = first.get(scan + "/scan.zip");
+  ASSERT_EQ(archive.status, 200);
+  EXPECT_EQ(archive.header("Content-Type"), "application/zip");
+  EXPECT_TRUE(first.get(scan + "/scan.zip").body == archive.body) << "the same bytes again";
+
+  const Daemon second(there.path(), {"--sensor", "nowhere"});  // it needs no rig
+  const Reply imported = import(second, archive.body);
+  ASSERT_EQ(imported.status, 201) << imported.body;
+  const json done = second.wait_until_done(imported.header("Location"));
+  EXPECT_EQ(done["state"], "finished") << done;
+  EXPECT_EQ(done["name"], "Möwe");
+  EXPECT_TRUE(second.get(imported.header("Location") + "/Scan.stl").body ==
+              first.get(scan + "/Scan.stl").body);
+}
+
+TEST(ScanArchive, IsRefusedWholeIfItIsNoScan) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const auto zip = [](const std::string& name, const std::string& content) {
+    const std::vector<ArchivedFile> files{{.name = name, .content = content}};
+    return make_zip(files, {});
+  };
+  for (const std::string& archive :
+       {std::string("nonsense"), std::string(), zip("../scan.json", "{}"), zip("/etc/passwd", "x"),
+        zip("snapshots/../../x.png", "x"), zip("scan.json/", ""), zip("Scan.stl", "x"),
+        zip("scan.json", "{}"), zip("scan.json", std::string(34'000'000, ' '))}) {
+    const Reply reply = import(daemon, archive);
+    EXPECT_EQ(reply.status, 400) << archive.substr(0, 60);
+    EXPECT_EQ(reply.header("Content-Type"), "application/problem+json");
+  }
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "data" / "scans"));
+  EXPECT_EQ(daemon.post("/api/v1/scans/import", "{}").status, 415);
+}
+
+}  // namespace
+}  // namespace octurn

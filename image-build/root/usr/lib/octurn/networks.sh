@@ -23,7 +23,7 @@ why() {
     yes | no) echo "$wifi_name was not found. Is the name right, and the router on and near enough?" ;;
     *EAP*) echo "$wifi_name asks for a user's name, which the scanner cannot give." ;;
     yes*PSK*) echo "$wifi_name was found, but does not let the scanner in. Is the password right?" ;;
-    yes*SAE*) echo "$wifi_name takes WPA3 alone, which the scanner does not know: let the router offer WPA2, too." ;;
+    yes*SAE*) echo "$wifi_name takes WPA3 alone, and does not let the scanner in. Write its password again; or let the router offer WPA2, too." ;;
     yes*) echo "$wifi_name has no password: leave it out." ;;
     no*WPA* | no*RSN* | no*WEP*) echo "$wifi_name needs a password." ;;
     *) echo "$wifi_name was found, but does not let the scanner in." ;;

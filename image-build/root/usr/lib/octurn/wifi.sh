@@ -2,7 +2,8 @@
 # Read by what applies the WiFi of octurn.txt, after octurn_txt.sh and answer.sh.
 
 # shellcheck disable=SC2154
-kept=$root/data/wifi # lines with a WiFi's name in hexadecimal and its key, the newest first
+# Lines with a WiFi's name in hexadecimal, its key, and its password in hexadecimal while that may be needed; the newest first.
+kept=$root/data/wifi
 configuration=$root/etc/wpa_supplicant/wpa_supplicant-wlan0.conf
 
 # hotspot: the scanner's own WiFi's name.
@@ -19,27 +20,39 @@ key() {
   fi
 }
 
-# find_key REPORT: sets $key, empty for an open WiFi; fails if the password is none.
+# find_key REPORT: sets $key, empty for an open WiFi, and $password, in hexadecimal, empty if it is not known; fails if the
+# password is none.
 # shellcheck disable=SC2154
 find_key() {
-  key=
+  key='' password=''
   case $wifi_password in
     '') return 0 ;;
     "$stars")
       key=$(sed -n "s/^$network //p" "$kept" 2>/dev/null | head -n 1) || true
+      password=${key#"${key%% *}"}
+      password=${password# }
+      key=${key%% *}
       [ -n "$key" ] || "$1" "wifi_password = $stars: the password of this WiFi is not known here: write it again"
       ;;
     *)
       key=$(key "$wifi_name" "$wifi_password" 2>/dev/null) || true
       [ -n "$key" ] ||
         "$1" "wifi_password has ${#wifi_password} letters: 8 to 63 without accents, or none for an open WiFi"
+      # A router that prints a key is joined with that, and so by WPA2.
+      [ "$key" = "$wifi_password" ] || password=$(hexadecimal "$wifi_password")
       ;;
   esac
   [ -n "$key" ]
 }
 
-# find_wifi REPORT: of the settings that were read, sets $network, the name in hexadecimal, $country and $key; fails if it
-# cannot be joined with these, and calls REPORT for what is wrong.
+# known: the line of the WiFi that was found.
+known() { echo "$network $key${password:+ $password}"; }
+
+# forget_password: WPA2 needs the key alone. Of WPA3 nothing can be kept in the password's place.
+forget_password() { sed 's/^\([^ ]* [^ ]*\) .*/\1/' "$kept" | keep; }
+
+# find_wifi REPORT: of the settings that were read, sets $network, the name in hexadecimal, $country, $key and $password;
+# fails if it cannot be joined with these, and calls REPORT for what is wrong.
 find_wifi() {
   if [ "$(printf %s "$wifi_name" | wc -c)" -gt 32 ]; then
     "$1" "wifi_name = $wifi_name: at most 32 bytes"

@@ -41,6 +41,9 @@ apt_get() {
 # install_packages SECTION...: installs what is missing; without the network if nothing is.
 install_packages() {
   command -v dpkg-query >/dev/null || fail "this needs Debian or one of its relatives"
+  for section in "$@"; do
+    grep -qxF "[$section]" .ci/packages || fail ".ci/packages has no section [$section]"
+  done
   missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
   say "installing Debian packages (log in build/packages.log): $missing"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "calibrate/missing_part.hpp"
-#include "calibrate/number_text.hpp"
+#include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -34,8 +34,7 @@ constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
 constexpr double max_dropped = 0.01;  // of the model's volume
 constexpr double min_dropped = 2e-7;  // cubic metres
 
-std::string mm_text(double metres) { return number_text("%.1f mm", mm_from_metres(metres)); }
-std::string percent_text(double share) { return number_text("%.0f %%", 100 * share); }
+constexpr int text_digits = 1;  // of millimetres
 
 /// Collects reasons; the worst of them is the verdict.
 class Judgement {
@@ -55,7 +54,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
   if (scan.disagreement > look_disagreement * scale) {
     judgement.add(scan.disagreement > bad_disagreement * scale ? Verdict::bad : Verdict::look,
                   {.code = "stops-disagree",
-                   .detail = "two stops disagree about the object by " + mm_text(scan.disagreement),
+                   .detail = "two stops disagree about the object by " +
+                             mm_text(scan.disagreement, text_digits),
                    .hint = "Calibrate the rig; look that object and sensor stand firm.",
                    .places = scan.disagreeing_places});
   }
@@ -88,20 +88,21 @@ void judge_height(Judgement& judgement, const ScanFigures& scan, const ModelRepo
   if (platform > look_height) {
     judgement.add(platform > bad_height ? Verdict::bad : Verdict::look,
                   {.code = "floats",
-                   .detail = "the platform is seen " + mm_text(platform) +
+                   .detail = "the platform is seen " + mm_text(platform, text_digits) +
                              " above where it should be, and becomes a part of the model",
                    .hint = "Calibrate the rig."});
   } else if (-platform > look_height) {
     judgement.add(-platform > bad_height ? Verdict::bad : Verdict::look,
                   {.code = "sunk",
-                   .detail = "the platform is seen " + mm_text(-platform) +
+                   .detail = "the platform is seen " + mm_text(-platform, text_digits) +
                              " below where it should be, and as much of the object is missing",
                    .hint = "Calibrate the rig."});
   } else if (model.parts > 0 && model.bottom > bad_height) {  // a shell ends where nobody saw
-    judgement.add(Verdict::look,
-                  {.code = "floats",
-                   .detail = "the model begins " + mm_text(model.bottom) + " above the platform",
-                   .hint = "Look whether the box reaches down to the platform."});
+    judgement.add(
+        Verdict::look,
+        {.code = "floats",
+         .detail = "the model begins " + mm_text(model.bottom, text_digits) + " above the platform",
+         .hint = "Look whether the box reaches down to the platform."});
   }
 }
 
@@ -110,8 +111,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
     judgement.add(
         scan.widest_gap > radians_from_degrees(bad_gap_deg) ? Verdict::bad : Verdict::look,
         {.code = "little-seen",
-         .detail = "the platform turned by " +
-                   number_text("%.0f degrees", degrees_from_radians(scan.widest_gap)) +
+         .detail = "the platform turned by " + degrees_text(scan.widest_gap, 0) +
                    " without a stop: nobody saw that side of the object",
          .hint = "Scan a whole turn.",
          .places = model.places.unseen});
@@ -155,7 +155,7 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
     judgement.add(
         Verdict::look,
         {.code = "part-missing",
-         .detail = "a part of the object, " + mm_text(missing->length) +
+         .detail = "a part of the object, " + mm_text(missing->length, text_digits) +
                    " long, was seen by several stops and is not in the model",
          .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
          .places = std::move(missing->places)});

@@ -9,7 +9,6 @@
 #include "calibrate/axis_solver.hpp"
 #include "calibrate/axis_start.hpp"
 #include "calibrate/focal_length.hpp"
-#include "calibrate/number_text.hpp"
 #include "calibrate/platform_map.hpp"
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/platform_wobble.hpp"
@@ -19,6 +18,7 @@
 #include "calibrate/stop_planes.hpp"
 #include "calibrate/stop_residuals.hpp"
 #include "calibrate/stop_step.hpp"
+#include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -53,10 +53,7 @@ constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
 constexpr double agreeing_sigmas = 3;
 
-std::string mm_text(double metres) { return number_text("%.2f mm", mm_from_metres(metres)); }
-std::string deg_text(double radians) {
-  return number_text("%.2f degrees", degrees_from_radians(radians));
-}
+constexpr int text_digits = 2;  // of millimetres and degrees
 
 double mean_object_pixels(const TurnViews& views) {
   double pixels = 0;
@@ -86,12 +83,12 @@ bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
 void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& wobble) {
   if (wobble && wobble->angle >
                     std::max(radians_from_degrees(min_wobble_deg), wobble_sigmas * wobble->sigma)) {
-    report.findings.push_back(
-        {.code = "wobble",
-         .detail = "the platform's surface tilts by " + deg_text(wobble->angle) + " as it turns",
-         .hint = "Look whether the platform sits straight on the motor.",
-         .stop = {},
-         .angle = {}});
+    report.findings.push_back({.code = "wobble",
+                               .detail = "the platform's surface tilts by " +
+                                         degrees_text(wobble->angle, text_digits) + " as it turns",
+                               .hint = "Look whether the platform sits straight on the motor.",
+                               .stop = {},
+                               .angle = {}});
   }
 }
 
@@ -185,7 +182,7 @@ std::string refuse_plane(const std::optional<PlatformPlane>& plane) {
     return "the platform was not found: too little of its surface is seen near where it should be";
   }
   if (plane->rms > max_plane_rms) {
-    return "the platform's surface is not flat: " + mm_text(plane->rms);
+    return "the platform's surface is not flat: " + mm_text(plane->rms, text_digits);
   }
   return {};
 }
@@ -206,22 +203,22 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   }
   const double moved = std::hypot(report.shift, report.lift);
   if (report.position_sigma > std::max(max_position_sigma, worthwhile_sigma * moved)) {
-    return "the axis is uncertain by " + mm_text(report.position_sigma) +
+    return "the axis is uncertain by " + mm_text(report.position_sigma, text_digits) +
            ": stand another object on the platform";
   }
   if (report.direction_sigma > radians_from_degrees(max_direction_sigma_deg)) {
-    return "the axis is uncertain by " + deg_text(report.direction_sigma) +
+    return "the axis is uncertain by " + degrees_text(report.direction_sigma, text_digits) +
            ": stand another object on the platform";
   }
   if (report.after > max_after) {
-    return "the stops disagree by " + mm_text(report.after) + ": something moved";
+    return "the stops disagree by " + mm_text(report.after, text_digits) + ": something moved";
   }
   if (report.after > may_worsen * report.before) {
     return "the stops agree better as told";
   }
   if (moved > max_shift || report.tilt > radians_from_degrees(max_tilt_deg)) {
-    return "the sensor stands " + mm_text(moved) + " and " + deg_text(report.tilt) +
-           " from where it was told: calibrate the rig";
+    return "the sensor stands " + mm_text(moved, text_digits) + " and " +
+           degrees_text(report.tilt, text_digits) + " from where it was told: calibrate the rig";
   }
   return {};
 }

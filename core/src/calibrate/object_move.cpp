@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "calibrate/number_text.hpp"
 #include "calibrate/object_view.hpp"
+#include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -195,12 +195,11 @@ void add_move(std::vector<CalibrationFinding>& findings, const ObjectMove& move)
   const bool is_far = move.shift >= max_measured_shift;
   std::string detail = "one more look at the first stop: the object ";
   if (has_shifted) {
-    detail += std::string("moved by ") + (is_far ? "more than " : "") +
-              number_text("%.1f mm", mm_from_metres(move.shift));
+    detail += std::string("moved by ") + (is_far ? "more than " : "") + mm_text(move.shift, 1);
   }
   if (has_turned) {
     detail += std::string(has_shifted ? " and " : "") + "turned by " +
-              number_text("%.1f degrees", degrees_from_radians(std::abs(move.turn)));
+              degrees_text(std::abs(move.turn), 1);
   }
   findings.push_back({.code = "moved",
                       .detail = std::move(detail),

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calibrate/number_text.hpp"
+#include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -18,8 +18,6 @@ constexpr double far_off = 4;         // units from the plane; a sensor's own er
 constexpr double max_far_off = 0.05;  // share of the blocks
 constexpr double step = 3;            // units between cells of 8 pixels that are 16 pixels apart
 constexpr double max_steps = 0.005;   // share of such pairs
-
-std::string percent(double share) { return number_text("%.0f %%", 100 * share); }
 
 /// Share of the known blocks that lie off the plane.
 double far_off_share(const BlockValues& residuals) {
@@ -81,12 +79,12 @@ void drop_outliers(BlockValues& residuals) {
 std::string refuse_wall(const WallBlocks& wall, const WallPlane& plane,
                         const BlockValues& residuals) {
   if (wall.coverage < min_coverage) {
-    return "only " + percent(wall.coverage) +
+    return "only " + percent_text(wall.coverage) +
            " of the picture has readings: have the sensor look at a bare, matt wall 0.6 to 0.9 m "
            "away";
   }
   if (const double off = far_off_share(residuals); off > max_far_off) {
-    return "that is no flat wall: " + percent(off) +
+    return "that is no flat wall: " + percent_text(off) +
            " of the picture lies off its plane, as of a corner, a person or a picture frame";
   }
   if (const double slant = degrees_from_radians(plane.slant()); slant > max_slant_deg) {

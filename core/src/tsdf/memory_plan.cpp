@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/number_text.hpp"
 #include "octurn/error.hpp"
 #include "tsdf/solid_grid.hpp"
 #include "tsdf/tsdf_volume.hpp"

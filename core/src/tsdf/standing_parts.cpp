@@ -49,12 +49,11 @@ bool stands(const VoxelMask& mask) {
 std::vector<int> find_soles(const VoxelMask& mask, const HoleFilledSdf& sdf,
                             const std::stop_token& stop) {
   ConnectedComponents components(mask, ConnectedComponents::Of::voxels, stop);
-  std::vector<std::uint64_t> volumes(components.count());
+  const std::vector<std::uint64_t> volumes = components.volumes();
   std::vector<int> lowest(components.count(), no_foot);
-  components.for_each([&](int, int z, std::uint32_t i, const Run& run) {
-    const std::uint32_t root = components.root(i);
-    lowest[root] = volumes[root] == 0 ? z : lowest[root];
-    volumes[root] += static_cast<std::uint64_t>(run.end - run.first);
+  components.for_each([&](int, int z, std::uint32_t i, const Run&) {
+    int& layer = lowest[components.root(i)];
+    layer = layer == no_foot ? z : layer;
   });
   const auto hovers = [&, gap = layers_in(max_gap, sdf)](std::uint32_t root) {
     return lowest[root] > 0 && lowest[root] < gap && volumes[root] >= min_part_voxels(sdf);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "io/number_text.hpp"
 #include "octurn/error.hpp"
-#include "octurn/units.hpp"
 #include "voxel/octree.hpp"
 
 namespace octurn {
@@ -13,15 +13,6 @@ namespace {
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::bad_settings, what); }
 
 }  // namespace
-
-std::string mm_text(double metres) {
-  std::string text = std::to_string(mm_from_metres(metres));
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') {
-    text.pop_back();
-  }
-  return text + " mm";
-}
 
 int checked_levels(const ReconstructOptions& options) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };

@@ -28,6 +28,14 @@ std::uint32_t ConnectedComponents::root(std::uint32_t run) {
   return run;
 }
 
+std::vector<std::uint64_t> ConnectedComponents::volumes() {
+  std::vector<std::uint64_t> by_root(runs_.size());
+  for (std::uint32_t i = 0; i < runs_.size(); ++i) {
+    by_root[root(i)] += static_cast<std::uint64_t>(runs_[i].end - runs_[i].first);
+  }
+  return by_root;
+}
+
 void ConnectedComponents::add_row(int y, int z) {
   const auto row = mask_.row(y, z);
   const std::uint64_t flip = of_ == Of::gaps ? ~std::uint64_t{0} : 0;

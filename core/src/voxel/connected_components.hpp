@@ -30,6 +30,9 @@ class ConnectedComponents {
   /// The run that stands for the component of a run.
   std::uint32_t root(std::uint32_t run);
 
+  /// Of the run that stands for a component, that component's voxels; 0 of all others.
+  std::vector<std::uint64_t> volumes();
+
   /// The number of runs.
   std::size_t count() const { return runs_.size(); }
 

@@ -26,11 +26,10 @@ DroppedComponents keep_standing_components(VoxelMask& mask, int standing_layers,
   if (components.count() == 0) {
     return dropped;
   }
-  std::vector<std::uint64_t> volumes(components.count());  // 0 but at roots
+  const std::vector<std::uint64_t> volumes = components.volumes();
   std::vector<char> stands(components.count());
-  components.for_each([&](int, int z, std::uint32_t i, const Run& run) {
+  components.for_each([&](int, int z, std::uint32_t i, const Run&) {
     const std::uint32_t root = components.root(i);
-    volumes[root] += static_cast<std::uint64_t>(run.end - run.first);
     stands[root] = static_cast<char>(stands[root] | (z < standing_layers ? 1 : 0));
   });
   std::size_t main = 0;

@@ -4,13 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/response_header.hpp"
+
 namespace octurn {
 namespace {
-
-std::string header(const Response& response, std::string_view name) {
-  const auto found = std::ranges::find(response.headers, name, &Headers::value_type::first);
-  return found == response.headers.end() ? "" : found->second;
-}
 
 Response answer(int snapshots, Headers headers = {}, const std::string& method = "GET") {
   return tagged({.method = method, .headers = std::move(headers)},

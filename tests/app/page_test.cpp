@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/response_header.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -22,20 +23,14 @@ class PageTest : public ::testing::Test {
     return Page(folder_.path()).file({.path = path, .headers = std::move(headers)});
   }
 
-  static std::string value_of(const Response& response, std::string_view name) {
-    const auto found =
-        std::ranges::find(response.headers, name, &std::pair<std::string, std::string>::first);
-    return found == response.headers.end() ? "" : found->second;
-  }
-
   TemporaryFolder folder_;
 };
 
 TEST_F(PageTest, GivesItsFilesWithTheirTypes) {
   EXPECT_EQ(std::get<std::string>(get("/").body), "<!doctype html>");
-  EXPECT_EQ(value_of(get("/"), "Content-Type"), "text/html; charset=utf-8");
-  EXPECT_EQ(value_of(get("/app.js"), "Content-Type"), "text/javascript; charset=utf-8");
-  EXPECT_EQ(value_of(get("/icon.svg"), "Content-Type"), "image/svg+xml");
+  EXPECT_EQ(header(get("/"), "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(header(get("/app.js"), "Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(header(get("/icon.svg"), "Content-Type"), "image/svg+xml");
   EXPECT_EQ(std::get<std::string>(get("/lib/three.js").body), "export const REVISION = 1;");
 }
 
@@ -51,7 +46,7 @@ TEST_F(PageTest, GivesNothingElse) {
 }
 
 TEST_F(PageTest, IsNotSentAgainUntilItChanges) {
-  const std::string tag = value_of(get("/app.js"), "ETag");
+  const std::string tag = header(get("/app.js"), "ETag");
   EXPECT_EQ(get("/app.js", {{"If-None-Match", tag}}).status, 304);
   put(folder_.path() / "app.js", "export { };");
   EXPECT_EQ(get("/app.js", {{"If-None-Match", tag}}).status, 200);

@@ -5,6 +5,7 @@
 
 #include "octurn/error.hpp"
 #include "octurn/json_object.hpp"
+#include "one_line.hpp"
 
 namespace octurn {
 namespace {
@@ -17,7 +18,6 @@ constexpr std::size_t max_password = 63;                 // as above
 constexpr std::size_t digits_of_key = 64;                // of the 256 bits that are made of it
 constexpr std::string_view known_password = "********";  // octurn.txt: the password that is known
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
 bool is_printable_ascii(char c) { return c >= ' ' && c <= '~'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 bool is_hexadecimal(char c) {
@@ -78,7 +78,7 @@ std::string country_in(JsonObject& keys) {
 }  // namespace
 
 bool is_wifi_name(std::string_view name) {
-  return !name.empty() && name.size() <= max_wifi_name && !std::ranges::any_of(name, is_control) &&
+  return !name.empty() && name.size() <= max_wifi_name && is_one_line(name) &&
          !has_blanks_around(name);
 }
 

@@ -1,6 +1,5 @@
 // Scans that another Octurn has taken.
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,6 +7,7 @@
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
+#include "one_line.hpp"
 #include "scan/job_file.hpp"
 #include "scan/scan_store.hpp"
 #include "utc.hpp"
@@ -20,15 +20,13 @@ namespace fs = std::filesystem;
 constexpr std::string_view unfinished = ".new-import-";
 constexpr std::size_t max_name = 400;  // bytes of 100 characters
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
-
 /// What the other Octurn tells of the scan; of a folder that only has the scan itself, the usual
 /// settings.
 Job read_adopted_job(const fs::path& folder) {
   const auto text = read_regular_file(folder / "job.json", max_job_bytes);
   Job job = text ? to_job(parse_json(*text, ErrorCode::bad_request, "job.json")) : Job{};
   job.name = read_regular_file(folder / "name.txt", max_name).value_or("");
-  if (std::ranges::any_of(job.name, is_control)) {
+  if (!is_one_line(job.name)) {
     job.name.clear();
   }
   return job;

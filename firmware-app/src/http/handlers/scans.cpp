@@ -9,6 +9,7 @@
 #include "http/json_body.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
+#include "one_line.hpp"
 #include "scan/earlier_scans.hpp"
 #include "settings/field.hpp"
 
@@ -23,8 +24,6 @@ constexpr std::ptrdiff_t max_name = 100;  // of a scan, characters
   throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
               "Wait for its end, or cancel it.");
 }
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
 
 /// Of UTF-8 text. Every byte of a character but its first has the bits 10 at its top.
 std::ptrdiff_t count_characters(std::string_view text) {
@@ -76,7 +75,7 @@ Response rename_scan(App& app, const Request& request, std::string_view id) {
   JsonObject keys(body, ErrorCode::bad_name, "");
   const auto name = keys.text("name");
   keys.refuse_unread();
-  if (!name || count_characters(*name) > max_name || std::ranges::any_of(*name, is_control)) {
+  if (!name || count_characters(*name) > max_name || !is_one_line(*name)) {
     throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 characters on one line");
   }
   app.scanner.rename(id, *name);

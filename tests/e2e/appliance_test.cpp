@@ -251,13 +251,13 @@ TEST(UpdateCommand, IsForTheAppliance) {
   if (fs::exists("/usr/lib/octurn/update")) {
     GTEST_SKIP() << "this machine is one";
   }
-  Program program({OCTURN_PROGRAM, "update", "octurn.update"});
+  Program program({octurn_program(), "update", "octurn.update"});
   EXPECT_EQ(program.wait(), 1);
   EXPECT_EQ(std::ranges::count(program.errors(), '\n'), 1) << program.errors();
   EXPECT_NE(program.errors().find("apt install"), std::string::npos) << program.errors();
-  Program without({OCTURN_PROGRAM, "update"});
+  Program without({octurn_program(), "update"});
   EXPECT_EQ(without.wait(), 2);
-  Program help({OCTURN_PROGRAM, "update", "--help"});
+  Program help({octurn_program(), "update", "--help"});
   EXPECT_EQ(help.wait(), 0);
 }
 

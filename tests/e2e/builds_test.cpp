@@ -91,7 +91,7 @@ TEST(Builds, StraightenAScanThatWentByAWrongPose) {
   EXPECT_EQ(content_of(folder_of(folder, scan) / "scan.json"), taken);
 
   // The command makes the same of the stored scan.
-  Program again({OCTURN_PROGRAM, "reconstruct", folder_of(folder, scan), "-o", "-",
+  Program again({octurn_program(), "reconstruct", folder_of(folder, scan), "-o", "-",
                  "--leaf-size-mm", "1", "--method", "solid"});
   EXPECT_EQ(again.wait(), 0) << again.errors();
   EXPECT_TRUE(again.output() == model);

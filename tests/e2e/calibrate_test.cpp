@@ -34,7 +34,7 @@ class CalibrateCommand : public ::testing::Test {
 
   /// What `octurn calibrate --json` prints; fails unless it ends with that status.
   json report(int status, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{OCTURN_PROGRAM, "calibrate", scan_.string(), "--json"};
+    std::vector<std::string> words{octurn_program(), "calibrate", scan_.string(), "--json"};
     words.insert(words.end(), more.begin(), more.end());
     Program program(words);
     EXPECT_EQ(program.wait(), status) << program.errors();
@@ -45,9 +45,9 @@ class CalibrateCommand : public ::testing::Test {
   /// The bytes of `octurn reconstruct --calibrate SOURCE`; by default without that option.
   std::string model(const std::string& source = "") const {
     const fs::path output = folder_.path() / "Scan.stl";
-    std::vector<std::string> words{OCTURN_PROGRAM, "reconstruct",    scan_.string(),
-                                   "-o",           output.string(),  "--method",
-                                   "solid",        "--leaf-size-mm", "4"};
+    std::vector<std::string> words{
+        octurn_program(), "reconstruct", scan_.string(),   "-o", output.string(),
+        "--method",       "solid",       "--leaf-size-mm", "4"};
     if (!source.empty()) {
       words.insert(words.end(), {"--calibrate", source});
     }

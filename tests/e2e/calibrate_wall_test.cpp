@@ -23,7 +23,7 @@ class CalibrateWallCommand : public ::testing::Test {
  protected:
   /// Runs a command; fails unless it ends with that status. @return what it printed
   static std::string run(int status, std::vector<std::string> words) {
-    words.insert(words.begin(), OCTURN_PROGRAM);
+    words.insert(words.begin(), octurn_program());
     Program program(words);
     EXPECT_EQ(program.wait(), status) << program.output() << program.errors();
     return status == 2 ? program.errors() : program.output() + program.errors();

@@ -81,7 +81,7 @@ TEST(Diagnostics, AreWrittenByTheShellToo) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "diagnostics.zip";
   Program doctor(
-      {OCTURN_PROGRAM, "doctor", "--simulate", "--json", "--data", folder.path(), "--zip", file});
+      {octurn_program(), "doctor", "--simulate", "--json", "--data", folder.path(), "--zip", file});
   doctor.wait();
   const std::vector<ArchivedFile> files = unzipped(content_of(file));
   ASSERT_EQ(files.size(), 4U);

@@ -34,7 +34,7 @@ void expect_complete(const json& report) {
 
 TEST(DoctorCommand, ChecksTheSimulatedRig) {
   const TemporaryFolder folder;
-  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--json", "--data", folder.path()});
+  Program doctor({octurn_program(), "doctor", "--simulate", "--json", "--data", folder.path()});
   const int status = doctor.wait();
   const json report = json::parse(doctor.output(), nullptr, false);
   ASSERT_TRUE(report.is_object()) << doctor.output() << doctor.errors();
@@ -52,7 +52,7 @@ TEST(DoctorCommand, ChecksTheSimulatedRig) {
 
 TEST(DoctorCommand, SaysWhatIsMissingWhereNothingIsConnected) {
   const TemporaryFolder folder;
-  Program doctor({OCTURN_PROGRAM, "doctor", "--data", folder.path(), "--sensor", "kinect://7"});
+  Program doctor({octurn_program(), "doctor", "--data", folder.path(), "--sensor", "kinect://7"});
   EXPECT_EQ(doctor.wait(), 1);
   EXPECT_NE(doctor.output().find("fault    Sensor "), std::string::npos) << doctor.output();
   EXPECT_NE(doctor.output().find("power supply"), std::string::npos) << doctor.output();
@@ -62,7 +62,7 @@ TEST(DoctorCommand, SaysWhatIsMissingWhereNothingIsConnected) {
 /// The last column begins at one place.
 TEST(DoctorCommand, AlignsItsTable) {
   const TemporaryFolder folder;
-  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--data", folder.path()});
+  Program doctor({octurn_program(), "doctor", "--simulate", "--data", folder.path()});
   doctor.wait();
   std::istringstream lines(doctor.output());
   const std::size_t column = doctor.output().find("Kinect v1");
@@ -78,7 +78,7 @@ TEST(DoctorCommand, AlignsItsTable) {
 TEST(DoctorCommand, LeavesTheDaemonsLinesAndSensorAlone) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  Program doctor({OCTURN_PROGRAM, "doctor", "--json", "--data", folder.path() / "data"});
+  Program doctor({octurn_program(), "doctor", "--json", "--data", folder.path() / "data"});
   doctor.wait();
   const json report = json::parse(doctor.output(), nullptr, false);
   EXPECT_EQ(finding(report, "sensor")["state"], "unknown") << report;
@@ -94,7 +94,7 @@ TEST(DoctorApi, GivesTheSameChecks) {
   const json report = parsed(reply);
   expect_complete(report);
   EXPECT_EQ(finding(report, "sensor")["state"], "ok");
-  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--json", "--data", folder.path()});
+  Program doctor({octurn_program(), "doctor", "--simulate", "--json", "--data", folder.path()});
   doctor.wait();
   const json same = json::parse(doctor.output(), nullptr, false);
   EXPECT_TRUE(std::ranges::equal(

@@ -23,7 +23,7 @@ constexpr std::size_t mb = std::size_t{1} << 20U;
 
 std::vector<std::string> command(const fs::path& scan, const std::string& leaf_size_mm,
                                  std::vector<std::string> more = {}) {
-  std::vector<std::string> words{OCTURN_PROGRAM,   "reconstruct", scan.string(), "-o", "-",
+  std::vector<std::string> words{octurn_program(), "reconstruct", scan.string(), "-o", "-",
                                  "--leaf-size-mm", leaf_size_mm};
   words.insert(words.end(), more.begin(), more.end());
   return words;
@@ -166,7 +166,7 @@ TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
 TEST(Memory, OfTheDaemonStaysBelowItsLimitWithARecordedSensor) {
   const TemporaryFolder folder;
   const fs::path turn = folder.path() / "turn";
-  Program record({OCTURN_PROGRAM, "record", "--simulate", "--simulate-speed", "20", "-o", turn,
+  Program record({octurn_program(), "record", "--simulate", "--simulate-speed", "20", "-o", turn,
                   "--snapshots", "3", "--frames", "2"});
   ASSERT_EQ(record.wait(), 0) << record.errors();
   put(folder.path() / "octurn.json", R"({"memory_limit_mb": 48, "threads": 2})");

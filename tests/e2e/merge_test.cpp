@@ -63,8 +63,8 @@ class MergeCommand : public ::testing::Test {
 
   /// What `octurn merge --json` prints; fails unless it ends with that status.
   json merge(int status, const fs::path& one, const fs::path& other) const {
-    Program program(
-        {OCTURN_PROGRAM, "merge", one.string(), other.string(), "-o", merged_.string(), "--json"});
+    Program program({octurn_program(), "merge", one.string(), other.string(), "-o",
+                     merged_.string(), "--json"});
     EXPECT_EQ(program.wait(), status) << program.errors();
     return json::parse(program.output());
   }
@@ -82,7 +82,7 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
   EXPECT_FALSE(report["symmetric"]);
   EXPECT_EQ(json::parse(content_of(merged_ / "scan.json"))["version"], 2);
   const fs::path model = folder_.path() / "Scan.stl";
-  Program program({OCTURN_PROGRAM, "reconstruct", merged_.string(), "-o", model.string(),
+  Program program({octurn_program(), "reconstruct", merged_.string(), "-o", model.string(),
                    "--method", "solid", "--json"});
   ASSERT_EQ(program.wait(), 0) << program.errors();
   const json built = json::parse(program.output());
@@ -99,7 +99,7 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
       write_solved_turn("b", laid_turn(figure(), few_stops, turned_over(figure_height)));
   const auto run = [&](std::vector<std::string> told) {
     std::vector<std::string> arguments{
-        OCTURN_PROGRAM, "merge", one.string(), other.string(), "-o", merged_.string(), "--json"};
+        octurn_program(), "merge", one.string(), other.string(), "-o", merged_.string(), "--json"};
     arguments.insert(arguments.end(), told.begin(), told.end());
     return Program(arguments);
   };

@@ -72,7 +72,7 @@ TEST(NestedJson, IsRefusedInTheSettings) {
   const fs::path file = folder.path() / "octurn.json";
   for (const std::string& text : deep_files("port")) {
     put(file, text);
-    Program program({OCTURN_PROGRAM, "serve", "--simulate", "--config", file});
+    Program program({octurn_program(), "serve", "--simulate", "--config", file});
     EXPECT_EQ(program.wait(), 1);
     EXPECT_NE(program.errors().find("octurn.json"), std::string::npos) << program.errors();
   }
@@ -100,7 +100,7 @@ TEST(NestedJson, IsRefusedInARecording) {
   const TemporaryFolder folder;
   for (const std::string& text : deep_files("sensor")) {
     put(folder.path() / "recording.json", text);
-    Program program({OCTURN_PROGRAM, "record", "--sensor", folder.path(), "-o",
+    Program program({octurn_program(), "record", "--sensor", folder.path(), "-o",
                      folder.path() / "copy", "--snapshots", "1"});
     EXPECT_EQ(program.wait(), 1);
     EXPECT_NE(program.errors().find("recording.json"), std::string::npos) << program.errors();
@@ -111,7 +111,8 @@ TEST(NestedJson, IsRefusedInAScanFolder) {
   const TemporaryFolder folder;
   for (const std::string& text : deep_files("snapshots")) {
     put(folder.path() / "scan.json", text);
-    Program program({OCTURN_PROGRAM, "reconstruct", folder.path(), "-o", folder.path() / "a.stl"});
+    Program program(
+        {octurn_program(), "reconstruct", folder.path(), "-o", folder.path() / "a.stl"});
     EXPECT_EQ(program.wait(), 1);
     EXPECT_NE(program.errors().find("scan.json"), std::string::npos) << program.errors();
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// `octurn password FILE` with that on its standard input. @return its exit status
 int give_password(const fs::path& file, const std::string& typed) {
   Program program({"/bin/sh", "-c", "printf '%s\\n' \"$1\" | \"$0\" password \"$2\"",
-                   OCTURN_PROGRAM, typed, file.string()});
+                   octurn_program(), typed, file.string()});
   return program.wait();
 }
 

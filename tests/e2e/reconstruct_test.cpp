@@ -23,7 +23,7 @@ class ReconstructCommand : public ::testing::Test {
 
   /// `octurn reconstruct SCAN -o OUTPUT` and what follows.
   std::vector<std::string> command(std::vector<std::string> more = {}) const {
-    std::vector<std::string> words{OCTURN_PROGRAM, "reconstruct", scan_.string(), "-o",
+    std::vector<std::string> words{octurn_program(), "reconstruct", scan_.string(), "-o",
                                    output_.string()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -116,9 +116,9 @@ TEST_F(ReconstructCommand, TakesTheClipBoxAndTheLevelGiven) {
 }
 
 TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
-  expect_failure({OCTURN_PROGRAM}, 2, "subcommand");
-  expect_failure({OCTURN_PROGRAM, "levitate"}, 2, "subcommand");
-  expect_failure({OCTURN_PROGRAM, "reconstruct", scan_.string()}, 2, "--output");
+  expect_failure({octurn_program()}, 2, "subcommand");
+  expect_failure({octurn_program(), "levitate"}, 2, "subcommand");
+  expect_failure({octurn_program(), "reconstruct", scan_.string()}, 2, "--output");
   expect_failure(command({"--leaf-size"}), 2, "--leaf-size");
   expect_failure(command({"--leaf-size-mm", "one"}), 2, "--leaf-size-mm");
   for (const char* const size : {"0", "-1", "nan", "1001", "1e300"}) {
@@ -145,7 +145,7 @@ TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
 }
 
 TEST_F(ReconstructCommand, EndsWith1AndOneLineForAScanThatIsBroken) {
-  expect_failure({OCTURN_PROGRAM, "reconstruct", "/nowhere", "-o", output_.string()}, 1,
+  expect_failure({octurn_program(), "reconstruct", "/nowhere", "-o", output_.string()}, 1,
                  "/nowhere");
   put(scan_ / "snapshots" / "001.png", content_of(scan_ / "snapshots" / "001.png").substr(0, 400));
   expect_failure(command(), 1, "001.png");
@@ -169,7 +169,7 @@ TEST_F(ReconstructCommand, EndsWith1WhereItCannotWrite) {
 
 TEST_F(ReconstructCommand, RefusesAnOutputThatCannotBeBeforeItReadsTheScan) {
   const auto with_output = [](const std::string& output) {
-    return std::vector<std::string>{OCTURN_PROGRAM, "reconstruct", "/nowhere", "-o", output};
+    return std::vector<std::string>{octurn_program(), "reconstruct", "/nowhere", "-o", output};
   };
   expect_failure(with_output(""), 2, "--output");
   expect_failure(with_output("/dev/full"), 1, "/dev/full");
@@ -177,7 +177,7 @@ TEST_F(ReconstructCommand, RefusesAnOutputThatCannotBeBeforeItReadsTheScan) {
 }
 
 TEST_F(ReconstructCommand, EndsWith1WhereItsReportCannotBeWritten) {
-  const std::string line = std::string(OCTURN_PROGRAM) + " reconstruct " + scan_.string() + " -o " +
+  const std::string line = octurn_program() + " reconstruct " + scan_.string() + " -o " +
                            output_.string() + " --json > /dev/full";
   Program program({"/bin/sh", "-c", line});
   EXPECT_EQ(program.wait(), 1);
@@ -219,10 +219,10 @@ TEST_F(ReconstructCommand, RemovesThePartialFileWhenItIsInterrupted) {
 }
 
 TEST(Octurn, TellsItsVersionAndItsUse) {
-  Program version({OCTURN_PROGRAM, "--version"});
+  Program version({octurn_program(), "--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_EQ(version.output(), "octurn " OCTURN_VERSION "\n");
-  Program help({OCTURN_PROGRAM, "--help"});
+  Program help({octurn_program(), "--help"});
   EXPECT_EQ(help.wait(), 0);
   for (const char* const command : {"serve", "scan", "reconstruct"}) {
     EXPECT_NE(help.output().find(command), std::string::npos);

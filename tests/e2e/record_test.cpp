@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> command(const char* name, const fs::path& output,
                                  std::vector<std::string> more) {
-  std::vector<std::string> words{OCTURN_PROGRAM, name, "--simulate", "--simulate-speed",
-                                 "20",           "-o", output};
+  std::vector<std::string> words{
+      octurn_program(), name, "--simulate", "--simulate-speed", "20", "-o", output};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -87,10 +87,10 @@ TEST(RecordCommand, RefusesAFolderThatIsThere) {
 }
 
 TEST(RecordCommand, SaysHowItIsUsed) {
-  Program help({OCTURN_PROGRAM, "record", "--help"});
+  Program help({octurn_program(), "record", "--help"});
   EXPECT_EQ(help.wait(), 0);
   EXPECT_NE(help.output().find("--snapshots"), std::string::npos);
-  Program nothing({OCTURN_PROGRAM, "record", "--simulate"});
+  Program nothing({octurn_program(), "record", "--simulate"});
   EXPECT_EQ(nothing.wait(), 2);
 }
 

@@ -98,7 +98,7 @@ TEST(Resume, EndsAnInterruptedScanThatIsCancelledAndMakesAModelOfWhatIsThere) {
 TEST(ScanCommand, SaysHowToGoOnWithAPausedScan) {
   const TemporaryFolder folder;
   const auto octurn = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), OCTURN_PROGRAM);
+    words.insert(words.begin(), octurn_program());
     words.insert(words.end(), {"--simulate", "--simulate-speed", "50"});
     return words;
   };

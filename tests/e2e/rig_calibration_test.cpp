@@ -174,8 +174,8 @@ TEST(RigCalibration, ShowsThePointsThatTheSensorSees) {
 TEST(CalibrateRigCommand, TurnsAndStoresThePose) {
   const TemporaryFolder folder;
   std::vector<std::string> words{
-      OCTURN_PROGRAM, "calibrate", "--simulate", "--simulate-speed", "20",
-      "--stops",      "8",         "--json",     "--data",           folder.path() / "data"};
+      octurn_program(), "calibrate", "--simulate", "--simulate-speed", "20",
+      "--stops",        "8",         "--json",     "--data",           folder.path() / "data"};
   for (const std::string& word : wrongly_told(folder)) {
     words.push_back(word);
   }
@@ -191,7 +191,7 @@ TEST(CalibrateRigCommand, TurnsAndStoresThePose) {
 
 TEST(CalibrateRigCommand, EndsAtASignalAndStoresNothing) {
   const TemporaryFolder folder;
-  Program program({OCTURN_PROGRAM, "calibrate", "--simulate", "--simulate-speed", "1", "--data",
+  Program program({octurn_program(), "calibrate", "--simulate", "--simulate-speed", "1", "--data",
                    folder.path() / "data"});
   while (!fs::exists(folder.path() / "data" / "platform.json")) {
     std::this_thread::yield();  // until it turns

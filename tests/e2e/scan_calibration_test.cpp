@@ -62,7 +62,7 @@ TEST(ScanCalibration, TellsWhatWasSolvedAndKeepsWhatWasTold) {
   EXPECT_EQ(done["settings"]["platform_from_sensor"], to_rows(wrong_pose()));
 
   for (const char* const source : {"auto", "told"}) {
-    Program again({OCTURN_PROGRAM, "reconstruct", folder_of(folder, done), "-o", "-",
+    Program again({octurn_program(), "reconstruct", folder_of(folder, done), "-o", "-",
                    "--leaf-size-mm", "2", "--method", "solid", "--calibrate", source});
     EXPECT_EQ(again.wait(), 0) << again.errors();
     EXPECT_EQ(again.output() == daemon.get("/Scan.stl").body, std::string(source) == "auto");
@@ -113,7 +113,7 @@ TEST(ScanCalibration, GoesOnAfterAKillWhileTheModelIsBuiltAgain) {
   const json done = daemon.wait_until_done(scan);
   ASSERT_EQ(done["state"], "finished") << done;
   expect_same(calibration_in(folder_of(folder, done))["solved"], before["calibration"]["solved"]);
-  Program again({OCTURN_PROGRAM, "reconstruct", folder_of(folder, done), "-o", "-",
+  Program again({octurn_program(), "reconstruct", folder_of(folder, done), "-o", "-",
                  "--leaf-size-mm", "0.6", "--calibrate", "auto"});
   EXPECT_EQ(again.wait(), 0) << again.errors();
   EXPECT_TRUE(again.output() == daemon.get("/Scan.stl").body);

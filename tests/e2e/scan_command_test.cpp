@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 /// A quick scan of the simulated rig.
 std::vector<std::string> scan_to(const fs::path& data, const std::string& output) {
-  return {OCTURN_PROGRAM,
+  return {octurn_program(),
           "scan",
           "--simulate",
           "--simulate-speed",
@@ -91,7 +91,7 @@ TEST(ScanCommand, RefusesOptionsOfTheOtherMethod) {
 
 TEST(Commands, RefuseAnEmptyDataFolder) {
   for (const char* const command : {"serve", "scan", "doctor"}) {
-    Program program({OCTURN_PROGRAM, command, "--simulate", "--data", ""});
+    Program program({octurn_program(), command, "--simulate", "--data", ""});
     EXPECT_EQ(program.wait(), 2) << command;
     EXPECT_NE(program.errors().find("\"data\""), std::string::npos) << program.errors();
   }
@@ -102,7 +102,7 @@ TEST(DoctorCommand, EndsWith1WhereItsFindingsCannotBeWritten) {
   for (const char* const more : {">/dev/full", "--json >/dev/full"}) {
     Program program(
         {"/bin/sh", "-c",
-         shell_line({OCTURN_PROGRAM, "doctor", "--simulate", "--data", folder.path()}, more)});
+         shell_line({octurn_program(), "doctor", "--simulate", "--data", folder.path()}, more)});
     EXPECT_EQ(program.wait(), 1);
     EXPECT_NE(program.errors().find("standard output"), std::string::npos) << program.errors();
   }
@@ -110,7 +110,7 @@ TEST(DoctorCommand, EndsWith1WhereItsFindingsCannotBeWritten) {
 
 TEST(ScanCommand, ScansAndWritesTheModel) {
   const TemporaryFolder folder;
-  const std::vector<std::string> command{OCTURN_PROGRAM,
+  const std::vector<std::string> command{octurn_program(),
                                          "scan",
                                          "--simulate",
                                          "--simulate-speed",
@@ -134,7 +134,7 @@ TEST(ScanCommand, ScansAndWritesTheModel) {
 
 TEST(ScanCommand, StopsWhenItIsInterrupted) {
   const TemporaryFolder folder;
-  Program program({OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "-o",
+  Program program({octurn_program(), "scan", "--simulate", "--data", folder.path() / "data", "-o",
                    folder.path() / "Scan.stl"});
   while (!fs::exists(folder.path() / "data" / "scans")) {
     std::this_thread::yield();
@@ -147,8 +147,8 @@ TEST(ScanCommand, StopsWhenItIsInterrupted) {
 
 TEST(ScanCommand, RefusesSettingsThatAreWrong) {
   const TemporaryFolder folder;
-  Program program(
-      {OCTURN_PROGRAM, "scan", "--simulate", "--data", folder.path() / "data", "--snapshots", "0"});
+  Program program({octurn_program(), "scan", "--simulate", "--data", folder.path() / "data",
+                   "--snapshots", "0"});
   EXPECT_EQ(program.wait(), 2);
   EXPECT_NE(program.errors().find("snapshots"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder.path() / "data"));

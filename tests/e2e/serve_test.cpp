@@ -46,8 +46,8 @@ TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], done);
 
   // The command gives the same bytes from the scan that was stored.
-  Program again({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / done["id"], "-o",
-                 "-", "--leaf-size-mm", "2", "--method", method});
+  Program again({octurn_program(), "reconstruct", folder.path() / "data" / "scans" / done["id"],
+                 "-o", "-", "--leaf-size-mm", "2", "--method", method});
   EXPECT_EQ(again.wait(), 0);
   EXPECT_TRUE(again.output() == model.body);
   EXPECT_EQ(done["model"]["parts"], method == "solid" ? json(1) : json(nullptr));
@@ -205,8 +205,9 @@ TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
   EXPECT_EQ(left["state"], "interrupted");
   EXPECT_GE(left["snapshots_done"], 2);
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0]["state"], "interrupted");
-  Program reconstruct({OCTURN_PROGRAM, "reconstruct", folder.path() / "data" / "scans" / left["id"],
-                       "-o", folder.path() / "Scan.stl"});
+  Program reconstruct({octurn_program(), "reconstruct",
+                       folder.path() / "data" / "scans" / left["id"], "-o",
+                       folder.path() / "Scan.stl"});
   EXPECT_EQ(reconstruct.wait(), 0) << reconstruct.errors();
   EXPECT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
 }

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 class SolidCommand : public ::testing::Test {
  protected:
   std::vector<std::string> command(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{OCTURN_PROGRAM,   "reconstruct", scan_.string(), "-o",
+    std::vector<std::string> words{octurn_program(), "reconstruct", scan_.string(), "-o",
                                    output_.string(), "--method",    "solid"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
@@ -195,7 +195,7 @@ TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
   Program no_number(command({"--max-error-mm", "small"}));
   EXPECT_EQ(no_number.wait(), 2);
   EXPECT_NE(no_number.errors().find("--max-error-mm"), std::string::npos);
-  Program not_solid({OCTURN_PROGRAM, "reconstruct", scan_.string(), "-o", output_.string(),
+  Program not_solid({octurn_program(), "reconstruct", scan_.string(), "-o", output_.string(),
                      "--max-error-mm", "1"});
   EXPECT_EQ(not_solid.wait(), 2);
   EXPECT_NE(not_solid.errors().find("--max-error-mm"), std::string::npos);
@@ -236,7 +236,7 @@ TEST_F(SolidCommand, ClosesWhatOneSnapshotSaw) {
 }
 
 TEST(Solid, IsInTheHelp) {
-  Program help({OCTURN_PROGRAM, "reconstruct", "--help"});
+  Program help({octurn_program(), "reconstruct", "--help"});
   EXPECT_EQ(help.wait(), 0);
   EXPECT_NE(help.output().find("solid: one closed, filled, smooth part"), std::string::npos);
   EXPECT_NE(help.output().find("--max-error-mm"), std::string::npos);

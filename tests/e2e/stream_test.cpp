@@ -72,7 +72,7 @@ TEST(ModelStream, IsMadeWhileItIsDownloaded) {
       {"leaf_size_mm=%32", {"--leaf-size-mm", "2"}},  // RFC 3986, 6.2.2.2: the same as 2
   };
   for (const auto& [query, options] : ways) {
-    std::vector<std::string> command{OCTURN_PROGRAM, "reconstruct", stored, "-o", expected};
+    std::vector<std::string> command{octurn_program(), "reconstruct", stored, "-o", expected};
     command.insert(command.end(), options.begin(), options.end());
     Program reconstruct(command);
     ASSERT_EQ(reconstruct.wait(), 0) << reconstruct.errors();

@@ -92,7 +92,7 @@ TEST(Turntable, RefusesWhatIsNoMove) {
 
 TEST(DoctorCommand, TurnsThePlatformWhereItIsAsked) {
   const TemporaryFolder folder;
-  Program program({OCTURN_PROGRAM, "doctor", "--simulate", "--simulate-speed", "20",
+  Program program({octurn_program(), "doctor", "--simulate", "--simulate-speed", "20",
                    "--simulate-gear", "1.5", "--turn", "--json", "--data", folder.path() / "data"});
   EXPECT_EQ(program.wait(), 1);
   const json report = json::parse(program.output());

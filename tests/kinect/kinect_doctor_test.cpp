@@ -19,7 +19,7 @@ Readings wall() { return Readings(std::size_t{640} * 480, 657); }
 /// What the doctor says of a check.
 json finding(const char* check) {
   const TemporaryFolder folder;
-  Program doctor({OCTURN_PROGRAM, "doctor", "--simulate", "--sensor", "kinect://", "--json",
+  Program doctor({octurn_program(), "doctor", "--simulate", "--sensor", "kinect://", "--json",
                   "--data", folder.path()});
   doctor.wait();
   const json report = json::parse(doctor.output(), nullptr, false);

@@ -30,9 +30,9 @@ void expect_same_depths(const DepthFrame& one, const DepthFrame& other) {
 
 std::vector<std::string> command(const char* name, const fs::path& output, const char* sensor,
                                  std::vector<std::string> more) {
-  std::vector<std::string> words{OCTURN_PROGRAM, name,       "--simulate", "--simulate-speed",
-                                 "20",           "--sensor", sensor,       "-o",
-                                 output,         "--frames", "2"};
+  std::vector<std::string> words{
+      octurn_program(), name, "--simulate", "--simulate-speed", "20", "--sensor",
+      sensor,           "-o", output,       "--frames",         "2"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }

@@ -40,9 +40,9 @@ class Daemon {
                                           std::vector<std::string> more = {}, int port = 0) {
     put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
     std::vector<std::string> words{
-        OCTURN_PROGRAM,  "serve",     "--simulate",  "--simulate-speed",   "20",
-        "--listen",      "127.0.0.1", "--port",      std::to_string(port), "--data",
-        folder / "data", "--web",     folder / "web"};
+        octurn_program(), "serve",     "--simulate",  "--simulate-speed",   "20",
+        "--listen",       "127.0.0.1", "--port",      std::to_string(port), "--data",
+        folder / "data",  "--web",     folder / "web"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,12 @@
 #include "support/patience.hpp"
 
 namespace octurn {
+
+/// The path of `octurn`, which is built beside the tests. As a macro it would keep ccache from
+/// giving them to another clone.
+inline std::string octurn_program() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octurn";
+}
 
 /// What the kernel holds a program to.
 struct ProgramLimits {

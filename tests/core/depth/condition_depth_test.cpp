@@ -64,6 +64,40 @@ TEST(ConditionedDepth, HasNoSurfaceOutsideTheClipBoxButSeesAsFar) {
   EXPECT_FLOAT_EQ(conditioned.at(60, 24).free_space_depth, 0.5F);
 }
 
+// Where the platform is, is known; where another thing is that makes no surface, is not.
+TEST(ConditionedDepth, SeesNearlyDownToThePlatformOfOneOfSeveralPoses) {
+  const Snapshot snapshot = rendered(block({0.06, 0.06, 0.04}), 1).read(0);
+  const Box clip{.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}};
+  const ConditionedDepth alone(snapshot, clip);
+  const ConditionedDepth of_several(snapshot, clip, {.clip = clip});
+  const ConditionedDepth of_a_lower_one(
+      snapshot, clip,
+      {.object_from_platform = Eigen::Isometry3d(Eigen::Translation3d(0, 0, -0.01)), .clip = clip});
+  int on_platform = 0;
+  int on_object = 0;
+  int others = 0;  // which are free as far as something else
+  for (int v = 2; v < 178; ++v) {
+    for (int u = 2; u < 238; ++u) {
+      const double z = snapshot.frame.depth[static_cast<std::size_t>(v * 240 + u)] * 0.0001;
+      const Eigen::Vector3d seen(z * (u - 120) / 216.0, z * (v - 90) / 216.0, z);
+      const double height = (snapshot.object_from_sensor * seen).z();
+      const float free = alone.at(u, v).free_space_depth;
+      const float further = of_several.at(u, v).free_space_depth - free;
+      others += of_a_lower_one.at(u, v).free_space_depth == free ? 0 : 1;
+      if (free > 0 && height < 0.002) {
+        ++on_platform;
+        others += std::abs(further - 0.0045F) < 1e-6F ? 0 : 1;
+      } else if (height > 0.003) {
+        ++on_object;
+        others += further == 0 ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_GT(on_platform, 5000);
+  EXPECT_GT(on_object, 200);
+}
+
 TEST(ConditionedDepth, BoundsWhatEveryPixelOfARectangleSays) {
   const ConditionedDepth conditioned(rendered(hollowed_block({0.07, 0.05, 0.045}, 0.02), 1).read(0),
                                      {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}});

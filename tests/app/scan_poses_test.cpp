@@ -143,6 +143,25 @@ TEST_F(ScanPosesTest, GoOnAfterTheProgramEndedAndAreMergedAndTakenBack) {
   EXPECT_TRUE(store_.get(first).builds.all.empty());
 }
 
+TEST_F(ScanPosesTest, AreJoinedWithThoseBeforeThem) {
+  Scanner scanner(rig(), {}, store_);
+  const std::string first = scan(scanner, quick(6)).id;
+  std::vector<std::string> poses;
+  std::vector<std::string> models;
+  for (int i = 0; i < 2; ++i) {
+    poses.push_back(scanner.start_pose(first, quick(6))->id);
+    scanner.wait_until_done(patience);
+    const auto found = store_.get(poses.back()).pose_of->registration;
+    ASSERT_TRUE(found && found->accepted) << (found ? found->reason : "no answer");
+    EXPECT_EQ(read_scan(store_.merged_scan(first, poses)).poses.size(), poses.size() + 1);
+    EXPECT_EQ(store_.get(first).builds.all.back().poses, poses);
+    models.push_back(model_of(first));
+  }
+  EXPECT_FALSE(models[0] == models[1]);
+  scanner.remove_pose(first, 2);
+  EXPECT_TRUE(model_of(first) == models[0]);
+}
+
 TEST_F(ScanPosesTest, LeaveTheFirstScanAsItWasWhenTheyDoNotFit) {
   Scanner scanner(rig(), {}, store_);
   const std::string first = scan(scanner, quick()).id;

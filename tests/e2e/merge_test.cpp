@@ -137,6 +137,34 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
   EXPECT_FALSE(fs::exists(merged_));
 }
 
+// Whichever of its poses is taken, the model is the same.
+TEST_F(MergeCommand, TakesASymmetricObjectAndSaysSo) {
+  constexpr double height = 0.07;
+  const Shape round = cylinder(0.03, height);
+
+  const json report =
+      merge(0, write_solved_turn("a", laid_turn(round, few_stops)),
+            write_solved_turn("b", laid_turn(round, few_stops, turned_over(height))));
+
+  EXPECT_TRUE(report["symmetric"]);
+  Program program({OCTURN_PROGRAM, "reconstruct", merged_.string(), "-o",
+                   (folder_.path() / "Scan.stl").string(), "--method", "intersection", "--json"});
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_TRUE(json::parse(program.output())["watertight"]);
+}
+
+// The dent in its underside, which the first turn did not see, may be at any of four corners.
+TEST_F(MergeCommand, RefusesToGuessBetweenTwoShapesWithExit1) {
+  const Shape dented = [whole = block({0.08, 0.08, 0.05}), dent = ball({0.018, 0.018, 0}, 0.015)](
+                           const Eigen::Vector3d& p) { return std::max(whole(p), -dent(p)); };
+
+  const json report = merge(1, write_solved_turn("a", laid_turn(dented, stops)),
+                            write_solved_turn("b", laid_turn(dented, stops, turned_over(0.05))));
+
+  EXPECT_NE(std::string(report["reason"]).find("different shapes"), std::string::npos) << report;
+  EXPECT_FALSE(fs::exists(merged_));
+}
+
 TEST_F(MergeCommand, RefusesTwoObjectsWithExit1) {
   const Shape other = joined(block({0.1, 0.03, 0.05}), ball({0.03, 0, 0.06}, 0.03));
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/calibrate/rendered_turn.hpp"
@@ -31,6 +33,15 @@ inline RegistrationTurn laid_turn(
           .angles = turn.angles,
           .clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}},
           .read = turn.read};
+}
+
+/// A cylinder that stands on the platform.
+inline Shape cylinder(double radius, double height) {
+  return [=](const Eigen::Vector3d& p) {
+    const Eigen::Array2d out(p.head<2>().norm() - radius,
+                             std::abs(p.z() - height / 2) - height / 2);
+    return out.max(0.0).matrix().norm() + std::min(out.maxCoeff(), 0.0);
+  };
 }
 
 /// A figure of some 12 cm whose underside is flat: turned over, it stands on its balls.

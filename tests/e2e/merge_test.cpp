@@ -147,7 +147,7 @@ TEST_F(MergeCommand, TakesASymmetricObjectAndSaysSo) {
             write_solved_turn("b", laid_turn(round, few_stops, turned_over(height))));
 
   EXPECT_TRUE(report["symmetric"]);
-  Program program({OCTURN_PROGRAM, "reconstruct", merged_.string(), "-o",
+  Program program({octurn_program(), "reconstruct", merged_.string(), "-o",
                    (folder_.path() / "Scan.stl").string(), "--method", "intersection", "--json"});
   ASSERT_EQ(program.wait(), 0) << program.errors();
   EXPECT_TRUE(json::parse(program.output())["watertight"]);

@@ -63,6 +63,7 @@
  * @property {Device} turntable
  * @property {number} disk_free_bytes
  * @property {boolean} appliance  it has updates and WiFi
+ * @property {Finding[]} [warnings]  about the computer
  * @property {Scan | null} scan
  * @property {import('./api_builds.js').Build | null} [build]  that goes on, or the last one
  * @property {string | null} newest

@@ -9,6 +9,7 @@ import {watchCamera} from './camera.js';
 import {seeNewest, seeReport, watchSteps} from './checklist.js';
 import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
+import * as events from './events.js';
 import {prepareForm} from './form.js';
 import * as library from './library.js';
 import {build, buildActions, poseActions} from './model_actions.js';
@@ -31,11 +32,17 @@ async function missingBuilds(now) {
   return {scan, list: await requests.builds(scan)};
 }
 
+async function askForStatus() {
+  const status = await api.status();
+  events.note(status);
+  return status;
+}
+
 /** One look at the scanner; what changed is shown at once, the list of scans with it. */
 async function look() {
   const before = asked;
   try {
-    const status = await api.status();
+    const status = events.told(asked) ?? await askForStatus();
     seeStatus(status);
     seeNewest(status);
     bin.seeRevision(status.scans_revision);
@@ -140,6 +147,7 @@ listen();
 preparePlaces();
 prepareStage();
 watch();
+events.listenForNews(() => wake());
 watchCamera();
 watchAppliance();
 bin.prepareBin({restore: (id) => restore([id]), empty: emptyBin});

@@ -128,13 +128,12 @@ function verdictShown(state, {model, calibration}) {
 }
 
 /**
- * What else can be downloaded: the scan's model in other formats, and the scan itself.
+ * What else can be downloaded: the model that is shown in other formats, and the scan itself.
  * @param {Scan} scan  as it is shown
  */
 function formatsOf({id, model, state, snapshots_done}) {
-  const isModelOfScan = model?.url === `/api/v1/scans/${id}/Scan.stl`;
-  const models = isModelOfScan ? ['3mf', 'ply', 'glb'].map((ending) =>
-    ({name: ending.toUpperCase(), title: `Download ${ending.toUpperCase()}`, url: `/api/v1/scans/${id}/Scan.${ending}`})) : [];
+  const models = model ? ['3mf', 'ply', 'glb'].map((ending) =>
+    ({name: ending.toUpperCase(), title: `Download ${ending.toUpperCase()}`, url: model.url.replace(/stl$/, ending)})) : [];
   const raw = {name: 'Raw scan', title: 'Download the raw scan, for another Octurn', url: `/api/v1/scans/${id}/scan.zip`};
   return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
 }

@@ -13,6 +13,8 @@ const names = {
   'scan.parts': 'Parts',
   'scan.calibrate': 'Check of the pose',
   'scan.clip_mm': 'Scanned space',
+  'scan.threshold_m2': 'Widest gap bridged, squared',
+  'scan.root_size_mm': 'Root cube',
   'turntable.gear_ratio': 'Gear ratio',
   'turntable.full_steps': 'Full steps',
   'turntable.microsteps': 'Microsteps',
@@ -38,6 +40,8 @@ const names = {
 const help = {
   'scan.filter': 'Basic takes one depth picture, average the mean of several, and with discard only where each of them saw something.',
   'scan.parts': 'Of several things on the platform: the object alone, or all that stand there. Solid only.',
+  'scan.threshold_m2': 'Square of the longest side that a triangle may have: 0.0001 bridges 10 mm. Intersection only.',
+  'scan.root_size_mm': 'Side of the cube that is halved until its leaves are as small as asked for.',
   'scan.calibrate': 'A scan solves where the sensor stands by itself, and builds its model again if that is better.',
   'turntable.reversed': 'On if the platform turns clockwise, seen from above.',
   'turntable.take_up_steps': 'Against the play of gears: so far the platform goes back too far, and comes forward again. 0 for none.',

@@ -9,6 +9,7 @@ import {sentence} from './format.js';
 import {here} from './places.js';
 import {makeField} from './settings_fields.js';
 import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
+import {prepareKeys} from './keys.js';
 import {prepareMachine} from './machine.js';
 import {prepareTurntable} from './turntable.js';
 
@@ -262,6 +263,7 @@ async function begin() {
     cards.push(makeCard(form));
   }
   show(element('cards'), true);
+  prepareKeys();
   prepareTurntable(setTurntable);
   take(told);
 }

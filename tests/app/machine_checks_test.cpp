@@ -40,20 +40,20 @@ class Pi {
   TemporaryFolder folder_;
 };
 
-constexpr std::uint64_t scan = 150'000'000;
+constexpr ScanBytes scan{.largest = 150'000'000, .usual = 10'000'000};
 
-TEST(DiskCheck, CountsTheScansThatFit) {
-  const Finding finding = check_disk(40 * scan, scan);
+TEST(DiskCheck, CountsTheScansThatCanBeStarted) {
+  const Finding finding = check_disk(scan.largest + 39 * scan.usual, scan);
   EXPECT_EQ(finding.state, State::ok);
-  EXPECT_EQ(finding.measured, "6.0 GB free, enough for 40 scans");
+  EXPECT_EQ(finding.measured, "540 MB free, enough for 40 scans");
   EXPECT_EQ(finding.advice, "");
 }
 
 TEST(DiskCheck, WarnsBeforeItIsFull) {
-  EXPECT_EQ(check_disk(5 * scan, scan).state, State::ok);
-  EXPECT_EQ(check_disk(5 * scan - 1, scan).state, State::warning);
-  EXPECT_EQ(check_disk(scan, scan).measured, "150 MB free, enough for 1 scan");
-  const Finding full = check_disk(scan - 1, scan);
+  EXPECT_EQ(check_disk(scan.largest + 4 * scan.usual, scan).state, State::ok);
+  EXPECT_EQ(check_disk(scan.largest + 4 * scan.usual - 1, scan).state, State::warning);
+  EXPECT_EQ(check_disk(scan.largest, scan).measured, "150 MB free, enough for 1 scan");
+  const Finding full = check_disk(scan.largest - 1, scan);
   EXPECT_EQ(full.state, State::fault);
   EXPECT_EQ(full.advice, "Delete scans that are no longer needed.");
   EXPECT_EQ(full.action, Action::choose_scans);

@@ -132,7 +132,8 @@ TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
   EXPECT_EQ(scanner.list().at(0).name, "Hase");
 }
 
-/// Puts a folder where the file was, which no file can replace. The scan that runs may save between two steps of this.
+/// Puts a folder where the file was, which no file can replace. The scan that runs may save the
+/// file between two steps of this.
 void bar_from_being_saved(const std::filesystem::path& file) {
   std::error_code saved_again;
   do {

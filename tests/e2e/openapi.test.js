@@ -39,7 +39,7 @@ test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) 
   answers.check(`${v1}status`, 'get', '200', await ask(scanner, 'status'));
   const job = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
   answers.check(`${v1}scans/{id}`, 'get', '200', job);
-  for (const path of ['status', 'scans', 'settings', 'settings/backup', 'calibration', 'turntable', 'doctor', 'bin', 'preview/points']) {
+  for (const path of ['status', 'scans', 'settings', 'settings/backup', 'calibration', 'turntable', 'doctor', 'bin', 'keys', 'preview/points']) {
     answers.check(v1 + path, 'get', '200', await ask(scanner, path));
   }
   for (const part of ['builds', 'poses']) {
@@ -52,6 +52,18 @@ test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) 
   const problem = await (await fetch(`${scanner.url}api/v1/scans/none`)).json();
   const isProblem = new Ajv({strict: false, validateFormats: false}).compile(description.components.schemas.Problem);
   assert.ok(isProblem(problem), JSON.stringify(problem));
+});
+
+test('what the disk has room for is counted in scans as they were, not as they could be', async (t) => {
+  const scanner = await startScanner(t);
+  await scan(scanner, {snapshots: 4, leaf_size_mm: 4});
+  const {findings} = await ask(scanner, 'doctor');
+  const room = findings.find(({check}) => check === 'disk').measured;
+  const {disk_free_bytes: free} = await ask(scanner, 'status');
+  const {bytes, measured} = await ask(scanner, 'scans/estimate', 'POST', {});
+  assert.ok(measured);
+  const scans = Number(/enough for (\d+) scans/.exec(room)[1]);
+  assert.ok(Math.abs(scans * bytes / free - 1) < 0.2, `${room}: ${bytes} bytes each`);
 });
 
 test('a page shows it', async (t) => {

@@ -1,25 +1,9 @@
 import assert from 'node:assert/strict';
-import {spawn} from 'node:child_process';
-import {once} from 'node:events';
-import {mkdtemp, rm, writeFile} from 'node:fs/promises';
-import {tmpdir} from 'node:os';
-import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {openBrowser} from './browser.js';
+import {configWith} from './password.js';
 import {startScanner} from './scanner.js';
-
-/** A configuration whose page has this password. */
-async function configWith(t, password) {
-  const folder = await mkdtemp(join(tmpdir(), 'octurn-password-'));
-  t.after(() => rm(folder, {recursive: true}));
-  const file = join(folder, 'password');
-  const command = spawn(process.env.OCTURN_PROGRAM, ['password', file], {stdio: ['pipe', 'ignore', 'inherit']});
-  command.stdin.end(`${password}\n`);
-  assert.deepEqual(await once(command, 'exit'), [0, null]);
-  await writeFile(join(folder, 'octurn.json'), JSON.stringify({password_file: file}));
-  return join(folder, 'octurn.json');
-}
 
 /** Asks for the page in a browser that knows this password. */
 async function visit(browser, url, password) {

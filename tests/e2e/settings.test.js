@@ -7,6 +7,7 @@ import {openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 async function openSettings(browser, scanner, options) {
+  await Promise.all(browser.contexts().map((context) => context.close()));  // only so many pages may hear of events
   const opened = await openPage(browser, scanner.url, options);
   await opened.page.getByRole('link', {name: 'Settings'}).click();
   await opened.page.locator('#cards').waitFor();
@@ -27,6 +28,21 @@ async function settled(scanner) {
       setTimeout(done, 50);
     });
   }
+}
+
+// Set elsewhere on the page, or where the page itself is kept.
+const setElsewhere = ['data', 'password_file', 'scan.depth_scale', 'scan.platform_from_sensor'];
+
+const keysOf = ({properties}) => Object.entries(properties).flatMap(([key, schema]) =>
+  schema.properties ? keysOf(schema).map((inner) => `${key}.${inner}`) : [key]);
+
+/** Every setting that the scanner knows. */
+async function haveTheirPlace(scanner, browser) {
+  const {page, faults} = await openSettings(browser, scanner);
+  const onPage = await page.locator('[data-setting]').evaluateAll((fields) => fields.map((field) => field.dataset.setting));
+  const {settings_schema: schema} = await ask(scanner, 'settings');
+  assert.deepEqual([...onPage, ...setElsewhere].sort(), keysOf(schema).sort());
+  assert.deepEqual(faults, []);
 }
 
 /** A default of scans: there on the form of a new scan at once, and after a restart. */
@@ -133,6 +149,7 @@ test('a test of the turntable tells what is set wrongly, and sets it', async (t)
 test('settings are set on the page and last', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t, {hasWebGl: false});
+  await t.test('each of them', () => haveTheirPlace(scanner, browser));
   await t.test('a default of scans', () => keepScanDefault(scanner, browser));
   await t.test('a wrong one is told by its field', () => refuseByField(scanner, browser));
   await t.test('one that needs a restart', () => takeUpGear(scanner, browser));

@@ -147,6 +147,12 @@ test('a finished scan is downloaded in four formats and as it was taken, one wit
   assert.deepEqual(names({...running, state: 'cancelled'}), ['scan.zip']);
 });
 
+test('a build that is looked at is downloaded in all formats, and not the scan\'s own model', () => {
+  const url = '/api/v1/scans/done/builds/2/Scan.stl';
+  const {formats} = screenOf(looking({...finished, model: {...finished.model, url}})).details;
+  assert.deepEqual(formats.slice(0, 3).map((format) => format.url), ['3mf', 'ply', 'glb'].map((ending) => url.replace(/stl$/, ending)));
+});
+
 test('a scan has one name, in its row, its heading and the title', () => {
   const {rows, details, title} = screenOf(looking({...finished, name: ''}));
   assert.equal(rows[0].name, details.name);

@@ -101,14 +101,17 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   TurntableRunner turntable(scanner, store);
+  AccessKeys keys(config.data / "keys.json");
   Api api({.scanner = scanner,
            .store = store,
            .page = machine.page,
            .settings = settings,
            .turntable = turntable,
+           .keys = keys,
            .rig = rig,
            .appliance = machine.appliance ? &*machine.appliance : nullptr});
-  const HttpServer server(config.http, [&](const Request& request) { return api.answer(request); });
+  const HttpServer server(
+      config.http, [&](const Request& request) { return api.answer(request); }, &keys);
 
   settings.keep_as_good();
   announce(machine, config.http, server.port());
@@ -118,6 +121,7 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   if (outcome == Outcome::end) {
     notify_stopping();
   }
+  api.end_events();
   scanner.request_stop();  // so that no request waits for it while the server ends
   return outcome;
 }

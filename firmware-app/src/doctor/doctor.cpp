@@ -58,9 +58,11 @@ Eigen::Isometry3d unscaled_pose(const ScanSettings& settings) {
 
 std::vector<Finding> check_machine(const DoctorInput& input) {
   const auto& root = input.root;
+  const std::uint64_t largest = max_scan_bytes(input.config.scan);
   return {check_data_folder(input.config.data),
           check_settings(stored_trouble(input)),
-          check_disk(free_bytes_in(input.config.data), max_scan_bytes(input.config.scan)),
+          check_disk(free_bytes_in(input.config.data),
+                     {.largest = largest, .usual = input.usual_scan_bytes.value_or(largest)}),
           check_memory(root, input.config.limits.memory_bytes),
           check_temperature(root),
           check_supply(root),
@@ -79,6 +81,14 @@ std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& r
   for (const std::vector<Finding>& more : {check_turntable(input), check_machine(input)}) {
     findings.insert(findings.end(), more.begin(), more.end());
   }
+  return findings;
+}
+
+std::vector<Finding> find_machine_warnings(const DoctorInput& input) {
+  std::vector<Finding> findings = check_machine(input);
+  std::erase_if(findings, [](const Finding& finding) {
+    return finding.state != Finding::State::warning && finding.state != Finding::State::fault;
+  });
   return findings;
 }
 

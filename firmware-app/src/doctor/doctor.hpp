@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +17,18 @@ namespace octurn {
 /// The scanner that the doctor checks.
 struct DoctorInput {
   RigOptions rig = {};
-  Config config = {};                 ///< in force
-  std::string settings_trouble = {};  ///< of the page's settings; empty: none
+  Config config = {};                                  ///< in force
+  std::string settings_trouble = {};                   ///< of the page's settings; empty: none
+  std::optional<std::uint64_t> usual_scan_bytes = {};  ///< as earlier scans were, if there are any
   LineOwner lines = LineOwner::another;
   std::filesystem::path root = "/";  ///< folder with /dev, /proc, /run and /sys
 };
 
 /// Runs all checks, the sensor's first. Never moves the motor.
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading);
+
+/// What the checks of the computer, which disturb nobody, have to warn of.
+std::vector<Finding> find_machine_warnings(const DoctorInput& input);
 
 /// Runs all checks in a daemon, on its own scanner. The sensor is read between scans only: during a
 /// scan its findings are "unknown".

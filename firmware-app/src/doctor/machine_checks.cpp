@@ -96,9 +96,9 @@ Finding check_settings(const std::string& trouble) {
                                 Action::open_settings);
 }
 
-Finding check_disk(std::uint64_t free, std::uint64_t bytes_each) {
+Finding check_disk(std::uint64_t free, const ScanBytes& scan) {
   constexpr const char* advice = "Delete scans that are no longer needed.";
-  const std::uint64_t scans = free / bytes_each;
+  const std::uint64_t scans = free < scan.largest ? 0 : 1 + (free - scan.largest) / scan.usual;
   const std::string measured = readable_bytes(static_cast<double>(free)) + " free, enough for " +
                                std::to_string(scans) + (scans == 1 ? " scan" : " scans");
   return scans == 0          ? disk.fault(measured, advice, Action::choose_scans)

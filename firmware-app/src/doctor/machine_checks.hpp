@@ -15,10 +15,15 @@ namespace octurn {
 /// @param trouble  of ConfigStore
 Finding check_settings(const std::string& trouble);
 
+/// What a scan takes of the disk, bytes.
+struct ScanBytes {
+  std::uint64_t largest = 0;  ///< without as much a scan does not start
+  std::uint64_t usual = 0;    ///< stays when it has ended
+};
+
 /// Whether the disk has room for several scans.
-/// @param free        bytes that this program may still write into the data folder
-/// @param bytes_each  maximum size of a scan
-Finding check_disk(std::uint64_t free, std::uint64_t bytes_each);
+/// @param free  bytes that this program may still write into the data folder
+Finding check_disk(std::uint64_t free, const ScanBytes& scan);
 
 /// Whether the memory that a reconstruction may use is available.
 /// @param limit  bytes, for the whole process; 0 is no limit

@@ -11,7 +11,9 @@
 #include "http/handlers/bin.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/handlers/calibration.hpp"
+#include "http/handlers/events.hpp"
 #include "http/handlers/formats.hpp"
+#include "http/handlers/keys.hpp"
 #include "http/handlers/models.hpp"
 #include "http/handlers/poses.hpp"
 #include "http/handlers/scans.hpp"
@@ -65,7 +67,7 @@ std::optional<PathParts> match(std::string_view route, std::string_view path) {
 /// A handler takes what it needs of the request and of the parts of its path.
 using Handler =
     std::variant<Response (*)(App&), Response (*)(App&, const Request&),
-                 Response (*)(App&, std::string_view id),
+                 Response (*)(EventFeed&, const Request&), Response (*)(App&, std::string_view id),
                  Response (*)(App&, const Request&, std::string_view id),
                  Response (*)(App&, std::string_view id, std::string_view number),
                  Response (*)(App&, const Request&, std::string_view id, std::string_view number)>;
@@ -73,12 +75,16 @@ using Handler =
 /// Calls any of the handlers.
 struct Call {
   App& app;
+  EventFeed& events;
   const Request& request;
   PathParts parts;
 
   Response operator()(Response (*handler)(App&)) const { return handler(app); }
   Response operator()(Response (*handler)(App&, const Request&)) const {
     return handler(app, request);
+  }
+  Response operator()(Response (*handler)(EventFeed&, const Request&)) const {
+    return handler(events, request);
   }
   Response operator()(Response (*handler)(App&, std::string_view)) const {
     return handler(app, parts.id);
@@ -143,7 +149,7 @@ struct Api::Route {
   WaitsFor waits_for = WaitsFor::nothing;
 };
 
-Api::Api(App app) : app_(std::move(app)) {}
+Api::Api(App app) : app_(std::move(app)), events_([this] { return latest_news(app_); }) {}
 
 Response Api::answer(const Request& request) {
   try {
@@ -189,6 +195,9 @@ std::span<const Api::Route> Api::scan_routes() {
       Route{"POST", "/api/v1/scans/{id}/builds/{number}/cancel", cancel_build},
       Route{"POST", "/api/v1/scans/{id}/builds/{number}/choose", choose_build},
       Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.stl", send_build_model},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.3mf", send_build_mesh},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.ply", send_build_mesh},
+      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.glb", send_build_mesh},
       Route{"GET", "/api/v1/scans/{id}/poses", list_poses},
       Route{"POST", "/api/v1/scans/{id}/poses", start_pose, WaitsFor::start},
       Route{"POST", "/api/v1/scans/{id}/poses/{number}", choose_pose},
@@ -203,11 +212,15 @@ std::span<const Api::Route> Api::other_routes() {
       Route{"GET", "/Scan.stl", send_newest_model},
       Route{"GET", "/api/v1/openapi.json", send_description},
       Route{"GET", "/api/v1/status", send_status},
+      Route{"GET", "/api/v1/events", send_events},
       Route{"GET", "/api/v1/settings", send_settings},
       Route{"PATCH", "/api/v1/settings", change_settings},
       Route{"GET", "/api/v1/settings/backup", send_backup},
       Route{"POST", "/api/v1/settings/backup", restore_backup},
       Route{"PUT", "/api/v1/settings/password", set_page_password},
+      Route{"GET", "/api/v1/keys", list_keys},
+      Route{"POST", "/api/v1/keys", make_key},
+      Route{"DELETE", "/api/v1/keys/{id}", revoke_key},
       Route{"GET", "/api/v1/calibration", send_calibration},
       Route{"PATCH", "/api/v1/calibration", change_calibration},
       Route{"POST", "/api/v1/calibration", start_calibration, WaitsFor::start},
@@ -263,7 +276,7 @@ Response Api::dispatch(const Request& request) {
       const auto parts = match(route.path, request.path);
       if (parts && route.method == method) {
         const Place place(places_for(route));
-        return std::visit(Call{app_, request, *parts}, route.handler);
+        return std::visit(Call{app_, events_, request, *parts}, route.handler);
       }
       if (parts) {
         allow(route.method, allowed);

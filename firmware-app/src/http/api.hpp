@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "http/app.hpp"
+#include "http/event_feed.hpp"
 #include "http/message.hpp"
 
 namespace octurn {
@@ -25,6 +26,9 @@ class Api {
   /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
   Response answer(const Request& request);
 
+  /// Ends the streams of events, so that the server's threads come back.
+  void end_events() { events_.end(); }
+
   /// All that it answers but the page, so that its description can be compared.
   static std::vector<RouteName> routes();
 
@@ -37,6 +41,7 @@ class Api {
   Response dispatch(const Request& request);
 
   App app_;
+  EventFeed events_;
   // Who waits for a device holds one of the server's threads. These few never hold all of them.
   std::counting_semaphore<> looks_{4};
   std::counting_semaphore<> starts_{4};

@@ -34,7 +34,8 @@ const Headers common_headers{
     {"Connection", "close"},
 };
 
-std::uint64_t body_length(const Response& response) {
+/// Nothing of a body whose end nobody knows yet.
+std::optional<std::uint64_t> body_length(const Response& response) {
   if (const auto* slice = std::get_if<FileSlice>(&response.body)) {
     return slice->length;
   }
@@ -54,8 +55,9 @@ std::string to_head(const Response& response) {
   };
   append(response.headers);
   append(common_headers);
-  if (response.status != 204 && response.status != 304) {
-    head += "Content-Length: " + std::to_string(body_length(response)) + "\r\n";
+  const auto length = body_length(response);
+  if (length && response.status != 204 && response.status != 304) {
+    head += "Content-Length: " + std::to_string(*length) + "\r\n";
   }
   return head + "\r\n";
 }

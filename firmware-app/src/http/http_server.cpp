@@ -14,6 +14,7 @@
 #include "http/accepted_sockets.hpp"
 #include "http/connection_guard.hpp"
 #include "http/exchange.hpp"
+#include "http/key_login.hpp"
 #include "http/login.hpp"
 #include "http/problem.hpp"
 #include "log.hpp"
@@ -42,7 +43,8 @@ constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
 struct Service {
   HttpServer::Answer answer = {};
   std::optional<Login> login = {};  // where not everybody may open the page
-  std::latch started{1};            // there is a guard
+  const AccessKeys* keys = nullptr;
+  std::latch started{1};  // there is a guard
   std::optional<ConnectionGuard> guard = {};
 
   ConnectionGuard& wait_for_guard() {
@@ -58,6 +60,9 @@ Service& to_service(const mg_connection* connection) {
 /// The answer to who may not open the page; nothing if it is let in.
 std::optional<Response> refusal(mg_connection& connection, const Request& request,
                                 Service& service) {
+  if (const auto key = key_in(request); key && service.keys != nullptr) {
+    return refuse_key(*service.keys, request, *key);
+  }
   if (!service.login) {
     return std::nullopt;
   }
@@ -171,7 +176,7 @@ struct HttpServer::Server {
   mg_context* context = nullptr;
 };
 
-HttpServer::HttpServer(const HttpOptions& options, Answer answer)
+HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys)
     : server_(std::make_unique<Server>()) {
   if (!options.password_file.empty() && ::access(options.password_file.c_str(), R_OK) != 0) {
     throw Error(ErrorCode::bad_password_file, options.password_file.string() + ": cannot be read",
@@ -181,6 +186,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer)
   const std::string address = v6 ? "[" + options.address + "]" : options.address;
   Service& service = server_->service;
   service.answer = std::move(answer);
+  service.keys = keys;
   if (!options.password_file.empty()) {
     service.login.emplace(options.password_file);
   }

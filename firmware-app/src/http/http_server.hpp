@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "http/access_keys.hpp"
 #include "http/message.hpp"
 #include "http_options.hpp"
 
@@ -16,8 +17,9 @@ class HttpServer {
   using Answer = std::function<Response(const Request&)>;
 
   /// @param answer  called by any thread of the pool; must not throw
+  /// @param keys    let programs in as the password lets people in; null: there are none
   /// @throws Error "listen-failed", "bad-password-file"
-  HttpServer(const HttpOptions& options, Answer answer);
+  HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys = nullptr);
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "http/message.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
 
@@ -14,5 +16,9 @@ Response tagged(const Request& request, Response response);
 
 /// The body of a request, parsed; no body is an empty object. @throws Error "bad-json"
 nlohmann::json parse_body(const Request& request);
+
+/// The key "name" of a body, for people. @throws Error "bad-name" unless it is one line of at most
+/// 100 characters
+std::string name_in(JsonObject& body);
 
 }  // namespace octurn

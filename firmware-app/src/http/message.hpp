@@ -76,7 +76,7 @@ using ByteSink = std::function<bool(std::span<const std::byte>)>;
 
 /// A body that is made while it is sent.
 struct ByteStream {
-  std::uint64_t length = 0;
+  std::optional<std::uint64_t> length = {};  ///< nothing: it ends with the connection
   std::stop_token stop = {};  ///< ends the answer at once, even if its reader is slow
   /// Hands over all of it, in order, unless told to end. Throws nothing. For one call; a
   /// packaged_task, since a std::function would have to be copyable.

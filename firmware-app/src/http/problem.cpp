@@ -68,10 +68,18 @@ ProblemType find_problem_type(const Failure& failure) {
 
 Response problem(const Failure& failure) {
   const ProblemType type = find_problem_type(failure);
-  const nlohmann::json body{{"type", "about:blank"},    {"title", type.title},
-                            {"status", type.status},    {"code", to_string(failure.code)},
-                            {"detail", failure.detail}, {"hint", failure.hint}};
-  return {.status = type.status,
+  return to_response({.status = type.status,
+                      .title = type.title,
+                      .code = to_string(failure.code),
+                      .detail = failure.detail,
+                      .hint = failure.hint});
+}
+
+Response to_response(const HttpProblem& problem) {
+  const nlohmann::json body{{"type", "about:blank"},    {"title", problem.title},
+                            {"status", problem.status}, {"code", problem.code},
+                            {"detail", problem.detail}, {"hint", problem.hint}};
+  return {.status = problem.status,
           .headers = {{"Content-Type", "application/problem+json"}},
           .body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"};
 }

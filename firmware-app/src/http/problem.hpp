@@ -1,9 +1,23 @@
 #pragma once
 
+#include <string_view>
+
 #include "failure.hpp"
 #include "http/message.hpp"
 
 namespace octurn {
+
+/// What goes wrong between client and server alone, and no part of the library knows.
+struct HttpProblem {
+  int status = 400;
+  std::string_view title = {};
+  std::string_view code = {};
+  std::string_view detail = {};
+  std::string_view hint = {};
+};
+
+/// As application/problem+json (RFC 9457).
+Response to_response(const HttpProblem& problem);
 
 /// An error as application/problem+json (RFC 9457). The status follows from the code; one that the
 /// API does not know is 500.

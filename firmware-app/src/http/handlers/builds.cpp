@@ -94,16 +94,21 @@ Response remove_build(App& app, std::string_view id, std::string_view build) {
   return {.status = 204};
 }
 
-Response send_build_model(App& app, const Request& request, std::string_view id,
-                          std::string_view build) {
+std::filesystem::path find_build_model(const App& app, std::string_view id,
+                                       std::string_view build) {
   const json found = find_build(app, id, build);
   if (found["model"].is_null()) {
     throw Error(ErrorCode::no_model, "this build is " + found["state"].get<std::string>(),
                 "Only a finished one has a model.");
   }
+  return app.store.model_file(id, number_of(found));
+}
+
+Response send_build_model(App& app, const Request& request, std::string_view id,
+                          std::string_view build) {
   const std::string name =
       download_name(find_scan(app, id), "-" + std::string(build).append(".stl"));
-  return file_response(request, app.store.model_file(id, number_of(found)), "model/stl", name);
+  return file_response(request, find_build_model(app, id, build), "model/stl", name);
 }
 
 }  // namespace octurn

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
@@ -33,7 +34,10 @@ Response choose_build(App& app, std::string_view id, std::string_view build);
 /// Removes a build and its model. @throws Error "busy"  if that is the scan's
 Response remove_build(App& app, std::string_view id, std::string_view build);
 
-/// The model of a build, as a file.
+/// The file of a build's model.
+std::filesystem::path find_build_model(const App& app, std::string_view id, std::string_view build);
+
+/// The model of a build.
 Response send_build_model(App& app, const Request& request, std::string_view id,
                           std::string_view build);
 

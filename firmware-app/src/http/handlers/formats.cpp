@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "http/file_response.hpp"
+#include "http/handlers/builds.hpp"
 #include "http/handlers/models.hpp"
 #include "http/scan_view.hpp"
 #include "mesh/mesh_formats.hpp"
@@ -67,20 +68,32 @@ void write_mesh(MeshFormat format, const fs::path& model, const fs::path& thumbn
   }
 }
 
-}  // namespace
-
-Response send_mesh(App& app, const Request& request, std::string_view id) {
-  const Job job = find_scan(app, id);
-  const fs::path model = find_model(app, job);
+/// A model in the format that its path ends with.
+/// @param suffix  of the name under which a browser saves it, before the extension
+Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
+                        const std::string& suffix) {
   const std::string extension = fs::path(request.path).extension().string();
   const MeshFormat format = mesh_format_of(extension).value();  // as its route has it
   const fs::path file = model.parent_path() / ("Scan" + extension);
-  const auto source = std::max(written(model), written(app.store.folder(id) / "name.txt"));
+  const auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
   const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
   keep_fresh(file, source,
              [&] { write_mesh(format, model, thumbnail, download_name(job, ""), file); });
   return file_response(request, file, std::string(media_type(format)),
-                       download_name(job, extension));
+                       download_name(job, suffix + extension));
+}
+
+}  // namespace
+
+Response send_mesh(App& app, const Request& request, std::string_view id) {
+  const Job job = find_scan(app, id);
+  return send_in_format(app, request, job, find_model(app, job), "");
+}
+
+Response send_build_mesh(App& app, const Request& request, std::string_view id,
+                         std::string_view build) {
+  return send_in_format(app, request, find_scan(app, id), find_build_model(app, id, build),
+                        "-" + std::string(build));
 }
 
 Response send_thumbnail(App& app, const Request& request, std::string_view id) {

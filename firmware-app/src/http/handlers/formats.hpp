@@ -13,6 +13,10 @@ namespace octurn {
 /// The model in the format that the path's ending names: 3MF, PLY or GLB.
 Response send_mesh(App& app, const Request& request, std::string_view id);
 
+/// The same of a build.
+Response send_build_mesh(App& app, const Request& request, std::string_view id,
+                         std::string_view build);
+
 /// A picture of the model.
 Response send_thumbnail(App& app, const Request& request, std::string_view id);
 

@@ -1,6 +1,5 @@
 #include "http/handlers/scans.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,7 +8,6 @@
 #include "http/json_body.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
-#include "one_line.hpp"
 #include "scan/earlier_scans.hpp"
 #include "settings/field.hpp"
 
@@ -18,17 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::ptrdiff_t max_name = 100;  // of a scan, characters
-
 [[noreturn]] void throw_busy() {
   throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
               "Wait for its end, or cancel it.");
-}
-
-/// Of UTF-8 text. Every byte of a character but its first has the bits 10 at its top.
-std::ptrdiff_t count_characters(std::string_view text) {
-  return std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
 }
 
 /// Takes the places of its verdict's reasons from a model: of thousands of scans they would be most
@@ -73,12 +63,9 @@ Response send_scan(App& app, std::string_view id) {
 Response rename_scan(App& app, const Request& request, std::string_view id) {
   const json body = parse_body(request);
   JsonObject keys(body, ErrorCode::bad_name, "");
-  const auto name = keys.text("name");
+  const std::string name = name_in(keys);
   keys.refuse_unread();
-  if (!name || count_characters(*name) > max_name || !is_one_line(*name)) {
-    throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 characters on one line");
-  }
-  app.scanner.rename(id, *name);
+  app.scanner.rename(id, name);
   return send_scan(app, id);
 }
 

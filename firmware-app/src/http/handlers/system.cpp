@@ -20,15 +20,18 @@ namespace octurn {
 
 using nlohmann::json;
 
-Response send_status(App& app) {
+json status_json(const App& app) {
   const std::optional<Job> newest = app.store.newest_finished();
   const std::optional<Job> running = running_scan(app);
   const Status now = app.scanner.status();
+  const std::vector<Finding> warnings = app.warnings->get(
+      std::chrono::steady_clock::now(), [&] { return find_machine_warnings(app.doctor_input()); });
   json body{{"version", version()},
             {"sensor", to_json(now.sensor)},
             {"turntable", to_json(now.turntable)},
             {"disk_free_bytes", app.store.free_bytes()},
             {"appliance", app.appliance != nullptr},
+            {"warnings", to_json(warnings).at("findings")},
             {"scan", nullptr},
             {"build", nullptr},
             {"newest", nullptr},
@@ -42,8 +45,10 @@ Response send_status(App& app) {
   if (newest) {
     body["newest"] = newest->id;
   }
-  return json_response(body);
+  return body;
 }
+
+Response send_status(App& app) { return json_response(status_json(app)); }
 
 Response send_description(App& app, const Request& request) {
   Request file = request;

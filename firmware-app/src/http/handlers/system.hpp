@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "http/app.hpp"
 #include "http/message.hpp"
 
@@ -7,7 +9,8 @@ namespace octurn {
 
 // What the scanner as a whole answers.
 
-/// The devices, the disk, the scan that runs and the newest that is finished.
+/// The devices, the disk, warnings, the scan that runs and the newest that is finished.
+nlohmann::json status_json(const App& app);
 Response send_status(App& app);
 
 /// The description of this interface for programs, OpenAPI 3.1: a file of the page.

@@ -1,0 +1,175 @@
+#include "http/access_keys.hpp"
+
+#include <crypt.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "octurn/json_object.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_file_bytes = std::size_t{64} * 1024;
+constexpr std::size_t id_bytes = 4;
+
+// More than can be guessed, however fast.
+constexpr std::size_t secret_bytes = 16;
+
+// A key is "octurn", its id and its secret, with dashes between them.
+constexpr std::string_view key_begin = "octurn-";
+
+// SHA-256 of crypt(5), the fewest rounds: they slow down guesses of passwords that people choose,
+// and a key is drawn by lot.
+constexpr const char* hash_method = "$5$";
+constexpr unsigned long hash_rounds = 1000;
+
+/// Random bytes as hexadecimal digits.
+std::string draw_digits(std::size_t bytes) {
+  std::array<unsigned char, secret_bytes> drawn{};
+  if (::getentropy(drawn.data(), bytes) != 0) {
+    throw Error(ErrorCode::internal, "the system has no random numbers");
+  }
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : std::span(drawn).first(bytes)) {
+    text += digits[byte >> 4U];
+    text += digits[byte & 15U];
+  }
+  return text;
+}
+
+/// @param setting  a salt, or a hash, whose salt is used @return empty if it is neither
+std::string hash_with(const std::string& key, const std::string& setting) {
+  const auto room = std::make_unique<crypt_data>();  // too large for the stack of a server's thread
+  const char* const hash = ::crypt_r(key.c_str(), setting.c_str(), room.get());
+  return hash != nullptr && *hash != '*' ? hash : "";
+}
+
+std::string make_hash(const std::string& key) {
+  std::array<char, CRYPT_GENSALT_OUTPUT_SIZE> salt{};
+  if (::crypt_gensalt_rn(hash_method, hash_rounds, nullptr, 0, salt.data(), salt.size()) ==
+      nullptr) {
+    throw Error(ErrorCode::internal, "the system cannot hash a key");
+  }
+  return hash_with(key, salt.data());
+}
+
+AccessKey to_key(const JsonValue& value) {
+  JsonObject object(value);
+  AccessKey key{.id = object.at("id").text(), .name = object.at("name").text()};
+  const JsonValue access = object.at("access");
+  const auto known = to_key_access(access.text());
+  if (!known) {
+    access.refuse(R"("read" or "full")");
+  }
+  key.access = *known;
+  key.created = object.at("created").text();
+  key.hash = object.at("hash").text();
+  object.refuse_unread();
+  return key;
+}
+
+std::vector<AccessKey> read_keys(const std::filesystem::path& file) try {
+  std::vector<AccessKey> keys;
+  if (const auto text = read_regular_file(file, max_file_bytes)) {
+    const json document = parse_json(*text, ErrorCode::bad_settings, "the keys");
+    JsonObject object(document, ErrorCode::bad_settings, "");
+    for (const JsonValue& value : object.at("keys").elements()) {
+      keys.push_back(to_key(value));
+    }
+  }
+  return keys;
+} catch (const Error& error) {
+  log::warning("http", file.string() + ": " + error.what() + "; no key counts");
+  return {};
+}
+
+}  // namespace
+
+std::string_view to_string(KeyAccess access) { return access == KeyAccess::read ? "read" : "full"; }
+
+std::optional<KeyAccess> to_key_access(std::string_view word) {
+  return word == "read"   ? std::optional(KeyAccess::read)
+         : word == "full" ? std::optional(KeyAccess::full)
+                          : std::nullopt;
+}
+
+AccessKeys::AccessKeys(std::filesystem::path file)
+    : file_(std::move(file)), keys_(read_keys(file_)) {}
+
+std::vector<AccessKey> AccessKeys::all() const {
+  const std::lock_guard lock(mutex_);
+  return keys_;
+}
+
+/// Stores them before they count: a key that was told, or revoked, stays so.
+void AccessKeys::write(const std::vector<AccessKey>& keys) const {
+  json all = json::array();
+  for (const AccessKey& key : keys) {
+    all.push_back({{"id", key.id},
+                   {"name", key.name},
+                   {"access", to_string(key.access)},
+                   {"created", key.created},
+                   {"hash", key.hash}});
+  }
+  write_file(file_, json{{"keys", std::move(all)}}.dump(2) + "\n", 0600);
+}
+
+AccessKeys::NewKey AccessKeys::add(const std::string& name, KeyAccess access,
+                                   std::chrono::system_clock::time_point now) {
+  const std::string id = draw_digits(id_bytes);
+  const std::string key = std::string(key_begin) + id + "-" + draw_digits(secret_bytes);
+  const std::lock_guard lock(mutex_);
+  if (keys_.size() >= max_keys) {
+    throw Error(ErrorCode::bad_settings, "there are " + std::to_string(max_keys) + " keys already",
+                "Revoke one that is no longer used.");
+  }
+  std::vector<AccessKey> keys = keys_;
+  keys.push_back({.id = id,
+                  .name = name,
+                  .access = access,
+                  .created = utc_text(now, rfc3339),
+                  .hash = make_hash(key)});
+  write(keys);
+  keys_ = std::move(keys);
+  return {.kept = keys_.back(), .key = key};
+}
+
+bool AccessKeys::revoke(std::string_view id) {
+  const std::lock_guard lock(mutex_);
+  std::vector<AccessKey> keys = keys_;
+  if (std::erase_if(keys, [&](const AccessKey& key) { return key.id == id; }) == 0) {
+    return false;
+  }
+  write(keys);
+  keys_ = std::move(keys);
+  return true;
+}
+
+std::optional<KeyAccess> AccessKeys::access(std::string_view key) const {
+  if (!key.starts_with(key_begin)) {
+    return std::nullopt;
+  }
+  const std::string_view id = key.substr(key_begin.size(), 2 * id_bytes);
+  const std::vector<AccessKey> keys = all();
+  const auto found = std::ranges::find(keys, id, &AccessKey::id);
+  if (found == keys.end() || found->hash.empty() ||
+      hash_with(std::string(key), found->hash) != found->hash) {
+    return std::nullopt;
+  }
+  return found->access;
+}
+
+}  // namespace octurn

@@ -1,0 +1,107 @@
+#include "http/event_feed.hpp"
+
+#include <exception>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "log.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What clients wait before they connect again, milliseconds: shorter than the page takes to say
+/// that the scanner is away.
+constexpr std::string_view greeting = "retry: 1000\n\n";
+
+/// Not a comment: scripts in a browser are not told of those.
+constexpr std::string_view heartbeat_event = "event: heartbeat\ndata: {}\n\n";
+
+bool put(std::string_view text, const ByteSink& sink) {
+  return sink(std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+/// Of a watcher, for as long as this lives.
+class EventFeed::Place {
+ public:
+  explicit Place(EventFeed& feed) : feed_(&feed) {}
+  Place(Place&& other) noexcept : feed_(std::exchange(other.feed_, nullptr)) {}
+  Place& operator=(Place&&) = delete;
+  ~Place() {
+    if (feed_ != nullptr) {
+      const std::lock_guard lock(feed_->mutex_);
+      --feed_->watchers_;
+    }
+  }
+
+ private:
+  EventFeed* feed_;
+};
+
+EventFeed::EventFeed(Look look, const FeedLimits& limits)
+    : look_(std::move(look)), limits_(limits), board_(std::to_string(std::random_device{}())) {}
+
+std::optional<ByteStream> EventFeed::watch(std::string_view last_event_id) {
+  const std::lock_guard lock(mutex_);
+  if (watchers_ >= limits_.max_watchers) {
+    return std::nullopt;
+  }
+  ++watchers_;
+  ByteStream stream;
+  stream.make = std::packaged_task<void(const ByteSink&)>(
+      [this, seen = board_.number(last_event_id), place = Place(*this)](const ByteSink& sink) {
+        tell(seen, sink);
+      });
+  return stream;
+}
+
+void EventFeed::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  ended_changed_.notify_all();
+}
+
+/// The events of a watcher that are due.
+std::string EventFeed::next_events(std::uint64_t& seen) {
+  const std::lock_guard lock(mutex_);
+  if (const auto now = Clock::now(); now - looked_ >= limits_.look_interval) {
+    board_.publish(look_());
+    looked_ = now;
+  }
+  return board_.events_after(seen);
+}
+
+/// Waits until the next look. @return false if the streams are to end
+bool EventFeed::wait() {
+  std::unique_lock lock(mutex_);
+  return !ended_changed_.wait_for(lock, limits_.look_interval, [this] { return ended_; });
+}
+
+void EventFeed::tell(std::uint64_t seen, const ByteSink& sink) try {
+  const auto begun = Clock::now();
+  auto told = begun;
+  bool is_taken = put(greeting, sink);
+  while (is_taken && Clock::now() - begun < limits_.lifetime) {
+    std::string events = next_events(seen);
+    if (events.empty() && Clock::now() - told >= limits_.heartbeat) {
+      events = heartbeat_event;
+    }
+    if (!events.empty()) {
+      told = Clock::now();
+      is_taken = put(events, sink);
+    }
+    if (!wait()) {
+      return;
+    }
+  }
+} catch (const std::exception& error) {
+  log::error("http", std::string("a stream of events has ended: ") + error.what());
+}
+
+}  // namespace octurn

@@ -1,0 +1,43 @@
+#include "http/handlers/events.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "http/handlers/system.hpp"
+#include "http/problem.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* retry_after = "30";  // seconds
+
+std::string to_line(const json& data) {
+  return data.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::vector<News> latest_news(const App& app) {
+  const json status = status_json(app);
+  const json devices{{"sensor", status.at("sensor")}, {"turntable", status.at("turntable")}};
+  return {{"devices", to_line(devices)},
+          {"warnings", to_line({{"warnings", status.at("warnings")}})},
+          {"scans", to_line({{"scans_revision", status.at("scans_revision")}})},
+          {"status", to_line(status)}};
+}
+
+Response send_events(EventFeed& feed, const Request& request) {
+  auto stream = feed.watch(request.header("Last-Event-ID").value_or(""));
+  if (!stream) {
+    Response refused = problem({.code = ErrorCode::too_many,
+                                .detail = "others are watching already, as many as there may be",
+                                .hint = "Ask GET /api/v1/status about once a second instead."});
+    refused.headers.emplace_back("Retry-After", retry_after);
+    return refused;
+  }
+  return {.headers = {{"Content-Type", "text/event-stream"}, {"Cache-Control", "no-store"}},
+          .body = std::move(*stream)};
+}
+
+}  // namespace octurn

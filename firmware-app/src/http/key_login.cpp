@@ -1,0 +1,63 @@
+#include "http/key_login.hpp"
+
+#include "http/problem.hpp"
+
+namespace octurn {
+namespace {
+
+/// Whether a path is about who may use the scanner.
+bool is_about_access(std::string_view path) {
+  return path == "/api/v1/keys" || path.starts_with("/api/v1/keys/") ||
+         path == "/api/v1/settings/password";
+}
+
+Response refuse(const HttpProblem& reason, const std::string& error) {
+  Response response = to_response(reason);
+  response.headers.emplace_back("WWW-Authenticate",
+                                R"(Bearer realm="Octurn", error=")" + error + "\"");
+  return response;
+}
+
+}  // namespace
+
+std::optional<std::string_view> key_in(const Request& request) {
+  constexpr std::string_view scheme = "Bearer ";
+  std::string_view given = request.header("Authorization").value_or("");
+  if (given.size() < scheme.size() || !same_token(given.substr(0, scheme.size()), scheme)) {
+    return std::nullopt;
+  }
+  given.remove_prefix(scheme.size());
+  return given;
+}
+
+std::optional<Response> refuse_key(const AccessKeys& keys, const Request& request,
+                                   std::string_view key) {
+  const auto access = keys.access(key);
+  if (!access) {
+    return refuse({.status = 401,
+                   .title = "The key is none",
+                   .code = "wrong-key",
+                   .detail = "there is no such key, or it was revoked",
+                   .hint = "Make one in the page's settings."},
+                  "invalid_token");
+  }
+  if (is_about_access(request.path)) {
+    return refuse({.status = 403,
+                   .title = "The key does not allow that",
+                   .code = "key-not-enough",
+                   .detail = "no key sets the password or makes keys",
+                   .hint = "Do it in the page's settings."},
+                  "insufficient_scope");
+  }
+  if (*access == KeyAccess::read && !request.is_read()) {
+    return refuse({.status = 403,
+                   .title = "The key does not allow that",
+                   .code = "key-not-enough",
+                   .detail = "this key is for reading",
+                   .hint = "Make one for everything in the page's settings."},
+                  "insufficient_scope");
+  }
+  return std::nullopt;
+}
+
+}  // namespace octurn

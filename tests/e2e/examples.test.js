@@ -1,0 +1,68 @@
+// The examples of docs/programs.md, as they stand there.
+
+import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
+import {mkdtemp, open, readFile, rm} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import {promisify} from 'node:util';
+
+import {ask, startScanner} from './scanner.js';
+
+/** @param {string} language @returns {Promise<string[]>} the examples in it */
+async function examplesIn(language) {
+  const text = await readFile(join(process.env.OCTURN_DOCS ?? '', 'programs.md'), 'utf8');
+  return [...text.matchAll(new RegExp(`^\`\`\`${language}\\n(.*?)^\`\`\``, 'gms'))].map(([, example]) => example);
+}
+
+/** @returns {Promise<string>} the first bytes of a file, as text */
+async function beginOf(folder, name) {
+  const file = await open(join(folder, name));
+  const {buffer} = await file.read(Buffer.alloc(8), 0, 8, 0);
+  await file.close();
+  return buffer.toString('latin1');
+}
+
+test('those with curl do what they say', async (t) => {
+  const scanner = await startScanner(t);
+  const folder = await mkdtemp(join(tmpdir(), 'octurn-examples-'));
+  t.after(() => rm(folder, {recursive: true}));
+  const {key} = await ask(scanner, 'keys', 'POST', {name: 'curl', access: 'full'});
+  const examples = await examplesIn('sh');
+  assert.ok(examples.length >= 7);
+  const {stdout} = await promisify(execFile)('sh', ['-euc', examples.join('echo; echo ----\n')],
+      {cwd: folder, env: {...process.env, OCTURN: scanner.url.replace(/\/$/, ''), KEY: key}, maxBuffer: 1 << 24});
+
+  const said = stdout.split('\n----\n').map((text) => text.trim());
+  assert.equal(said.length, examples.length);
+  assert.equal(JSON.parse(said[0]).scan, null);
+  assert.match(said.at(-2), /^data: \{"scans_revision":\d+\}$/);
+  assert.equal(JSON.parse(said.at(-1)).code, 'no-such-scan');
+  const {scans} = await ask(scanner, 'scans');
+  assert.deepEqual(scans.map(({name}) => name), ['Owl', 'Owl']);  // scanned here, and taken in
+  assert.equal((await ask(scanner, `scans/${scans[1].id}/builds`)).builds.length, 2);
+  const begins = {'Scan.3mf': 'PK', 'Scan.glb': 'glTF', 'Scan.ply': 'ply', 'thumbnail.png': '\x89PNG', 'scan.zip': 'PK'};
+  for (const [name, begin] of Object.entries(begins)) {
+    assert.ok((await beginOf(folder, name)).startsWith(begin), name);
+  }
+});
+
+test('that for Home Assistant names addresses and values that there are', async (t) => {
+  const scanner = await startScanner(t);
+  const [example] = await examplesIn('yaml');
+  const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, leaf_size_mm: 4});
+  const status = await ask(scanner, 'status');
+  const addresses = [...example.matchAll(/http:\/\/octurn\.local\/(\S+)/g)].map(([, path]) => path);
+  assert.equal(addresses.length, 2);
+  for (const path of addresses) {
+    const response = await fetch(scanner.url + path);
+    assert.ok(response.status === 200 || path.includes('preview'), `${path}: ${response.status}`);  // the sensor may be late
+  }
+  const values = [...example.matchAll(/value_json((?:\.\w+)+)/g)].map(([, path]) => path.slice(1).split('.'));
+  assert.ok(values.length >= 8);
+  for (const path of values) {
+    assert.notEqual(path.reduce((value, key) => value?.[key], status), undefined, path.join('.'));
+  }
+  await ask(scanner, `scans/${id}/cancel`, 'POST');
+});

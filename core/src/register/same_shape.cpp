@@ -17,7 +17,7 @@ constexpr std::size_t compared_points = 1500;
 constexpr double same_surface = 0.0015;  // metres, along the normal
 constexpr double same_point = 0.003;     // metres, whatever the normal: near an edge there are two
 constexpr double foot = 0.002;           // metres from a platform: a flat foot is made there
-constexpr double max_other_share = 0.02;
+constexpr double max_other_share = 0.04;
 
 /// Share of points that neither of two surfaces has.
 /// @param b_from_points  the second surface's frame from the points'

@@ -175,26 +175,6 @@ TEST(RegisterTurns, TellsThatABallIsSymmetric) {
   EXPECT_NEAR((found_middle - middle).norm(), 0, 0.0003);
 }
 
-// How far it was turned about its axis, and which end is up, is open; where the axis is, is not.
-TEST(RegisterTurns, TellsThatACylinderIsSymmetric) {
-  constexpr double height = 0.07;
-  const Shape round = cylinder(0.03, height);
-  const Eigen::Isometry3d truth = turned_over(height);
-
-  const Registration found =
-      register_turns(std::array{laid_turn(round, stops), laid_turn(round, stops, truth)});
-
-  ASSERT_TRUE(found.accepted) << found.reason;
-  EXPECT_TRUE(found.poses[1].symmetric);
-  const Eigen::Isometry3d error = found.poses[1].object_from_platform * truth.inverse();
-  const Eigen::Vector3d one = error * Eigen::Vector3d(0, 0, 0);
-  const Eigen::Vector3d other = error * Eigen::Vector3d(0, 0, height);
-  EXPECT_LT(one.head<2>().norm(), 0.0005);
-  EXPECT_LT(other.head<2>().norm(), 0.0005);
-  EXPECT_NEAR(std::min(one.z(), other.z()), 0, 0.0005);
-  EXPECT_NEAR(std::max(one.z(), other.z()), height, 0.0005);
-}
-
 // The first turn shows a square block; only the second one shows the dent in its underside, which
 // may then be at any of four corners.
 TEST(RegisterTurns, RefusesToGuessWhereADentIs) {

@@ -18,6 +18,15 @@ Response refuse(const HttpProblem& reason, const std::string& error) {
   return response;
 }
 
+Response forbid(std::string_view detail, std::string_view hint) {
+  return refuse({.status = 403,
+                 .title = "The key does not allow that",
+                 .code = "key-not-enough",
+                 .detail = detail,
+                 .hint = hint},
+                "insufficient_scope");
+}
+
 }  // namespace
 
 std::optional<std::string_view> key_in(const Request& request) {
@@ -42,20 +51,10 @@ std::optional<Response> refuse_key(const AccessKeys& keys, const Request& reques
                   "invalid_token");
   }
   if (is_about_access(request.path)) {
-    return refuse({.status = 403,
-                   .title = "The key does not allow that",
-                   .code = "key-not-enough",
-                   .detail = "no key sets the password or makes keys",
-                   .hint = "Do it in the page's settings."},
-                  "insufficient_scope");
+    return forbid("no key sets the password or makes keys", "Do it in the page's settings.");
   }
   if (*access == KeyAccess::read && !request.is_read()) {
-    return refuse({.status = 403,
-                   .title = "The key does not allow that",
-                   .code = "key-not-enough",
-                   .detail = "this key is for reading",
-                   .hint = "Make one for everything in the page's settings."},
-                  "insufficient_scope");
+    return forbid("this key is for reading", "Make one for everything in the page's settings.");
   }
   return std::nullopt;
 }

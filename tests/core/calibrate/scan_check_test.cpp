@@ -92,7 +92,8 @@ TEST(ScanCheck, MeasuresTheGapThatMissingStopsLeave) {
   EXPECT_NEAR(degrees_from_radians(half.widest_gap), 225, 0.01);
 }
 
-TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
+/// A turn of eight stops, with a hand in the picture at the stop 3.
+CalibrationTurn turn_with_hand() {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   const Shape with_hand = joined(figure(), moved(ball({0, 0, 0.05}, 0.03), {-0.075, 0.075, 0}));
   std::mt19937 random(5);
@@ -100,7 +101,11 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   turn.read = [hand, others = turn.read](std::size_t stop) {
     return stop == 3 ? hand : others(stop);
   };
-  const ScanFigures scan = figures(turn);
+  return turn;
+}
+
+TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
+  const ScanFigures scan = figures(turn_with_hand());
   const auto& contradicted = scan.contradicted;
   EXPECT_EQ(std::ranges::max_element(contradicted) - contradicted.begin(), 3);
   EXPECT_GT(contradicted[3], 0.1);
@@ -112,14 +117,7 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
 }
 
 TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {
-  CalibrationTurn turn = rendered_turn(figure(), 8);
-  const Shape with_hand = joined(figure(), moved(ball({0, 0, 0.05}, 0.03), {-0.075, 0.075, 0}));
-  std::mt19937 random(5);
-  const DepthFrame hand = rendered_frame(with_hand, turn.angles[3], random);
-  turn.read = [hand, others = turn.read](std::size_t stop) {
-    return stop == 3 ? hand : others(stop);
-  };
-  const std::vector<Eigen::Vector3d> seen = figures(turn).seen;
+  const std::vector<Eigen::Vector3d> seen = figures(turn_with_hand()).seen;
   for (const Eigen::Vector3d& place : seen) {
     // Half the diagonal of a cell, and the noise.
     EXPECT_LT(std::abs(figure()(place)), 0.0044 + 0.0015) << place.transpose();

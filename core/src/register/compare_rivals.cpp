@@ -1,6 +1,8 @@
 #include "register/compare_rivals.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "octurn/units.hpp"
@@ -20,6 +22,7 @@ constexpr double similar_residual = 1.5;
 constexpr double near_angle = 0.26;        // radians, 15 degrees: readings join what is nearer
 constexpr double joined_angle = 0.01;      // radians
 constexpr double joined_distance = 0.001;  // metres
+constexpr double joined_sigmas = 3;        // of the difference, where that is more
 
 /// Whether a candidate fits about as well as the best one, and did not slide beside it.
 bool is_rival(const PoseCandidate& candidate, const PoseCandidate& best) {
@@ -31,17 +34,22 @@ double angle_between(const Isometry3d& one, const Isometry3d& other) {
 }
 
 /// Whether two candidates are one pose once they are refined on readings: the points of few or
-/// noisy stops leave a pose open by a few degrees, and the readings do not.
+/// noisy stops leave a pose open by a few degrees, and the readings less. They may settle at two
+/// places, but not farther apart than the uncertainty that is told with the pose.
 bool readings_join(const Target& target, const SeenTurn& turn, const Vector3d& middle,
                    const Isometry3d& one, const Isometry3d& other, int threads,
                    const std::stop_token& stop) {
   const auto fit = [&](const Isometry3d& start) {
-    return fit_readings(target.turns, turn, start, start * middle, threads, stop).object_from_turn;
+    return fit_readings(target.turns, turn, start, start * middle, threads, stop);
   };
-  const Isometry3d fitted = fit(one);
-  const Isometry3d other_fitted = fit(other);
-  return angle_between(fitted, other_fitted) < joined_angle &&
-         (fitted * middle - other_fitted * middle).norm() < joined_distance;
+  const ReadingFit a = fit(one);
+  const ReadingFit b = fit(other);
+  const double direction_sigma = std::hypot(a.direction_sigma, b.direction_sigma);
+  const double position_sigma = std::hypot(a.position_sigma, b.position_sigma);
+  return angle_between(a.object_from_turn, b.object_from_turn) <
+             std::max(joined_angle, joined_sigmas * direction_sigma) &&
+         (a.object_from_turn * middle - b.object_from_turn * middle).norm() <
+             std::max(joined_distance, joined_sigmas * position_sigma);
 }
 
 std::string ambiguous(double angle) {
@@ -68,13 +76,14 @@ Rivals compare_rivals(const Target& target, const SeenTurn& turn, const NearestP
     if (!is_rival(*other, best)) {
       continue;
     }
-    if (same_shape(target.points, points, best.target_from_points, other->target_from_points)) {
-      rivals.symmetric = true;
+    const double angle = angle_between(best.target_from_points, other->target_from_points);
+    const bool is_near = angle <= near_angle;
+    if (same_shape(target.points, points, best, *other)) {
+      rivals.symmetric = rivals.symmetric || !is_near;
       continue;
     }
-    const double angle = angle_between(best.target_from_points, other->target_from_points);
-    if (angle > near_angle || !readings_join(target, turn, points.middle(), best.target_from_points,
-                                             other->target_from_points, threads, stop)) {
+    if (!is_near || !readings_join(target, turn, points.middle(), best.target_from_points,
+                                   other->target_from_points, threads, stop)) {
       rivals.reason = ambiguous(angle);
       break;
     }

@@ -115,8 +115,7 @@ std::vector<PoseCandidate> without_same_shapes(const std::vector<PoseCandidate>&
   std::vector<PoseCandidate> shapes;
   for (const PoseCandidate& candidate : candidates) {
     const bool is_new = std::ranges::none_of(shapes, [&](const PoseCandidate& shape) {
-      return same_shape(target.points, turn, shape.target_from_points,
-                        candidate.target_from_points);
+      return same_shape(target.points, turn, shape, candidate);
     });
     if (is_new) {
       shapes.push_back(candidate);

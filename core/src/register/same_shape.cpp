@@ -13,26 +13,29 @@ using Eigen::Vector3d;
 
 constexpr std::size_t compared_points = 1500;
 
-// Two answers give the same shape if nearly all that the one shows lies on the other.
-constexpr double same_surface = 0.0015;  // metres, along the normal
-constexpr double same_point = 0.003;     // metres, whatever the normal: near an edge there are two
-constexpr double foot = 0.002;           // metres from a platform: a flat foot is made there
-constexpr double max_other_share = 0.04;
+// Two answers give the same shape if nearly all that the one shows lies on the other. What the two
+// turns themselves differ by, where both saw the object, tells nothing of its shape.
+constexpr double same_surface = 0.0015;    // metres, along the normal
+constexpr double residuals_apart = 3;      // the same, if the turns differ by more
+constexpr double points_to_surface = 2;    // whatever the normal: near an edge there are two
+constexpr double foot = 0.002;             // metres from a platform: a flat foot is made there
+constexpr double max_other_share = 0.005;  // some 1 cm2 of an object of 10 cm
 
 /// Share of points that neither of two surfaces has.
 /// @param b_from_points  the second surface's frame from the points'
+/// @param tolerance      metres, along the normal
 double other_share(const NearestPoints& a, const Isometry3d& a_from_points, const NearestPoints& b,
-                   const Isometry3d& b_from_points, const std::vector<SurfacePoint>& points) {
-  const auto on = [](const NearestPoints& surface, const Isometry3d& pose,
-                     const SurfacePoint& point) {
+                   const Isometry3d& b_from_points, const std::vector<SurfacePoint>& points,
+                   double tolerance) {
+  const auto on = [&](const NearestPoints& surface, const Isometry3d& pose,
+                      const SurfacePoint& point) {
     const Vector3d at = pose * point.point;
     if (std::abs(at.z()) < foot) {
       return true;
     }
     const SurfacePoint* const nearest = surface.find(at);
-    return nearest != nullptr &&
-           (std::abs(nearest->normal.dot(at - nearest->point)) < same_surface ||
-            (at - nearest->point).norm() < same_point);
+    return nearest != nullptr && (std::abs(nearest->normal.dot(at - nearest->point)) < tolerance ||
+                                  (at - nearest->point).norm() < points_to_surface * tolerance);
   };
   const auto others = std::ranges::count_if(points, [&](const SurfacePoint& point) {
     return !on(a, a_from_points, point) && !on(b, b_from_points, point);
@@ -42,11 +45,17 @@ double other_share(const NearestPoints& a, const Isometry3d& a_from_points, cons
 
 }  // namespace
 
-bool same_shape(const NearestPoints& target, const NearestPoints& turn, const Isometry3d& one,
-                const Isometry3d& other) {
+bool same_shape(const NearestPoints& target, const NearestPoints& turn, const PoseCandidate& one,
+                const PoseCandidate& other) {
   const std::vector<SurfacePoint> points = thinned(turn.points(), compared_points);
-  return other_share(target, other, turn, one.inverse() * other, points) < max_other_share &&
-         other_share(target, one, turn, other.inverse() * one, points) < max_other_share;
+  const double tolerance =
+      std::max(same_surface, residuals_apart * std::min(one.residual, other.residual));
+  const auto lies_on = [&](const Isometry3d& there, const Isometry3d& here) {
+    return other_share(target, there, turn, here.inverse() * there, points, tolerance) <
+           max_other_share;
+  };
+  return lies_on(other.target_from_points, one.target_from_points) &&
+         lies_on(one.target_from_points, other.target_from_points);
 }
 
 }  // namespace octurn

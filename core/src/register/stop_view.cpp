@@ -12,7 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_step = 0.01;      // metres of depth among these: more is an edge
+// Metres of depth among the 5 x 5 pixels: more is an edge. At 0.65 m a face that is seen under 20
+// degrees falls by 13 mm over them, and the top of a low object is such a face.
+constexpr double max_step = 0.018;
 constexpr double min_cosine = 0.35;    // between normal and ray
 constexpr int block = 4;               // pixels along a side, of what is known of free space
 constexpr double free_margin = 0.006;  // metres that a surface must be behind a free point

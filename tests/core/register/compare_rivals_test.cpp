@@ -12,34 +12,55 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// A figure that was turned over, and what two candidates for how it lay say of one another.
-class CompareRivals : public ::testing::Test {
- protected:
-  /// @param rival_deg  how far the second candidate is turned away from the right one
-  Rivals rivals(double rival_deg) const {
-    const Target target =
-        make_target({{.turn = &upright_, .object_from_turn = Isometry3d::Identity()}});
-    const NearestPoints points(over_.points);
-    PoseCandidate best = refine_candidate(target, over_, truth_);
-    PoseCandidate rival = best;
-    const Vector3d middle = best.target_from_points * points.middle();
-    rival.target_from_points =
-        Eigen::Translation3d(middle) *
-        Eigen::AngleAxisd(radians_from_degrees(rival_deg), Vector3d(1, 1, 1).normalized()) *
-        Eigen::Translation3d(-middle) * best.target_from_points;
-    return compare_rivals(target, over_, points, {best, rival}, 2, {});
-  }
+/// A turn of a rig that stands some 10 mm and 1.6 degrees from where it is told to.
+RegistrationTurn misaligned(RegistrationTurn turn) {
+  turn.platform_from_sensor =
+      Eigen::Translation3d(0.006, -0.006, 0.0052) *
+      Eigen::AngleAxisd(radians_from_degrees(1.6), Vector3d(1, 1, 0.3).normalized()) *
+      turn.platform_from_sensor;
+  return turn;
+}
 
-  Isometry3d truth_ = turned_over(figure_height);
-  SeenTurn upright_ = read_turn(laid_turn(figure(), 6), 2, {});
-  SeenTurn over_ = read_turn(laid_turn(figure(), 6, truth_), 2, {});
-};
+/// What a figure's turn that was turned over says of two candidates for how it lay: a right one and
+/// one that is turned away from it about its middle.
+Rivals rivals(const RegistrationTurn& upright, const RegistrationTurn& over, double rival_deg,
+              const Vector3d& axis) {
+  const SeenTurn placed = read_turn(upright, 2, {});
+  const SeenTurn turn = read_turn(over, 2, {});
+  const Target target =
+      make_target({{.turn = &placed, .object_from_turn = Isometry3d::Identity()}});
+  const NearestPoints points(turn.points);
+  PoseCandidate best = refine_candidate(target, turn, turned_over(figure_height));
+  PoseCandidate rival = best;
+  const Vector3d middle = best.target_from_points * points.middle();
+  rival.target_from_points = Eigen::Translation3d(middle) *
+                             Eigen::AngleAxisd(radians_from_degrees(rival_deg), axis) *
+                             Eigen::Translation3d(-middle) * best.target_from_points;
+  return compare_rivals(target, turn, points, {best, rival}, 2, {});
+}
+
+RegistrationTurn upright(std::size_t stops) { return laid_turn(figure(), stops); }
+
+RegistrationTurn over(std::size_t stops) {
+  return laid_turn(figure(), stops, turned_over(figure_height));
+}
 
 // A neighbour that seems to fit as well is where few readings left the points' fit.
-TEST_F(CompareRivals, AreOneWhereTheReadingsJoinThem) { EXPECT_EQ(rivals(5).reason, ""); }
+TEST(CompareRivals, AreOneWhereTheReadingsJoinThem) {
+  EXPECT_EQ(rivals(upright(6), over(6), 5, Vector3d(1, 1, 1).normalized()).reason, "");
+}
 
-TEST_F(CompareRivals, AreToldWhereTheyGiveAnotherShape) {
-  EXPECT_EQ(rivals(60).reason,
+// Where the told pose is wrong, the readings of two neighbours settle 2 degrees and 1.6 mm apart,
+// each uncertain by 1.1 degrees and 1.4 mm. That is one answer, and no symmetry.
+TEST(CompareRivals, AreOneWhereTheyDifferByNoMoreThanTheirUncertainty) {
+  const Rivals told = rivals(misaligned(upright(3)), misaligned(over(3)), 7, Vector3d::UnitY());
+
+  EXPECT_EQ(told.reason, "");
+  EXPECT_FALSE(told.symmetric);
+}
+
+TEST(CompareRivals, AreToldWhereTheyGiveAnotherShape) {
+  EXPECT_EQ(rivals(upright(6), over(6), 60, Vector3d(1, 1, 1).normalized()).reason,
             "two poses that are 60 degrees apart fit alike, and give different shapes");
 }
 

@@ -40,6 +40,7 @@ constexpr double may_worsen = 1.02;   // of the median, which is not what is min
 constexpr double max_shift = 0.040;   // metres
 constexpr double max_tilt_deg = 6;
 constexpr double max_last_step = 0.00001;  // metres
+constexpr double settled_sigmas = 0.1;  // steps as the nearest pixel changes; they change nothing
 // Units of disparity. Noise leaves 0.03; of a pattern of 0.8 the fitted plane leaves 0.25.
 constexpr double max_unevenness = 0.15;
 
@@ -197,8 +198,16 @@ std::string refuse_object(const TurnViews& views) {
   return {};
 }
 
+/// Whether a told pose is as near to the solved one as this is known.
+bool agrees_with_told(const CalibrationReport& report) {
+  const double near = std::max(agreeing_shift, agreeing_sigmas * report.position_sigma);
+  return report.shift <= near && report.lift <= near &&
+         report.tilt <= std::max(radians_from_degrees(agreeing_tilt_deg),
+                                 agreeing_sigmas * report.direction_sigma);
+}
+
 std::string refuse_solution(const CalibrationReport& report, double last_step) {
-  if (last_step > max_last_step) {
+  if (last_step > std::max(max_last_step, settled_sigmas * report.position_sigma)) {
     return "the axis did not settle";
   }
   const double moved = std::hypot(report.shift, report.lift);
@@ -213,7 +222,8 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (report.after > max_after) {
     return "the stops disagree by " + mm_text(report.after, text_digits) + ": something moved";
   }
-  if (report.after > may_worsen * report.before) {
+  // Within sigma the one median is as good as the other, and the told pose stays.
+  if (report.after > may_worsen * report.before && !agrees_with_told(report)) {
     return "the stops agree better as told";
   }
   if (moved > max_shift || report.tilt > radians_from_degrees(max_tilt_deg)) {
@@ -230,12 +240,7 @@ CalibrationReport refused(CalibrationReport report, const std::string& reason) {
 
 }  // namespace
 
-bool CalibrationReport::confirms_told() const {
-  const double near = std::max(agreeing_shift, agreeing_sigmas * position_sigma);
-  return accepted && shift <= near && lift <= near &&
-         tilt <=
-             std::max(radians_from_degrees(agreeing_tilt_deg), agreeing_sigmas * direction_sigma);
-}
+bool CalibrationReport::confirms_told() const { return accepted && agrees_with_told(*this); }
 
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   CalibrationReport report;

@@ -1,24 +1,95 @@
-// What the sensor sees now, refreshed for as long as it is looked at.
+// What the sensor sees now, for as long as it is looked at: what will be scanned in colour, and what would spoil the scan.
 
 import * as api from './api.js';
+import * as requests from './api_calibration.js';
 import {drawDepth, drawScale} from './depth.js';
-import {element, setText, show} from './dom.js';
+import {element, part, setText, show} from './dom.js';
+import {spaceChosen} from './form.js';
 import {sentence} from './format.js';
+import {hintOf, movedShare, seenOf, steadyHint} from './live_hints.js';
+import {drawLines, prepareDistance} from './rig_picture.js';
+
+/** @typedef {import('./live_hints.js').Rig} Rig */
+/** @typedef {import('./live_hints.js').Seen} Seen */
 
 const betweenPictures = 250;   // milliseconds; the scanner may be busy with a scan
 const betweenAttempts = 2000;  // while there is no picture
+const betweenRigs = 5000;      // a calibration may change the pose
 
 const isWatched = () => !document.hidden && !element('main').hidden && !element('camera').hidden && element('stage').dataset.reachable === 'yes';
 
+/** @type {Pick<Rig, 'pose' | 'sensor'> | null} */
+let told = null;
+let toldAt = -betweenRigs;  // by performance.now()
+
+/** Asks where the sensor stands, from time to time. Without an answer the picture has no lines and no hints. */
+async function askForRig() {
+  if (performance.now() - toldAt < betweenRigs) {
+    return;
+  }
+  toldAt = performance.now();
+  try {
+    const [{platform_from_sensor: pose}, sensor] = await Promise.all([
+      requests.calibration(), told?.sensor ?? requests.points().then((points) => points.sensor)]);
+    told = {pose, sensor};
+  } catch {
+    told = null;
+  }
+}
+
+/** @returns {Rig | null} */
+function rigNow() {
+  const clip_mm = spaceChosen();
+  return told && clip_mm ? {...told, clip_mm} : null;
+}
+
+/** @type {{brightness: Uint8Array, seen: Seen} | null} the picture before */
+let before = null;
+let steady = steadyHint();
+
+/** @param {Uint8Array} brightness @param {Seen | null} seen @param {Rig | null} rig */
+function showHint(brightness, seen, rig) {
+  const isIdle = element('stage').dataset.scanning === 'no' && element('stage').dataset.live === 'yes';
+  const moved = seen && before ? movedShare(brightness, before.brightness, seen, before.seen) : 0;
+  before = seen && {brightness, seen};
+  if (!isIdle) {
+    steady = steadyHint();
+  }
+  const hint = isIdle && seen && rig ? steady(hintOf(seen, moved, rig.clip_mm)) : null;
+  show(element('live-hint'), hint !== null);
+  if (hint) {
+    element('live-hint').dataset.tone = hint.tone;
+    element('live-hint').dataset.code = hint.code;
+    setText(element('hint-text'), hint.text);
+    setText(element('hint-detail'), hint.detail);
+  }
+}
+
+/** @type {(brightness: Uint8Array) => void} */
+let seeDistances = () => {};
+
 async function showPicture() {
   try {
-    await drawDepth(element('depth'), await api.preview());
+    await askForRig();
+    const canvas = element('depth');
+    const rig = rigNow();
+    /** @type {Seen | null} */
+    let seen = null;
+    const brightness = await drawDepth(canvas, await api.preview(), (picture) => {
+      seen = rig && seenOf(picture, canvas.width, rig);
+      return seen?.inside ?? null;
+    });
+    show(element('live-lines'), rig !== null);
+    rig && drawLines(element('live-lines'), rig);
+    seeDistances(brightness);
+    showHint(brightness, seen, rig);
     show(element('no-picture'), false);
     return betweenPictures;
   } catch (error) {
     const {detail, title, hint} = error instanceof api.Problem ? error : new api.Problem('picture', 'The picture cannot be read');
     setText(element('no-picture-text'), [detail || title, hint].map(sentence).join(' '));
     show(element('no-picture'), true);
+    show(element('live-hint'), false);
     return betweenAttempts;
   }
 }
@@ -26,6 +97,7 @@ async function showPicture() {
 /** Runs for as long as the page. */
 export async function watchCamera() {
   drawScale(element('scale'));
+  seeDistances = prepareDistance(part(element('camera'), '.frame'), element('live-pointed'));
   for (;;) {
     const pause = isWatched() ? await showPicture() : betweenPictures;
     await new Promise((done) => {

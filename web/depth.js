@@ -16,12 +16,15 @@ const table = Array.from({length: 256}, (_, brightness) => colourOf(brightness))
 /**
  * Colours a grey picture in place. Where nothing was read it becomes transparent.
  * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
+ * @param {Uint8Array | null} [chosen]  of each pixel: all others stay grey
  */
-export function colour(pixels) {
+export function colour(pixels, chosen = null) {
   for (let i = 0; i < pixels.length; i += 4) {
     const brightness = pixels[i];
     if (brightness === 0) {
       pixels[i + 3] = 0;
+    } else if (chosen && !chosen[i / 4]) {
+      pixels[i] = pixels[i + 1] = pixels[i + 2] = 24 + 0.42 * brightness;
     } else {
       [pixels[i], pixels[i + 1], pixels[i + 2]] = table[brightness];
     }
@@ -44,8 +47,12 @@ export function distanceOf(brightness) {
 export const distanceText = (distance) => distance === null ? 'No reading' :
   distance >= range.far - 0.01 ? '2 m or more' : `${(100 * distance).toFixed(distance < 1 ? 1 : 0)} cm`;
 
-/** @param {HTMLCanvasElement} canvas @param {Blob} png @returns {Promise<Uint8Array>} brightness of each pixel */
-export async function drawDepth(canvas, png) {
+/**
+ * @param {HTMLCanvasElement} canvas @param {Blob} png
+ * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  what is coloured: all, if it chooses nothing
+ * @returns {Promise<Uint8Array>} brightness of each pixel
+ */
+export async function drawDepth(canvas, png, choose = () => null) {
   const bitmap = await createImageBitmap(png);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d', {willReadFrequently: true}));
   context.clearRect(0, 0, canvas.width, canvas.height);
@@ -53,7 +60,7 @@ export async function drawDepth(canvas, png) {
   bitmap.close();
   const picture = context.getImageData(0, 0, canvas.width, canvas.height);
   const brightness = Uint8Array.from({length: canvas.width * canvas.height}, (_, index) => picture.data[4 * index]);
-  colour(picture.data);
+  colour(picture.data, choose(brightness));
   context.putImageData(picture, 0, 0);
   return brightness;
 }

@@ -118,6 +118,12 @@ export const chosenSettings = () => settingsOf({
   clip_mm: clipFields().map((field) => Number(field.value)),
 });
 
+/** The space of the scan that would start now; null while there is none. @returns {number[] | null} */
+export function spaceChosen() {
+  const clip_mm = clipFields().map((field) => field.valueAsNumber);
+  return clip_mm.every(Number.isFinite) ? clip_mm : null;
+}
+
 /** Asks what a scan takes whenever the form comes into view: the scan before has told more. @param {Settings} defaults */
 function watchForEstimates(defaults) {
   new IntersectionObserver((entries) => {

@@ -2,14 +2,12 @@
 // and from above.
 
 import {handlesOf} from './clip_handles.js';
-import {distanceOf, distanceText, drawDepth} from './depth.js';
+import {drawDepth} from './depth.js';
 import {element, part, setText, show} from './dom.js';
-import {overlayOf} from './overlay.js';
 import {drawPlan, fromAbove, fromSide, placed, planOf} from './plans.js';
+import {drawLines, prepareDistance, radius_mm} from './rig_picture.js';
 
 /** @typedef {import('./pose.js').Matrix} Matrix */
-
-export const radius_mm = 150;  // of the platform
 
 const plans = /** @type {const} */ ([['plan-side', fromSide], ['plan-above', fromAbove]]);
 
@@ -20,10 +18,8 @@ let arePlansHeld = false;  // while something is dragged in them
 /** @type {{pose: Matrix | null, clip_mm: number[], seen: import('./api_calibration.js').Points | null}} */
 const shown = {pose: null, clip_mm: [-140, -140, 5, 140, 140, 400], seen: null};
 
-/** @type {Uint8Array | null} brightness of the picture that is shown */
-let picture = null;
-/** @type {[number, number] | null} pixel of the picture that is pointed at */
-let pointed = null;
+/** @type {(brightness: Uint8Array) => void} */
+let seeDistances = () => {};
 let isDue = false;
 
 /** What the live picture shows: a pose, what looks from there, and the space; null before there is a picture. */
@@ -41,12 +37,9 @@ function drawHandles() {
 }
 
 function drawOverlay() {
-  if (shown.pose && shown.seen) {
-    const {sensor} = shown.seen;
-    element('overlay').setAttribute('viewBox', `0 0 ${sensor.width} ${sensor.height}`);
-    for (const [line, path] of Object.entries(overlayOf({pose: shown.pose, sensor, clip_mm: shown.clip_mm, radius_mm}))) {
-      part(element('overlay'), `[data-line=${line}]`).setAttribute('d', path);
-    }
+  const rig = rigShown();
+  if (rig) {
+    drawLines(element('overlay'), rig);
     drawHandles();
   }
 }
@@ -99,20 +92,10 @@ export function showPoints(seen) {
   redraw();
 }
 
-function showDistance() {
-  const {width} = element('pose-depth');
-  show(element('pointed'), pointed !== null && picture !== null);
-  if (pointed && picture) {
-    const [x, y] = pointed;
-    setText(element('pointed'), distanceText(distanceOf(picture[y * width + x])));
-  }
-}
-
 /** @param {Blob} png */
 export async function showPicture(png) {
-  picture = await drawDepth(element('pose-depth'), png);
+  seeDistances(await drawDepth(element('pose-depth'), png));
   show(element('pose-no-picture'), false);
-  showDistance();
 }
 
 /** @param {string} why */
@@ -121,27 +104,8 @@ export function showNoPicture(why) {
   show(element('pose-no-picture'), true);
 }
 
-/** @param {PointerEvent} event */
-function point(event) {
-  const {width, height} = element('pose-depth');
-  const bounds = element('pose-depth').getBoundingClientRect();
-  const at = [(event.clientX - bounds.left) / bounds.width, (event.clientY - bounds.top) / bounds.height];
-  pointed = at.some((share) => share < 0 || share >= 1) ? null : [Math.floor(at[0] * width), Math.floor(at[1] * height)];
-  const label = element('pointed');
-  label.style.left = `${100 * at[0]}%`;
-  label.style.top = `${100 * at[1]}%`;
-  label.dataset.side = at[0] > 0.7 ? 'left' : 'right';
-  showDistance();
-}
-
 export function preparePicture() {
-  const frame = part(document, '.pose .frame');
-  frame.addEventListener('pointermove', point);
-  frame.addEventListener('pointerdown', point);
-  frame.addEventListener('pointerleave', () => {
-    pointed = null;
-    showDistance();
-  });
+  seeDistances = prepareDistance(part(document, '.pose .frame'), element('pointed'));
   for (const [id] of plans) {
     new ResizeObserver(redraw).observe(element(id));
   }

@@ -1,0 +1,43 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {openBrowser, openPage, openSettings, picture} from './browser.js';
+import {lifelike, startScanner} from './scanner.js';
+
+/** Which share of the live picture is in colour, and not grey. */
+const colouredShare = (page) => page.locator('#depth').evaluate((canvas) => {
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let coloured = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    coloured += data[i + 3] > 0 && data[i] !== data[i + 2] ? 1 : 0;
+  }
+  return 4 * coloured / data.length;
+});
+
+const waitForHint = (page, code) => page.locator(`#live-hint[data-code=${code}]`).waitFor();
+
+for (const screen of ['desktop', 'phone']) {
+  test(`on a ${screen} the live picture colours what will be scanned, and says what would spoil it`, async (t) => {
+    const scanner = await startScanner(t, lifelike);
+    const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen});
+    await waitForHint(page, 'good');
+    assert.match(await page.locator('#live-hint').innerText(), /Ready to scan\s+Seen: \d+ cm wide, \d+ cm high, \d+ cm away\./);
+    const share = await colouredShare(page);
+    assert.ok(share > 0.01 && share < 0.4, `the object in colour and the rest grey, not ${share}`);
+    assert.ok((await page.locator('#live-lines [data-line=ring]').getAttribute('d')).length > 100, 'the platform is drawn in');
+    await picture(page, `live-${screen}`);
+
+    await openSettings(page);
+    await page.getByLabel('Up, to').fill('60');
+    await waitForHint(page, 'cut-top');
+    await picture(page, `live-cut-${screen}`);
+    await page.getByLabel('Up, to').fill('400');
+    await waitForHint(page, 'good');
+    await page.getByLabel('Up, from').fill('390');
+    await waitForHint(page, 'empty');
+
+    await page.locator('#depth').hover({position: {x: 100, y: 100}});
+    assert.match(await page.locator('#live-pointed').innerText(), /cm|2 m or more|No reading/);
+    assert.deepEqual(faults, []);
+  });
+}

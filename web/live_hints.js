@@ -1,0 +1,217 @@
+// What the live picture tells before a scan: which readings will be scanned, and what would spoil it. Pure. The frames are
+// those of pose.js; lengths are metres where a name does not say millimetres.
+
+import {distanceOf} from './depth.js';
+
+/** @typedef {import('./overlay.js').Sensor} Sensor */
+/** @typedef {{pose: import('./pose.js').Matrix, sensor: Sensor, clip_mm: number[]}} Rig */
+
+/**
+ * @typedef {Object} Seen  of one picture
+ * @property {Uint8Array} inside  of each pixel: 1 where its reading lies in the scanned space
+ * @property {number} read_share  of all pixels
+ * @property {number} object  pixels that surely show what stands on the platform
+ * @property {number} nearest  to the sensor, of these, but for the nearest hundredth
+ * @property {number} distance  their median
+ * @property {number} width_mm  across the sensor's view
+ * @property {number} height_mm  above the platform
+ * @property {number} beyond_share  of these, as far from the axis as lies outside the space at some angle
+ * @property {number} unread_share  of what lies between these in the rows of the picture, without a reading
+ * @property {{top: number, side: number}} cut  pixels where the surface goes on outside
+ *
+ * @typedef {{code: string, tone: 'good' | 'warn', text: string, detail: string}} Hint
+ */
+
+const clear_mm = 8;     // above the floor of the space: a pose that is 1 degree off lifts the platform's edge by 3 mm
+const oneSurface = 0.012;  // between neighbouring pixels; one step of the picture is 4 mm at 0.75 m
+const farthest = 24;    // the picture's brightness there and beyond (API.md): no distance
+const distances = Float64Array.from({length: 256}, (_, brightness) => distanceOf(brightness) ?? 0);
+
+/** @param {number[]} sorted @param {number} share */
+const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+
+/**
+ * Each pixel's place in the platform's frame, x y z after one another; NaN where there is no distance.
+ * @param {Uint8Array} brightness @param {number} width @param {Rig} rig
+ */
+function placesOf(brightness, width, {pose, sensor}) {
+  const places = new Float64Array(3 * brightness.length).fill(NaN);
+  const step = sensor.width / width;
+  brightness.forEach((value, index) => {
+    if (value <= farthest) {
+      return;
+    }
+    const z = distances[value];
+    const x = z * (index % width * step - sensor.cx) / sensor.fx;
+    const y = z * (Math.floor(index / width) * step - sensor.cy) / sensor.fy;
+    for (let axis = 0; axis < 3; ++axis) {
+      const [a, b, c, d] = pose[axis];
+      places[3 * index + axis] = a * x + b * y + c * z + d;
+    }
+  });
+  return places;
+}
+
+/**
+ * Pixels in the space beside one outside it on the same surface.
+ * @param {Float64Array} places @param {Uint8Array} inside @param {number} width @param {number[]} clip  metres
+ */
+function cutOf(places, inside, width, clip) {
+  const cut = {top: 0, side: 0};
+  const look = (/** @type {number} */ a, /** @type {number} */ b) => {
+    if (inside[a] === inside[b]) {
+      return;
+    }
+    const outer = 3 * (inside[a] ? b : a);
+    const inner = 3 * (inside[a] ? a : b);
+    const apart = Math.hypot(places[outer] - places[inner], places[outer + 1] - places[inner + 1], places[outer + 2] - places[inner + 2]);
+    if (apart < oneSurface && places[outer + 2] > clip[2] + clear_mm / 1000) {
+      cut[places[outer + 2] > clip[5] ? 'top' : 'side'] += 1;
+    }
+  };
+  for (let index = 0; index + width < inside.length; ++index) {
+    look(index, index + width);
+    if ((index + 1) % width !== 0) {
+      look(index, index + 1);
+    }
+  }
+  return cut;
+}
+
+/** The share of pixels without a reading between the first and the last of a row's. @param {Uint8Array} brightness @param {Uint8Array} isObject @param {number} width */
+function unreadShare(brightness, isObject, width) {
+  let unread = 0;
+  let seen = 0;
+  for (let start = 0; start < brightness.length; start += width) {
+    const row = isObject.subarray(start, start + width);
+    const [first, last] = [row.indexOf(1), row.lastIndexOf(1)];
+    for (let x = first; x >= 0 && x <= last; ++x) {
+      unread += brightness[start + x] === 0 ? 1 : 0;
+      seen += row[x];
+    }
+  }
+  return seen === 0 ? 0 : unread / (unread + seen);
+}
+
+/**
+ * @param {Uint8Array} brightness  of each pixel, as API.md has it: row by row
+ * @param {number} width  pixels in a row
+ * @param {Rig} rig
+ * @returns {Seen}
+ */
+export function seenOf(brightness, width, rig) {
+  const clip = rig.clip_mm.map((value) => value / 1000);
+  const places = placesOf(brightness, width, rig);
+  const inside = new Uint8Array(brightness.length);
+  const isObject = new Uint8Array(brightness.length);
+  const reach = Math.min(...[0, 1, 3, 4].map((side) => Math.abs(clip[side])));  // every angle keeps what is nearer to the axis
+  /** @type {Record<'depth' | 'across' | 'up', number[]>} of the object's pixels */
+  const all = {depth: [], across: [], up: []};
+  let beyond = 0;
+  let read = 0;
+  brightness.forEach((value, index) => {
+    read += value === 0 ? 0 : 1;
+    const [x, y, z] = places.subarray(3 * index, 3 * index + 3);
+    inside[index] = x >= clip[0] && y >= clip[1] && z >= clip[2] && x <= clip[3] && y <= clip[4] && z <= clip[5] ? 1 : 0;
+    isObject[index] = inside[index] && z > clip[2] + clear_mm / 1000 ? 1 : 0;
+    if (isObject[index]) {
+      all.depth.push(distances[value]);
+      all.across.push(distances[value] * (index % width * rig.sensor.width / width - rig.sensor.cx) / rig.sensor.fx);
+      all.up.push(z);
+      beyond += Math.hypot(x, y) > reach ? 1 : 0;
+    }
+  });
+  Object.values(all).forEach((values) => values.sort((a, b) => a - b));
+  const object = all.depth.length;
+  const span = (/** @type {number[]} */ values, from = quantile(values, 0.01)) => object === 0 ? 0 : 1000 * (quantile(values, 0.99) - from);
+  return {
+    inside,
+    object,
+    read_share: read / brightness.length,
+    nearest: object === 0 ? NaN : quantile(all.depth, 0.01),
+    distance: object === 0 ? NaN : quantile(all.depth, 0.5),
+    width_mm: span(all.across),
+    height_mm: span(all.up, 0),
+    beyond_share: object === 0 ? 0 : beyond / object,
+    unread_share: unreadShare(brightness, isObject, width),
+    cut: cutOf(places, inside, width, clip),
+  };
+}
+
+/**
+ * Which share of the scanned space's pixels another picture has at another distance: noise alone changes edges.
+ * @param {Uint8Array} brightness @param {Uint8Array} before @param {Seen} seen @param {Seen} seenBefore
+ */
+export function movedShare(brightness, before, seen, seenBefore) {
+  const steps = 5;  // of brightness, 2 cm at 0.75 m
+  let moved = 0;
+  let all = 0;
+  brightness.forEach((value, index) => {
+    if (seen.inside[index] || seenBefore.inside[index]) {
+      all += 1;
+      moved += Math.abs(value - before[index]) > steps ? 1 : 0;
+    }
+  });
+  return moved / Math.max(all, 400);
+}
+
+const limits = {
+  read_share: 0.05,
+  object: 40,           // pixels: a cube of 2 cm at 0.8 m has 60
+  moved_share: 0.35,
+  nearest: 0.5,         // a Kinect v1 sees from there
+  distance: 1.2,        // where one step of its disparity is 4 mm
+  cut: 8,               // pixels
+  beyond_share: 0.03,
+  unread_share: 0.25,
+};
+
+const centimetres = (/** @type {number} */ metres) => `${Math.round(100 * metres)} cm`;
+
+/** What stops a scan from being good, worst first. @param {Seen} seen @param {number} moved_share @param {number[]} clip_mm @returns {[string, boolean, string, string][]} */
+const troublesOf = (seen, moved_share, clip_mm) => [
+  ['blind', seen.read_share < limits.read_share,
+    'The sensor reads almost nothing', 'Take away what is nearer to it than 50 cm, and keep the sun out.'],
+  ['moves', moved_share > limits.moved_share, 'Something moves', 'Keep hands out of the picture and let the object stand still.'],
+  ['empty', seen.object < limits.object, 'Nothing stands in the scanned space', 'Put the object on the middle of the platform.'],
+  ['too-near', seen.nearest < limits.nearest,
+    `The object is ${centimetres(seen.nearest)} away`, 'The sensor sees from 50 cm on: move it back, and calibrate.'],
+  ['cut-top', seen.cut.top > limits.cut,
+    'The scanned space cuts off the top', `It ends ${centimetres(clip_mm[5] / 1000)} up: make it higher in All settings.`],
+  ['cut-side', seen.cut.side > limits.cut,
+    'The scanned space cuts the object', 'Move the object to the middle, or make the space wider in All settings.'],
+  ['turns-out', seen.beyond_share > limits.beyond_share,
+    'The object turns out of the scanned space', 'Move it to the middle, or make the space wider in All settings.'],
+  ['unread', seen.unread_share > limits.unread_share,
+    'Parts give no reading', 'They are dark, shiny or clear: matt spray or powder helps.'],
+  ['too-far', seen.distance > limits.distance,
+    `The object is ${centimetres(seen.distance)} away`, 'From 60 to 90 cm the sensor sees finer: move it nearer, and calibrate.'],
+];
+
+/** @param {Seen} seen @param {number} moved_share @param {number[]} clip_mm @returns {Hint} */
+export function hintOf(seen, moved_share, clip_mm) {
+  const trouble = troublesOf(seen, moved_share, clip_mm).find(([, isSo]) => isSo);
+  if (trouble) {
+    const [code, , text, detail] = trouble;
+    return {code, tone: 'warn', text, detail};
+  }
+  const size = [seen.width_mm, seen.height_mm].map((value) => Math.max(1, Math.round(value / 10)));
+  return {code: 'good', tone: 'good', text: 'Ready to scan',
+    detail: `Seen: ${size[0]} cm wide, ${size[1]} cm high, ${centimetres(seen.distance)} away.`};
+}
+
+/**
+ * A hint is shown once two pictures agree on it, so that noise at a limit does not make it flicker.
+ * @returns {(hint: Hint) => Hint | null} what to show after each
+ */
+export function steadyHint() {
+  /** @type {Hint | null} */
+  let shown = null;
+  /** @type {string | null} */
+  let last = null;
+  return (hint) => {
+    shown = hint.code === last || hint.code === shown?.code ? hint : shown;
+    last = hint.code;
+    return shown;
+  };
+}

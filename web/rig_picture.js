@@ -1,0 +1,55 @@
+// What every live depth picture has: the rig drawn in, and the distance under the pointer.
+
+import {distanceOf, distanceText} from './depth.js';
+import {part, setText, show} from './dom.js';
+import {overlayOf} from './overlay.js';
+
+export const radius_mm = 150;  // of the platform
+
+/** @param {SVGElement} overlay  over the whole picture @param {import('./live_hints.js').Rig} rig */
+export function drawLines(overlay, {pose, sensor, clip_mm}) {
+  overlay.setAttribute('viewBox', `0 0 ${sensor.width} ${sensor.height}`);
+  for (const [line, path] of Object.entries(overlayOf({pose, sensor, clip_mm, radius_mm}))) {
+    part(overlay, `[data-line=${line}]`).setAttribute('d', path);
+  }
+}
+
+/**
+ * Shows the distance of what is pointed at.
+ * @param {HTMLElement} frame  of the picture, which it covers @param {HTMLElement} label  in it
+ * @returns {(brightness: Uint8Array) => void} takes each new picture
+ */
+export function prepareDistance(frame, label) {
+  const canvas = part(frame, 'canvas');
+  /** @type {Uint8Array | null} */
+  let picture = null;
+  /** @type {[number, number] | null} pixel */
+  let pointed = null;
+
+  const render = () => {
+    show(label, pointed !== null && picture !== null);
+    if (pointed && picture) {
+      const [x, y] = pointed;
+      setText(label, distanceText(distanceOf(picture[y * canvas.width + x])));
+    }
+  };
+  const point = (/** @type {PointerEvent} */ event) => {
+    const bounds = canvas.getBoundingClientRect();
+    const at = [(event.clientX - bounds.left) / bounds.width, (event.clientY - bounds.top) / bounds.height];
+    pointed = at.some((share) => share < 0 || share >= 1) ? null : [Math.floor(at[0] * canvas.width), Math.floor(at[1] * canvas.height)];
+    label.style.left = `${100 * at[0]}%`;
+    label.style.top = `${100 * at[1]}%`;
+    label.dataset.side = at[0] > 0.7 ? 'left' : 'right';
+    render();
+  };
+  frame.addEventListener('pointermove', point);
+  frame.addEventListener('pointerdown', point);
+  frame.addEventListener('pointerleave', () => {
+    pointed = null;
+    render();
+  });
+  return (brightness) => {
+    picture = brightness;
+    render();
+  };
+}

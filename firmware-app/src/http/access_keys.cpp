@@ -1,15 +1,14 @@
 #include "http/access_keys.hpp"
 
 #include <crypt.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <utility>
 
+#include "http/random_digits.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
@@ -34,21 +33,6 @@ constexpr std::string_view key_begin = "octurn-";
 // and a key is drawn by lot.
 constexpr const char* hash_method = "$5$";
 constexpr unsigned long hash_rounds = 1000;
-
-/// Random bytes as hexadecimal digits.
-std::string draw_digits(std::size_t bytes) {
-  std::array<unsigned char, secret_bytes> drawn{};
-  if (::getentropy(drawn.data(), bytes) != 0) {
-    throw Error(ErrorCode::internal, "the system has no random numbers");
-  }
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : std::span(drawn).first(bytes)) {
-    text += digits[byte >> 4U];
-    text += digits[byte & 15U];
-  }
-  return text;
-}
 
 /// @param setting  a salt, or a hash, whose salt is used @return empty if it is neither
 std::string hash_with(const std::string& key, const std::string& setting) {
@@ -129,8 +113,8 @@ void AccessKeys::write(const std::vector<AccessKey>& keys) const {
 
 AccessKeys::NewKey AccessKeys::add(const std::string& name, KeyAccess access,
                                    std::chrono::system_clock::time_point now) {
-  const std::string id = draw_digits(id_bytes);
-  const std::string key = std::string(key_begin) + id + "-" + draw_digits(secret_bytes);
+  const std::string id = random_digits(id_bytes);
+  const std::string key = std::string(key_begin) + id + "-" + random_digits(secret_bytes);
   const std::lock_guard lock(mutex_);
   if (keys_.size() >= max_keys) {
     throw Error(ErrorCode::bad_settings, "there are " + std::to_string(max_keys) + " keys already",

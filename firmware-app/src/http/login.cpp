@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <random>
 #include <utility>
 
 #include "http/password_file.hpp"
 #include "http/problem.hpp"
+#include "http/random_digits.hpp"
 #include "log.hpp"
 
 namespace octurn {
@@ -18,6 +18,7 @@ namespace {
 // A nonce is its period and its number, 16 hexadecimal digits each, and their signature.
 constexpr std::size_t number_digits = 16;
 constexpr std::size_t signature_digits = 32;
+constexpr std::size_t secret_bytes = 16;
 
 // The page asks about once a second, so that this many proofs are never reached but by a program
 // that means harm, or much.
@@ -27,15 +28,6 @@ std::string to_hexadecimal(std::uint64_t number) {
   std::array<char, number_digits + 1> text{};
   std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
   return text.data();
-}
-
-std::string make_secret() {
-  std::random_device random;
-  std::string secret;
-  for (int i = 0; i < 4; ++i) {
-    secret += to_hexadecimal(random());
-  }
-  return secret;
 }
 
 std::int64_t to_period(Login::Time time) { return time.time_since_epoch() / Login::period; }
@@ -69,7 +61,7 @@ Response refuse_guess(std::chrono::seconds wait) {
 }  // namespace
 
 Login::Login(std::filesystem::path password_file)
-    : password_file_(std::move(password_file)), secret_(make_secret()) {}
+    : password_file_(std::move(password_file)), secret_(random_digits(secret_bytes)) {}
 
 /// The secret stands on both sides: MD5 of a secret and a text can be continued without it.
 std::string Login::sign(const std::string& text) const {
@@ -97,7 +89,8 @@ bool Login::is_first_use(const DigestProof& proof, std::int64_t now) {
   std::erase_if(used_, [&](const auto& entry) { return now - entry.first > 1; });
   std::set<std::string>& used = used_[period_of_nonce(proof.nonce)];
   if (used.size() >= max_used) {
-    secret_ = make_secret();  // no nonce is fresh any more, so nothing need be remembered
+    secret_ =
+        random_digits(secret_bytes);  // no nonce is fresh any more, so nothing need be remembered
     used_.clear();
     return false;
   }

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "octurn/depth_frame.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 #include "sensor/recording.hpp"
 #include "support/program.hpp"
 #include "support/stl.hpp"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "octurn/object_move.hpp"
+#include "octurn/calibrate.hpp"
 #include "support/ball_scan.hpp"
 #include "support/program.hpp"
 #include "support/stl.hpp"

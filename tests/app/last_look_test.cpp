@@ -12,7 +12,7 @@
 #include "app/faulty_rig.hpp"
 #include "app/few_snapshots.hpp"
 #include "app/simulated_frames.hpp"
-#include "octurn/object_move.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/run_scan.hpp"
 #include "support/temporary_folder.hpp"

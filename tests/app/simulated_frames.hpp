@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "rig/nominal_pose.hpp"
 #include "rig/simulation.hpp"

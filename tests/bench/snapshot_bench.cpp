@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "depth/back_project.hpp"
-#include "octurn/depth_frame.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/snapshot.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/mesh/surface.hpp"
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 #include "tsdf/solid_reconstructor.hpp"
 
 // Whatever the sensor says, the solid part has no open edge, no bad fan, and is one.

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "kinect/kinect_on_desk.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "sensor/depth_sensor.hpp"
 
 namespace octurn {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "octurn/depth_png.hpp"
-#include "octurn/platform_pose.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

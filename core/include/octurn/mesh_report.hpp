@@ -12,8 +12,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "octurn/box.hpp"
 #include "octurn/reconstruct.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/stl.hpp"
 
 namespace octurn {

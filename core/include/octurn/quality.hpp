@@ -10,7 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include "octurn/box.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/snapshot.hpp"

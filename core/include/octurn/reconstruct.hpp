@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/stl.hpp"
 

@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

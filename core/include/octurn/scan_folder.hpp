@@ -9,8 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/snapshot.hpp"
 

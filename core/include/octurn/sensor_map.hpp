@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -1,20 +1,92 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <stop_token>
-
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
+#include <string_view>
+#include <vector>
 
 namespace octurn {
+
+/// An axis-aligned box, its faces included.
+struct Box {
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+};
+
+inline bool contains(const Box& box, const Eigen::Vector3d& point) {
+  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
+}
+
+/// One image from a depth sensor.
+struct DepthFrame {
+  int width = 0;                          ///< pixels
+  int height = 0;                         ///< pixels
+  std::vector<std::uint16_t> depth = {};  ///< width x height, row by row from the top left, in the
+                                          ///< sensor's depth unit; 0 is no reading
+};
+
+/// A pinhole depth camera. The defaults are a Kinect v1's nominal ones (field of view 58.1 x 45.3
+/// degrees) with depth in tenths of a millimetre.
+///
+/// A sample (u, v) of value d lies at p = ((u - cx) z / fx, (v - cy) z / fy, z) with
+/// z = d * depth_unit, in the optical frame: X right, Y down, Z forward, metres.
+struct Intrinsics {
+  int width = 640;    ///< pixels
+  int height = 480;   ///< pixels
+  double fx = 575.8;  ///< focal lengths, pixels
+  double fy = 575.8;
+  double cx = 320.0;  ///< principal point, pixels; (0, 0) is the middle of the top left sample
+  double cy = 240.0;
+  double depth_unit = 0.0001;  ///< metres
+
+  bool operator==(const Intrinsics&) const = default;
+};
+
+/// How the frames of one still scene become one depth image (Bennett 2014, the three filters).
+enum class DepthFilter {
+  basic,            ///< the first frame, unchanged
+  average,          ///< at each pixel the mean of the valid readings
+  average_discard,  ///< the same, but a pixel without a reading in any frame has none
+};
+
+/// The filter's name in settings and files: "basic", "average", "average-discard".
+std::string_view to_string(DepthFilter filter);
+
+/// The filter of that name, if there is one.
+std::optional<DepthFilter> depth_filter_named(std::string_view name);
+
+/// Merges frames of one still scene into one depth image. Means are rounded to the nearest depth
+/// unit, halves up.
+///
+/// @param frames  at least one, all of one size
+/// @throws std::invalid_argument  if there is no frame, or the frames' sizes differ
+DepthFrame merge_frames(std::span<const DepthFrame> frames, DepthFilter filter);
+
+/// Whether a matrix is a rotation and a translation and nothing else, within the rounding of
+/// decimals in a file: |R R^T - 1| <= 1e-4, det R > 0, last row (0, 0, 0, 1).
+bool is_rigid(const Eigen::Matrix4d& matrix);
+
+/// The pose of the sensor in the frame of an object that turns with the platform.
+///
+/// The object's frame is the platform's at angle 0: right-handed, Z up, metres, origin at the
+/// platform's centre on its surface.
+///
+/// @param platform_from_sensor  the calibration: optical frame to platform frame, metres
+/// @param angle                 of the platform, radians, counter-clockwise seen from above
+/// @return Rz(-angle) * platform_from_sensor
+Eigen::Isometry3d object_from_sensor(const Eigen::Isometry3d& platform_from_sensor, double angle);
 
 /// One stop of the platform: a filtered, unclipped depth image and the pose it was taken from.
 struct Snapshot {
   DepthFrame frame = {};  ///< of the intrinsics' size
   Intrinsics intrinsics = {};
-  /// Optical frame to the object's frame, metres (`object_from_sensor` in platform_pose.hpp).
+  /// Optical frame to the object's frame, metres (as `object_from_sensor` makes it).
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();
   int pose = 0;  ///< of a scan of several poses, its index
 };

@@ -7,7 +7,6 @@
 
 #include "calibrate/object_view.hpp"
 #include "calibrate/seen_cells.hpp"
-#include "octurn/box.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/snapshot.hpp"
 

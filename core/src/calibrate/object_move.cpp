@@ -1,5 +1,3 @@
-#include "octurn/object_move.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,7 @@
 
 #include "calibrate/object_view.hpp"
 #include "io/number_text.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

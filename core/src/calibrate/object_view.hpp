@@ -6,7 +6,7 @@
 
 #include "calibrate/platform_plane.hpp"
 #include "depth/object_window.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

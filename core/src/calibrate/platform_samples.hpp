@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calibrate/platform_plane.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

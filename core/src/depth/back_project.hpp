@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -5,7 +5,6 @@
 
 #include "depth/depth_observation.hpp"
 #include "depth/depth_pyramid.hpp"
-#include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

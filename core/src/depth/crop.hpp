@@ -1,6 +1,5 @@
 #pragma once
 
-#include "octurn/box.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -7,7 +7,7 @@
 
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

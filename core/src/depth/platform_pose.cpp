@@ -1,4 +1,4 @@
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {

@@ -1,10 +1,10 @@
 #include <nlohmann/json.hpp>
 
 #include "io/sensor_json.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
-#include "octurn/object_move.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 

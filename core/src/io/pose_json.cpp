@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "octurn/box.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

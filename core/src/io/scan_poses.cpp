@@ -3,8 +3,8 @@
 #include <string>
 
 #include "octurn/error.hpp"
-#include "octurn/platform_pose.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {

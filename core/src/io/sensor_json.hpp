@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "octurn/depth_frame.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 
-#include "octurn/platform_pose.hpp"
 #include "octurn/snapshot.hpp"
 #include "parallel/fork_join.hpp"
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "depth/object_window.hpp"
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

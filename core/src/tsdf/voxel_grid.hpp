@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "octurn/box.hpp"
+#include "octurn/snapshot.hpp"
 #include "voxel/index3.hpp"
 
 namespace octurn {

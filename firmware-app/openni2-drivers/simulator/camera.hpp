@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "simulator/mesh.hpp"
 
 namespace octurn {

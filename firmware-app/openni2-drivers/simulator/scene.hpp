@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "rig/nominal_pose.hpp"
 #include "simulator/mesh.hpp"
 #include "simulator/rasterise.hpp"

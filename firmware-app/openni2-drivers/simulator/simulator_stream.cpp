@@ -4,7 +4,7 @@
 #include <chrono>
 #include <span>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "rig/interruptible_sleep.hpp"
 
 namespace octurn {

@@ -5,8 +5,8 @@
 
 #include "doctor/finding.hpp"
 #include "doctor/sensor_reading.hpp"
-#include "octurn/box.hpp"
 #include "octurn/calibrate.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -3,8 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

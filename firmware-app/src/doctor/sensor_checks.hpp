@@ -6,7 +6,7 @@
 #include "doctor/finding.hpp"
 #include "doctor/platform_check.hpp"
 #include "doctor/sensor_reading.hpp"
-#include "octurn/box.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "rig/tilt.hpp"
 #include "scan/job.hpp"
 #include "scan/rig.hpp"

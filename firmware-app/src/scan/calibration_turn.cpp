@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/depth_scale.hpp"

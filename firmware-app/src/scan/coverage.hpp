@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "log.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
-#include "octurn/object_move.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/plan.hpp"
 #include "scan/take_depth_image.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "octurn/calibrate.hpp"
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "octurn/platform_pose.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "scan/checked_snapshots.hpp"
 #include "scan/coverage.hpp"

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "octurn/box.hpp"
-#include "octurn/depth_frame.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/reconstruct.hpp"
+#include "octurn/snapshot.hpp"
 #include "rig/nominal_pose.hpp"
 
 namespace octurn {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "scan/build_run.hpp"
 #include "scan/calibration_turn.hpp"
 #include "scan/job.hpp"

@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <string>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "rig/tilt.hpp"
 
 namespace octurn {

@@ -1,5 +1,3 @@
-#include "octurn/object_move.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "core/calibrate/rendered_turn.hpp"
 #include "core/io/scan_json.hpp"
+#include "octurn/calibrate.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

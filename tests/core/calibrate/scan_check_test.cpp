@@ -4,8 +4,8 @@
 #include <random>
 
 #include "core/calibrate/rendered_turn.hpp"
-#include "octurn/platform_pose.hpp"
 #include "octurn/quality.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "octurn/depth_frame.hpp"
+#include "octurn/snapshot.hpp"
 #include "support/random.hpp"
 
 namespace octurn {

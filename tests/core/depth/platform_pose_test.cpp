@@ -1,9 +1,9 @@
-#include "octurn/platform_pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {

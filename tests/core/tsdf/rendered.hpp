@@ -5,8 +5,8 @@
 #include <functional>
 #include <numbers>
 
-#include "octurn/platform_pose.hpp"
 #include "octurn/reconstruct.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/tsdf/rendered.hpp"
-#include "octurn/depth_frame.hpp"
-#include "octurn/platform_pose.hpp"
+#include "octurn/snapshot.hpp"
 #include "octurn/stl.hpp"
 #include "rig/nominal_pose.hpp"
 #include "simulator/simulated_kinect.hpp"

@@ -36,10 +36,10 @@ struct RegisteredPose {
   Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
   double position_sigma = 0;   ///< metres, of the object's middle; large where it can slide freely
   double direction_sigma = 0;  ///< radians
-  double overlap = 0;          ///< share of what this turn saw that turns before it saw, too
+  double overlap = 0;          ///< share of this turn's points on the surface of earlier turns
   double residual = 0;         ///< metres: median distance between what both saw
-  /// Share of what this turn saw where turns before it saw that nothing is, and the other way
-  /// round; 0 to 2.
+  /// Share of this turn's points in space that an earlier turn saw to be empty, plus the share of
+  /// earlier points in space that this turn saw to be empty; 0 to 2.
   double contradiction = 0;
   bool symmetric = false;  ///< other poses give the same shape
 };

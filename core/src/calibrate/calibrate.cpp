@@ -26,25 +26,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-// When a solution is not to be trusted.
+// Limits beyond which a solution is refused.
 constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
 constexpr std::size_t min_pairs = 6;       // three, in both directions
 constexpr std::size_t min_plane_inliers = 500;
 constexpr double max_plane_rms = 0.0015;  // metres
 constexpr double min_plane_share = 0.3;
 constexpr double max_position_sigma = 0.0006;  // metres
-constexpr double worthwhile_sigma = 0.05;      // of how far the pose moves: a wrong one is worse
+// A larger sigma is accepted where the correction is large: a share of how far the pose moves.
+constexpr double worthwhile_sigma = 0.05;
 constexpr double max_direction_sigma_deg = 0.1;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
-constexpr double may_worsen = 1.02;   // of the median, which is not what is minimised
-constexpr double max_shift = 0.040;   // metres
+// The median residual may grow by so much: the solver minimises weighted squares instead.
+constexpr double may_worsen = 1.02;
+constexpr double max_shift = 0.040;  // metres
 constexpr double max_tilt_deg = 6;
 constexpr double max_last_step = 0.00001;  // metres
-constexpr double settled_sigmas = 0.1;  // steps as the nearest pixel changes; they change nothing
+// Last steps below a tenth of the sigma count as converged: the nearest pixels keep changing.
+constexpr double settled_sigmas = 0.1;
 // Units of disparity. Noise leaves 0.03; of a pattern of 0.8 the fitted plane leaves 0.25.
 constexpr double max_unevenness = 0.15;
 
-// The plane as a prior of the axis's direction: loose, and as good as a platform is true.
+// Sigmas of the plane as a prior of the axis's direction: one that leaves the object in charge, and
+// one for a platform that is square to its shaft.
 constexpr double loose_direction_deg = 0.2;
 constexpr double tight_direction_deg = 0.02;
 constexpr double wobble_sigmas = 5;
@@ -75,7 +79,7 @@ double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
 bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
   const double prior = radians_from_degrees(loose_direction_deg);
   const double sigma = solution.direction_sigma();
-  // Of the object alone: without what the prior adds.
+  // The object's own information: what the prior adds is subtracted.
   const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
   return direction_off(solution, plane) > wobble_sigmas / std::sqrt(information);
 }
@@ -128,7 +132,7 @@ void add_no_map(CalibrationReport& report, double unevenness) {
        .angle = {}});
 }
 
-/// Whether nothing slipped or moved, which pulls a focal length along.
+/// Whether nothing slipped or moved: either would bias the focal length.
 bool all_stand_as_told(const CalibrationReport& report) {
   return std::ranges::all_of(report.findings, [](const CalibrationFinding& finding) {
     return finding.code == "wobble" || finding.code == "no-map";
@@ -198,7 +202,7 @@ std::string refuse_object(const TurnViews& views) {
   return {};
 }
 
-/// Whether a told pose is as near to the solved one as this is known.
+/// Whether the told pose lies within the uncertainty of the solved one.
 bool agrees_with_told(const CalibrationReport& report) {
   const double near = std::max(agreeing_shift, agreeing_sigmas * report.position_sigma);
   return report.shift <= near && report.lift <= near &&
@@ -222,7 +226,7 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (report.after > max_after) {
     return "the stops disagree by " + mm_text(report.after, text_digits) + ": something moved";
   }
-  // Within sigma the one median is as good as the other, and the told pose stays.
+  // If told and solved pose agree within sigma, a difference of their medians means nothing.
   if (report.after > may_worsen * report.before && !agrees_with_told(report)) {
     return "the stops agree better as told";
   }

@@ -21,8 +21,8 @@ constexpr double platform_radius = 0.13;  // metres, in which heights are counte
 constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
 constexpr double min_cut_height =
     0.01;  // metres above the box's bottom: the platform's rim is lower
-// Readings of one surface: of the eight around a pixel so many, and of a slope of 74 degrees at
-// the most. A reading between an edge and what is behind it has fewer.
+// A reading belongs to a surface if at least `min_beside` of its eight neighbours continue it, with
+// a slope of at most 74 degrees. Mixed readings at depth edges have fewer such neighbours.
 constexpr int min_beside = 5;
 constexpr double max_slope_step = 0.012;  // of the depth, two pixels on
 

@@ -11,11 +11,13 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t plane_stops = 6;  // tell the plane well enough to find the object
-// Metres. Of the readings near this height the mask takes those that err towards the sensor, which
-// draws the axis away from it: the lower it is, the fewer are of a flat object's walls.
+constexpr std::size_t plane_stops = 6;  // enough to find the object above their plane
+// Metres above the plane. The threshold selects readings that err towards the sensor, which biases
+// the axis away from it. A low threshold keeps that to few of the readings of a flat object's
+// walls.
 constexpr double min_height = 0.0025;
-// Of the object: at a stop, and at all stops of a turn. More cost time and tell little.
+// Readings of the object that are used, per stop and per turn. More cost time and lower the sigma
+// by little.
 constexpr double readings_wanted = 300;
 constexpr double turn_readings_wanted = 24 * readings_wanted;
 constexpr int max_step = 8;               // pixels

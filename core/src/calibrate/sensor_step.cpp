@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 constexpr double lever = 0.1;      // metres: what a tilt moves there counts as much as a height
 constexpr double min_size = 5e-4;  // metres
 constexpr double min_sigmas = 5;
-constexpr double min_explained = 0.85;  // a step explains three quarters of a steady drift
+constexpr double min_explained = 0.85;  // above the 0.75 that a step explains of a steady drift
 
 /// Of each stop: a tilt's two components times the lever, and a height.
 constexpr Index rows_of_stop = 3;

@@ -9,8 +9,8 @@
 
 namespace octurn {
 
-/// A motion of the sensor against the platform between two stops, as far as the plane tells it:
-/// not along the plane, nor a turn about its normal.
+/// A motion of the sensor against the platform between two stops: the tilt and the height that the
+/// platform's plane shows. Shifts along the plane and a turn about its normal leave no trace in it.
 struct SensorStep {
   std::size_t stop = 0;  ///< the first at which it stood elsewhere
   double tilt = 0;       ///< radians
@@ -20,8 +20,8 @@ struct SensorStep {
   double explained = 0;  ///< of the sum of squares by which the planes of the stops differ
 };
 
-/// Finds the stop from which on the plane lies elsewhere, by least squares beside a wobble of the
-/// platform, which goes round with it.
+/// Finds the stop from which on the plane lies elsewhere: least squares over a step at each stop in
+/// turn, together with a mean and a wobble of the platform, which turns with it.
 ///
 /// @param planes  of the stops
 /// @param angles  radians, of the stops

@@ -25,14 +25,15 @@ constexpr std::array schedule = {
 };
 
 constexpr double max_sigma_deg = 1.0;  // of a stop's angle
-// Metres for a radian, of the residuals: a vase and a ball have 4 to 5, of which noise in the
-// normals is the most, a flat box 9 to 12, an object with limbs 20 and more.
+// Root mean square change of the residuals with a stop's angle, metres per radian. Below it the
+// object is one of revolution. Measured in 1/1000: vase and ball 4 to 5, mostly noise of the
+// normals; flat box 9 to 12; objects with limbs 20 and more.
 constexpr double min_sensitivity = 0.007;
 constexpr double min_slip_deg = 0.6;
 constexpr double slip_sigmas = 3;
-constexpr double slip_to_noise = 5;  // times the median step: the sensor's fixed pattern is in all
-// A platform that slipped stays where it is. What stands out at one stop alone, or creeps up over
-// some, is an object seen from its narrow side.
+constexpr double slip_to_noise = 5;  // times the median step, which is the sensor's fixed pattern
+// A slip lasts: the platform stays where it slipped to. An offset at one stop alone, or one that
+// grows over several, comes from an object that is seen from its narrow side.
 constexpr double min_lasting = 0.6;  // of the step, between the stops before and after it
 constexpr std::ptrdiff_t lasting_stops = 3;
 
@@ -65,7 +66,7 @@ StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose,
       sums.pairs.push_back({.to = residual.to});
     }
     PairSums& pair = sums.pairs.back();
-    // Further on by a small angle, the same point of the object is at an angle less by that.
+    // A platform that stands further on by w has the point R(-w) p in the object's frame.
     const double by_from = -residual.normal_from.dot(Vector3d::UnitZ().cross(residual.point_from));
     const double by_to = residual.normal_to.dot(Vector3d::UnitZ().cross(residual.point_to));
     const double weight = limits.weight(residual.distance);
@@ -119,8 +120,8 @@ Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
   return all;
 }
 
-/// Of any stop's angle from the mean of all. From the first stop it would be the larger the less
-/// that stop saw, or one on the way to it: the simulator's robot in profile.
+/// Largest sigma of a stop's angle, measured from the mean angle of all stops. Measured from the
+/// first stop instead, every sigma would be large where that stop sees the object in profile.
 /// @param covariance  of the offsets from the second stop on
 double worst_sigma(const Eigen::MatrixXd& covariance) {
   const Eigen::Index stops = covariance.rows() + 1;

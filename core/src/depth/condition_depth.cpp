@@ -19,14 +19,14 @@ constexpr float min_cosine = 0.15F;          // of incidence: 81 degrees
 constexpr double object_share = 0.9;         // of the depth of the platform's middle
 constexpr double platform_slack = 0.0015;    // metres above the platform that may be the platform
 
-// The same of one of several poses: another one sees the foot. Readings up to the second height
-// may be a mean of object and platform.
+// The same for one of several poses, which need not see the foot, as another pose does. Readings up
+// to `foot_height` may be a mean of object and platform, and count less.
 constexpr double foot_slack = 0.0025;  // metres
 constexpr float foot_height = 0.007F;  // metres
 
-// Rays that end on its platform are free nearly down to it: where that is, is known. Integration
-// keeps well clear of the end of a ray that made no surface, and would leave the lowest 3 mm beside
-// the foot to what another pose mistakes for the object.
+// A ray that ends on its pose's platform is free this much further than other rays without a
+// surface, as the platform's place is known. The usual margin (`free_margin`) would leave the
+// lowest 3 mm beside the foot unknown, where another pose takes them for the object.
 constexpr float platform_reach = 0.0045F;  // metres, along the optical axis
 
 DepthImage to_metres(const Snapshot& snapshot) {
@@ -79,7 +79,7 @@ struct ClipVolume {
     min.z() = std::max(min.z(), static_cast<float>(lowest));
   }
 
-  /// Clears, for each pixel of a row, what says whether its reading lies inside, 1 or 0.
+  /// Clears the flags (1 or 0) of the pixels of a row whose readings lie outside.
   void mask(const DepthImage& image, int v, const std::vector<float>& ray_x, float ray_y,
             std::vector<int>& inside) const {
     const float* const row = image.row(v);
@@ -98,7 +98,8 @@ struct ClipVolume {
   }
 };
 
-/// What tells that a reading is the object's: the clip box, and those of its pose.
+/// The volume whose readings are the object's: inside the clip box and, of one of several poses,
+/// inside that pose's own box.
 class ObjectVolume {
  public:
   ObjectVolume(const Snapshot& snapshot, const Box& clip, const Placement* placement)
@@ -111,7 +112,7 @@ class ObjectVolume {
     }
   }
 
-  /// Whether a reading lies inside, 1 or 0, for each pixel of a row.
+  /// Sets the flags of a row's pixels: 1 where the reading lies inside, else 0.
   void mask(const DepthImage& image, int v, const std::vector<float>& ray_x, float ray_y,
             std::vector<int>& inside) const {
     std::ranges::fill(inside, 1);
@@ -121,7 +122,7 @@ class ObjectVolume {
     }
   }
 
-  /// The share of its weight that a reading keeps: less near the platform of one of several poses.
+  /// Factor of a reading's weight: below 1 near the platform of one of several poses.
   float share(const Ray& ray, float z) const {
     if (!own_) {
       return 1;
@@ -129,7 +130,7 @@ class ObjectVolume {
     return std::clamp((height(ray, z) - lowest) / (foot_height - lowest), 0.0F, 1.0F);
   }
 
-  /// How much further the ray of a reading is free that makes no surface.
+  /// Added to the free-space depth of a reading that makes no surface.
   float reach(const Ray& ray, float z) const {
     return own_ && std::abs(height(ray, z)) < lowest ? platform_reach : 0.0F;
   }
@@ -137,7 +138,7 @@ class ObjectVolume {
  private:
   static constexpr auto lowest = static_cast<float>(foot_slack);
 
-  /// Of a reading above its pose's platform, metres.
+  /// Height of a reading above its pose's platform, metres.
   float height(const Ray& ray, float z) const {
     const Eigen::Matrix3f& r = own_->rotation;
     return z * (r(2, 0) * ray[0] + r(2, 1) * ray[1] + r(2, 2) * ray[2]) + own_->centre.z();

@@ -14,7 +14,7 @@ struct Rivals {
   std::string reason = {};  ///< why none can be accepted, for people; or empty
 };
 
-/// Whether a candidate contradicts and differs about as little as the best one.
+/// Whether a candidate's contradiction and residual are about as small as the best one's.
 bool fits_alike(const PoseCandidate& candidate, const PoseCandidate& best);
 
 /// Looks for candidates that fit about as well as the best one and give another shape.

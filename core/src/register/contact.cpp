@@ -12,7 +12,7 @@ constexpr double max_gap = 0.012;       // metres between foot and platform, bef
 constexpr double min_facing = 0.99;     // cosine between the foot's normal and the way down
 constexpr double min_area_cells = 100;  // of 2 mm: 4 cm2
 constexpr double max_spread = 0.0003;   // metres, of the foot's heights
-constexpr double max_below = 0.0015;    // metres that noise lets points seem lower than the foot
+constexpr double max_below = 0.0015;    // metres below the foot that noise explains
 constexpr double max_below_share = 0.02;
 
 /// Adds n . x = const of a foot's points, whose distance from their platform is to be 0.

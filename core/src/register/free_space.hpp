@@ -10,15 +10,16 @@
 
 namespace octurn {
 
-/// A coarse volume around what turns saw that knows where one of them saw that nothing is.
+/// The space that several turns saw to be empty, as a coarse voxel grid around their points.
 class FreeSpace {
  public:
-  /// @param turns  in one frame, which is that of the volume
-  /// Space outside the box of their points, and a centimetre around it, is taken as free.
+  /// Space more than a centimetre outside the box of the turns' points counts as empty.
+  ///
+  /// @param turns  placed in one frame, which is the grid's
   /// @throws Stopped
   FreeSpace(std::span<const PlacedTurn> turns, int threads, const std::stop_token& stop);
 
-  /// Whether nothing is at a point, to within a voxel.
+  /// Whether a point lies in a voxel of empty space. @param point  metres
   bool is_free(const Eigen::Vector3d& point) const {
     const Eigen::Vector3i at = ((point - low_) / voxel_side).array().floor().cast<int>();
     return (at.array() < 0).any() || (at.array() >= size_.array()).any() || free_[index(at)] != 0;

@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// A pose that was found to fit.
+/// A pose of a turn on a target, and how well it fits.
 struct PoseCandidate {
   Eigen::Isometry3d target_from_points = Eigen::Isometry3d::Identity();
   double distance = 0;       ///< metres, both ways, capped; the smaller the better
@@ -21,8 +21,8 @@ struct PoseCandidate {
 struct Stands {
   std::vector<Eigen::Isometry3d> target_from_platforms = {};  ///< of the target's turns
   std::vector<SurfacePoint> target_points = {};               ///< some of the target's
-  double target_share = 1;                                    ///< that these are of all
-  double share = 1;  ///< that the points which are refined are of all
+  double target_share = 1;  ///< share of all of the target's points that these are
+  double share = 1;         ///< share of the turn's points that are refined
 };
 
 /// What is known of the target, or of the turn, when poses are searched; each in its own frame.
@@ -31,17 +31,17 @@ struct SearchedSide {
   const FreeSpace& free;
 };
 
-/// Looks for poses of a turn on a target in all rotations, about 15 degrees apart (Super-Fibonacci
-/// spirals, Alexa 2022), each shifted from middle on middle to where its points find the target
-/// nearest (mean shift).
+/// Searches the poses of a turn on a target over all rotations, about 15 degrees apart
+/// (Super-Fibonacci spirals, Alexa 2022). Each begins with the middles of both on each other, and
+/// is shifted by the mean way to the nearest surface until it settles.
 ///
-/// @return the best, by how far the points of each lie from the surface of the other, or in its
-/// free space, the best first
+/// @return the best, by the mean distance of the points of each from the surface of the other;
+/// points in the other's empty space have the largest; the best first
 std::vector<PoseCandidate> search_poses(const SearchedSide& target, const SearchedSide& turn,
                                         int threads, const std::stop_token& stop);
 
-/// Refines a candidate by point-to-plane ICP, flat feet on their platforms. The points are in the
-/// frame of their platform.
+/// Refines a candidate by point-to-plane ICP, with the constraint that flat feet stand on their
+/// platforms. @param points  in their platform's frame
 PoseCandidate refine(const NearestPoints& target, const Stands& stands,
                      const std::vector<SurfacePoint>& points, PoseCandidate candidate,
                      int iterations);

@@ -13,8 +13,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t compared_points = 1500;
 
-// Two answers give the same shape if nearly all that the one shows lies on the other. What the two
-// turns themselves differ by, where both saw the object, tells nothing of its shape.
+// Tolerances of a point on a surface.
 constexpr double same_surface = 0.0015;  // metres, along the normal
 constexpr double residuals_apart = 3;    // the same, if the turns differ by more
 constexpr double points_to_surface = 2;  // whatever the normal: near an edge there are two

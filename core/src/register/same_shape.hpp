@@ -5,8 +5,9 @@
 
 namespace octurn {
 
-/// Whether an object has the same shape by two poses of a turn: what the turn saw, placed by the
-/// one, is on what is there by the other, to within what the turns differ by where both saw it.
+/// Whether two poses of a turn give the same shape: nearly all points of the turn, placed by one
+/// pose, lie on a surface that is there with the other. The tolerance is at least the residual that
+/// target and turn have where they overlap.
 ///
 /// @param target  what other turns saw
 /// @param turn    what the turn saw, in its own frame

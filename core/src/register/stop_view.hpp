@@ -16,8 +16,9 @@ struct SurfacePoint {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// What one stop of a turn saw: of the object a rectangle of the depth image, and everywhere how
-/// far its rays were free. Points are in the turn's frame, which is the platform's at angle 0.
+/// One stop of a turn: the rectangle of its depth image that shows the object, and for the whole
+/// image the depth up to which rays were free. Points are in the turn's frame, the platform's at
+/// angle 0.
 class StopView {
  public:
   /// @param turn_from_sensor  optical frame to the turn's frame

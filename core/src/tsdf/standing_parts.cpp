@@ -9,12 +9,13 @@
 namespace octurn {
 namespace {
 
-// A ball of 9 cm ended 9 mm above the platform: the hole filling takes what nobody saw beside so
-// much free space for free. What begins higher hovers.
+// A component whose lowest voxel is at most this high stands on the platform; a higher one hovers.
+// Hole filling extends free space into the unobserved space below an overhang: a ball of 9 cm ended
+// 9 mm above the platform.
 constexpr double max_gap = 0.012;       // metres
 constexpr double max_foot_top = 0.025;  // metres above the platform
 
-// Between the rays that passed below something lie hidden columns that are thinner.
+// Thinner columns are no foot: gaps between the rays that passed below the object.
 constexpr double min_foot = 0.004;  // metres
 
 // The platform's noise makes crumbs of up to 30 mm3.
@@ -44,8 +45,8 @@ bool stands(const VoxelMask& mask) {
   return false;
 }
 
-/// Of each column of a mask the lowest voxel, if it is one of a part that ends just above the
-/// platform.
+/// The sole of each column: its lowest voxel, if that belongs to a component that ends just above
+/// the platform; else `no_foot`.
 std::vector<int> find_soles(const VoxelMask& mask, const HoleFilledSdf& sdf,
                             const std::stop_token& stop) {
   ConnectedComponents components(mask, ConnectedComponents::Of::voxels, stop);
@@ -74,7 +75,7 @@ std::vector<int> find_soles(const VoxelMask& mask, const HoleFilledSdf& sdf,
 /// Columns of a mask, 1 for those in a set, x the fastest.
 using Columns = std::vector<char>;
 
-/// Gives each column that value which has one of that value within so many columns of it.
+/// Dilates the set of columns that have `value`, by `reach` columns in x and y.
 Columns spread(const Columns& columns, const Index3& size, int reach, char value) {
   Columns result = columns;
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * size.x + x); };
@@ -96,7 +97,7 @@ Columns spread(const Columns& columns, const Index3& size, int reach, char value
   return result;
 }
 
-/// The columns with a sole that no ray passed through below it.
+/// The columns with a sole below which no ray passed.
 Columns hidden_columns(const VoxelMask& mask, const HoleFilledSdf& sdf,
                        const std::vector<int>& soles) {
   const Index3& low = mask.low();
@@ -114,12 +115,12 @@ Columns hidden_columns(const VoxelMask& mask, const HoleFilledSdf& sdf,
   return hidden;
 }
 
-/// Extends what ends just above the platform down to it.
+/// Extends components that end just above the platform down to it, below their soles.
 void add_feet(VoxelMask& mask, const HoleFilledSdf& sdf, const std::stop_token& stop) {
   const std::vector<int> soles = find_soles(mask, sdf, stop);
   const Index3& size = mask.size();
   const int reach = std::max(1, static_cast<int>(std::lround(min_foot / 2 / sdf.voxel_side())));
-  // A morphological opening.
+  // An erosion, then a dilation: a morphological opening removes thin columns.
   const Columns feet =
       spread(spread(hidden_columns(mask, sdf, soles), size, reach, 0), size, reach, 1);
   std::size_t column = 0;
@@ -142,7 +143,7 @@ StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts, const std::s
     if (stands(standing.mask)) {
       return standing;
     }
-    standing.mask = sdf.inside(stop);  // with what was below it
+    standing.mask = sdf.inside(stop);  // anew, with the components that were dropped
   }
   add_feet(standing.mask, sdf, stop);
   standing.dropped = parts == Parts::main ? keep_main_component(standing.mask, layers, stop)

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// What stands on the platform, of what an SDF has inside.
+/// The part of an SDF's inside that stands on the platform.
 struct StandingParts {
   VoxelMask mask;
   DroppedComponents dropped = {};
@@ -17,9 +17,9 @@ struct StandingParts {
 
 /// The connected components of the inside that the model keeps.
 ///
-/// One that ends just above the platform stands on it: what is right below an overhang is hardly
-/// seen. Where nothing else does, its foot is what no ray passed through, straight down to the
-/// platform.
+/// A component that ends just above the platform stands on it, as the space right below an overhang
+/// is hardly seen. If nothing reaches the platform, such a component is extended down to it in the
+/// columns through which no ray passed.
 /// @throws Stopped
 StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts,
                              const std::stop_token& stop = {});

@@ -10,9 +10,9 @@
 namespace octurn {
 namespace {
 
-// How many times its volume a component counts that stands on the platform. Something above the
-// object is not it, though larger; nor is a speck on the platform below a ball, whose foot is
-// hardly seen.
+// Factor of the volume of a component that stands on the platform: the object is the one that
+// stands, even below something larger. Not more, or a speck on the platform would win over a ball
+// whose foot is hardly seen.
 constexpr std::uint64_t base_weight = 8;
 
 constexpr std::uint64_t no_others = std::numeric_limits<std::uint64_t>::max();

@@ -18,10 +18,10 @@ using Clock = std::chrono::steady_clock;
 constexpr int frames_at_look = 6;
 constexpr int max_stale_frames = 100;
 
-// That the motor is told at first, until the platform is seen to turn: with gears of 1, 4 or 12
-// times what is set.
+// Moves that the motor is told one after the other until the platform is seen to turn: enough for
+// gears of 1, 4 and 12 times the gear ratio that is set.
 constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
-constexpr double seen_move_deg = 10;  // that the platform should make at each move after that
+constexpr double seen_move_deg = 10;  // aim of each later move, degrees of the platform
 constexpr int few_moves = 4;          // of which two may be seen wrongly
 constexpr int more_moves = 8;         // their median is right to some percent
 constexpr double widest_deg = 40;     // a first move with a gear that is six times another
@@ -32,8 +32,8 @@ constexpr double settled_deg = 2;     // so near, a comparison does not depend o
 constexpr int closing_looks = 3;
 constexpr int play_rounds = 3;
 constexpr double approach_deg = 15;  // more than any gears' play
-// Comparisons are of looks so far apart: what is the same in all of them, the sensor's own pattern,
-// draws those that are nearer together.
+// Least angle between two looks that are compared: the sensor's fixed pattern is the same in both,
+// and biases smaller angles towards 0.
 constexpr double apart_deg = 8;
 constexpr double min_sharpness = 0.08;
 constexpr int looks = 2 * few_moves + more_moves + closing_looks + 3 * play_rounds + 2;

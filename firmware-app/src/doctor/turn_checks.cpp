@@ -77,7 +77,7 @@ TurnFinding check_play(const TurnMeasurement& turn, const StepperSettings& setti
   if (turn.play_deg <= much_play_deg) {
     return {.finding = play.ok(measured)};
   }
-  // Half as much again as was seen, on top of what is made up for already.
+  // One and a half times the play that is left with the steps that are set.
   const double seen_steps =
       turn.play_deg / std::abs(turn.turn_deg) * motion_of(settings).steps_per_turn;
   const int steps = settings.take_up_steps + static_cast<int>(std::ceil(1.5 * seen_steps));

@@ -7,10 +7,10 @@
 namespace octurn {
 namespace {
 
-// Who has kept the server waiting for longer than a lost packet takes to be sent again goes first.
+// A debt that a packet which is lost and sent again does not explain: such clients are cut first.
 constexpr double noticeable_debt = 1;  // seconds
 
-// A thread knows what a whole head asks for in less than this after it has read it.
+// Time from a whole head's arrival to the thread that parses it, at most.
 constexpr std::chrono::milliseconds reading_time(10);
 
 /// What a slow reader has not taken would stay in the kernel's memory for minutes.

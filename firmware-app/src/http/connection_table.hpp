@@ -31,8 +31,8 @@ struct ConnectionLimits {
   double min_answer_rate = 16e3;                                      ///< bytes a second
 };
 
-/// The connections of a server, and which of them are to end: those that keep the server waiting
-/// for too long, and, as long as there are too many, those that earn their place least.
+/// The connections of a server. Cuts those that keep the server waiting for too long and, while
+/// there are too many, those with the most debt.
 ///
 /// Each connection has a debt, in seconds. It grows with the time that the server waits for the
 /// client, and every byte pays for 1 / rate of it, never below 0: so over any span of time a client

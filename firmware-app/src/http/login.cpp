@@ -20,8 +20,8 @@ constexpr std::size_t number_digits = 16;
 constexpr std::size_t signature_digits = 32;
 constexpr std::size_t secret_bytes = 16;
 
-// The page asks about once a second, so that this many proofs are never reached but by a program
-// that means harm, or much.
+// Proofs that are remembered until their nonce expires. The page sends about one a second, so that
+// only an attacker reaches the limit.
 constexpr std::size_t max_used = 100'000;
 
 std::string to_hexadecimal(std::uint64_t number) {

@@ -15,14 +15,13 @@ struct ExpectedEnd {
   Clock::time_point end = {};
   std::chrono::duration<double> later = {};  ///< what comes after the step that goes on
 
-  /// Runs down as time passes. A step that takes longer than expected takes nothing from what comes
-  /// after it.
+  /// Time left at `now`: at least `later`, however long the step that goes on takes.
   std::chrono::duration<double> left(Clock::time_point now) const;
 };
 
-/// How long a scan takes still. What remains of the turn is told by the median of its last five
-/// stops, the model by what earlier scans took for theirs. Told anew at stops only, and then never
-/// more than a tenth above what it was: a number that jumps is believed by nobody.
+/// Estimates the time until a scan ends: stops left times the median of the last five, and the
+/// model's time as earlier scans had it. Updated at stops only, and never by more than a tenth
+/// upwards, as people do not believe a number that jumps.
 class TimeLeft {
  public:
   using Clock = std::chrono::steady_clock;

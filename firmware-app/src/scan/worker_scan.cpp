@@ -17,8 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A scan whose device fails tries the same stop again for so long, and once more at least: enough
-// for a Kinect that was unplugged and plugged in, which is back after 2 to 3 s.
+// How long a scan repeats the stop at which a device failed, once at least. A Kinect that is
+// plugged in again is back after 2 to 3 s.
 constexpr auto attempts_time = 30s;
 constexpr auto attempt_interval = 2s;
 

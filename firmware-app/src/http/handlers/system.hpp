@@ -9,7 +9,8 @@ namespace octurn {
 
 // What the scanner as a whole answers.
 
-/// The devices, the disk, warnings, the scan that runs and the newest that is finished.
+/// The devices, the disk, warnings, the scan that runs and the newest that is finished. Touches no
+/// disk.
 nlohmann::json status_json(const App& app);
 Response send_status(App& app);
 

@@ -68,7 +68,7 @@ void intersect_a_snapshot(benchmark::State& state) {
               [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
                 triangles.push_back({*snap_grid.snap(a), *snap_grid.snap(b), *snap_grid.snap(c)});
               });
-  const int levels = Octree::level_of(1.0, options_for(state).leaf_size);
+  const int levels = Octree::level_for(1.0, options_for(state).leaf_size);
   for (auto unused : state) {
     Octree octree(1.0, levels);
     for (const auto& [a, b, c] : triangles) {

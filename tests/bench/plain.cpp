@@ -246,7 +246,7 @@ class PlainSurface {
 std::uint64_t run(const std::string& folder, const std::string& output, double leaf_size) {
   const Scan scan = read_scan(folder);
   const SnapGrid snap_grid(1.0);
-  PlainOctree octree(Octree::level_of(1.0, leaf_size));
+  PlainOctree octree(Octree::level_for(1.0, leaf_size));
   for (const Shot& shot : scan.shots) {
     PointGrid grid = world_points(read_snapshot(folder, scan, shot));
     clip(grid, scan.clip);

@@ -31,7 +31,7 @@ BENCHMARK(condition_a_snapshot)->Unit(benchmark::kMillisecond);
 void integrate_a_snapshot(benchmark::State& state) {
   const ConditionedDepth depth(snapshots().front(), ball_clip);
   const double leaf_size = options_for(state).leaf_size;
-  const int levels = Octree::level_of(1.0, leaf_size);
+  const int levels = Octree::level_for(1.0, leaf_size);
   // A volume that it was integrated into before: no brick is new.
   TsdfVolume volume(VoxelGrid(1.0, levels, ball_clip, 0.0035));
   integrate(volume, depth);

@@ -13,7 +13,7 @@
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
 #include "depth/back_project.hpp"
-#include "depth/placement_of.hpp"
+#include "depth/find_placement.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
@@ -63,7 +63,7 @@ std::size_t octree_bytes(const ReconstructOptions& options) {
 }
 
 Octree octree_for(const ReconstructOptions& options) {
-  const int leaf_level = Octree::level_of(options.root_size, options.leaf_size);
+  const int leaf_level = Octree::level_for(options.root_size, options.leaf_size);
   return {options.root_size, options.level.value_or(leaf_level), octree_bytes(options)};
 }
 
@@ -94,7 +94,7 @@ void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
   PointGrid grid = world_points(snapshot);
   clip(grid, options_.clip);
   if (!options_.placements.empty()) {
-    clip(grid, placement_of(snapshot, options_));
+    clip(grid, find_placement(snapshot, options_));
   }
   triangulate(grid, static_cast<float>(options_.threshold),
               [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
@@ -233,7 +233,7 @@ SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots,
 void BennettReconstructor::preview(double leaf_size, std::uint64_t max_facets,
                                    const FacetSink& sink, const std::stop_token& stop) const {
   throw_if_stopped(stop);
-  const int level = std::min(Octree::level_of(octree_.side(), leaf_size), octree_.levels());
+  const int level = std::min(Octree::level_for(octree_.side(), leaf_size), octree_.levels());
   coarse_surface(octree_.at_level(level), max_facets, sink);
 }
 

@@ -42,9 +42,9 @@ class CornerBricks {
     std::ranges::sort(by_row_, {}, [](const Found& found) {
       return std::tuple(found.position.y, found.position.z, found.position.x);
     });
-    rows_.resize(by_row_.empty() ? 0 : row_of(by_row_.back().position) + 2);
+    rows_.resize(by_row_.empty() ? 0 : row_index(by_row_.back().position) + 2);
     for (const Found& found : by_row_) {
-      ++rows_[row_of(found.position) + 1];
+      ++rows_[row_index(found.position) + 1];
     }
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
   }
@@ -59,11 +59,11 @@ class CornerBricks {
   }
 
   const Brick* find(const Index3& position) const {
-    if (position.y < 0 || row_of(position) + 1 >= rows_.size()) {
+    if (position.y < 0 || row_index(position) + 1 >= rows_.size()) {
       return nullptr;
     }
     const auto row = std::span(by_row_).subspan(
-        rows_[row_of(position)], rows_[row_of(position) + 1] - rows_[row_of(position)]);
+        rows_[row_index(position)], rows_[row_index(position) + 1] - rows_[row_index(position)]);
     const auto found = std::ranges::lower_bound(row, position.x, {},
                                                 [](const Found& one) { return one.position.x; });
     return found != row.end() && found->position.x == position.x ? found->brick : nullptr;
@@ -76,7 +76,7 @@ class CornerBricks {
   };
 
   /// Rows along x, of the layer and of the one above in turn.
-  std::size_t row_of(const Index3& position) const {
+  std::size_t row_index(const Index3& position) const {
     return 2 * static_cast<std::size_t>(position.y) + static_cast<std::size_t>(position.z - layer_);
   }
 

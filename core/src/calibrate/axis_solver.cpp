@@ -22,7 +22,8 @@ constexpr double settled_step = 5e-6;  // metres
 constexpr std::size_t min_residuals = 60;
 constexpr double lever = 0.05;  // metres above the platform, where positions are judged
 
-// Far starts compare with what is far off; then only what fits is left.
+// Coarse to fine: from a start that is 20 mm off, residuals up to 20 mm pull the axis near. Then
+// only residuals that noise explains count.
 constexpr std::array schedule = {
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
@@ -34,7 +35,7 @@ constexpr std::array schedule = {
 
 constexpr std::size_t last_stage = schedule.size() - 1;
 
-double step_of(const Vector4d& motion) {
+double step_length(const Vector4d& motion) {
   return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
 }
 
@@ -93,7 +94,7 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
     const Vector4d motion =
         largest > max_motion ? Vector4d(wanted * (max_motion / largest)) : wanted;
     solution.platform_from_sensor = with_axis_moved(solution.platform_from_sensor, plane, motion);
-    solution.last_step = step_of(motion);
+    solution.last_step = step_length(motion);
     if (stage == last_stage && solution.last_step < settled_step) {
       break;
     }

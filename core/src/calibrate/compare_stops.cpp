@@ -29,8 +29,8 @@ double turn_between(const ScanCheck::Stop& a, const ScanCheck::Stop& b) {
       .angle();
 }
 
-std::vector<std::size_t> partners_of(const std::vector<const ScanCheck::Stop*>& stops,
-                                     std::size_t from, double min_deg, double max_deg) {
+std::vector<std::size_t> find_partners(const std::vector<const ScanCheck::Stop*>& stops,
+                                       std::size_t from, double min_deg, double max_deg) {
   std::vector<std::size_t> partners;
   for (std::size_t to = 0; to < stops.size(); ++to) {
     const double apart = to == from ? 0 : turn_between(*stops[from], *stops[to]);
@@ -76,9 +76,9 @@ Agreement compare(const ScanCheck::Stop& to, const Vector3d& point, const Vector
 }
 
 Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::size_t from) {
-  auto partners = partners_of(stops, from, min_apart_deg, max_apart_deg);
+  auto partners = find_partners(stops, from, min_apart_deg, max_apart_deg);
   if (partners.empty()) {
-    partners = partners_of(stops, from, 0, max_neighbour_deg);
+    partners = find_partners(stops, from, 0, max_neighbour_deg);
   }
   Comparison comparison;
   for (const SurfaceReading& reading : stops[from]->readings) {

@@ -39,12 +39,12 @@ class Widening {
     const Vector3d across(-normal.x(), -normal.y(), 0);
     const Vector3d tilt = pose_.linear() * (across - normal * normal.dot(across));
     turning_ = Vector3d(tilt.y(), -tilt.x(), 0);
-    rise_ = -(pose_.linear() * across_of(back_.translation())).z();
+    rise_ = -(pose_.linear() * flattened(back_.translation())).z();
   }
 
   /// Metres for each unit of the factor. @param point  of the platform's frame
   Vector3d operator()(const Vector3d& point) const {
-    return pose_.linear() * across_of(back_ * point) + turning_.cross(point) +
+    return pose_.linear() * flattened(back_ * point) + turning_.cross(point) +
            rise_ * Vector3d::UnitZ();
   }
 
@@ -52,7 +52,7 @@ class Widening {
   Eigen::Vector2d turning() const { return turning_.head<2>(); }
 
  private:
-  static Vector3d across_of(const Vector3d& seen) { return {seen.x(), seen.y(), 0}; }
+  static Vector3d flattened(const Vector3d& seen) { return {seen.x(), seen.y(), 0}; }
 
   Isometry3d pose_;
   Isometry3d back_;

@@ -56,11 +56,11 @@ std::vector<ObjectCell> take_cluster(std::set<ObjectCell>& cells) {
 }
 
 MissingPart measure(const std::vector<ObjectCell>& cluster) {
-  Vector3d low = middle_of(cluster.front());
+  Vector3d low = find_middle(cluster.front());
   Vector3d high = low;
   Places places;
   for (const ObjectCell& cell : cluster) {
-    const Vector3d middle = middle_of(cell);
+    const Vector3d middle = find_middle(cell);
     low = low.cwiseMin(middle);
     high = high.cwiseMax(middle);
     places.add(middle);

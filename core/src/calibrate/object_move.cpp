@@ -22,13 +22,13 @@ using Readings = std::vector<SurfaceReading>;
 constexpr double min_object_pixels = 120;  // 2 cm at 0.7 m
 constexpr double readings_wanted = 2000;
 constexpr int max_step = 6;  // pixels
-// What two looks at the same scene differ by is alike in some 7 x 7 pixels: all longer errors are
-// the same in both.
+// Pixels that share one error of the difference of two looks, some 7 x 7: errors of longer range
+// are fixed, and cancel.
 constexpr double correlated_pixels = 50;
 constexpr double min_agreement = 0.7;    // cosine between the two normals
 constexpr double min_found_again = 0.3;  // of the readings: else there is another object, or none
 
-// What is expected where the object's shape does not tell: a ball's turn, a wall's sideways shift.
+// A prior for what the object's shape leaves open: a ball's turn, a wall's sideways shift.
 constexpr double expected_noise = 0.001;  // metres
 constexpr double min_noise = 0.0003;      // metres: residuals of so few readings may be less
 constexpr double expected_shift = 0.003;
@@ -91,14 +91,14 @@ Readings readings_in(const ObjectView& view, const Isometry3d& platform_from_sen
   return inside;
 }
 
-/// The sigma of a shift's length: how many of them the shift is from none is its Mahalanobis
-/// distance, which one direction that the shape does not tell does not hide.
+/// The sigma of a shift in its own direction, so that length / sigma is the shift's Mahalanobis
+/// distance from none. A direction that the shape leaves open does not enter it.
 double sigma_along(const Vector2d& shift, const Eigen::Matrix2d& covariance) {
   const double distance = std::sqrt(shift.dot(covariance.inverse() * shift));
   return distance > 0 ? shift.norm() / distance : std::sqrt(covariance.diagonal().maxCoeff());
 }
 
-Vector3d middle_of(const Readings& readings) {
+Vector3d find_middle(const Readings& readings) {
   Vector3d sum = Vector3d::Zero();
   for (const SurfaceReading& reading : readings) {
     sum += reading.point;
@@ -150,14 +150,14 @@ std::optional<ObjectMove> measure_move(const Snapshot& first, const DepthFrame& 
   if (before.pixels() < min_object_pixels || readings.empty()) {
     return std::nullopt;
   }
-  // Readings of one surface, in units of those that are independent of each other.
+  // Readings per independent one.
   const double correlation =
       std::max(1.0, correlated_pixels * static_cast<double>(readings.size()) / before.pixels());
   const double noise = correlation * expected_noise * expected_noise;
   const Vector3d prior(noise / (expected_shift * expected_shift),
                        noise / (expected_shift * expected_shift),
                        noise / (expected_turn * expected_turn));
-  Motion motion{.middle = middle_of(readings)};
+  Motion motion{.middle = find_middle(readings)};
   ObjectMove move;
   for (const Limits& limits : schedule) {
     const Equations all = equations(readings, after, pose, motion, limits);

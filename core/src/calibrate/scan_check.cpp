@@ -16,9 +16,8 @@ using Stops = std::vector<const ScanCheck::Stop*>;
 constexpr std::size_t window = 5;  // steps of height that a platform's readings spread over
 constexpr std::size_t min_platform_readings = 500;  // at a stop
 
-/// The largest turn from one stop to the next, radians.
-///
-/// The object's frame turns back by a stop's angle: headings are taken in it.
+/// The largest turn from one stop to the next, radians: between the headings that the sensor has in
+/// the object's frame.
 double find_widest_gap(const Stops& stops) {
   std::vector<double> headings;
   for (const ScanCheck::Stop* stop : stops) {
@@ -69,7 +68,7 @@ std::vector<Eigen::Vector3d> find_seen(const Stops& stops) {
                          [](const ScanCheck::Stop* stop) { return &stop->seen; });
   const std::vector<ObjectCell> several = cells_of_several(cells);
   std::vector<Eigen::Vector3d> seen;
-  std::ranges::transform(several, std::back_inserter(seen), middle_of);
+  std::ranges::transform(several, std::back_inserter(seen), find_middle);
   return seen;
 }
 

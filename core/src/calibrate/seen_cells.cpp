@@ -10,7 +10,7 @@ ObjectCell to_object_cell(const Eigen::Vector3d& point) {
           static_cast<std::int16_t>(cell.z())};
 }
 
-Eigen::Vector3d middle_of(const ObjectCell& cell) {
+Eigen::Vector3d find_middle(const ObjectCell& cell) {
   return object_cell_side * Eigen::Vector3d(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5);
 }
 

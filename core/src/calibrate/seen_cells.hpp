@@ -18,7 +18,7 @@ inline constexpr double object_cell_side = 0.005;
 ObjectCell to_object_cell(const Eigen::Vector3d& point);
 
 /// Metres, object's frame.
-Eigen::Vector3d middle_of(const ObjectCell& cell);
+Eigen::Vector3d find_middle(const ObjectCell& cell);
 
 /// Those that more than one stop has, in their order.
 /// @param stops  the cells of each, none twice

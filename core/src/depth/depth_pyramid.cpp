@@ -15,8 +15,8 @@ constexpr float huge = std::numeric_limits<float>::max();
 Eigen::Array4f no_bounds() { return {huge, huge, 0, 0}; }
 
 /// @param u1,v1  behind the last pixel
-Eigen::Array4f bounds_of(std::span<const DepthObservation> observations, int width, int u0, int v0,
-                         int u1, int v1) {
+Eigen::Array4f find_bounds(std::span<const DepthObservation> observations, int width, int u0,
+                           int v0, int u1, int v1) {
   DepthPyramid::MinMax bounds{
       .min_free = huge, .max_free = 0, .min_surface = huge, .max_surface = 0};
   for (int v = v0; v < v1; ++v) {
@@ -44,8 +44,9 @@ DepthPyramid::DepthPyramid(std::span<const DepthObservation> observations, int w
   finest.bounds.reserve(static_cast<std::size_t>(finest.width * finest.height));
   for (int v = 0; v < height; v += finest_side) {
     for (int u = 0; u < width; u += finest_side) {
-      finest.bounds.push_back(bounds_of(observations, width, u, v, std::min(u + finest_side, width),
-                                        std::min(v + finest_side, height)));
+      finest.bounds.push_back(find_bounds(observations, width, u, v,
+                                          std::min(u + finest_side, width),
+                                          std::min(v + finest_side, height)));
     }
   }
   levels_.push_back(std::move(finest));

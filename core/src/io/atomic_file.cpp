@@ -27,7 +27,7 @@ constexpr std::size_t page_bytes = 4096;  // direct writes need memory aligned t
                    : "Check that the folder exists and that this program may write to it.");
 }
 
-std::filesystem::path folder_of(const std::filesystem::path& file) {
+std::filesystem::path parent_folder(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
@@ -49,7 +49,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& target, int at
   std::string name(1, '.');
   name +=
       target.filename().string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(attempt);
-  return folder_of(target) / name;
+  return parent_folder(target) / name;
 }
 
 AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
@@ -138,7 +138,7 @@ void AtomicFile::commit() {
     fail(target_, "put in place", errno);
   }
   ::close(std::exchange(descriptor_, -1));
-  sync_folder(folder_of(target_));
+  sync_folder(parent_folder(target_));
 }
 
 void write_file(const std::filesystem::path& target, std::string_view content,

@@ -20,7 +20,7 @@ std::uint64_t mixed(std::uint64_t bits) {
   return bits ^ bits >> 31;
 }
 
-std::uint64_t hash_of(const std::array<float, 3>& corner) {
+std::uint64_t hash_corner(const std::array<float, 3>& corner) {
   const auto bits = [&](std::size_t axis) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(corner[axis] + 0.0F)};  // folds -0 into 0
   };
@@ -41,7 +41,8 @@ void MeshCheck::add(std::span<const Facet> facets) {
   facets_ += facets.size();
   for (const Facet& facet : facets) {
     const auto corners = facet.corners;
-    const std::array hashes{hash_of(corners[0]), hash_of(corners[1]), hash_of(corners[2])};
+    const std::array hashes{hash_corner(corners[0]), hash_corner(corners[1]),
+                            hash_corner(corners[2])};
     edges_ += hash_of_edge(hashes[0], hashes[1]) + hash_of_edge(hashes[1], hashes[2]) +
               hash_of_edge(hashes[2], hashes[0]);
 

@@ -17,7 +17,7 @@ struct Spokes {
   std::uint32_t second;
 };
 
-Spokes spokes_of(const MeshTriangle& triangle, std::uint32_t centre) {
+Spokes find_spokes(const MeshTriangle& triangle, std::uint32_t centre) {
   const std::size_t at = local_index(triangle, centre);
   return {triangle[(at + 1) % 3], triangle[(at + 2) % 3]};
 }
@@ -54,7 +54,7 @@ std::vector<char> find_star_shaped_fans(std::span<const std::array<float, 3>> ve
     Vector3 up{};
     sectors.clear();
     for (const std::uint32_t i : fan) {
-      const auto [first, second] = spokes_of(triangles[i], vertex);
+      const auto [first, second] = find_spokes(triangles[i], vertex);
       is_closed = is_closed && left_from[first] != vertex;
       left_from[first] = vertex;
       sectors.push_back({.first = to_vector3(vertices[first]) - centre,
@@ -64,7 +64,7 @@ std::vector<char> find_star_shaped_fans(std::span<const std::array<float, 3>> ve
       }
     }
     for (const std::uint32_t i : fan) {
-      std::uint32_t& left = left_from[spokes_of(triangles[i], vertex).second];
+      std::uint32_t& left = left_from[find_spokes(triangles[i], vertex).second];
       is_closed = is_closed && left == vertex;
       left = none;
     }

@@ -66,7 +66,7 @@ std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const T
     }
   });
   std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
-  return distinct(candidates, middle_of(points));
+  return distinct(candidates, find_middle(points));
 }
 
 /// Poses in which target and turn may fit, roughly.

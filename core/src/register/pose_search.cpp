@@ -31,8 +31,9 @@ constexpr double far_limit = 0.012;       // metres, at the first iterations
 constexpr double near_limit = 0.004;      // at the last
 constexpr int approach = 8;               // iterations from the one to the other
 constexpr double cauchy_scale = 0.002;
-constexpr double settled = 1e-5;      // metres
-constexpr double contact_weight = 4;  // of a point of a flat foot: platforms are known well
+constexpr double settled = 1e-5;  // metres
+constexpr double contact_weight =
+    4;  // of a foot's point: a platform is known better than a reading
 
 // Two poses that are nearer are the same.
 constexpr double same_angle_deg = 4;
@@ -62,13 +63,14 @@ std::vector<SurfacePoint> turned(const std::vector<SurfacePoint>& points,
   return turned;
 }
 
-/// How far shifted points are from where one side of a search allows them to be.
+/// How badly shifted points fit one side of a search.
 struct Misfit {
   double distance = 0;                     ///< metres, mean, capped
   Vector3d to_surface = Vector3d::Zero();  ///< mean, of those near a surface that looks their way
 };
 
-/// What lies where nobody looked is no misfit: what one turn sees of an underside, the other hid.
+/// Points where this side saw neither surface nor empty space count 0: one turn sees the underside
+/// that the other hid.
 Misfit measure_misfit(const SearchedSide& side, const std::vector<SurfacePoint>& points,
                       const Vector3d& shift) {
   Misfit misfit;
@@ -131,7 +133,7 @@ std::vector<PoseCandidate> centred_candidates(const SearchedSide& target, const 
   for (std::size_t i = 0; i < rotations; ++i) {
     Eigen::Isometry3d& pose = candidates[i].target_from_points;
     pose.linear() = to_rotation(i);
-    pose.translation() = target.nearest.middle() - middle_of(turned(sample.turn, pose.linear()));
+    pose.translation() = target.nearest.middle() - find_middle(turned(sample.turn, pose.linear()));
   }
   return candidates;
 }
@@ -189,7 +191,7 @@ PoseCandidate refine(const NearestPoints& target, const Stands& stands,
     add_contacts(step, stands, points, pose);
     const Eigen::Isometry3d motion = step.motion();
     pose = motion * pose;
-    if (i > approach && length_of(motion, target.middle()) < settled) {
+    if (i > approach && motion_length(motion, target.middle()) < settled) {
       break;
     }
   }

@@ -32,7 +32,7 @@ struct Readings {
   double per_patch = 1;  ///< that lie where the sensor's errors are alike
 };
 
-Readings readings_of(const SeenTurn& turn) {
+Readings take_readings(const SeenTurn& turn) {
   double pixels = 0;
   for (const StopView& view : turn.stops) {
     pixels += view.pixels();
@@ -177,9 +177,9 @@ void add_contacts(RigidFit& fit, const Comparison& compared, const Isometry3d& p
   }
 }
 
-/// Comparisons for each that is independent: a patch of alike errors takes part in those of its
-/// own readings and, in as many again, as the surface that other readings are compared with.
-double correlation_of(const StopFit& fit, double readings_per_patch) {
+/// Comparisons per independent one. A patch of pixels that share one error is in the comparisons of
+/// its own readings, and in as many as the surface that other readings are compared with.
+double find_correlation(const StopFit& fit, double readings_per_patch) {
   const auto pairs = static_cast<double>(fit.distances.size());
   return 2 * readings_per_patch * pairs /
          static_cast<double>(std::max<std::size_t>(fit.matched, 1));
@@ -206,11 +206,11 @@ ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn
                         const std::stop_token& stop) {
   Comparison compared{.placed = placed,
                       .turn = turn,
-                      .of_turn = readings_of(turn),
+                      .of_turn = take_readings(turn),
                       .of_placed = {},
                       .middle = middle};
   for (const PlacedTurn& other : placed) {
-    compared.of_placed.push_back(readings_of(*other.turn));
+    compared.of_placed.push_back(take_readings(*other.turn));
   }
   ReadingFit result{.object_from_turn = start};
   StopFit last;
@@ -219,12 +219,12 @@ ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn
     add_contacts(last.fit, compared, result.object_from_turn);
     const Isometry3d motion = last.fit.motion();
     result.object_from_turn = motion * result.object_from_turn;
-    if (length_of(motion, middle) < settled) {
+    if (motion_length(motion, middle) < settled) {
       break;
     }
   }
   const RigidFit::Matrix6d covariance =
-      last.fit.covariance(correlation_of(last, compared.of_turn.per_patch));
+      last.fit.covariance(find_correlation(last, compared.of_turn.per_patch));
   result.direction_sigma = largest_sigma(covariance.topLeftCorner<3, 3>());
   result.position_sigma = largest_sigma(covariance.bottomRightCorner<3, 3>());
   result.residual = median(std::move(last.distances));

@@ -29,9 +29,10 @@ constexpr double max_contradiction = 0.2;
 constexpr double min_overlap = 0.15;
 constexpr double max_residual = 0.0015;  // metres
 
-// Of a symmetric object, the ways to turn it over that are tried.
+// Axes in the platform's plane about which a symmetric object is tried to be turned over.
 constexpr int turns_over = 8;
-constexpr double max_upright = 0.3;  // cosine: less, and the underside is seen
+constexpr double max_upright =
+    0.3;  // cosine between the two upward axes; below, the underside shows
 
 std::string text(const char* format, double value) {
   std::array<char, 96> buffer{};
@@ -87,8 +88,8 @@ RegisteredPose refined(const Target& target, const SeenTurn& turn, const PoseCan
           .contradiction = best.contradiction};
 }
 
-/// Of a symmetric object, a pose that fits like the best one and has its top down: who turned it
-/// over wants to see its underside, and one that is upright again would leave that unseen.
+/// A pose of a symmetric object that fits as well as the best one and has the object's top down. A
+/// person who turns an object over wants its underside seen, so that an upright answer is wrong.
 PoseCandidate turned_over(const Target& target, const SeenTurn& turn, const NearestPoints& points,
                           const PoseCandidate& best) {
   const Vector3d middle = best.target_from_points * points.middle();
@@ -144,7 +145,7 @@ Answer refine_told(const Target& target, const SeenTurn& turn, const Isometry3d&
   const PoseCandidate candidate = refine_candidate(target, turn, told);
   Answer answer{.reason = refuse(candidate)};
   if (answer.reason.empty()) {
-    answer.pose = refined(target, turn, candidate, middle_of(turn.points), threads, stop);
+    answer.pose = refined(target, turn, candidate, find_middle(turn.points), threads, stop);
   }
   return answer;
 }
@@ -170,7 +171,7 @@ std::vector<PlacedTurn> placed_turns(const std::vector<SeenTurn>& seen,
   return placed;
 }
 
-/// Places all turns that fit to those which are placed, until no more does.
+/// Places turn after turn on those placed so far, until none of the rest fits.
 /// @param[out] candidates  of the last turn
 /// @return of the first that does not fit, its number and why
 std::optional<std::pair<std::size_t, std::string>> place_all(

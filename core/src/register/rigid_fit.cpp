@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 constexpr double max_motion = 0.1;  // radians or metres
 constexpr double lever = 0.05;      // metres
 
-// A motion that nothing opposes, as the turn of a vase about its axis, is kept small by a prior: as
-// if so small a share of the weight lay at the lever and opposed it.
+// A prior that keeps free motions small, such as a vase's turn about its axis: a share of the total
+// weight that opposes every motion, at the lever.
 constexpr double damping = 1e-4;
 
 }  // namespace
@@ -69,7 +69,7 @@ RigidFit::Matrix6d RigidFit::covariance(double correlation) const {
   return damped().inverse() * variance;
 }
 
-double length_of(const Eigen::Isometry3d& motion, const Vector3d& middle) {
+double motion_length(const Eigen::Isometry3d& motion, const Vector3d& middle) {
   const Vector3d shift = motion * middle - middle;
   return shift.norm() + lever * Eigen::AngleAxisd(motion.linear()).angle();
 }

@@ -37,7 +37,7 @@ struct RigidFit {
 };
 
 /// How far a motion takes a point 5 cm from the middle, metres.
-double length_of(const Eigen::Isometry3d& motion, const Eigen::Vector3d& middle);
+double motion_length(const Eigen::Isometry3d& motion, const Eigen::Vector3d& middle);
 
 /// Weight of a distance that is Cauchy distributed.
 inline double cauchy_weight(double distance, double scale) {

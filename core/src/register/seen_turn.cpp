@@ -94,7 +94,7 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::
   return some;
 }
 
-Vector3d middle_of(const std::vector<SurfacePoint>& points) {
+Vector3d find_middle(const std::vector<SurfacePoint>& points) {
   Eigen::AlignedBox3d box;
   for (const SurfacePoint& point : points) {
     box.extend(point.point);

@@ -18,18 +18,18 @@ struct SeenTurn {
 /// Reads the depth images of a turn. @throws  as `register_turns`
 SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_token& stop);
 
-/// About so many of the points, spread evenly over them.
+/// Every n-th of the points, so that about `count` remain.
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, std::size_t count);
 
 /// The middle of the points' bounding box.
-Eigen::Vector3d middle_of(const std::vector<SurfacePoint>& points);
+Eigen::Vector3d find_middle(const std::vector<SurfacePoint>& points);
 
-/// Whether a turn saw that nothing is at a point: several of its stops saw through it, or it lies
-/// below its platform.
+/// Whether a turn saw a point to be empty space: several of its stops saw through it, or it lies
+/// below the turn's platform.
 /// @param point  metres, the turn's frame
 bool contradicts(const SeenTurn& turn, const Eigen::Vector3d& point);
 
-/// Share of the points where a turn saw that nothing is.
+/// Share of the points that lie where a turn saw empty space.
 /// @param turn_from_points  takes the points to the turn's frame
 double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,
                           const Eigen::Isometry3d& turn_from_points);

@@ -15,7 +15,7 @@ constexpr float min_weight = 0.1F;
 /// readings of weight one as rays that ended on a surface.
 /// @param votes  of rays that passed through the voxel
 /// @param min_votes  that make it free space
-VoxelState state_of(const TsdfBrick& brick, std::size_t sample, int votes, int min_votes) {
+VoxelState to_state(const TsdfBrick& brick, std::size_t sample, int votes, int min_votes) {
   const float w = unpack(brick.weight[sample]);
   const bool is_surface = w >= min_weight;
   if (votes >= min_votes &&
@@ -51,7 +51,7 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
         }
       }
       for (const int of_block : free) {
-        brick.set_state(sample, state_of(from, sample, of_block + from.free[sample], min_votes));
+        brick.set_state(sample, to_state(from, sample, of_block + from.free[sample], min_votes));
         ++sample;
       }
     }

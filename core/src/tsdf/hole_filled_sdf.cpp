@@ -11,11 +11,11 @@ namespace {
 
 constexpr int brick_side = VoxelGrid::brick_side;
 
-// What was observed may lie this far below another pose's platform: poses are known to a tenth of
-// a millimetre or so.
+// Observed surfaces are cut only this far below another pose's platform, as poses are known to some
+// tenths of a millimetre.
 constexpr double observed_slack = 0.001;  // metres
 
-// Of several poses, what is lower above its platform is hardly seen: its readings mix foot and
+// Below this height above its platform a pose hardly observes the object: its readings mix foot and
 // platform.
 constexpr double unseen_foot = 0.004;  // metres
 
@@ -164,7 +164,8 @@ float HoleFilledSdf::foot_ticks() const {
   return static_cast<float>(unseen_foot / grid().truncation() * VoxelGrid::ticks);
 }
 
-/// What no pose saw right above a platform is as what is above it there: a foot goes straight down.
+/// Continues an unobserved foot straight down: a voxel right above a platform that no pose observed
+/// takes the value above the unobserved layer.
 HoleFilledSdf::Value HoleFilledSdf::fill_foot(const Index3& voxel, Value value) const {
   if (value.observed || state_at(voxel, brick_at(voxel)) == VoxelState::free) {
     return value;
@@ -202,8 +203,9 @@ bool HoleFilledSdf::is_above_platforms(const Index3& low, const Index3& size) co
   });
 }
 
-/// The side of the surface that a whole brick, counted from the box's lowest corner, lies on; both,
-/// if its blocks and those around it do not agree, or it has samples of its own.
+/// The side of the surface that a whole brick lies on; `both` if its blocks and their neighbours
+/// differ in sign, or if it has samples of its own.
+/// @param brick  counted from the box's lowest corner
 HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
   const int per_brick = grid().blocks_per_brick();
   const Index3 first{brick.x * per_brick, brick.y * per_brick, brick.z * per_brick};

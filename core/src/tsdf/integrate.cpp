@@ -33,20 +33,20 @@ class TsdfIntegrator {
 
   /// The number of the largest nodes.
   static int root_count(const VoxelGrid& grid) {
-    const Index3 roots = roots_of(grid);
+    const Index3 roots = count_roots(grid);
     return roots.x * roots.y * roots.z;
   }
 
   /// Integrates into one of them.
   void run(int root) {
-    const Index3 roots = roots_of(grid_);
+    const Index3 roots = count_roots(grid_);
     descend({root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
              root / (roots.x * roots.y) * root_bricks},
             root_bricks);
   }
 
  private:
-  static Index3 roots_of(const VoxelGrid& grid) {
+  static Index3 count_roots(const VoxelGrid& grid) {
     const auto roots = [](int bricks) { return (bricks + root_bricks - 1) / root_bricks; };
     return {roots(grid.size().x), roots(grid.size().y), roots(grid.size().z)};
   }
@@ -135,8 +135,8 @@ class TsdfIntegrator {
     SampleBatch batch;
     sampler_.sample({block.x * voxels, block.y * voxels, block.z * voxels}, batch);
     const bool is_all_free = batch.free_count == static_cast<int>(batch.count);
-    // A brick is made for votes too, or it would be the order of the snapshots that decides whether
-    // they count.
+    // Votes make a brick, too. Otherwise those of snapshots before the first surface would be lost,
+    // and the result would depend on the order of the snapshots.
     if (samples == nullptr && (batch.near_count > 0 || (batch.free_count > 0 && !is_all_free))) {
       samples = volume_.make(brick);
     }

@@ -151,7 +151,7 @@ class MarchingCubes {
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const CubeEdge edge = surface.triangles[i][corner];
         const std::size_t axis = edge / 4U;
-        const Index3 voxel = start_of(edge, {cube.x, cube.y, z});
+        const Index3 voxel = find_start(edge, {cube.x, cube.y, z});
         const bool is_above = axis < 2 && voxel.z > z;
         std::uint32_t& index = indices_[axis + (is_above ? 3 : 0)][at(voxel.x, voxel.y)];
         if (index == 0) {
@@ -166,7 +166,7 @@ class MarchingCubes {
   }
 
   /// The voxel that an edge of a cube begins at.
-  static Index3 start_of(CubeEdge edge, Index3 cube) {
+  static Index3 find_start(CubeEdge edge, Index3 cube) {
     const int u = edge % 2;
     const int v = edge / 2 % 2;
     switch (edge / 4) {

@@ -91,7 +91,7 @@ bool triangulate_loop(const Loop& loop, CubeSurface& surface) {
   return false;
 }
 
-CubeSurface surface_of(std::size_t pattern) {
+CubeSurface make_surface(std::size_t pattern) {
   CubeSurface surface;
   std::array<int, edges> next = successors(pattern);
   for (std::size_t first = 0; first < edges; ++first) {
@@ -110,7 +110,7 @@ CubeSurface surface_of(std::size_t pattern) {
 std::array<CubeSurface, 256> all_patterns() {
   std::array<CubeSurface, 256> surfaces{};
   for (std::size_t pattern = 0; pattern < surfaces.size(); ++pattern) {
-    surfaces[pattern] = surface_of(pattern);
+    surfaces[pattern] = make_surface(pattern);
   }
   return surfaces;
 }

@@ -7,7 +7,7 @@
 
 #include "depth/condition_depth.hpp"
 #include "depth/crop.hpp"
-#include "depth/placement_of.hpp"
+#include "depth/find_placement.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
@@ -193,7 +193,7 @@ ConditionedDepth SolidReconstructor::condition(const Snapshot& snapshot) const {
   if (options_.placements.empty()) {
     return {window, options_.clip};
   }
-  return {window, options_.clip, placement_of(snapshot, options_)};
+  return {window, options_.clip, find_placement(snapshot, options_)};
 }
 
 HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known,

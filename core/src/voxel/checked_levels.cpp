@@ -32,7 +32,7 @@ int checked_levels(const ReconstructOptions& options) {
   if (options.threads < 1) {
     refuse("threads: must be at least 1");
   }
-  return Octree::level_of(options.root_size, options.leaf_size);
+  return Octree::level_for(options.root_size, options.leaf_size);
 }
 
 }  // namespace octurn

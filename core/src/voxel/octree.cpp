@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-int Octree::level_of(double side, double leaf_size) {
+int Octree::level_for(double side, double leaf_size) {
   int level = 0;
   while (level < max_levels && side / (1 << level) > leaf_size) {
     ++level;
@@ -48,7 +48,7 @@ std::size_t Octree::brick_count(int layer) const {
 Brick& Octree::brick_at(const Index3& brick) {
   std::uint32_t index = root_;
   for (int height = height_; height > 0; --height) {
-    std::uint32_t& child = nodes_[index][child_of(brick, height)];
+    std::uint32_t& child = nodes_[index][child_index(brick, height)];
     if (child == 0) {
       child = add_child(height);
     }
@@ -106,7 +106,7 @@ const Brick* Octree::find(const Index3& brick) const {
   }
   std::uint32_t index = root_;
   for (int height = height_; height > 0; --height) {
-    index = nodes_[index][child_of(brick, height)];
+    index = nodes_[index][child_index(brick, height)];
     if (index == 0) {
       return nullptr;
     }

@@ -30,7 +30,7 @@ class Octree {
   static constexpr int max_levels = octurn::max_levels;
 
   /// The first level whose nodes are at or below `leaf_size`, both in metres.
-  static int level_of(double side, double leaf_size);
+  static int level_for(double side, double leaf_size);
 
   /// @param max_bytes  that its nodes and bricks may take
   /// @throws std::invalid_argument  unless side > 0 and 0 <= levels <= max_levels
@@ -94,7 +94,7 @@ class Octree {
  private:
   using Node = std::array<std::uint32_t, 8>;  // children: nodes, or bricks at height 1; 0 is none
 
-  static std::size_t child_of(const Index3& brick, int height) {
+  static std::size_t child_index(const Index3& brick, int height) {
     const int bit = height - 1;
     return static_cast<std::size_t>((brick.x >> bit & 1) | (brick.y >> bit & 1) << 1 |
                                     (brick.z >> bit & 1) << 2);

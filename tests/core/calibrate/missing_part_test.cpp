@@ -102,7 +102,7 @@ TEST(SeenCells, AreThoseOfMoreThanOneStop) {
 
 TEST(SeenCells, HoldTheirMiddle) {
   for (const Vector3d& point : {Vector3d(0.0012, -0.0012, 0.31), Vector3d(-0.14, 0.14, 0.4)}) {
-    EXPECT_LT((middle_of(to_object_cell(point)) - point).cwiseAbs().maxCoeff(),
+    EXPECT_LT((find_middle(to_object_cell(point)) - point).cwiseAbs().maxCoeff(),
               object_cell_side / 2 + 1e-12);
   }
 }

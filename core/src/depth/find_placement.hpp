@@ -9,7 +9,8 @@ namespace octurn {
 
 /// How the object lay in a snapshot of one of several poses.
 /// @throws std::invalid_argument  if the options do not list it
-inline const Placement& placement_of(const Snapshot& snapshot, const ReconstructOptions& options) {
+inline const Placement& find_placement(const Snapshot& snapshot,
+                                       const ReconstructOptions& options) {
   const auto pose = static_cast<std::size_t>(snapshot.pose);
   if (snapshot.pose < 0 || pose >= options.placements.size()) {
     throw std::invalid_argument("reconstruct: a snapshot is of a pose that is not listed");

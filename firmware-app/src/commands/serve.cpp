@@ -30,8 +30,8 @@ std::string page_address(const HttpOptions& options, int port) {
 /// Why the daemon ends what it does.
 enum class Outcome { end, restart };
 
-/// Settings are taken up by a restart this long after they were stored at the earliest, so that the
-/// answer that tells of it is sent.
+/// A restart for new settings is put off by at least this long, so that the answer to the request
+/// that stored them is sent first.
 constexpr auto look_interval = 500ms;
 
 /// What a daemon is made of, once for all of its restarts.
@@ -102,12 +102,19 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   Scanner scanner(rig, config.limits, store);
   TurntableRunner turntable(scanner, store);
   AccessKeys keys(config.data / "keys.json");
+  const MachineWatch health({.free_bytes = [&] { return store.free_bytes(); },
+                             .warnings =
+                                 [&] {
+                                   return find_machine_warnings(
+                                       doctor_input(rig, settings, scanner.calibration(), store));
+                                 }});
   Api api({.scanner = scanner,
            .store = store,
            .page = machine.page,
            .settings = settings,
            .turntable = turntable,
            .keys = keys,
+           .machine = health,
            .rig = rig,
            .appliance = machine.appliance ? &*machine.appliance : nullptr});
   const HttpServer server(

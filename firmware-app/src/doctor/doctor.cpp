@@ -7,6 +7,8 @@
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
 #include "scan/calibration_store.hpp"
+#include "scan/earlier_scans.hpp"
+#include "scan/scan_estimate.hpp"
 #include "turntable/pulse_train.hpp"
 #include "turntable/real_time.hpp"
 
@@ -71,6 +73,19 @@ std::vector<Finding> check_machine(const DoctorInput& input) {
 }
 
 }  // namespace
+
+DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
+                         const CalibrationStore& calibration, const ScanStore& store) {
+  Config config = settings.config();
+  config.scan = calibration.in_force(config.scan);
+  const ScanEstimate estimate = estimate_scan(earlier_scans(store), config.scan);
+  return {.rig = rig,
+          .config = config,
+          .settings_trouble = settings.trouble(),
+          .usual_scan_bytes = estimate.is_measured && estimate.bytes > 0
+                                  ? std::optional(estimate.bytes)
+                                  : std::nullopt};
+}
 
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =

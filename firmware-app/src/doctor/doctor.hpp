@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config.hpp"
+#include "config/config_store.hpp"
 #include "doctor/finding.hpp"
 #include "doctor/sensor_reading.hpp"
 #include "doctor/turntable_checks.hpp"
@@ -23,6 +24,10 @@ struct DoctorInput {
   LineOwner lines = LineOwner::another;
   std::filesystem::path root = "/";  ///< folder with /dev, /proc, /run and /sys
 };
+
+/// The scanner of a daemon, with the configuration and the sensor's pose in force.
+DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
+                         const CalibrationStore& calibration, const ScanStore& store);
 
 /// Runs all checks, the sensor's first. Never moves the motor.
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading);

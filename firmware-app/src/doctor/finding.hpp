@@ -30,6 +30,7 @@ struct Finding {
   std::string measured = {};  ///< with units
   std::string advice = {};    ///< what to do, in one sentence; empty: nothing
   Action action = Action::none;
+  friend bool operator==(const Finding&, const Finding&) = default;
 };
 
 /// One check of the doctor, and the maker of its findings.

@@ -149,7 +149,7 @@ struct Api::Route {
   WaitsFor waits_for = WaitsFor::nothing;
 };
 
-Api::Api(App app) : app_(std::move(app)), events_([this] { return latest_news(app_); }) {}
+Api::Api(App app) : app_(std::move(app)), events_(StatusNews(app_)) {}
 
 Response Api::answer(const Request& request) {
   try {

@@ -1,15 +1,12 @@
 #pragma once
 
-#include <memory>
-
 #include "appliance/appliance.hpp"
 #include "config/config_store.hpp"
 #include "doctor/doctor.hpp"
-#include "doctor/machine_warnings.hpp"
+#include "doctor/machine_watch.hpp"
 #include "doctor/turntable_runner.hpp"
 #include "http/access_keys.hpp"
 #include "http/page.hpp"
-#include "scan/earlier_scans.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
@@ -22,21 +19,12 @@ struct App {
   ConfigStore& settings;
   TurntableRunner& turntable;
   AccessKeys& keys;
+  const MachineWatch& machine;
   RigOptions rig;                  ///< that the scanner works with
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
-  std::unique_ptr<MachineWarnings> warnings = std::make_unique<MachineWarnings>();
 
-  /// This scanner, with the configuration and the sensor's pose in force.
   DoctorInput doctor_input() const {
-    Config config = settings.config();
-    config.scan = scanner.calibration().in_force(config.scan);
-    const ScanEstimate estimate = estimate_scan(earlier_scans(store), config.scan);
-    return {.rig = rig,
-            .config = config,
-            .settings_trouble = settings.trouble(),
-            .usual_scan_bytes = estimate.is_measured && estimate.bytes > 0
-                                    ? std::optional(estimate.bytes)
-                                    : std::nullopt};
+    return octurn::doctor_input(rig, settings, scanner.calibration(), store);
   }
 };
 

@@ -36,11 +36,9 @@ namespace octurn {
 ///
 ///     any thread --- Scanner --- CommandSlot (one waits, one is carried out) --> Worker
 ///                       |                                                          |
-///                       |   stores: scans and poses on the disk, held in memory    |  sensor,
-///                       turntable,
-///                       +-- StatusBoard: status, camera frame, mesh preview <------+  octree, the
-///                       scan
-///                       +-- ModelPipe: the bytes of a model <----------------------+  that runs
+///                       |   stores: scans and poses on the disk, held in memory    |  the rig,
+///                       +-- StatusBoard: status, camera frame, mesh preview <------+  the volume,
+///                       +-- ModelPipe: the bytes of a model <----------------------+  the scan
 class Scanner {
  public:
   Scanner(RigOptions rig, const Limits& limits, ScanStore& store);
@@ -127,6 +125,9 @@ class Scanner {
   std::vector<Job> list() const;
 
   Status status() const { return board_.status(); }
+
+  /// The same without the times of a running scan; the same object until something changes.
+  std::shared_ptr<const Status> latest_status() const { return board_.latest_status().get(); }
 
   /// Waits until no scan runs and no turn goes on, but no longer than `patience`.
   Status wait_until_done(std::chrono::milliseconds patience) const;

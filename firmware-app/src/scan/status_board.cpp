@@ -12,6 +12,8 @@ namespace {
 
 using Clock = Status::Clock;
 
+bool is_ready(const DeviceStatus& device) { return device.state == DeviceStatus::State::ready; }
+
 void set_failed(DeviceStatus& device, const Failure& failure) {
   if (device.failure.detail != failure.detail) {
     log::warning("scanner", failure.detail);
@@ -79,8 +81,11 @@ void StatusBoard::rename(std::string_view id, std::string_view name) {
 }
 
 void StatusBoard::set_sensor_ready(const std::string& name) {
+  if (const auto now = status_.get(); is_ready(now->sensor) && now->sensor.name == name) {
+    return;  // called for every frame: the status stays the object that it is
+  }
   status_.update([&](Status& status) {
-    if (status.sensor.state != DeviceStatus::State::ready) {
+    if (!is_ready(status.sensor)) {
       log::info("scanner", "sensor ready: " + name);
     }
     status.sensor.state = DeviceStatus::State::ready;
@@ -90,10 +95,11 @@ void StatusBoard::set_sensor_ready(const std::string& name) {
 }
 
 void StatusBoard::set_turntable_ready() {
+  if (is_ready(status_.get()->turntable)) {
+    return;
+  }
   status_.update([&](Status& status) {
-    if (status.turntable.state != DeviceStatus::State::ready) {
-      log::info("scanner", "turntable ready: " + status.turntable.name);
-    }
+    log::info("scanner", "turntable ready: " + status.turntable.name);
     status.turntable.state = DeviceStatus::State::ready;
     status.turntable.failure = {};
   });

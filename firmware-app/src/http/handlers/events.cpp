@@ -1,6 +1,7 @@
 #include "http/handlers/events.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "http/handlers/system.hpp"
 #include "http/problem.hpp"
@@ -18,8 +19,16 @@ std::string to_line(const json& data) {
 
 }  // namespace
 
-std::vector<News> latest_news(const App& app) {
-  const json status = status_json(app);
+std::vector<News> StatusNews::operator()() {
+  Sources now{.status = app_.scanner.latest_status(),
+              .build = app_.scanner.build_run(),
+              .machine = app_.machine.health(),
+              .scans_revision = app_.store.revision()};
+  if (now == before_ && !now.status->is_scanning()) {  // the time of a scan runs on
+    return {};
+  }
+  before_ = std::move(now);
+  const json status = status_json(app_);
   const json devices{{"sensor", status.at("sensor")}, {"turntable", status.at("turntable")}};
   return {{"devices", to_line(devices)},
           {"warnings", to_line({{"warnings", status.at("warnings")}})},

@@ -24,14 +24,13 @@ json status_json(const App& app) {
   const std::optional<Job> newest = app.store.newest_finished();
   const std::optional<Job> running = running_scan(app);
   const Status now = app.scanner.status();
-  const std::vector<Finding> warnings = app.warnings->get(
-      std::chrono::steady_clock::now(), [&] { return find_machine_warnings(app.doctor_input()); });
+  const auto machine = app.machine.health();
   json body{{"version", version()},
             {"sensor", to_json(now.sensor)},
             {"turntable", to_json(now.turntable)},
-            {"disk_free_bytes", app.store.free_bytes()},
+            {"disk_free_bytes", machine->disk_free_bytes},
             {"appliance", app.appliance != nullptr},
-            {"warnings", to_json(warnings).at("findings")},
+            {"warnings", to_json(machine->warnings).at("findings")},
             {"scan", nullptr},
             {"build", nullptr},
             {"newest", nullptr},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "octurn/units.hpp"
+#include "sensor/pixel_ray.hpp"
 
 namespace octurn {
 namespace {
@@ -56,9 +57,8 @@ struct Ray {
 };
 
 Ray make_ray(int u, int v, const Intrinsics& lens, const Eigen::Isometry3d& platform_from_sensor) {
-  const Eigen::Vector3d in_sensor((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
   return {.origin = platform_from_sensor.translation(),
-          .direction = platform_from_sensor.linear() * in_sensor};
+          .direction = platform_from_sensor.linear() * pixel_ray(lens, u, v)};
 }
 
 /// Radius of the largest circle about the platform's axis inside the box.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "octurn/units.hpp"
+#include "sensor/pixel_ray.hpp"
 
 namespace octurn {
 namespace {
@@ -59,13 +60,12 @@ Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v
                             static_cast<std::size_t>(u);
   const double reading = frame.depth[pixel] * lens.depth_unit;
   const double z = reading > 0 ? reading : std::numeric_limits<double>::quiet_NaN();
-  return view.platform_from_sensor *
-         Eigen::Vector3d((u - lens.cx) * z / lens.fx, (v - lens.cy) * z / lens.fy, z);
+  return view.platform_from_sensor * (z * pixel_ray(lens, u, v));
 }
 
-/// A frame in which the object has not the steps of depth in which a sensor counts: they stand
-/// still, and would hold it. Each reading inside the clip box becomes the mean of those around it
-/// on the same surface.
+/// Smooths away the sensor's quantisation: its steps of depth stand still while the object turns,
+/// and would bias the rotation towards none. Each reading inside the clip box becomes the mean of
+/// those around it on the same surface.
 DepthFrame smoothed(const View& view, const DepthFrame& frame) {
   const auto same_surface = static_cast<int>(max_step / view.intrinsics.depth_unit);
   DepthFrame smooth = frame;

@@ -1,12 +1,12 @@
 #include "http/scan_json.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
+#include "scan/json_numbers.hpp"
 #include "scan/model_json.hpp"
 #include "scan/pose_of_json.hpp"
 
@@ -14,9 +14,6 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
-
-/// Thousandths, as people and the page read them.
-double rounded(double value) { return std::round(value * 1000) / 1000; }
 
 std::string path_to(const std::string& id) { return "/api/v1/scans/" + id; }
 
@@ -41,8 +38,8 @@ json to_json(const Job& job) {
           {"created", job.times.created},
           {"snapshots_done", job.snapshots_done},
           {"snapshots_total", job.settings.snapshots},
-          {"seconds_elapsed", rounded(job.times.elapsed.count())},
-          {"seconds_left", job.times.left ? json(rounded(job.times.left->count())) : json()},
+          {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
+          {"seconds_left", job.times.left ? json(to_thousandths(job.times.left->count())) : json()},
           {"late_pulses", job.times.late_pulses},
           {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},

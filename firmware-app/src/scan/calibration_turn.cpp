@@ -13,6 +13,7 @@
 #include "scan/plan.hpp"
 #include "scan/sensor_map_json.hpp"
 #include "scan/take_depth_image.hpp"
+#include "sensor/pixel_ray.hpp"
 
 namespace octurn {
 namespace {
@@ -43,8 +44,7 @@ void add_to_slice(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
       if (!(z > 0)) {
         continue;
       }
-      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
-      const Eigen::Vector3d point = object_from_sensor * (z * ray);
+      const Eigen::Vector3d point = object_from_sensor * (z * pixel_ray(lens, u, v));
       if (is_in_slice(point)) {
         slice.emplace_back(point.x(), point.z());
       }

@@ -1,7 +1,6 @@
 #include "scan/job_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "octurn/json_object.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
+#include "scan/json_numbers.hpp"
 #include "scan/model_json.hpp"
 #include "scan/pose_of_json.hpp"
 
@@ -20,18 +20,9 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double most = std::numeric_limits<double>::max();
 
-/// Thousandths, as people and the page read them.
-double rounded(double value) { return std::round(value * 1000) / 1000; }
-
-/// Of what not every method counts.
-double number_or_none(JsonObject& keys, std::string_view key, double largest) {
-  const auto value = keys.value(key);
-  return !value || value->json().is_null() ? 0 : value->number(0, largest);
-}
-
 /// @param named  finds the value of a name
 template <typename Value>
-Value one_of(const JsonValue& name, std::optional<Value> (*named)(std::string_view)) {
+Value parse_name(const JsonValue& name, std::optional<Value> (*named)(std::string_view)) {
   const std::optional<Value> value = named(name.text());
   if (!value) {
     name.refuse("a name that this version knows");
@@ -72,7 +63,7 @@ json to_job_json(const Job& job) {
               {"created", job.times.created},
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
-              {"seconds_elapsed", rounded(job.times.elapsed.count())},
+              {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
               {"late_pulses", job.times.late_pulses},
               {"settings", to_json(job.settings)},
               {"error", nullptr},
@@ -94,20 +85,20 @@ json to_job_json(const Job& job) {
 
 Job to_job(const json& object) {
   JsonObject keys(object, ErrorCode::job_malformed, "");
-  constexpr int most_int = std::numeric_limits<int>::max();
+  constexpr int max_int = std::numeric_limits<int>::max();
   return {.id = keys.at("id").text(),
           .name = keys.at("name").text(),
-          .state = one_of(keys.at("state"), job_state_named),
-          .phase = one_of(keys.at("phase"), phase_named),
-          .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, most_int)),
+          .state = parse_name(keys.at("state"), job_state_named),
+          .phase = parse_name(keys.at("phase"), phase_named),
+          .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, max_int)),
           .times = {.created = keys.at("created").text(),
                     .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
-                    .late_pulses = static_cast<int>(number_or_none(keys, "late_pulses", most_int))},
+                    .late_pulses = static_cast<int>(number_or_zero(keys, "late_pulses", max_int))},
           .settings = stored_settings_from(keys.at("settings")),
           .failure = failure_from(keys.value("error")),
           .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model")),
-          .builds = {.chosen = static_cast<int>(number_or_none(keys, "build", most_int))},
+          .builds = {.chosen = static_cast<int>(number_or_zero(keys, "build", max_int))},
           .pose_of = pose_of_from(keys.value("pose_of"))};
 }
 

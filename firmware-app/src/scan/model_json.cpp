@@ -1,11 +1,11 @@
 #include "scan/model_json.hpp"
 
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "octurn/units.hpp"
+#include "scan/json_numbers.hpp"
 #include "scan/quality_json.hpp"
 
 namespace octurn {
@@ -14,20 +14,11 @@ namespace {
 using nlohmann::json;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double most = std::numeric_limits<double>::max();
-constexpr double most_whole = 1e15;  // a double holds every whole number up to there
-
-/// Thousandths, as people and the page read them.
-double rounded(double value) { return std::round(value * 1000) / 1000; }
+constexpr double unlimited = std::numeric_limits<double>::max();
+constexpr double max_whole = 1e15;  // a double holds every whole number up to there
 
 std::uint64_t count(const JsonValue& value) {
-  return static_cast<std::uint64_t>(value.number(0, most_whole));
-}
-
-/// Of what not every method counts.
-double number_or_none(JsonObject& keys, std::string_view key, double largest) {
-  const auto value = keys.value(key);
-  return !value || value->json().is_null() ? 0 : value->number(0, largest);
+  return static_cast<std::uint64_t>(value.number(0, max_whole));
 }
 
 std::optional<Quality> quality_from(const std::optional<JsonValue>& object) {
@@ -41,21 +32,21 @@ json to_json(const Model& model) {
   const bool counted = report.parts > 0;
   json size_mm = json::array();
   for (const double side : report.size) {
-    size_mm.push_back(rounded(mm_from_metres(side)));
+    size_mm.push_back(to_thousandths(mm_from_metres(side)));
   }
-  return {
-      {"parts", counted ? json(report.parts) : json()},
-      {"dropped_parts", counted ? json(report.dropped.count) : json()},
-      {"dropped_volume_cm3", counted ? json(rounded(cm3_from_m3(report.dropped.volume))) : json()},
-      {"filled_share", counted ? json(rounded(report.filled_share)) : json()},
-      {"bytes", report.bytes},
-      {"triangles", report.triangles},
-      {"leaves", report.leaves},
-      {"watertight", report.watertight},
-      {"volume_cm3", rounded(cm3_from_m3(report.volume))},
-      {"size_mm", std::move(size_mm)},
-      {"seconds", rounded(model.build_time.count())},
-      {"quality", model.quality ? to_json(*model.quality) : json()}};
+  return {{"parts", counted ? json(report.parts) : json()},
+          {"dropped_parts", counted ? json(report.dropped.count) : json()},
+          {"dropped_volume_cm3",
+           counted ? json(to_thousandths(cm3_from_m3(report.dropped.volume))) : json()},
+          {"filled_share", counted ? json(to_thousandths(report.filled_share)) : json()},
+          {"bytes", report.bytes},
+          {"triangles", report.triangles},
+          {"leaves", report.leaves},
+          {"watertight", report.watertight},
+          {"volume_cm3", to_thousandths(cm3_from_m3(report.volume))},
+          {"size_mm", std::move(size_mm)},
+          {"seconds", to_thousandths(model.build_time.count())},
+          {"quality", model.quality ? to_json(*model.quality) : json()}};
 }
 
 Model to_model(const JsonValue& object) {
@@ -64,15 +55,15 @@ Model to_model(const JsonValue& object) {
       .report = {.leaves = count(keys.at("leaves")),
                  .triangles = count(keys.at("triangles")),
                  .bytes = count(keys.at("bytes")),
-                 .parts = static_cast<std::uint64_t>(number_or_none(keys, "parts", most_whole)),
-                 .filled_share = number_or_none(keys, "filled_share", 1),
+                 .parts = static_cast<std::uint64_t>(number_or_zero(keys, "parts", max_whole)),
+                 .filled_share = number_or_zero(keys, "filled_share", 1),
                  .watertight = keys.flag("watertight").value_or(false),
-                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, most)),
+                 .volume = m3_from_cm3(keys.at("volume_cm3").number(0, unlimited)),
                  .dropped = {.count = static_cast<std::uint64_t>(
-                                 number_or_none(keys, "dropped_parts", most_whole)),
-                             .volume =
-                                 m3_from_cm3(number_or_none(keys, "dropped_volume_cm3", most))}},
-      .build_time = Seconds(keys.at("seconds").number(0, most)),
+                                 number_or_zero(keys, "dropped_parts", max_whole)),
+                             .volume = m3_from_cm3(
+                                 number_or_zero(keys, "dropped_volume_cm3", unlimited))}},
+      .build_time = Seconds(keys.at("seconds").number(0, unlimited)),
       .quality = quality_from(keys.value("quality"))};
   const std::vector<JsonValue> size = keys.at("size_mm").elements(3);
   for (int axis = 0; axis < 3; ++axis) {

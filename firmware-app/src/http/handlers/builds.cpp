@@ -17,13 +17,13 @@ namespace {
 
 using nlohmann::json;
 
-json builds_of(const App& app, std::string_view id) {
+json make_builds_json(const App& app, std::string_view id) {
   return builds_json(find_scan(app, id), *app.scanner.build_run());
 }
 
 /// The build of that number in a path. @throws Error "no-model"  if there is none
 json find_build(const App& app, std::string_view id, std::string_view number) {
-  for (json& build : builds_of(app, id)) {
+  for (json& build : make_builds_json(app, id)) {
     if (std::to_string(build["build"].get<int>()) == number) {
       return std::move(build);
     }
@@ -32,7 +32,7 @@ json find_build(const App& app, std::string_view id, std::string_view number) {
               "GET its builds lists them.");
 }
 
-int number_of(const json& build) { return build["build"].get<int>(); }
+int parse_build_number(const json& build) { return build["build"].get<int>(); }
 
 /// Reads the key that is no setting, and takes it out.
 bool take_choice(json& body) {
@@ -47,7 +47,7 @@ bool take_choice(json& body) {
 }  // namespace
 
 Response list_builds(App& app, std::string_view id) {
-  return json_response({{"builds", builds_of(app, id)}});
+  return json_response({{"builds", make_builds_json(app, id)}});
 }
 
 Response start_build(App& app, const Request& request, std::string_view id) {
@@ -77,7 +77,7 @@ Response send_build(App& app, std::string_view id, std::string_view build) {
 
 Response cancel_build(App& app, std::string_view id, std::string_view build) {
   const json found = find_build(app, id, build);
-  if (!app.scanner.cancel_build(id, number_of(found))) {
+  if (!app.scanner.cancel_build(id, parse_build_number(found))) {
     throw Error(ErrorCode::not_running, "this build is " + found["state"].get<std::string>(),
                 "Only a build that goes on can be cancelled.");
   }
@@ -85,12 +85,12 @@ Response cancel_build(App& app, std::string_view id, std::string_view build) {
 }
 
 Response choose_build(App& app, std::string_view id, std::string_view build) {
-  app.scanner.choose_build(id, number_of(find_build(app, id, build)));
+  app.scanner.choose_build(id, parse_build_number(find_build(app, id, build)));
   return json_response(to_json(app, find_scan(app, id)));
 }
 
 Response remove_build(App& app, std::string_view id, std::string_view build) {
-  app.scanner.remove_build(id, number_of(find_build(app, id, build)));
+  app.scanner.remove_build(id, parse_build_number(find_build(app, id, build)));
   return {.status = 204};
 }
 
@@ -101,7 +101,7 @@ std::filesystem::path find_build_model(const App& app, std::string_view id,
     throw Error(ErrorCode::no_model, "this build is " + found["state"].get<std::string>(),
                 "Only a finished one has a model.");
   }
-  return app.store.model_file(id, number_of(found));
+  return app.store.model_file(id, parse_build_number(found));
 }
 
 Response send_build_model(App& app, const Request& request, std::string_view id,

@@ -13,6 +13,7 @@
 #include "scan/pose_json.hpp"
 #include "scan/sensor_map_json.hpp"
 #include "scan/wall_looks.hpp"
+#include "sensor/pixel_ray.hpp"
 
 namespace octurn {
 namespace {
@@ -156,7 +157,8 @@ Response send_points(App& app) {
       const double z = camera->frame.depth[pixel] * lens.depth_unit;
       const auto mm = [](double metres) { return std::round(mm_from_metres(metres) * 10) / 10; };
       if (z > 0) {
-        points.push_back({mm(z * (u - lens.cx) / lens.fx), mm(z * (v - lens.cy) / lens.fy), mm(z)});
+        const Eigen::Vector3d point = z * pixel_ray(lens, u, v);
+        points.push_back({mm(point.x()), mm(point.y()), mm(z)});
       }
     }
   }

@@ -113,7 +113,7 @@ TEST_F(ConfigStores, UseTheLastGoodSettingsWhereTheFileIsDamaged) {
 
 TEST_F(ConfigStores, StartWithNothingWhereNoFileIsGood) {
   put(file("settings.json"), "[]");
-  put(file("settings.json.last"), std::string(3, '\0'));
+  put(file("settings.last.json"), std::string(3, '\0'));
   const ConfigStore store = open();
   EXPECT_EQ(store.stored(), json::object());
   EXPECT_NE(store.trouble(), "");

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* settings_file = "settings.json";
-constexpr const char* last_good_file = "settings.json.last";
+constexpr const char* last_good_file = "settings.last.json";
 constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a body has 64 KiB at most
 
 // Where settings are kept, and who may change them, is not for those who may change them.

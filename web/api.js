@@ -1,5 +1,7 @@
 // Requests to the scanner. What it answers is described in API.md.
 
+import {text} from './texts.js';
+
 /**
  * @typedef {Object} Settings
  * @property {number} snapshots
@@ -128,14 +130,14 @@ export class Problem extends Error {
   }
 }
 
-const unreachable = () => new Problem('unreachable', 'The scanner does not answer', '',
-    'Check that it has power and is in the same network.');
+const unreachable = () => new Problem('unreachable', text('problem.unreachable'), '',
+    text('problem.unreachable-hint'));
 
 /** @param {Response} response */
 async function problemOf(response) {
   const isProblem = response.headers.get('Content-Type')?.startsWith('application/problem+json');
   const body = isProblem ? await response.json().catch(() => ({})) : {};
-  return new Problem(body.code ?? 'http', body.title || `The scanner answered ${response.status}`, body.detail, body.hint);
+  return new Problem(body.code ?? 'http', body.title || text('problem.http', {status: String(response.status)}), body.detail, body.hint);
 }
 
 /**

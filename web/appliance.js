@@ -3,10 +3,11 @@
 import * as api from './api.js';
 import {element, setText, show} from './dom.js';
 import {awaitFragment} from './fragment.js';
+import {text} from './texts.js';
 import {isUpdating, prepareUpdate, showScanning, showUpdate, showUpdateAway, updateAway} from './update.js';
 import {isJoining, prepareWifi, showWifi, wifiAway} from './wifi.js';
 
-const usual = {title: 'The scanner does not answer.', text: 'Trying again until it does. A scan goes on without this page.'};
+const usual = {title: text('away.title'), text: text('away.text')};
 
 let isAppliance = false;
 let isPrepared = false;  // its part of the page is there
@@ -28,9 +29,9 @@ async function prepare() {
 
 /** What the banner says when the scanner does not answer: that may be as it should. */
 function explainAway() {
-  const {title, text} = updateAway() ?? wifiAway() ?? usual;
+  const {title, text: detail} = updateAway() ?? wifiAway() ?? usual;
   setText(element('away-title'), title);
-  setText(element('away-text'), text);
+  setText(element('away-text'), detail);
 }
 
 async function look() {

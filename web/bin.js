@@ -3,6 +3,7 @@
 import * as requests from './api_bin.js';
 import {element, list, part, setText, show} from './dom.js';
 import * as format from './format.js';
+import {text} from './texts.js';
 
 const undoLasts = 20000;  // milliseconds
 
@@ -14,19 +15,19 @@ export function rowOf({id, name, created, snapshots_done, kept_until}, now) {
   const days = Math.max(Math.ceil((Date.parse(kept_until) - now.getTime()) / 86400e3), 0);
   return {
     id,
-    name: name || `Scan of ${format.when(created)}`,
-    about: `${format.count(snapshots_done, 'snapshot')} · kept for ${format.count(days, 'day')} more`,
+    name: name || text('scan.unnamed', {when: format.when(created)}),
+    about: text('bin.about', {snapshots: text('count.snapshots', {count: snapshots_done}), count: days}),
   };
 }
 
 /** @param {requests.Binned[]} scans */
 function render(scans) {
   show(element('bin'), scans.length > 0);
-  setText(element('bin-title'), `Bin (${scans.length})`);
+  setText(element('bin-title'), text('bin.title', {count: scans.length}));
   list(element('bin-rows'), scans.map((scan) => rowOf(scan, new Date())), ({id}) => id, 'bin-row', (item, row) => {
     setText(part(item, '.scan-name'), row.name);
     setText(part(item, '.scan-about'), row.about);
-    part(item, 'button').setAttribute('aria-label', `Restore: ${row.name}`);
+    part(item, 'button').setAttribute('aria-label', text('library.action', {action: text('bin.restore'), name: row.name}));
   });
 }
 
@@ -57,7 +58,7 @@ export function hideUndo() {
 /** Offers for a while to bring a scan back that has just been deleted. @param {string} name @param {() => void} undo */
 export function offerUndo(name, undo) {
   clearTimeout(timer);
-  setText(element('deleted-text'), `In the bin: ${name}.`);
+  setText(element('deleted-text'), text('bin.moved', {name}));
   show(element('deleted'), true);
   part(element('deleted'), 'button').onclick = () => {
     hideUndo();

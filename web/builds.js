@@ -2,12 +2,11 @@
 
 import * as format from './format.js';
 import {badgeOf} from './quality.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api_builds.js').Build} Build */
 /** @typedef {import('./api.js').Scan} Scan */
 /** @typedef {import('./state.js').State} State */
-
-const methods = {solid: 'solid', intersection: 'by intersection'};
 
 /** Faults of a model that a solved pose may cure. */
 const faultsOfPose = new Set(['stops-disagree', 'floats', 'sunk']);
@@ -50,20 +49,20 @@ export const isCrooked = ({model, settings, calibration}) => (settings.calibrate
     Boolean(model?.quality?.reasons.some(({code}) => faultsOfPose.has(code)));
 
 /** @param {Build} build */
-const nameOf = ({build, poses}) => build === 0 ? 'As scanned' :
-    poses && poses.length > 0 ? `Build ${build}, of ${poses.length + 1} sides` : `Build ${build}`;
+const nameOf = ({build, poses}) => build === 0 ? text('build.first') :
+    poses && poses.length > 0 ? text('build.name-sides', {number: build, sides: poses.length + 1}) : text('build.name', {number: build});
 
 /** @param {Build} build */
 function phaseText({state, phase, snapshots_done, snapshots_total}) {
   if (state === 'waiting') {
-    return 'Waiting for its turn';
+    return text('build.waiting');
   }
   switch (phase) {
-    case 'calibrating': return 'Finding out where the sensor stood';
-    case 'registering': return 'Fitting the sides together';
-    case 'rebuilding': return `Reading snapshot ${Math.max(snapshots_done, 1)} of ${snapshots_total}`;
-    case 'building': return 'Building the model';
-    default: return 'Getting ready';
+    case 'calibrating': return text('build.calibrating');
+    case 'registering': return text('build.registering');
+    case 'rebuilding': return text('build.rebuilding', {done: Math.max(snapshots_done, 1), total: snapshots_total});
+    case 'building': return text('phase.building');
+    default: return text('phase.starting');
   }
 }
 
@@ -73,7 +72,7 @@ const shareOf = ({phase, snapshots_done, snapshots_total}) => phase === 'rebuild
 
 /** @param {Build} build */
 function troubleOf({state, error}) {
-  const title = state === 'failed' ? 'The model was not built' : 'The build was ended';
+  const title = text(state === 'failed' ? 'build.failed' : 'build.cancelled');
   return error && (state === 'failed' || state === 'cancelled') ?
     {title, text: [error.detail, error.hint].map(format.sentence).join(' ')} : null;
 }
@@ -85,8 +84,8 @@ const rowOf = ({build, model, settings, calibration, created, chosen, poses}, sh
   badge: model && badgeOf(model),
   when: format.when(created),
   about: [
-    `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`,
-    settings.calibrate === 'told' ? 'pose as told' : calibration && !calibration.accepted ? 'pose not found' : 'pose checked',
+    text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)}),
+    text(settings.calibrate === 'told' ? 'build.pose-told' : calibration && !calibration.accepted ? 'build.pose-missing' : 'build.pose-checked'),
     model ? format.bytes(model.bytes) : '',
   ].filter(Boolean).join(' · '),
   isShown: build === shown,

@@ -4,6 +4,7 @@ import {element, list, part, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
 import {offerLeaves} from './leaf_choices.js';
 import {explain, gap, threshold} from './settings.js';
+import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./builds.js').buildsOf>} Builds */
 /** @typedef {import('./api.js').Settings} Settings */
@@ -31,8 +32,8 @@ const chosenMethod = () => part(element('build-methods'), 'input:checked').value
 function explainFields() {
   const method = chosenMethod();
   setText(element('build-method-text'), explain(method));
-  setText(element('build-pose-text'), element('build-pose').value === 'auto' ?
-    'Where it is found and better than the told one, the model is built with it.' : 'The pose that the scanner was told when the scan was taken.');
+  setText(element('build-pose-text'), text(element('build-pose').value === 'auto' ?
+    'builds.pose-auto-about' : 'builds.pose-told-about'));
   for (const row of form().querySelectorAll('[data-of]')) {
     const isOf = /** @type {HTMLElement} */ (row).dataset.of === method;
     show(row, isOf);
@@ -41,7 +42,7 @@ function explainFields() {
   const fields = clipFields();
   for (let axis = 0; axis < 3; ++axis) {
     const isEmpty = Number(fields[axis].value) >= Number(fields[axis + 3].value);
-    fields[axis + 3].setCustomValidity(isEmpty ? 'This must be more than where the space begins.' : '');
+    fields[axis + 3].setCustomValidity(isEmpty ? text('clip.empty') : '');
   }
 }
 
@@ -91,7 +92,7 @@ function showRows({rows}) {
     show(part(item, '[data-do=remove]'), row.canRemove);
     part(item, '[data-do=download]').href = row.download;
     for (const action of item.querySelectorAll('[data-do=choose], [data-do=download], [data-do=remove]')) {
-      action.setAttribute('aria-label', `${action.title || 'Use this one'}: ${row.name}`);
+      action.setAttribute('aria-label', text('library.action', {action: action.title || text('builds.choose'), name: row.name}));
     }
   });
 }

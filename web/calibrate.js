@@ -12,6 +12,7 @@ import {sentence} from './format.js';
 import {here} from './places.js';
 import {chosenPose, discard, preparePlacement, showPlacement} from './placement_form.js';
 import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPose} from './pose_picture.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 
@@ -36,7 +37,7 @@ function see(news) {
   showPlacement(news.platform_from_sensor);
 }
 
-/** @param {string} failure  what did not happen then @param {() => Promise<unknown>} action */
+/** @param {string} failure  key of the text that says what did not happen then @param {() => Promise<unknown>} action */
 async function act(failure, action) {
   if (isPending) {
     return;
@@ -48,7 +49,7 @@ async function act(failure, action) {
     see(await requests.calibration());
   } catch (error) {
     const {title, detail, hint} = problemOf(error);
-    showNotice('pose-problem', {title: failure, detail: [detail || title, hint].map(sentence).join(' ')});
+    showNotice('pose-problem', {title: text(failure), detail: [detail || title, hint].map(sentence).join(' ')});
   }
   ++actions;
   isPending = false;
@@ -57,7 +58,7 @@ async function act(failure, action) {
 async function keep() {
   const pose = chosenPose();
   if (pose) {
-    await act('The pose was not kept', async () => {
+    await act('failure.pose', async () => {
       await requests.change({platform_from_sensor: pose});
       discard();
     });
@@ -67,7 +68,7 @@ async function keep() {
 async function keepSpace() {
   const clip_mm = chosenSpace();
   if (clip_mm) {
-    await act('The scanned space was not kept', async () => {
+    await act('failure.space', async () => {
       const {defaults} = await changeSettings({scan: {clip_mm}});
       discardSpace();
       showSpace(defaults.clip_mm);
@@ -90,7 +91,7 @@ function scale(event) {
   const wanted = scaleOf(element('known-model').valueAsNumber, element('known-caliper').valueAsNumber, calibration?.scale ?? 1);
   setText(element('known-problem'), wanted.problem);
   if (!wanted.problem) {
-    act('The scale was not set', async () => {
+    act('failure.scale', async () => {
       await requests.change({scale: wanted.scale});
       element('known').reset();
     });
@@ -101,7 +102,7 @@ const isWallReady = () => [...element('wall-ready').querySelectorAll('input')].e
 
 function measureWall() {
   if (isWallReady()) {
-    act('The look at the wall did not start', () => requests.measure({kind: 'wall', frames: wallFrames}));
+    act('failure.wall', () => requests.measure({kind: 'wall', frames: wallFrames}));
   }
 }
 
@@ -153,13 +154,13 @@ async function watch(look) {
 
 function listen() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
-  click('measure-turn', () => act('The turn did not start', () => requests.measure({kind: 'turn', stops: turnStops})));
-  click('turn-cancel', () => act('The turn was not cancelled', requests.cancel));
+  click('measure-turn', () => act('failure.turn', () => requests.measure({kind: 'turn', stops: turnStops})));
+  click('turn-cancel', () => act('failure.cancel-turn', requests.cancel));
   click('measure-wall', measureWall);
-  click('wall-cancel', () => act('The look was not cancelled', requests.cancel));
-  click('forget-map', () => act('The map was not removed', () => requests.change({sensor_map: null})));
-  click('undo', () => act('Nothing was undone', requests.undo));
-  click('unscale', () => act('The scale was not changed', () => requests.change({scale: 1})));
+  click('wall-cancel', () => act('failure.cancel-wall', requests.cancel));
+  click('forget-map', () => act('failure.forget-map', () => requests.change({sensor_map: null})));
+  click('undo', () => act('failure.undo', requests.undo));
+  click('unscale', () => act('failure.unscale', () => requests.change({scale: 1})));
   element('known').addEventListener('submit', scale);
   element('wall-ready').addEventListener('change', () => element('measure-wall').setAttribute('aria-disabled', String(!isWallReady())));
 }

@@ -2,7 +2,7 @@
 
 import * as texts from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
-import {sentence} from './format.js';
+import {degrees, sentence} from './format.js';
 import {drawMap} from './map_picture.js';
 import {drawSlice} from './plans.js';
 
@@ -60,8 +60,8 @@ function drawReport(report) {
     part(element('bars'), `[data-bars=${which}]`).setAttribute('d', bars[which]);
   }
   element('bars').setAttribute('aria-label', bars.label);
-  setText(element('bars-up'), `+${texts.barRange(report.stops).toFixed(1)}°`);
-  setText(element('bars-down'), `−${texts.barRange(report.stops).toFixed(1)}°`);
+  setText(element('bars-up'), `+${degrees(texts.barRange(report.stops), 1)}`);
+  setText(element('bars-down'), `−${degrees(texts.barRange(report.stops), 1)}`);
 }
 
 /** @param {Calibration} calibration */

@@ -1,6 +1,7 @@
 // What the page Calibrate says of a calibration. Pure: the scanner's answer in, texts and choices out.
 
-import {count, sentence, when} from './format.js';
+import {degrees, millimetres, percent, sentence, when} from './format.js';
+import {fixed, text} from './texts.js';
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 /** @typedef {import('./api_calibration.js').PoseRecord} PoseRecord */
@@ -12,22 +13,8 @@ const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // less is no change: docs/c
 export const turnStops = 24;  // of a turn that measures the pose
 export const scaleLimits = {min: 0.97, max: 1.03};
 
-/** @param {number} value  millimetres */
-export const millimetres = (value) => `${value.toFixed(Math.abs(value) < 9.995 ? 2 : 1)} mm`;
-
-/** @param {number} value */
-export const degrees = (value) => `${value.toFixed(2)}°`;
-
-const sources = {
-  default: 'Taken from the drawing',
-  settings: 'From the settings',
-  page: 'Set by hand',
-  turn: 'Measured with a turn',
-  scan: 'Corrected by a scan',
-};
-
 /** @param {PoseRecord} pose */
-export const sourceOf = ({source, at}) => at ? `${sources[source]}, ${when(at)}` : sources[source];
+export const sourceOf = ({source, at}) => at ? text('pose.at', {source: text(`pose.${source}`), when: when(at)}) : text(`pose.${source}`);
 
 /** Whether anybody told where this sensor stands. @param {PoseRecord} pose */
 const isTold = ({source}) => source !== 'default';
@@ -40,22 +27,21 @@ export function summaryOf(calibration) {
   if (!isTold(calibration)) {
     return {
       tone: 'warn',
-      title: 'Not calibrated yet',
-      text: 'The sensor is taken to stand exactly as in the drawing. On a real rig that is a few millimetres off, and models lose their thin parts.',
+      title: text('pose.untold'),
+      text: text('pose.untold-about'),
     };
   }
   const {sigma_mm, sigma_deg} = calibration;
-  const text = sigma_mm !== null && sigma_deg !== null ?
-    `The axis is known to ±${millimetres(sigma_mm)} and ±${degrees(sigma_deg)}.` : 'How exact it is, only a turn can tell.';
-  return {tone: sigma_mm === null ? 'idle' : 'good', title: sourceOf(calibration), text};
+  return {tone: sigma_mm === null ? 'idle' : 'good', title: sourceOf(calibration), text: sigma_mm !== null && sigma_deg !== null ?
+    text('pose.known', {shift: millimetres(sigma_mm), tilt: degrees(sigma_deg)}) : text('pose.unknown')};
 }
 
 /** @param {CalibrationRun} run */
 function phaseOf({kind, phase, stop, stops}) {
   if (phase === 'solving') {
-    return kind === 'wall' ? 'Working out the map' : 'Working out where the sensor stands';
+    return text(`run.solving-${kind}`);
   }
-  return kind === 'wall' ? `Looking at the wall, ${stop} of ${stops}` : `Stop ${Math.min(stop + 1, stops)} of ${stops}`;
+  return text(`run.${kind}`, {stop: kind === 'wall' ? stop : Math.min(stop + 1, stops), stops});
 }
 
 /** A turn or wall that is measured now, or null. @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind */
@@ -67,27 +53,21 @@ export function progressOf(calibration, kind) {
   return {text: phaseOf(run), share: run.phase === 'solving' ? 0.95 : 0.92 * run.stop / Math.max(run.stops, 1)};
 }
 
-const hints = {
-  turn: 'Put an object of 4 cm or more near the middle of the platform, keep hands and cables out of the picture, and measure again.',
-  wall: 'Have the sensor look straight at a bare, matt wall that fills the whole picture, and look again.',
-};
-
 /** @param {TurnReport} report */
 function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
   const [shift, tilt, before, after] = [shift_mm ?? 0, tilt_deg ?? 0, before_mm ?? 0, after_mm ?? 0];
-  const agree = `Two looks at the object now agree to ${millimetres(after)}`;
-  return shift <= confirmed.shift_mm && tilt <= confirmed.tilt_deg ?
-    {title: 'The sensor stands where it was thought to stand', detail: `${agree}. Nothing was changed.`} :
-    {title: `The axis was ${millimetres(shift)} and ${degrees(tilt)} off`, detail: `${agree}, before they were ${millimetres(before)} apart. The next scan uses the new pose.`};
+  const values = {shift: millimetres(shift), tilt: degrees(tilt), before: millimetres(before), after: millimetres(after)};
+  const outcome = shift <= confirmed.shift_mm && tilt <= confirmed.tilt_deg ? 'confirmed' : 'moved';
+  return {title: text(`run.${outcome}`, values), detail: text(`run.${outcome}-about`, values)};
 }
 
 /** @param {WallReport} report */
 function flattenedText({rms_before, rms_after, walls}) {
   const [before, after] = [rms_before ?? 0, rms_after ?? 0];
   return {
-    title: 'The sensor is flattened',
-    detail: `It saw the wall uneven by ${before.toFixed(2)} steps of disparity, and sees it within ${after.toFixed(2)} now. The next scan uses the map. Measure the pose with a turn again.`,
-    hint: walls.length > 1 ? '' : 'A second look from 0.85 to 0.95 m away tells how the error changes with distance, and makes the map better.',
+    title: text('run.flattened'),
+    detail: text('run.flattened-about', {before: fixed(before, 2), after: fixed(after, 2)}),
+    hint: walls.length > 1 ? '' : text('run.flattened-hint'),
   };
 }
 
@@ -102,11 +82,11 @@ export function outcomeOf(calibration, kind) {
     return null;
   }
   const detail = sentence(run.error?.detail || run.report?.reason || '');
-  const hint = sentence(run.error?.hint || hints[kind]);
+  const hint = run.error?.hint ? sentence(run.error.hint) : text(`run.${kind}-hint`);
   switch (run.state) {
-    case 'cancelled': return {tone: 'idle', title: 'Cancelled', detail: 'Nothing was changed.', hint: ''};
-    case 'refused': return {tone: 'warn', title: 'Nothing was changed', detail, hint};
-    case 'failed': return {tone: 'bad', title: 'The measurement did not end', detail, hint: sentence(run.error?.hint ?? '')};
+    case 'cancelled': return {tone: 'idle', title: text('run.cancelled'), detail: text('update.unchanged'), hint: ''};
+    case 'refused': return {tone: 'warn', title: text('run.unchanged'), detail, hint};
+    case 'failed': return {tone: 'bad', title: text('run.failed'), detail, hint: sentence(run.error?.hint ?? '')};
     default:
       return run.report && (kind === 'turn' ? {tone: 'good', hint: '', ...acceptedText(/** @type {TurnReport} */ (run.report))} :
         {tone: 'good', ...flattenedText(/** @type {WallReport} */ (run.report))});
@@ -122,10 +102,10 @@ export function foundBy(run) {
 /** @param {TurnReport} report @returns {{label: string, text: string}[]} none where nothing was accepted */
 export function figuresOf({accepted, shift_mm, tilt_deg, sigma_mm, sigma_deg, before_mm, after_mm}) {
   return !accepted ? [] : [
-    ...(shift_mm === null ? [] : [{label: 'Axis moved', text: millimetres(shift_mm)}]),
-    ...(tilt_deg === null ? [] : [{label: 'Axis tilted', text: degrees(tilt_deg)}]),
-    ...(sigma_mm === null || sigma_deg === null ? [] : [{label: 'Known to', text: `±${millimetres(sigma_mm)}, ±${degrees(sigma_deg)}`}]),
-    ...(before_mm === null || after_mm === null ? [] : [{label: 'Looks disagree', text: `${millimetres(before_mm)} → ${millimetres(after_mm)}`}]),
+    ...(shift_mm === null ? [] : [{label: text('figure.moved'), text: millimetres(shift_mm)}]),
+    ...(tilt_deg === null ? [] : [{label: text('figure.tilted'), text: degrees(tilt_deg)}]),
+    ...(sigma_mm === null || sigma_deg === null ? [] : [{label: text('figure.known'), text: `±${millimetres(sigma_mm)}, ±${degrees(sigma_deg)}`}]),
+    ...(before_mm === null || after_mm === null ? [] : [{label: text('figure.disagree'), text: `${millimetres(before_mm)} → ${millimetres(after_mm)}`}]),
   ];
 }
 
@@ -135,17 +115,15 @@ export const historyOf = ({history}) => history.map((pose, index) => ({
   title: sourceOf(pose),
   text: [
     pose.before_mm !== null && pose.after_mm !== null ? `${millimetres(pose.before_mm)} → ${millimetres(pose.after_mm)}` : '',
-    pose.scale === 1 ? '' : `scale ${pose.scale.toFixed(4)}`].filter(Boolean).join(', '),
+    pose.scale === 1 ? '' : text('pose.scale', {scale: fixed(pose.scale, 4)})].filter(Boolean).join(', '),
 }));
 
 /** What is said where there are none. @param {Calibration} calibration */
-export const noPosesText = (calibration) => isCalibrated(calibration) ?
-  'Before this one there was the pose of the settings.' : 'None yet. Each change can be undone here.';
+export const noPosesText = (calibration) => text(isCalibrated(calibration) ? 'pose.none-before' : 'pose.none');
 
 /** @param {Calibration} calibration */
 export const mapText = ({sensor_map: map}) => map ?
-  `Done on ${when(map.at)} for sensor ${map.serial}: ${map.rms_before.toFixed(2)} → ${map.rms_after.toFixed(2)} steps of disparity.` :
-  'Not done for this sensor.';
+  text('map.done', {when: when(map.at), serial: map.serial, before: fixed(map.rms_before, 2), after: fixed(map.rms_after, 2)}) : text('map.none');
 
 /** For how long the sensor has warmed up. @param {number | null} seconds */
 export function warmText(seconds) {
@@ -153,8 +131,7 @@ export function warmText(seconds) {
     return '';
   }
   const minutes = Math.floor(seconds / 60);
-  const so = minutes < 1 ? 'for less than a minute' : `for ${count(minutes, 'minute')}`;
-  return `It has been on ${so}${minutes < 10 ? '; this page keeps it on' : ''}.`;
+  return text(minutes < 1 ? 'warm.less' : minutes < 10 ? 'warm.short' : 'warm.on', {minutes: text('count.minutes', {count: minutes})});
 }
 
 /**
@@ -165,16 +142,15 @@ export function warmText(seconds) {
 export function scaleOf(model_mm, caliper_mm, scale) {
   const wanted = Number((scale * caliper_mm / model_mm).toFixed(5));
   if (!(model_mm > 0 && caliper_mm > 0)) {
-    return {scale, problem: 'Both lengths are needed.'};
+    return {scale, problem: text('scale.both')};
   }
   const isFar = wanted < scaleLimits.min || wanted > scaleLimits.max;
-  return {scale: wanted, problem: isFar ?
-    `That would be ${(100 * Math.abs(wanted - 1)).toFixed(1)} %, more than a sensor can be off by. Look whether both are the same length.` : ''};
+  return {scale: wanted, problem: isFar ? text('scale.far', {share: percent(Math.abs(wanted - 1), 1)}) : ''};
 }
 
 /** @param {number} scale */
-export const scaleText = (scale) => scale === 1 ? 'Models have the size that the sensor tells.' :
-  `Models are made ${(100 * Math.abs(scale - 1)).toFixed(2)} % ${scale > 1 ? 'larger' : 'smaller'} than the sensor tells.`;
+export const scaleText = (scale) => scale === 1 ? text('scale.none') :
+  text(scale > 1 ? 'scale.larger' : 'scale.smaller', {share: percent(Math.abs(scale - 1), 2)});
 
 /** How large the largest stop's offset is drawn, degrees. @param {TurnReport['stops']} stops */
 export const barRange = (stops) => Math.max(0.5, ...stops.map(({off_deg}) => Math.abs(off_deg)));
@@ -193,5 +169,5 @@ export function barsOf({stops, findings}) {
   };
   const path = (/** @type {boolean} */ isNamed) => stops.map((_, index) => named.has(index) === isNamed ? bar(index) : '').join('');
   const largest = Math.max(0, ...stops.map(({off_deg}) => Math.abs(off_deg)));
-  return {usual: path(false), marked: path(true), label: `${count(stops.length, 'stop')}, the largest ${degrees(largest)} off`};
+  return {usual: path(false), marked: path(true), label: text('calibrate.angles-spoken', {stops: text('count.stops', {count: stops.length}), angle: degrees(largest)})};
 }

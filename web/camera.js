@@ -8,6 +8,7 @@ import {spaceChosen} from './form.js';
 import {sentence} from './format.js';
 import {hintOf, movedShare, seenOf, steadyHint} from './live_hints.js';
 import {drawLines, prepareDistance} from './rig_picture.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./live_hints.js').Rig} Rig */
 /** @typedef {import('./live_hints.js').Seen} Seen */
@@ -86,7 +87,7 @@ async function showPicture() {
     show(element('no-picture'), false);
     return betweenPictures;
   } catch (error) {
-    const {detail, title, hint} = error instanceof api.Problem ? error : new api.Problem('picture', 'The picture cannot be read');
+    const {detail, title, hint} = error instanceof api.Problem ? error : new api.Problem('picture', text('problem.picture'));
     setText(element('no-picture-text'), [detail || title, hint].map(sentence).join(' '));
     show(element('no-picture'), true);
     show(element('live-hint'), false);

@@ -4,6 +4,7 @@ import {cursorOf, edgesAt, withSide} from './clip_edges.js';
 import {draggedTo, handlesOf} from './clip_handles.js';
 import {element, show} from './dom.js';
 import {plansShown, rigShown} from './pose_picture.js';
+import {text} from './texts.js';
 
 const reach = {mouse: 7, pen: 10, touch: 16};  // pixels
 
@@ -64,7 +65,7 @@ export function showSpace(clip_mm) {
 function type() {
   const typed = fields().map((field) => field.valueAsNumber);
   fields().forEach((field, index) => field.setCustomValidity(
-      index > 2 && typed[index] <= typed[index - 3] ? 'This must be more than where the space begins.' : ''));
+      index > 2 && typed[index] <= typed[index - 3] ? text('clip.empty') : ''));
   if (typed.every(Number.isFinite) && !isEmpty(typed)) {
     set(typed, false);
   }

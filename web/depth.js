@@ -1,5 +1,7 @@
 // The depth picture in colours: deep blue far away, through teal, to warm white near by.
 
+import {fixed, text} from './texts.js';
+
 /** Colours at equal steps of brightness, far to near. */
 const stops = [[13, 38, 66], [14, 82, 105], [28, 130, 130], [98, 182, 143], [196, 221, 150], [255, 244, 214]];
 const faintest = 24;  // what the scanner gives the farthest reading (API.md); darker is no reading
@@ -44,8 +46,8 @@ export function distanceOf(brightness) {
 }
 
 /** @param {number | null} distance  metres @returns {string} for people */
-export const distanceText = (distance) => distance === null ? 'No reading' :
-  distance >= range.far - 0.01 ? '2 m or more' : `${(100 * distance).toFixed(distance < 1 ? 1 : 0)} cm`;
+export const distanceText = (distance) => distance === null ? text('stage.no-reading') :
+  distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
 /**
  * @param {HTMLCanvasElement} canvas @param {Blob} png

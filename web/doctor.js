@@ -5,40 +5,33 @@ import {measure} from './api_calibration.js';
 import {turnStops} from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
 import {awaitFragment} from './fragment.js';
-import {count, sentence} from './format.js';
+import {capital, sentence} from './format.js';
+import {text, translated} from './texts.js';
 
 /** @typedef {import('./api.js').Finding} Finding */
 
 // Worst first; what is not known is worth the least attention.
 const order = /** @type {const} */ (['fault', 'warning', 'ok', 'unknown']);
 
-const stateNames = {fault: 'Fault', warning: 'Warning', ok: 'In order', unknown: 'Not known'};
-
-const actionNames = {
-  'measure-turn': 'Measure with a turn',
-  'set-pose': 'Set the pose by hand',
-  'open-settings': 'Open the settings',
-  'choose-scans': 'Choose scans to delete',
-};
-
 const expected = 4;  // seconds that a check takes, two of them to watch the sensor
 
 /** What to show of a report. Pure. @param {import('./api.js').Report} report */
 export function shownOf({findings}) {
   const numberOf = (/** @type {Finding['state']} */ state) => findings.filter((finding) => finding.state === state).length;
-  const [faults, warnings] = [numberOf('fault'), numberOf('warning')];
-  const found = [faults > 0 && count(faults, 'fault'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(' and ');
+  const faults = numberOf('fault') > 0 ? text('count.faults', {count: numberOf('fault')}) : '';
+  const warnings = numberOf('warning') > 0 ? text('count.warnings', {count: numberOf('warning')}) : '';
   return {
-    summary: found ? `${found} found.` : 'Everything that could be checked is in order.',
+    summary: faults && warnings ? text('check.found-both', {faults, warnings}) :
+      faults || warnings ? text('check.found', {found: faults || warnings}) : text('check.good'),
     lines: order.flatMap((state) => findings.filter((finding) => finding.state === state)).map((finding) => ({
       key: finding.check,
-      name: finding.name,
+      name: translated(finding.name),
       state: finding.state,
-      stateName: stateNames[finding.state],
-      measured: finding.measured && finding.measured[0].toUpperCase() + finding.measured.slice(1),
+      stateName: text(`finding.${finding.state}`),
+      measured: capital(translated(finding.measured)),
       advice: sentence(finding.advice),
       action: finding.action,
-      actionName: finding.action && actionNames[finding.action],
+      actionName: finding.action && text(`action.${finding.action}`),
     })),
   };
 }
@@ -113,7 +106,7 @@ async function carryOut({target}) {
   try {
     await actions[action]();
   } catch (error) {
-    showProblem('The turn did not start', error);
+    showProblem(text('failure.turn'), error);
   }
 }
 
@@ -123,7 +116,7 @@ async function examine(onReport) {
     return;
   }
   show(element('doctor-problem'), false);
-  setText(element('doctor-summary'), 'Watching the sensor for two seconds, then looking at the rest.');
+  setText(element('doctor-summary'), text('check.running'));
   showRunning(true);
   const endProgress = startProgress();
   try {
@@ -131,7 +124,7 @@ async function examine(onReport) {
     showReport(shownOf(report));
     onReport(report);
   } catch (error) {
-    setText(element('doctor-summary'), 'The check did not end.');
+    setText(element('doctor-summary'), text('check.failed'));
     showProblem('', error);
   }
   endProgress();

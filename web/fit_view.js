@@ -4,6 +4,7 @@ import {posePoints} from './api_poses.js';
 import {element, setText, show} from './dom.js';
 import {choiceOf, choicesOf, fitsOf, isOfSide, textOf, withPairs, withPoint, withStep, withoutPoint} from './fits.js';
 import * as format from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api_poses.js').Pose} Pose */
 /** @typedef {import('./fits.js').Fits} Fits */
@@ -42,9 +43,9 @@ function back() {
 /** @param {string} scan @param {Pose} pose */
 export async function openFit(scan, pose) {
   side = pose.pose + 1;
-  setText(element('fit-title'), `How side ${side} fits`);
-  setText(element('fit-side'), `Side ${side}`);
-  setText(element('fit-text'), 'Loading the points');
+  setText(element('fit-title'), text('fit.title', {side}));
+  setText(element('fit-side'), text('side', {side}));
+  setText(element('fit-text'), text('fit.loading'));
   for (const id of ['fit-wrong', 'fit-back', 'fit-pairs', 'fit-use']) {
     show(element(id), false);
   }

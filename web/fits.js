@@ -1,5 +1,8 @@
 // How a side of an object fits to what was seen before: the poses to choose from, and pairs of points. Pure.
 
+import {millimetres, percent} from './format.js';
+import {text} from './texts.js';
+
 /** @typedef {import('./api_poses.js').Pose} Pose */
 /** @typedef {import('./api_poses.js').Candidate} Candidate */
 /** @typedef {number[]} Point  x y z, millimetres */
@@ -58,31 +61,30 @@ export function choiceOf({all, used, shown, points}) {
 
 /** @param {Fit} fit */
 const figuresOf = ({overlap, residual_mm, contradiction}) => [
-  `${Math.round(100 * overlap)} % of this side lies on what was seen before, to ${residual_mm.toFixed(2)} mm`,
-  `${Math.round(50 * contradiction)} % is where the other saw that nothing is`,
+  text('fit.shares', {share: percent(overlap), distance: millimetres(residual_mm, 2)}),
+  text('fit.contradicts', {share: percent(contradiction / 2)}),
 ].join('; ');
 
 /** What is shown, for people. @param {Fits} fits @param {number} side */
 export function textOf({all, used, shown, points}, side) {
   if (points) {
     const pair = Math.floor(points.length / 2) + 1;
-    return pair > wantedPairs ? 'Three pairs are set.' :
-      points.length % 2 === 0 ? `Pair ${pair} of ${wantedPairs}: click a point of the left picture that the right one shows, too.` :
-        `Pair ${pair} of ${wantedPairs}: click the same point of side ${side} on the right.`;
+    return pair > wantedPairs ? text('fit.pairs-set') :
+      text(points.length % 2 === 0 ? 'fit.click-before' : 'fit.click-side', {pair, pairs: wantedPairs, side});
   }
   if (!all[shown]) {
-    return 'No way to fit it is known. Set three pairs of points.';
+    return text('fit.none');
   }
-  const name = shown === used ? 'as in the model' : used < 0 ? 'not in the model' : 'another way';
-  const rest = shown === all.length - 1 ? ' No further fit was found: if it looks wrong, set three pairs.' : '';
-  return `Fit ${shown + 1} of ${all.length}, ${name}: ${figuresOf(all[shown])}.${rest}`;
+  const rest = shown === all.length - 1 ? ` ${text('fit.last')}` : '';
+  return text(shown === used ? 'fit.in-model' : used < 0 ? 'fit.not-in-model' : 'fit.another',
+      {fit: shown + 1, fits: all.length, figures: figuresOf(all[shown])}) + rest;
 }
 
 /** @param {Fits} fits */
 export const choicesOf = (fits) => ({
   isWrong: !fits.points && fits.shown < fits.all.length - 1,
   isBack: fits.points ? true : fits.shown > 0,
-  back: fits.points ? (fits.points.length > 0 ? 'Undo' : 'Back to the fits') : 'Back',
-  use: fits.points ? 'Fit by these pairs' : 'Use this fit',
+  back: text(fits.points ? (fits.points.length > 0 ? 'undo' : 'fit.back-to-fits') : 'fit.back'),
+  use: text(fits.points ? 'fit.use-pairs' : 'fit.use'),
   canUse: choiceOf(fits) !== null,
 });

@@ -6,6 +6,7 @@ import * as format from './format.js';
 import {offerLeaves} from './leaf_choices.js';
 import {fromKept, presetOf, presets, toKept} from './presets.js';
 import {explain, formOf, settingsOf, stepText} from './settings.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Settings} Settings */
 
@@ -53,7 +54,7 @@ const takesText = ({seconds, bytes}) => `${format.roughly(seconds)}, ${format.by
 
 /** @param {{memory_bytes?: number, fitting_leaf_size_mm?: number}} taken @param {number} leaf_size_mm */
 const memoryText = ({memory_bytes = 0, fitting_leaf_size_mm = 0}, leaf_size_mm) => fitting_leaf_size_mm > leaf_size_mm ?
-  `, too much memory (${format.bytes(memory_bytes)}): ${format.number(fitting_leaf_size_mm)} mm would fit` : '';
+  text('form.memory', {bytes: format.bytes(memory_bytes), leaf: format.leaf(fitting_leaf_size_mm)}) : '';
 
 /** Says what the scan takes, if the scanner can tell. */
 async function tellEstimate() {
@@ -78,10 +79,10 @@ const formSettings = (settings) => settingsOf(formOf(settings));
 
 /** @param {Settings} defaults */
 function offerPresets(defaults) {
-  element('presets').replaceChildren(...presets(defaults).map(({name, title}) => {
+  element('presets').replaceChildren(...presets(defaults).map(({name}) => {
     const choice = copyOf('preset');
     part(choice, 'input').value = name;
-    setText(part(choice, '.choice-name'), title);
+    setText(part(choice, '.choice-name'), text(`preset.${name}`));
     return choice;
   }));
 }
@@ -94,7 +95,8 @@ function showPreset(defaults) {
     radio.checked = radio.value === preset?.name;
   }
   const {snapshots, leaf_size_mm} = chosen;
-  setText(element('preset-text'), `${preset ? '' : 'Your own choice: '}${format.count(snapshots ?? 0, 'snapshot')} a turn, detail of ${leaf_size_mm} mm.`);
+  const choice = text('form.choice', {count: snapshots ?? 0, leaf: format.leaf(leaf_size_mm ?? 0)});
+  setText(element('preset-text'), preset ? choice : text('form.own', {choice}));
 }
 
 /** Marks clip fields whose range is empty, so that the browser says so. */
@@ -102,7 +104,7 @@ function checkClip() {
   const fields = clipFields();
   for (let axis = 0; axis < 3; ++axis) {
     const isEmpty = Number(fields[axis].value) >= Number(fields[axis + 3].value);
-    fields[axis + 3].setCustomValidity(isEmpty ? 'This must be more than where the space begins.' : '');
+    fields[axis + 3].setCustomValidity(isEmpty ? text('clip.empty') : '');
   }
 }
 

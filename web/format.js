@@ -1,34 +1,47 @@
 // Quantities as people read them.
 
-const locale = 'en';
-const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
-const date = new Intl.DateTimeFormat(locale,
-    {day: 'numeric', month: 'short', year: 'numeric', hour: '2-digit', minute: '2-digit', hour12: false});
+import {fixed, locale, number, text, translated} from './texts.js';
 
-/** @param {number} value */
-export const number = (value) => plain.format(value);
+export {number};
 
-/** @param {number} value @param {string} unit  in the singular */
-export const count = (value, unit) => `${number(value)} ${unit}${value === 1 ? '' : 's'}`;
+const date = new Intl.DateTimeFormat(locale, {dateStyle: 'medium', timeStyle: 'short'});
+const byteUnits = ['byte', 'kilobyte', 'megabyte', 'gigabyte', 'terabyte'];
 
 /** @param {number} value  bytes */
 export function bytes(value) {
-  const units = ['B', 'kB', 'MB', 'GB', 'TB'];
   let unit = 0;
-  while (value >= 999.5 && unit < units.length - 1) {
+  while (value >= 999.5 && unit < byteUnits.length - 1) {
     value /= 1000;
     ++unit;
   }
-  return `${unit > 0 && value < 9.95 ? value.toFixed(1) : Math.round(value)} ${units[unit]}`;
+  const digits = unit > 0 && value < 9.95 ? 1 : 0;
+  return new Intl.NumberFormat(locale,
+      {style: 'unit', unit: byteUnits[unit], minimumFractionDigits: digits, maximumFractionDigits: digits}).format(value);
 }
 
 /** @param {number[]} sides  millimetres @param {number} [digits]  after the point */
-export const size = (sides, digits = 1) => `${sides.map((side) => side.toFixed(digits)).join(' × ')} mm`;
+export const size = (sides, digits = 1) => `${sides.map((side) => fixed(side, digits)).join(' × ')} mm`;
+
+/** @param {number} value @param {number} [digits]  after the point; without them, as many as a length needs: 0.52 mm, 18.4 mm */
+export const millimetres = (value, digits = Math.abs(value) < 9.995 ? 2 : 1) => `${fixed(value, digits)} mm`;
+
+/** A leaf's side. @param {number} value  millimetres */
+export const leaf = (value) => `${number(value)} mm`;
+
+/** @param {number} metres */
+export const centimetres = (metres) => `${number(Math.round(100 * metres))} cm`;
+
+/** @param {number} value @param {number} [digits]  after the point */
+export const degrees = (value, digits = 2) => `${fixed(value, digits)}°`;
+
+/** @param {number} share  of 1 @param {number} [digits]  after the point */
+export const percent = (share, digits = 0) =>
+  new Intl.NumberFormat(locale, {style: 'percent', minimumFractionDigits: digits, maximumFractionDigits: digits}).format(share);
 
 /** @param {number} value  seconds */
 export function duration(value) {
   if (value < 9.95) {
-    return `${value.toFixed(value < 0.995 ? 2 : 1)} s`;
+    return `${fixed(value, value < 0.995 ? 2 : 1)} s`;
   }
   const seconds = Math.round(value);
   const minutes = Math.floor(seconds / 60);
@@ -47,12 +60,12 @@ export function timeLeft(seconds) {
     return '';
   }
   if (seconds < 3) {
-    return 'a moment left';
+    return text('time.moment');
   }
   if (seconds < 55) {
-    return `about ${Math.ceil(seconds / 5) * 5} s left`;
+    return text('time.left', {time: `${Math.ceil(seconds / 5) * 5} s`});
   }
-  return `about ${Math.round(seconds / 60) || 1} min left`;
+  return text('time.left', {time: `${Math.round(seconds / 60) || 1} min`});
 }
 
 /** As a clock: "0:07", "12:34", "1:02:03". @param {number} seconds */
@@ -65,14 +78,19 @@ export function clock(seconds) {
 
 /** How long something takes, as people say it. @param {number} seconds */
 export function roughly(seconds) {
-  if (seconds < 100) {
-    return `about ${Math.max(Math.round(seconds / 5) * 5, 5)} s`;
-  }
-  return seconds < 5400 ? `about ${Math.round(seconds / 60)} min` : `about ${plain.format(Math.round(seconds / 1800) / 2)} h`;
+  const time = seconds < 100 ? `${Math.max(Math.round(seconds / 5) * 5, 5)} s` :
+    seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${number(Math.round(seconds / 1800) / 2)} h`;
+  return text('time.about', {time});
 }
 
 /** @param {string} iso */
 export const when = (iso) => date.format(new Date(iso));
 
-/** What a program says, as a sentence. @param {string} text */
-export const sentence = (text) => text && text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? '' : '.');
+/** With a capital at its beginning. @param {string} words */
+export const capital = (words) => words && words[0].toLocaleUpperCase(locale) + words.slice(1);
+
+/** What a program says, as a sentence of the page's language. @param {string} said */
+export function sentence(said) {
+  const words = translated(said);
+  return words && capital(words) + (/[.!?…]$/.test(words) ? '' : '.');
+}

@@ -1,5 +1,7 @@
 // Pieces of the page that are fetched when they are needed: HTML files without head and body.
 
+import {fillTexts} from './texts.js';
+
 const betweenAttempts = 2000;  // milliseconds, while a piece does not arrive
 
 /** @param {Element} parent  whose children become those of the file @param {string} file */
@@ -9,6 +11,7 @@ export async function fetchFragment(parent, file) {
     throw new Error(`${response.status}`);
   }
   const parsed = new DOMParser().parseFromString(await response.text(), 'text/html');
+  fillTexts(parsed);
   parent.replaceChildren(...parsed.head.childNodes, ...parsed.body.childNodes);
 }
 

@@ -3,12 +3,13 @@
 import {Problem, json, sending, withoutAnswer} from './api.js';
 import {element, list, part, setText, show} from './dom.js';
 import {sentence, when} from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {{id: string, name: string, access: 'read' | 'full', created: string}} Key */
 
 /** What a key is, in words. Pure. @param {Key} key */
 export const aboutKey = ({access, created}) =>
-  `${access === 'read' ? 'May read' : 'May do everything but set passwords and keys'} · made ${when(created)}`;
+  text(access === 'read' ? 'keys.may-read' : 'keys.may-all', {when: when(created)});
 
 /** @type {Key[]} */
 let keys = [];
@@ -24,7 +25,7 @@ function render() {
     const name = key.name || key.id;
     setText(part(row, 'strong'), name);
     setText(part(row, 'p'), aboutKey(key));
-    part(row, 'button').setAttribute('aria-label', `Revoke the key ${name}`);
+    part(row, 'button').setAttribute('aria-label', text('keys.revoke-of', {name}));
   });
 }
 
@@ -32,7 +33,7 @@ async function make() {
   setText(element('key-complaint'), '');
   const name = element('key-name').value.trim();
   if (name === '') {
-    setText(element('key-complaint'), 'Write what the key is for.');
+    setText(element('key-complaint'), text('keys.unnamed'));
     element('key-name').focus();
     return;
   }

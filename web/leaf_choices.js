@@ -1,7 +1,9 @@
 // The choice of a leaf size, by name.
 
 import {copyOf, part, setText} from './dom.js';
+import {leaf} from './format.js';
 import {leafChoices} from './settings.js';
+import {text} from './texts.js';
 
 /** Offers the named leaf sizes. @param {Element} parent @param {number} preset  millimetres; it is chosen */
 export function offerLeaves(parent, preset) {
@@ -9,8 +11,8 @@ export function offerLeaves(parent, preset) {
     const choice = copyOf('leaf');
     part(choice, 'input').value = mm;
     part(choice, 'input').checked = mm === preset;
-    setText(part(choice, '.choice-name'), name);
-    setText(part(choice, '.choice-mm'), `${mm} mm`);
+    setText(part(choice, '.choice-name'), text(`leaf.${name}`));
+    setText(part(choice, '.choice-mm'), leaf(mm));
     return choice;
   }));
 }

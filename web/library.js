@@ -1,6 +1,7 @@
 // Which scans are listed, and in what order. Pure.
 
 import * as format from './format.js';
+import {locale} from './texts.js';
 
 /** @typedef {import('./api.js').Scan} Scan */
 
@@ -38,7 +39,7 @@ export function found(scans, {query, order}, nameOf) {
     });
   switch (order) {
     case 'oldest': return [...matches].reverse();
-    case 'name': return [...matches].sort((a, b) => nameOf(a).localeCompare(nameOf(b), undefined, {numeric: true}));
+    case 'name': return [...matches].sort((a, b) => nameOf(a).localeCompare(nameOf(b), locale, {numeric: true}));
     case 'largest': return [...matches].sort((a, b) => volume(b) - volume(a));
     default: return matches;
   }

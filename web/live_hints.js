@@ -2,6 +2,8 @@
 // those of pose.js; lengths are metres where a name does not say millimetres.
 
 import {distanceOf} from './depth.js';
+import {centimetres} from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./overlay.js').Sensor} Sensor */
 /** @typedef {{pose: import('./pose.js').Matrix, sensor: Sensor, clip_mm: number[]}} Rig */
@@ -166,38 +168,29 @@ const limits = {
   unread_share: 0.25,
 };
 
-const centimetres = (/** @type {number} */ metres) => `${Math.round(100 * metres)} cm`;
-
-/** What stops a scan from being good, worst first. @param {Seen} seen @param {number} moved_share @param {number[]} clip_mm @returns {[string, boolean, string, string][]} */
-const troublesOf = (seen, moved_share, clip_mm) => [
-  ['blind', seen.read_share < limits.read_share,
-    'The sensor reads almost nothing', 'Take away what is nearer to it than 50 cm, and keep the sun out.'],
-  ['moves', moved_share > limits.moved_share, 'Something moves', 'Keep hands out of the picture and let the object stand still.'],
-  ['empty', seen.object < limits.object, 'Nothing stands in the scanned space', 'Put the object on the middle of the platform.'],
-  ['too-near', seen.nearest < limits.nearest,
-    `The object is ${centimetres(seen.nearest)} away`, 'The sensor sees from 50 cm on: move it back, and calibrate.'],
-  ['cut-top', seen.cut.top > limits.cut,
-    'The scanned space cuts off the top', `It ends ${centimetres(clip_mm[5] / 1000)} up: make it higher in All settings.`],
-  ['cut-side', seen.cut.side > limits.cut,
-    'The scanned space cuts the object', 'Move the object to the middle, or make the space wider in All settings.'],
-  ['turns-out', seen.beyond_share > limits.beyond_share,
-    'The object turns out of the scanned space', 'Move it to the middle, or make the space wider in All settings.'],
-  ['unread', seen.unread_share > limits.unread_share,
-    'Parts give no reading', 'They are dark, shiny or clear: matt spray or powder helps.'],
-  ['too-far', seen.distance > limits.distance,
-    `The object is ${centimetres(seen.distance)} away`, 'From 60 to 90 cm the sensor sees finer: move it nearer, and calibrate.'],
+/** What stops a scan from being good, worst first, by the texts hint.CODE. @param {Seen} seen @param {number} moved_share @returns {[string, boolean][]} */
+const troublesOf = (seen, moved_share) => [
+  ['blind', seen.read_share < limits.read_share],
+  ['moves', moved_share > limits.moved_share],
+  ['empty', seen.object < limits.object],
+  ['too-near', seen.nearest < limits.nearest],
+  ['cut-top', seen.cut.top > limits.cut],
+  ['cut-side', seen.cut.side > limits.cut],
+  ['turns-out', seen.beyond_share > limits.beyond_share],
+  ['unread', seen.unread_share > limits.unread_share],
+  ['too-far', seen.distance > limits.distance],
 ];
 
 /** @param {Seen} seen @param {number} moved_share @param {number[]} clip_mm @returns {Hint} */
 export function hintOf(seen, moved_share, clip_mm) {
-  const trouble = troublesOf(seen, moved_share, clip_mm).find(([, isSo]) => isSo);
-  if (trouble) {
-    const [code, , text, detail] = trouble;
-    return {code, tone: 'warn', text, detail};
+  const [code] = troublesOf(seen, moved_share).find(([, isSo]) => isSo) ?? [];
+  if (code) {
+    const values = {distance: centimetres(code === 'too-near' ? seen.nearest : seen.distance), height: centimetres(clip_mm[5] / 1000)};
+    return {code, tone: 'warn', text: text(`hint.${code}`, values), detail: text(`hint.${code}-detail`, values)};
   }
-  const size = [seen.width_mm, seen.height_mm].map((value) => Math.max(1, Math.round(value / 10)));
-  return {code: 'good', tone: 'good', text: 'Ready to scan',
-    detail: `Seen: ${size[0]} cm wide, ${size[1]} cm high, ${centimetres(seen.distance)} away.`};
+  const [width, height] = [seen.width_mm, seen.height_mm].map((value) => centimetres(Math.max(0.01, value / 1000)));
+  return {code: 'good', tone: 'good', text: text('hint.good'),
+    detail: text('hint.good-detail', {width, height, distance: centimetres(seen.distance)})};
 }
 
 /**

@@ -4,6 +4,7 @@ import {Problem, status} from './api.js';
 import * as api from './api_settings.js';
 import {element, setText, show} from './dom.js';
 import {sentence} from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api_settings.js').Machine} Machine */
 
@@ -12,7 +13,7 @@ const patience = 20;  // looks until it counts as not done
 
 /** Why a name is none, or nothing. Pure. @param {string} name */
 export const nameComplaint = (name) => /^[a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?$/i.test(name) ? '' :
-  'A name has letters, digits and hyphens between them, at most 63.';
+  text('machine.name-shape');
 
 /** What differs from how it is, as the scanner takes it. Pure. @param {Machine} machine @param {string} name @param {string} zone */
 export function changeOf({name: present, time_zone}, name, zone) {
@@ -31,7 +32,7 @@ const wanted = () => changeOf(machine, element('machine-name').value.trim(), ele
 
 function showChanged() {
   show(element('machine-save'), Object.keys(wanted()).length > 0);
-  setText(element('machine-address'), `The page is at http://${element('machine-name').value.trim().toLowerCase()}.local`);
+  setText(element('machine-address'), text('machine.address', {address: `http://${element('machine-name').value.trim().toLowerCase()}.local`}));
 }
 
 function offerZones() {
@@ -66,7 +67,7 @@ async function save(change) {
     }
   }
   setText(element('machine-complaint'), sentence(machine.error));
-  setText(element('machine-saved'), machine.error ? '' : 'Saved.');
+  setText(element('machine-saved'), machine.error ? '' : text('saved'));
   fill();
 }
 

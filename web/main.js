@@ -20,6 +20,7 @@ import {cancel, emptyBin, end, importScan, pause, remove, removeChosen, rename, 
 import {screenOf} from './screen.js';
 import {prepareStage} from './stage.js';
 import * as states from './state.js';
+import {fillTexts, language} from './texts.js';
 
 /** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
@@ -142,6 +143,8 @@ function listen() {
   document.addEventListener('visibilitychange', () => document.hidden || wake());
 }
 
+document.documentElement.lang = language;
+fillTexts(document);
 follow();
 listen();
 preparePlaces();

@@ -8,19 +8,19 @@ import * as states from './state.js';
 import {askDeleteBuild} from './view.js';
 
 /** @param {Object} settings  of the scan that is looked at, those that are to differ */
-export const build = (settings) => act('The model is not being built', async () => {
+export const build = (settings) => act('failure.build', async () => {
   const begun = await requests.build(/** @type {string} */ (state.selected), settings);
   return (now) => states.withBuild(now, begun);
 });
 
 /** @param {number} number */
-const cancelBuild = (number) => act('The build was not cancelled', async () => {
+const cancelBuild = (number) => act('failure.cancel-build', async () => {
   await requests.cancelBuild(/** @type {string} */ (state.selected), number);
   return (now) => now;
 });
 
 /** @param {number} number */
-const chooseBuild = (number) => act('The model was not changed', async () => {
+const chooseBuild = (number) => act('failure.choose-build', async () => {
   const scan = await requests.chooseBuild(/** @type {string} */ (state.selected), number);
   const builds = await requests.builds(scan.id);
   return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
@@ -30,7 +30,7 @@ const chooseBuild = (number) => act('The model was not changed', async () => {
 async function removeBuild(number) {
   const id = /** @type {string} */ (state.selected);
   if (await askDeleteBuild()) {
-    await act('The model was not deleted', async () => {
+    await act('failure.delete-build', async () => {
       await requests.removeBuild(id, number);
       const builds = await requests.builds(id);
       return (now) => states.withBuilds(now.shownBuild === number ? states.withShownBuild(now, null) : now, id, builds);
@@ -49,7 +49,7 @@ export const buildActions = {
 let lookedAt = 0;  // pose whose fit is looked at
 
 export const poseActions = {
-  add: () => act('The scan did not start', async () => {
+  add: () => act('failure.start', async () => {
     const scan = await poseRequests.startPose(/** @type {string} */ (state.selected));
     return (now) => states.withStarted(now, scan);
   }),
@@ -60,11 +60,11 @@ export const poseActions = {
       openFit(state.selected, pose);
     }
   },
-  choose: (/** @type {Object} */ choice) => act('The side was not fitted again', async () => {
+  choose: (/** @type {Object} */ choice) => act('failure.fit', async () => {
     const begun = await poseRequests.choosePose(/** @type {string} */ (state.selected), lookedAt, choice);
     return (now) => states.withBuild(now, begun);
   }),
-  remove: (/** @type {number} */ number) => act('The side was not taken back', async () => {
+  remove: (/** @type {number} */ number) => act('failure.take-back', async () => {
     const scan = await poseRequests.removePose(/** @type {string} */ (state.selected), number);
     const builds = await requests.builds(scan.id);
     return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);

@@ -5,6 +5,7 @@ import {here, titleAt} from './places.js';
 import {screenOf} from './screen.js';
 import {renderStage} from './stage.js';
 import * as states from './state.js';
+import {text} from './texts.js';
 import {render} from './view.js';
 
 export let state = states.initial;
@@ -24,7 +25,7 @@ export function change(next) {
 
 /**
  * Does what the user asked for, one thing at a time, and shows why if it fails.
- * @param {string} failure  what did not happen then
+ * @param {string} failure  key of the text that says what did not happen then
  * @param {() => Promise<(state: states.State) => states.State>} action  tells how its answer changes the state
  */
 export async function act(failure, action) {
@@ -37,7 +38,7 @@ export async function act(failure, action) {
     change(apply(states.withAnswer(state)));
   } catch (error) {
     const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
-    change(states.withStaleList(states.withProblem(states.withAnswer(state), {title: failure, detail: detail || title, hint})));
+    change(states.withStaleList(states.withProblem(states.withAnswer(state), {title: text(failure), detail: detail || title, hint})));
   }
   ++asked;
 }

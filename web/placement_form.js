@@ -1,22 +1,21 @@
 // The five numbers of the sensor's pose, each with a button for a little less and a little more.
 
-import {degrees, millimetres} from './calibration.js';
 import {copyOf, element, part, setText, show} from './dom.js';
+import {degrees, millimetres} from './format.js';
 import {differenceOf, placementOf, poseOf} from './pose.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./pose.js').Matrix} Matrix */
 /** @typedef {import('./pose.js').Placement} Placement */
 
-/** @type {{key: keyof Placement, name: string, more: string, less: string, unit: string, step: number, digits: number}[]} */
+/** @type {{key: keyof Placement, name: string, unit: string, step: number, digits: number}[]}  name: of the texts placement.NAME */
 const rows = [
-  {key: 'x_mm', name: 'X', less: 'To the left', more: 'To the right', unit: 'mm', step: 1, digits: 1},
-  {key: 'y_mm', name: 'Y', less: 'Away from the platform', more: 'Towards the platform', unit: 'mm', step: 1, digits: 1},
-  {key: 'z_mm', name: 'Z', less: 'Lower', more: 'Higher', unit: 'mm', step: 1, digits: 1},
-  {key: 'tilt_deg', name: 'Tilt', less: 'Look up', more: 'Look down', unit: '°', step: 0.1, digits: 2},
-  {key: 'roll_deg', name: 'Roll', less: 'Roll to the left', more: 'Roll to the right', unit: '°', step: 0.1, digits: 2},
+  {key: 'x_mm', name: 'x', unit: 'mm', step: 1, digits: 1},
+  {key: 'y_mm', name: 'y', unit: 'mm', step: 1, digits: 1},
+  {key: 'z_mm', name: 'z', unit: 'mm', step: 1, digits: 1},
+  {key: 'tilt_deg', name: 'tilt', unit: '°', step: 0.1, digits: 2},
+  {key: 'roll_deg', name: 'roll', unit: '°', step: 0.1, digits: 2},
 ];
-
-const names = {x_mm: 'X, sideways', y_mm: 'Y, from the axis', z_mm: 'Z, height', tilt_deg: 'Tilt, downwards', roll_deg: 'Roll'};
 
 /** @type {Matrix | null} in force */
 let inForce = null;
@@ -42,7 +41,7 @@ function fill() {
   show(element('kept'), draft !== null);
   if (draft && inForce) {
     const {shift_mm, lift_mm, tilt_deg} = differenceOf(inForce, poseOf(draft));
-    setText(element('kept-text'), `Moves the axis by ${millimetres(shift_mm)}, the surface by ${millimetres(lift_mm)}; tilts both by ${degrees(tilt_deg)}.`);
+    setText(element('kept-text'), text('calibrate.kept', {shift: millimetres(shift_mm), lift: millimetres(lift_mm), tilt: degrees(tilt_deg)}));
   }
 }
 
@@ -77,18 +76,18 @@ export function showPlacement(pose) {
 }
 
 /** @param {typeof rows[number]} row */
-function rowOf({key, name, less, more, unit, step, digits}) {
+function rowOf({key, name, unit, step, digits}) {
   const row = copyOf('placement-row');
   const field = part(row, 'input');
   field.id = `placement-${key}`;
-  setText(part(row, 'label'), names[key]);
+  setText(part(row, 'label'), text(`placement.${name}`));
   part(row, 'label').htmlFor = field.id;
   setText(part(row, 'span'), unit);
   field.addEventListener('input', () => field.value !== '' && set(key, field.valueAsNumber));
   for (const button of row.querySelectorAll('button')) {
     const by = Number(button.dataset.by);
-    button.setAttribute('aria-label', `${by < 0 ? less : more}, ${name}`);
-    button.title = by < 0 ? less : more;
+    button.title = text(`placement.${name}-${by < 0 ? 'less' : 'more'}`);
+    button.setAttribute('aria-label', button.title);
     button.addEventListener('click', (/** @type {MouseEvent} */ event) => {
       set(key, Number((field.valueAsNumber + by * step * (event.shiftKey ? 10 : 1)).toFixed(digits)));
     });

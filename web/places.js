@@ -3,13 +3,14 @@
 
 import {element, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
+import {text} from './texts.js';
 
 const first = 'scan';
 
 /** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>}>} */
 const others = {
-  calibrate: {title: 'Calibrate', load: () => import('./calibrate.js')},
-  settings: {title: 'Settings', load: () => import('./settings_page.js')},
+  calibrate: {title: 'places.calibrate', load: () => import('./calibrate.js')},
+  settings: {title: 'places.settings', load: () => import('./settings_page.js')},
 };
 
 const betweenAttempts = 2000;  // milliseconds, while a part does not arrive
@@ -18,7 +19,7 @@ const betweenAttempts = 2000;  // milliseconds, while a part does not arrive
 export const placeOf = (hash) => Object.hasOwn(others, hash) ? hash : first;
 
 /** @param {string} place @param {string} title  of the first part @returns {string} the document's */
-export const titleAt = (place, title) => place === first ? title : `${others[place].title} · Octurn`;
+export const titleAt = (place, title) => place === first ? title : `${text(others[place].title)} · Octurn`;
 
 /** @returns {string} the part that is shown */
 export const here = () => placeOf(location.hash.slice(1));
@@ -39,7 +40,7 @@ async function arrive(place) {
     module.prepare();
   } catch {
     begun.delete(place);
-    setText(mainOf(place), 'This part of the page has not arrived yet. Trying again.');
+    setText(mainOf(place), text('places.late'));
     setTimeout(() => here() === place && arrive(place), betweenAttempts);
   }
 }

@@ -1,6 +1,7 @@
 // What the page shows of the other poses of a scan's object. Pure: state in, texts and choices out.
 
 import * as format from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Scan} Scan */
 /** @typedef {import('./api_poses.js').Pose} Pose */
@@ -12,23 +13,21 @@ export const isPartOfAnother = ({pose_of, state}) => Boolean(pose_of) && state =
 /** @param {Pose} pose */
 function textOf({state, registration}) {
   if (registration?.accepted) {
-    const share = Math.round(100 * (registration.overlap ?? 0));
-    const fit = `It shares ${share} % of its surface with what was seen before, and fits to ${(registration.residual_mm ?? 0).toFixed(2)} mm.`;
-    return registration.symmetric ? `${fit} The object is symmetric: other ways to lay it give the same shape.` : fit;
+    const fit = text('side.shares', {
+      share: format.percent(registration.overlap ?? 0), distance: format.millimetres(registration.residual_mm ?? 0, 2)});
+    return registration.symmetric ? `${fit} ${text('side.symmetric')}` : fit;
   }
   if (registration) {
-    return `${format.sentence(registration.reason)} The model stayed as it was.`;
+    return `${format.sentence(registration.reason)} ${text('side.kept')}`;
   }
-  const words = {running: 'It is being scanned.', paused: 'Its scan has paused.', interrupted: 'Its scan was interrupted.'};
-  return /** @type {Record<string, string>} */ (words)[state] ?? 'Its scan was ended. The model stayed as it was.';
+  return text(`side.${state === 'running' || state === 'paused' || state === 'interrupted' ? state : 'ended'}`);
 }
 
 /** @param {Pose} pose @param {number} last  that was merged */
 const rowOf = (pose, last) => ({
   number: pose.pose,
   tone: pose.registration?.accepted ? 'good' : 'warn',
-  title: pose.registration?.accepted ? `Side ${pose.pose + 1} is in the model` :
-    pose.registration ? `Side ${pose.pose + 1} does not fit` : `Side ${pose.pose + 1} is not in the model`,
+  title: text(pose.registration?.accepted ? 'side.in' : pose.registration ? 'side.misfit' : 'side.out', {side: pose.pose + 1}),
   text: textOf(pose),
   open: pose.state === 'paused' || pose.state === 'interrupted' ? `#${pose.scan}` : '',
   canLook: pose.state === 'finished' && Boolean(pose.registration) && (!pose.registration?.accepted || pose.pose === last),
@@ -42,7 +41,7 @@ export function posesOf(state, scan) {
   return {
     canAdd: scan.state === 'finished' && scan.model !== null && !scan.pose_of,
     isBusy: Boolean(state.status?.scan),
-    add: merged.length > 0 ? 'Scan one more side' : 'Turn it over and scan the underside',
+    add: text(merged.length > 0 ? 'sides.more' : 'sides.first'),
     rows: poses.map((pose) => rowOf(pose, merged.at(-1)?.pose ?? 0)),
   };
 }

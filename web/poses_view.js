@@ -3,6 +3,7 @@
 import {element, list, part, setText, show} from './dom.js';
 import {prepareFit} from './fit_view.js';
 import {fetchFragment} from './fragment.js';
+import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./poses.js').posesOf>} Poses */
 
@@ -25,9 +26,9 @@ export function renderPoses(poses) {
     show(part(item, 'a'), row.open !== '');
     part(item, 'a').href = row.open;
     show(part(item, '[data-do=fit]'), row.canLook);
-    part(item, '[data-do=fit]').setAttribute('aria-label', `See the fit: side ${row.number + 1}`);
+    part(item, '[data-do=fit]').setAttribute('aria-label', text('sides.fit-of', {side: row.number + 1}));
     show(part(item, '[data-do=remove]'), row.canRemove);
-    part(item, '[data-do=remove]').setAttribute('aria-label', `Take back: side ${row.number + 1}`);
+    part(item, '[data-do=remove]').setAttribute('aria-label', text('sides.remove-of', {side: row.number + 1}));
   });
   setText(element('side-add'), poses.add);
   element('side-add').setAttribute('aria-disabled', String(poses.isBusy));

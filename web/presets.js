@@ -5,7 +5,6 @@
 /**
  * @typedef {Object} Preset
  * @property {'quick' | 'standard' | 'best'} name
- * @property {string} title
  * @property {Settings} settings
  */
 
@@ -15,9 +14,9 @@
  * @returns {Preset[]}
  */
 export const presets = (defaults) => [
-  {name: 'quick', title: 'Quick', settings: {...defaults, snapshots: 12, filter: 'basic', method: 'solid', leaf_size_mm: 2}},
-  {name: 'standard', title: 'Standard', settings: defaults},
-  {name: 'best', title: 'Best', settings: {...defaults, snapshots: 72, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 0.5}},
+  {name: 'quick', settings: {...defaults, snapshots: 12, filter: 'basic', method: 'solid', leaf_size_mm: 2}},
+  {name: 'standard', settings: defaults},
+  {name: 'best', settings: {...defaults, snapshots: 72, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 0.5}},
 ];
 
 /** Settings that a filter or a method does not use do not count. @param {Partial<Settings>} settings */

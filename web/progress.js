@@ -1,6 +1,7 @@
 // What is shown of a scan while it runs. Pure.
 
 import * as format from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Scan} Scan */
 
@@ -8,22 +9,14 @@ const phasesAfterTheTurn = new Set(['calibrating', 'rebuilding', 'registering', 
 
 /** @param {Scan} scan */
 export function phaseText(scan) {
-  const stop = `stop ${Math.min(scan.snapshots_done + 1, scan.snapshots_total)} of ${scan.snapshots_total}`;
+  const place = {stop: Math.min(scan.snapshots_done + 1, scan.snapshots_total), stops: scan.snapshots_total};
   if (scan.error) {
-    return `Trying ${stop} again`;
+    return text('phase.again', place);
   }
   if (scan.snapshots_done === scan.snapshots_total && !phasesAfterTheTurn.has(scan.phase)) {
-    return 'Looking once more at the first stop';
+    return text('phase.last-look');
   }
-  switch (scan.phase) {
-    case 'starting': return 'Getting ready';
-    case 'turning': return `Turning to ${stop}`;
-    case 'capturing': return `Looking at ${stop}`;
-    case 'calibrating': return 'Checking where the sensor stands';
-    case 'rebuilding': return 'Building again, with the pose corrected';
-    case 'registering': return 'Finding out how it was turned over';
-    default: return 'Building the model';
-  }
+  return text(`phase.${scan.phase === 'done' ? 'building' : scan.phase}`, place);
 }
 
 /** @param {Scan} scan */
@@ -47,7 +40,7 @@ function stepStates(scan) {
 
 /** How long it has taken, and will take in all. @param {Scan} scan */
 const timeOf = ({seconds_elapsed, seconds_left, error}) => seconds_left === null || error ? format.clock(seconds_elapsed) :
-    `${format.clock(seconds_elapsed)} of about ${format.clock(seconds_elapsed + seconds_left)}`;
+    text('time.of', {elapsed: format.clock(seconds_elapsed), total: format.clock(seconds_elapsed + seconds_left)});
 
 /** @param {Scan} scan */
 export const progressOf = (scan) => ({

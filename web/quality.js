@@ -1,16 +1,17 @@
 // What the page says of a model's worth. Pure: the scanner's verdict in, texts and links out.
 
 import {sentence} from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Model} Model */
 
 /** @typedef {import('./api.js').Reason} Reason */
 /** @typedef {{text: string, href: string}} Action  where a reason's cure is */
 
-const calibrate = {text: 'Calibrate', href: '#calibrate'};
-const space = {text: 'Change the scanned space', href: '#calibrate'};
-const flatten = {text: 'Flatten the sensor', href: '#calibrate'};
-const again = {text: 'Scan again', href: '#'};
+const calibrate = {text: text('cure.calibrate'), href: '#calibrate'};
+const space = {text: text('cure.space'), href: '#calibrate'};
+const flatten = {text: text('cure.flatten'), href: '#calibrate'};
+const again = {text: text('cure.again'), href: '#'};
 
 /** @type {Record<string, Action>} */
 const actions = {
@@ -34,13 +35,13 @@ const improvable = ['no-map', 'focal-length', 'wobble'];
 export const actionOf = (code) => actions[code ?? ''] ?? null;
 
 const verdicts = {
-  good: {tone: 'good', icon: 'ok', badge: 'Good', title: 'A good model'},
-  look: {tone: 'warn', icon: 'warning', badge: 'Have a look', title: 'Have a look at it'},
-  bad: {tone: 'bad', icon: 'fault', badge: 'Not good', title: 'Not a good model'},
+  good: {tone: 'good', icon: 'ok'},
+  look: {tone: 'warn', icon: 'warning'},
+  bad: {tone: 'bad', icon: 'fault'},
 };
 
 /** @param {Model} model @returns {{tone: string, text: string} | null} null for a model that was never judged */
-export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: verdicts[quality.verdict].badge} : null;
+export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: text(`verdict.${quality.verdict}-short`)} : null;
 
 /**
  * @param {Model} model
@@ -50,13 +51,13 @@ export function verdictOf({quality, watertight}, findings = []) {
   if (!quality) {
     return null;
   }
-  const {tone, icon, title} = verdicts[quality.verdict];
+  const {tone, icon} = verdicts[quality.verdict];
   return {
     tone,
     icon,
-    title,
+    title: text(`verdict.${quality.verdict}`),
     text: quality.verdict !== 'good' ? '' :
-      watertight ? 'Nothing speaks against it: ready to slice.' : 'Nothing speaks against it, but it has open edges.',
+      text(watertight ? 'verdict.good-about' : 'verdict.open'),
     reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map(({code, detail, hint, places_mm}) => (
       {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code), places: places_mm ?? []})),
   };

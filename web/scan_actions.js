@@ -4,18 +4,18 @@ import * as api from './api.js';
 import * as bin from './bin.js';
 import * as binRequests from './api_bin.js';
 import {chosenSettings} from './form.js';
-import * as format from './format.js';
 import {act, state} from './page.js';
 import {nameOf} from './screen.js';
 import * as states from './state.js';
+import {text} from './texts.js';
 import {askEmptyBin, askName} from './view.js';
 
-export const start = () => act('The scan did not start', async () => {
+export const start = () => act('failure.start', async () => {
   const scan = await api.start(chosenSettings());
   return (now) => states.withStarted(now, scan);
 });
 
-export const pause = () => act('The scan was not paused', async () => {
+export const pause = () => act('failure.pause', async () => {
   const id = states.running(state)?.id;
   if (id) {
     await api.pause(id);
@@ -24,12 +24,12 @@ export const pause = () => act('The scan was not paused', async () => {
 });
 
 /** @param {File} file */
-export const importScan = (file) => act('The scan was not imported', async () => {
+export const importScan = (file) => act('failure.import', async () => {
   const scan = await api.importScan(file);
   return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), scan.id);
 });
 
-export const cancel = () => act('The scan was not ended', async () => {
+export const cancel = () => act('failure.end', async () => {
   const id = states.running(state)?.id;
   if (id) {
     await api.cancel(id);
@@ -37,12 +37,12 @@ export const cancel = () => act('The scan was not ended', async () => {
   return (now) => now;
 });
 
-export const resume = () => act('The scan was not resumed', async () => {
+export const resume = () => act('failure.resume', async () => {
   const scan = await api.resume(/** @type {string} */ (state.selected));
   return (now) => states.withStarted(now, scan);
 });
 
-export const end = () => act('The scan was not ended', async () => {
+export const end = () => act('failure.end', async () => {
   const scan = await api.cancel(/** @type {string} */ (state.selected));
   return (now) => states.withScan(now, scan);
 });
@@ -52,7 +52,7 @@ export async function rename(id) {
   const scan = states.scanOf(state, id);
   const name = scan && await askName(nameOf(scan));
   if (scan && name !== null) {
-    await act('The scan was not renamed', async () => {
+    await act('failure.rename', async () => {
       const renamed = await api.rename(scan.id, name);
       return (now) => states.withScan(now, renamed);
     });
@@ -63,7 +63,7 @@ export async function rename(id) {
 export async function remove(id) {
   const scan = states.scanOf(state, id);
   if (scan) {
-    await act('The scan was not deleted', async () => {
+    await act('failure.delete', async () => {
       await api.remove(scan.id);
       bin.offerUndo(nameOf(scan), () => restore([scan.id]));
       return (now) => states.withoutScan(now, scan.id);
@@ -77,17 +77,17 @@ export async function removeChosen() {
   if (ids.length === 0) {
     return;
   }
-  await act('Not all scans were deleted', async () => {
+  await act('failure.delete-all', async () => {
     for (const id of ids) {
       await api.remove(id);
     }
-    bin.offerUndo(format.count(ids.length, 'scan'), () => restore(ids));
+    bin.offerUndo(text('count.scans', {count: ids.length}), () => restore(ids));
     return (now) => states.withLibrary(ids.reduce(states.withoutScan, now), {chosen: null});
   });
 }
 
 /** @param {string[]} ids */
-export const restore = (ids) => act(ids.length > 1 ? 'The scans were not restored' : 'The scan was not restored', async () => {
+export const restore = (ids) => act(ids.length > 1 ? 'failure.restore-all' : 'failure.restore', async () => {
   for (const id of ids) {
     await binRequests.restore(id);
   }
@@ -97,7 +97,7 @@ export const restore = (ids) => act(ids.length > 1 ? 'The scans were not restore
 
 export async function emptyBin() {
   if (await askEmptyBin()) {
-    await act('The bin was not emptied', async () => {
+    await act('failure.empty-bin', async () => {
       await binRequests.emptyBin();
       bin.hideUndo();
       bin.refresh();

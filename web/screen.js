@@ -7,6 +7,7 @@ import {isPartOfAnother, posesOf} from './poses.js';
 import {isBuilding, phaseText, progressOf} from './progress.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
+import {text, translated} from './texts.js';
 
 /** @typedef {import('./state.js').State} State */
 /** @typedef {import('./api.js').Scan} Scan */
@@ -14,25 +15,14 @@ import {isAway, running, scanOf} from './state.js';
 /** @typedef {import('./api.js').Device} Device */
 /** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
 
-const methods = {solid: 'solid', intersection: 'by intersection'};
-
-const filters = {'basic': 'unfiltered', 'average': 'average', 'average-discard': 'strict average'};
-
-/** @type {Record<Scan['state'], {tone: Tone, text: string}>} */
-const badges = {
-  running: {tone: 'busy', text: 'Scanning'},
-  paused: {tone: 'warn', text: 'Paused'},
-  finished: {tone: 'good', text: 'Finished'},
-  cancelled: {tone: 'idle', text: 'Ended'},
-  failed: {tone: 'bad', text: 'Failed'},
-  interrupted: {tone: 'warn', text: 'Interrupted'},
-};
+/** @type {Record<Scan['state'], Tone>} */
+const tones = {running: 'busy', paused: 'warn', finished: 'good', cancelled: 'idle', failed: 'bad', interrupted: 'warn'};
 
 /** @param {Scan} scan */
-export const nameOf = (scan) => scan.name || `Scan of ${format.when(scan.created)}`;
+export const nameOf = (scan) => scan.name || text('scan.unnamed', {when: format.when(scan.created)});
 
 /** @param {Scan} scan */
-const taken = (scan) => `${scan.snapshots_done} of ${scan.snapshots_total}`;
+const taken = (scan) => text('count.of', {done: scan.snapshots_done, total: scan.snapshots_total});
 
 /** Why a scan has no model. @param {Scan} scan */
 function troubleOf(scan) {
@@ -43,13 +33,13 @@ function troubleOf(scan) {
   };
   switch (scan.state) {
     case 'cancelled':
-      return {...said, tone: 'idle', title: 'Scan ended', detail: said.detail || 'It was ended before the turn was complete. What it has seen is kept.'};
+      return {...said, tone: 'idle', title: text('trouble.cancelled'), detail: said.detail || text('trouble.cancelled-about')};
     case 'paused':
-      return {...said, tone: 'warn', title: 'Scan paused', detail: said.detail || 'The motor is off. Leave the object and the platform as they are.'};
+      return {...said, tone: 'warn', title: text('trouble.paused'), detail: said.detail || text('trouble.paused-about')};
     case 'interrupted':
-      return {...said, tone: 'warn', title: 'Scan interrupted'};
+      return {...said, tone: 'warn', title: text('trouble.interrupted')};
     case 'failed':
-      return {...said, tone: 'bad', title: 'Scan failed'};
+      return {...said, tone: 'bad', title: text('trouble.failed')};
     default:
       return null;
   }
@@ -61,36 +51,35 @@ function poseFacts({calibration}) {
     return [];
   }
   const {accepted, confirms_told, solved, reason} = calibration;
-  return [{label: 'Pose', text: !accepted || !solved ? `As it was: ${reason}` :
-    `${confirms_told ? 'As it was, confirmed by this scan' : 'Found by this scan'}, looks agree to ${solved.after_mm.toFixed(2)} mm`}];
+  return [{label: text('fact.pose'), text: !accepted || !solved ? text('fact.pose-kept', {reason: translated(reason)}) :
+    text(confirms_told ? 'fact.pose-confirmed' : 'fact.pose-found', {distance: format.millimetres(solved.after_mm, 2)})}];
 }
 
 /** What was left out, but for crumbs. @param {Model} model @returns {{label: string, text: string}[]} */
 const droppedFacts = ({dropped_parts, dropped_volume_cm3}) => !dropped_parts || !(Number(dropped_volume_cm3) >= 0.1) ? [] :
-  [{label: 'Left out', text: `${format.count(dropped_parts, 'part')}, ${format.number(Number(dropped_volume_cm3))} cm³`}];
+  [{label: text('fact.left-out'), text: `${text('count.parts', {count: dropped_parts})}, ${format.number(Number(dropped_volume_cm3))} cm³`}];
 
 /** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan) {
   const {model, settings} = scan;
-  const took = scan.seconds_elapsed > 0 ? `, in ${format.duration(scan.seconds_elapsed)}` : '';
-  const pictures = settings.filter === 'basic' ? '' : ` of ${settings.frames}`;
+  const when = format.when(scan.created);
   const capture = [
-    {label: 'Snapshots', text: `${taken(scan)}, ${filters[settings.filter]}${pictures}`},
-    {label: 'Taken', text: `${format.when(scan.created)}${took}`},
+    {label: text('fact.snapshots'), text: text(`fact.${settings.filter}`, {taken: taken(scan), frames: settings.frames})},
+    {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
     ...poseFacts(scan),
-    ...(scan.late_pulses > 0 ? [{label: 'Motor', text: `${format.number(scan.late_pulses)} pulses late, so it turned more slowly`}] : []),
+    ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: scan.late_pulses})}] : []),
   ];
   if (!model) {
     return capture;
   }
   return [
-    {label: 'Triangles', text: format.number(model.triangles)},
-    model.watertight ? {label: 'Watertight', text: 'Yes'} : {label: 'Watertight', text: 'No, it has open edges', tone: 'warn'},
+    {label: text('fact.triangles'), text: format.number(model.triangles)},
+    model.watertight ? {label: text('fact.watertight'), text: text('yes')} : {label: text('fact.watertight'), text: text('fact.open'), tone: 'warn'},
     ...(model.filled_share === null ? [] :
-      [{label: 'Seen', text: `${Math.round(100 * (1 - model.filled_share))} % of the surface, the rest is filled in`}]),
-    {label: 'Volume', text: `${format.number(model.volume_cm3)} cm³`},
+      [{label: text('fact.seen'), text: text('fact.seen-share', {share: format.percent(1 - model.filled_share)})}]),
+    {label: text('fact.volume'), text: `${format.number(model.volume_cm3)} cm³`},
     ...droppedFacts(model),
-    {label: 'Detail', text: `${format.number(settings.leaf_size_mm)} mm, ${methods[settings.method]}`},
+    {label: text('fact.detail'), text: text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)})},
     ...capture,
   ];
 }
@@ -112,7 +101,7 @@ function unbuiltOf(state, {id, state: condition, model, error, settings, snapsho
   const build = state.status?.build;
   return {
     settings: {leaf_size_mm, choose: true},
-    about: `of ${format.count(snapshots_done, 'snapshot')}, ${format.number(leaf_size_mm)} mm`,
+    about: text('scan.build-first-about', {snapshots: text('count.snapshots', {count: snapshots_done}), leaf: format.leaf(leaf_size_mm)}),
     isBusy: running(state) !== null || Boolean(build && isGoing(build)),
     isGoing: Boolean(build && isGoing(build) && build.scan === id),
   };
@@ -133,8 +122,8 @@ function verdictShown(state, {model, calibration}) {
  */
 function formatsOf({id, model, state, snapshots_done}) {
   const models = model ? ['3mf', 'ply', 'glb'].map((ending) =>
-    ({name: ending.toUpperCase(), title: `Download ${ending.toUpperCase()}`, url: model.url.replace(/stl$/, ending)})) : [];
-  const raw = {name: 'Raw scan', title: 'Download the raw scan, for another Octurn', url: `/api/v1/scans/${id}/scan.zip`};
+    ({name: ending.toUpperCase(), title: text('scan.format', {format: ending.toUpperCase()}), url: model.url.replace(/stl$/, ending)})) : [];
+  const raw = {name: text('scan.raw'), title: text('scan.raw-about'), url: `/api/v1/scans/${id}/scan.zip`};
   return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
 }
 
@@ -157,10 +146,10 @@ const detailsOf = (state, scan) => ({
 const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   id: scan.id,
   name: nameOf(scan),
-  badge: scan.model && badgeOf(scan.model) || badges[scan.state],
+  badge: scan.model && badgeOf(scan.model) || {tone: tones[scan.state], text: text(`state.${scan.state}`)},
   when: scan.name ? format.when(scan.created) : '',  // else it is the name
   about: scan.model ? `${format.size(scan.model.size_mm, 0)} · ${format.bytes(scan.model.bytes)}` :
-    `${taken(scan)} snapshots${scan.state === 'running' ? '' : ' kept'}`,
+    text(scan.state === 'running' ? 'library.taken' : 'library.kept', {taken: taken(scan)}),
   download: scan.model?.url ?? null,
   isCurrent: scan.id === (state.selected ?? running(state)?.id),
   isRunning: scan.state === 'running',
@@ -177,23 +166,24 @@ function libraryOf(state) {
     rows: matches.slice(0, limit).map(rowOf(state)),
     isListed: state.listed !== null,
     count: scans.length,
-    summary: query ? `${matches.length} of ${scans.length}` : scans.length > 0 ? String(scans.length) : '',
+    summary: query ? text('count.of', {done: matches.length, total: scans.length}) : scans.length > 0 ? format.number(scans.length) : '',
     more: Math.max(matches.length - limit, 0),
     isChoosing: chosen !== null,
     chosen: chosen?.length ?? 0,
   };
 }
 
-/** @param {string} role @param {Device} device @param {boolean} isAway  the scanner: what it said last may be over */
+/** @param {'sensor' | 'turntable'} role @param {Device} device @param {boolean} isAway  the scanner: what it said last may be over */
 function deviceOf(role, device, isAway) {
   const isReady = device.state === 'ready';
-  const words = {unknown: 'being looked for', ready: 'ready', missing: 'not found', failed: 'failed'};
+  const name = text(`device.${role}`);
+  const state = text(`device.${device.state}`);
   return {
     role,
     tone: isAway ? 'idle' : isReady ? 'good' : 'bad',
-    name: device.name || role,
-    text: isAway ? 'not known' : words[device.state],
-    message: isReady ? '' : format.sentence(device.message || `the ${role} is ${words[device.state]}`),
+    name: translated(device.name) || name,
+    text: isAway ? text('device.away') : state,
+    message: isReady ? '' : format.sentence(device.message || text('device.trouble', {device: name, state})),
   };
 }
 
@@ -201,10 +191,10 @@ function deviceOf(role, device, isAway) {
 function titleOf(state) {
   const scan = running(state);
   if (isAway(state)) {
-    return 'No answer · Octurn';
+    return `${text('title.away')} · Octurn`;
   }
   if (scan) {
-    return isBuilding(scan) ? 'Building · Octurn' : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
+    return isBuilding(scan) ? `${text('title.building')} · Octurn` : `${scan.snapshots_done}/${scan.snapshots_total} · Octurn`;
   }
   const shown = scanOf(state, state.selected);
   return shown ? `${nameOf(shown)} · Octurn` : 'Octurn';
@@ -219,14 +209,14 @@ function announcementOf(state) {
   if (scan) {
     const quarter = Math.floor(4 * scan.snapshots_done / Math.max(scan.snapshots_total, 1)) * 25;
     return isBuilding(scan) || scan.error ? `${phaseText(scan)}.` :
-      quarter === 0 ? `Scanning, ${scan.snapshots_total} snapshots.` : `${quarter} percent of the snapshots taken.`;
+      quarter === 0 ? text('spoken.start', {count: scan.snapshots_total}) : text('spoken.quarter', {percent: quarter});
   }
   const shown = scanOf(state, state.selected);
   if (!shown?.model) {
     return shown ? `${troubleOf(shown)?.title ?? ''}.` : '';
   }
   const verdict = verdictOf(shown.model);
-  return `The model of ${nameOf(shown)} is ready.${verdict && verdict.tone !== 'good' ? ` ${verdict.title}.` : ''}`;
+  return `${text('spoken.ready', {name: nameOf(shown)})}${verdict && verdict.tone !== 'good' ? ` ${verdict.title}.` : ''}`;
 }
 
 /** @param {State} state */
@@ -249,7 +239,7 @@ export function screenOf(state) {
     isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
     devices,
     panel,
-    progress: scan && {...progressOf(scan), ...(away ? {text: 'Not known until the scanner answers', left: '', time: '', isStale: true} : {isStale: false})},
+    progress: scan && {...progressOf(scan), ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
     details: shown && detailsOf(state, shown),
     builds: chosen && buildsOf(state, chosen),
     poses: chosen && posesOf(state, chosen),
@@ -267,13 +257,13 @@ export function screenOf(state) {
       object: chosen?.id ?? '',
       places: verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,
-      name: chosen ? nameOf(chosen) : growing ? 'Seen so far' : '',
-      sensor: state.status?.sensor.name ?? '',
+      name: chosen ? nameOf(chosen) : growing ? text('stage.seen') : '',
+      sensor: translated(state.status?.sensor.name ?? ''),
       isReachable: !away,
       isLive: state.status?.sensor.state === 'ready' && !away,
       isScanning: scan !== null,
     },
     ...libraryOf(state),
-    footer: state.status ? {version: `Octurn ${state.status.version}`, disk: `${format.bytes(state.status.disk_free_bytes)} free`} : null,
+    footer: state.status ? {version: `Octurn ${state.status.version}`, disk: text('foot.free', {bytes: format.bytes(state.status.disk_free_bytes)})} : null,
   };
 }

@@ -1,15 +1,17 @@
 // The settings of a scan as the form has them, and as the API has them.
 
+import {number, text} from './texts.js';
+
 /** @typedef {import('./api.js').Settings} Settings */
 
-/** @typedef {{mm: number, name: string}} Detail */
+/** @typedef {{mm: number, name: string}} Detail  name: of the texts leaf.NAME */
 
 /** Named leaf sizes, coarse to fine. Each halves the one before it, as the octree's levels do. */
 const details = [
-  {mm: 4, name: 'Draft'},
-  {mm: 2, name: 'Coarse'},
-  {mm: 1, name: 'Medium'},
-  {mm: 0.5, name: 'Fine'},
+  {mm: 4, name: 'draft'},
+  {mm: 2, name: 'coarse'},
+  {mm: 1, name: 'medium'},
+  {mm: 0.5, name: 'fine'},
 ];
 
 /**
@@ -19,21 +21,11 @@ const details = [
  */
 export function leafChoices(preset) {
   return details.some(({mm}) => mm === preset) ? details :
-      [...details, {mm: preset, name: 'Preset'}].sort((a, b) => b.mm - a.mm);
+      [...details, {mm: preset, name: 'preset'}].sort((a, b) => b.mm - a.mm);
 }
 
-const explanations = {
-  'basic': 'One depth picture at each stop. Quickest, and the noisiest.',
-  'average': 'The mean of several pictures. Smooth surfaces, small holes filled.',
-  'solid': 'One closed part on a flat foot, smooth, filled in where nothing was seen: made to be printed.',
-  'intersection': 'A thin shell around every reading, as it was seen, nothing smoothed or filled in.',
-  'auto': 'Each scan finds out anew where the sensor stands, and builds with that.',
-  'told': 'The pose stays as it is, even where the snapshots contradict it.',
-  'average-discard': 'The mean, but only where every picture saw something. Cleanest edges, more holes.',
-};
-
 /** @param {Settings['filter'] | Settings['method'] | Settings['calibrate']} choice */
-export const explain = (choice) => explanations[choice];
+export const explain = (choice) => text(`explain.${choice}`);
 
 /** The longest edge of a threshold, millimetres. */
 export const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
@@ -64,4 +56,4 @@ export const settingsOf = ({snapshots, method, leaf_size_mm, filter, frames, gap
  * Angle between two stops.
  * @param {number} snapshots
  */
-export const stepText = (snapshots) => `one each ${Number((360 / snapshots).toFixed(1))}°`;
+export const stepText = (snapshots) => text('form.step', {angle: `${number(360 / snapshots)}°`});

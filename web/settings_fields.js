@@ -2,6 +2,7 @@
 
 import {copyOf, part, setText, show} from './dom.js';
 import {choiceName, complaintOf, helpOf, nameOf, valueText, wordsOf} from './settings_form.js';
+import {text, translated} from './texts.js';
 
 /** @typedef {import('./api_settings.js').SettingSchema} SettingSchema */
 
@@ -136,7 +137,7 @@ export function makeField(key, schema, onReset) {
   if (schema['x-unit']) {
     const unit = document.createElement('span');
     unit.className = 'muted';
-    unit.textContent = ` ${schema['x-unit']}`;
+    unit.textContent = ` ${translated(schema['x-unit'])}`;
     label.append(unit);
   }
   setText(help, schema.minItems ? '' : helpOf(key, schema));
@@ -155,7 +156,7 @@ export function makeField(key, schema, onReset) {
     write: (value, preset, isStored) => {
       editor.write(value);
       complain('');
-      setText(reset, `Back to ${schema.minItems ? 'the preset' : valueText(preset)}`);
+      setText(reset, text('settings.back-to', {value: schema.minItems ? text('settings.preset') : valueText(preset)}));
       show(reset, isStored);
     },
     check: () => complaintOf(schema, editor.read()),

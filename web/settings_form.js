@@ -1,71 +1,18 @@
 // The settings of the scanner as values, and as what is said of them. Pure.
 
+import {degrees as angle, millimetres, sentence} from './format.js';
+import {isText, text} from './texts.js';
+
 /** @typedef {import('./api_settings.js').SettingSchema} SettingSchema */
 
-/** Names for people, by key. */
-const names = {
-  'scan.snapshots': 'Snapshots a turn',
-  'scan.method': 'Model',
-  'scan.leaf_size_mm': 'Detail (leaf size)',
-  'scan.filter': 'Depth filter',
-  'scan.frames': 'Depth pictures a stop',
-  'scan.max_error_mm': 'Simplification',
-  'scan.parts': 'Parts',
-  'scan.calibrate': 'Check of the pose',
-  'scan.clip_mm': 'Scanned space',
-  'scan.threshold_m2': 'Widest gap bridged, squared',
-  'scan.root_size_mm': 'Root cube',
-  'turntable.gear_ratio': 'Gear ratio',
-  'turntable.full_steps': 'Full steps',
-  'turntable.microsteps': 'Microsteps',
-  'turntable.reversed': 'Turn the other way',
-  'turntable.take_up_steps': 'Take-up of play',
-  'turntable.speed_steps_per_s': 'Speed',
-  'turntable.start_speed_steps_per_s': 'Start speed',
-  'turntable.ramp_steps_per_s2': 'Acceleration',
-  'turntable.settle_ms': 'Time to settle',
-  'turntable.idle_release_s': 'Motor off after',
-  'turntable.step_line': 'STEP',
-  'turntable.direction_line': 'DIR',
-  'turntable.enable_line': 'ENABLE',
-  'turntable.microstep_lines': 'MS1, MS2, MS3',
-  'memory_limit_mb': 'Memory',
-  'threads': 'Threads',
-  'host_names': 'Names of this scanner',
-  'listen': 'Address',
-  'port': 'Port',
-};
+/** @param {string} key @returns {string} for people */
+export const nameOf = (key) => isText(`setting.${key}`) ? text(`setting.${key}`) : key;
 
-/** Help where the schema's is for programs. @type {Record<string, string>} */
-const help = {
-  'scan.filter': 'Basic takes one depth picture, average the mean of several, and with discard only where each of them saw something.',
-  'scan.parts': 'Of several things on the platform: the object alone, or all that stand there. Solid only.',
-  'scan.threshold_m2': 'Square of the longest side that a triangle may have: 0.0001 bridges 10 mm. Intersection only.',
-  'scan.root_size_mm': 'Side of the cube that is halved until its leaves are as small as asked for.',
-  'scan.calibrate': 'A scan solves where the sensor stands by itself, and builds its model again if that is better.',
-  'turntable.reversed': 'On if the platform turns clockwise, seen from above.',
-  'turntable.take_up_steps': 'Against the play of gears: so far the platform goes back too far, and comes forward again. 0 for none.',
-};
-
-/** @type {Record<string, string>} */
-const choices = {
-  'basic': 'Basic', 'average': 'Average', 'average-discard': 'Average, discard',
-  'auto': 'By each scan', 'told': 'None',
-  'main': 'The object', 'all': 'All that stand',
-  'solid': 'Solid', 'intersection': 'Intersection',
-};
-
-/** @param {string} key @returns {string} */
-export const nameOf = (key) => /** @type {Record<string, string>} */ (names)[key] ?? key;
-
-/** Help without Markdown, as a sentence. @param {string} key @param {SettingSchema} schema */
-export function helpOf(key, schema) {
-  const text = help[key] ?? schema.description.replaceAll('`', '');
-  return text && `${text[0].toUpperCase()}${text.slice(1)}${text.endsWith('.') ? '' : '.'}`;
-}
+/** What a setting is for: as the page says it, or without Markdown as the scanner does. @param {string} key @param {SettingSchema} schema */
+export const helpOf = (key, schema) => isText(`setting-help.${key}`) ? text(`setting-help.${key}`) : sentence(schema.description.replaceAll('`', ''));
 
 /** @param {string | number} choice */
-export const choiceName = (choice) => choices[choice] ?? String(choice);
+export const choiceName = (choice) => isText(`choice.${choice}`) ? text(`choice.${choice}`) : String(choice);
 
 /** @param {any} tree @param {string} key  such as "turntable.gear_ratio" @returns {any} undefined where there is nothing */
 export const valueAt = (tree, key) => key.split('.').reduce((value, part) => value?.[part], tree);
@@ -93,21 +40,21 @@ export const areEqual = (one, other) => JSON.stringify(one) === JSON.stringify(o
 /** Why a box is none, or nothing. @param {number[]} box */
 function boxComplaint(box) {
   if (box.some((side) => !Number.isFinite(side) || Math.abs(side) > 10000)) {
-    return 'Six numbers from -10000 to 10000.';
+    return text('settings.box-range');
   }
-  return [0, 1, 2].every((axis) => box[axis] < box[axis + 3]) ? '' : 'Each space must end beyond where it begins.';
+  return [0, 1, 2].every((axis) => box[axis] < box[axis + 3]) ? '' : text('settings.box-empty');
 }
 
 /** Why a number is none that is allowed, or nothing. @param {SettingSchema} schema @param {any} value */
 function numberComplaint({type, minimum, maximum}, value) {
-  const range = `from ${minimum} to ${maximum}`;
+  const range = {minimum: minimum ?? 0, maximum: maximum ?? 0};
   if (value === null || !Number.isFinite(value)) {
-    return `A number ${range}.`;
+    return text('settings.number', range);
   }
   if (type === 'integer' && !Number.isInteger(value)) {
-    return `A whole number ${range}.`;
+    return text('settings.whole', range);
   }
-  return value < Number(minimum) || value > Number(maximum) ? `It must be ${range}.` : '';
+  return value < Number(minimum) || value > Number(maximum) ? text('settings.range', range) : '';
 }
 
 /**
@@ -127,15 +74,15 @@ export const keyOf = (detail) => /^"([a-z0-9_.]+)"/.exec(detail)?.[1] ?? null;
 /** What is wrong, without the setting's key. @param {string} detail */
 export function reasonOf(detail) {
   const reason = /: (must be .*)$/s.exec(detail)?.[1];
-  return reason ? `It ${reason}.` : detail;
+  return reason ? sentence(`it ${reason}`) : detail;
 }
 
 /** A value as it stands in a sentence. @param {any} value */
 export function valueText(value) {
   if (Array.isArray(value)) {
-    return value.length > 0 ? value.join(', ') : 'none';
+    return value.length > 0 ? value.join(', ') : text('settings.none');
   }
-  return typeof value === 'boolean' ? (value ? 'on' : 'off') : typeof value === 'string' ? choiceName(value) || 'none' : String(value);
+  return typeof value === 'boolean' ? text(value ? 'settings.on' : 'settings.off') : typeof value === 'string' ? choiceName(value) || text('settings.none') : String(value);
 }
 
 /** A list as it is typed. @param {string} text @returns {string[]} */
@@ -150,8 +97,8 @@ const degrees = (/** @type {number} */ radians) => radians * 180 / Math.PI;
 export function poseText(pose) {
   const [x, y, z] = pose.slice(0, 3).map((row) => row[3]);
   const down = -degrees(Math.atan2(pose[2][2], Math.hypot(pose[0][2], pose[1][2])));
-  return `${Math.round(1000 * Math.hypot(x, y))} mm from the platform's axis, ${Math.round(1000 * z)} mm above its surface, ` +
-      `looking ${Math.abs(down).toFixed(1)}° ${down < 0 ? 'up' : 'down'}.`;
+  return text(down < 0 ? 'pose.up' : 'pose.down', {
+    distance: millimetres(1000 * Math.hypot(x, y), 0), height: millimetres(1000 * z, 0), angle: angle(Math.abs(down), 1)});
 }
 
 /** Steps of a turn of the platform. @param {{full_steps: number, microsteps: number, gear_ratio: number}} turntable */
@@ -162,5 +109,5 @@ export function restartText(keys, isScanning) {
   if (keys.length === 0) {
     return '';
   }
-  return isScanning ? 'Saved. The scanner takes it up when the scan has ended.' : 'Saved. The scanner starts again to take it up, in a few seconds.';
+  return text(isScanning ? 'settings.restart-later' : 'settings.restart');
 }

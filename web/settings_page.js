@@ -11,6 +11,7 @@ import {makeField} from './settings_fields.js';
 import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
 import {prepareKeys} from './keys.js';
 import {prepareMachine} from './machine.js';
+import {chooseLanguage, chosenLanguage, languages, text} from './texts.js';
 import {prepareTurntable} from './turntable.js';
 
 /** @typedef {import('./api_settings.js').Configuration} Configuration */
@@ -54,8 +55,7 @@ function showChanged({fields, actions}) {
 
 function showPassword() {
   const {password} = told;
-  setText(element('password-about'), password === 'everybody' ? 'Everybody in this network may use the scanner.' :
-    password === 'page' ? 'The page asks for a password.' : 'The page asks for the password that the card, or octurn.json, has set.');
+  setText(element('password-about'), text(`settings.password-${password === 'octurn.json' ? 'file' : password}`));
   show(element('password-remove'), password === 'page');
 }
 
@@ -76,7 +76,7 @@ function showNews() {
   show(element('settings-trouble'), trouble !== '');
   setText(part(element('settings-trouble'), 'p'), sentence(trouble));
   setText(element('turntable-about'),
-      `The platform makes a turn of ${stepsOf({...preset.turntable, ...stored.turntable})} steps.`);
+      text('settings.turntable-about', {steps: stepsOf({...preset.turntable, ...stored.turntable})}));
   showPassword();
   showPose();
 }
@@ -143,7 +143,7 @@ async function save(card, change) {
     writeCard(card);
     showChanged(card);
     card.saved.dataset.tone = 'good';
-    setText(card.saved, 'Saved.');
+    setText(card.saved, text('saved'));
     return true;
   } catch (error) {
     showProblem(card, problemOf(error));
@@ -222,7 +222,7 @@ function preparePassword() {
   const input = element('page-password');
   element('password-card').addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
-    input.value === '' ? setText(element('password-complaint'), 'Write a password.') : setPassword(input.value);
+    input.value === '' ? setText(element('password-complaint'), text('settings.password-missing')) : setPassword(input.value);
   });
   element('password-remove').addEventListener('click', () => setPassword(null));
   element('password-show').addEventListener('click', () => {
@@ -241,7 +241,7 @@ async function restore() {
     cards.forEach(writeCard);
     cards.forEach(showChanged);
     element('restore-done').dataset.tone = 'good';
-    setText(element('restore-done'), 'Restored.');
+    setText(element('restore-done'), text('settings.restored'));
   } catch (error) {
     setText(element('restore-complaint'), wordsOf(problemOf(error)));
   }
@@ -252,7 +252,7 @@ async function begin() {
   try {
     told = await api.configuration();
   } catch (error) {
-    setText(part(element('settings-away'), 'strong'), 'The settings have not arrived yet');
+    setText(part(element('settings-away'), 'strong'), text('settings.late'));
     setText(part(element('settings-away'), 'p'), wordsOf(problemOf(error)));
     show(element('settings-away'), true);
     setTimeout(begin, 4 * pauseUntilRestarted);
@@ -268,8 +268,16 @@ async function begin() {
   take(told);
 }
 
+function prepareLanguage() {
+  const choice = element('language');
+  choice.append(...Object.entries(languages).map(([code, name]) => new Option(name, code)));
+  choice.value = chosenLanguage() ?? '';
+  choice.addEventListener('change', () => chooseLanguage(choice.value || null));
+}
+
 /** Makes the part of the page work that settings.html is. */
 export function prepare() {
+  prepareLanguage();
   preparePassword();
   prepareMachine();
   element('restore-file').addEventListener('change', restore);

@@ -5,6 +5,7 @@ import {element, setText, show} from './dom.js';
 import * as format from './format.js';
 import {loadsUnasked} from './state.js';
 import {readStl} from './stl.js';
+import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('./api.js').Model} Model */
@@ -23,11 +24,11 @@ let marked = null;
 let due = null;
 let loading = new AbortController();
 
-/** @param {string} text @param {{button?: string, progress?: number}} [more] */
-function note(text, {button, progress} = {}) {
-  show(element('model-note'), text !== '');
-  show(element('tools'), text === '');
-  setText(element('model-text'), text);
+/** @param {string} words @param {{button?: string, progress?: number}} [more] */
+function note(words, {button, progress} = {}) {
+  show(element('model-note'), words !== '');
+  show(element('tools'), words === '');
+  setText(element('model-text'), words);
   show(element('model-progress'), progress !== undefined);
   element('model-progress').value = progress ?? 0;
   show(element('load-model'), button !== undefined);
@@ -42,7 +43,7 @@ async function openViewer() {
   const {Viewer} = await import('./viewer.js');
   return new Viewer(element('view'), {
     onTurning: (isTurning) => pressed('turn', isTurning),
-    onLost: () => note('This device gave up drawing the model.', {button: 'Show it again'}),
+    onLost: () => note(text('view.lost'), {button: text('view.again')}),
   });
 }
 
@@ -63,15 +64,15 @@ async function load(model, {isFirst = true} = {}) {
   if (isFirst) {
     viewer?.clear();
   }
-  note('Loading the model', {progress: 0});
+  note(text('view.loading'), {progress: 0});
   try {
     viewer ??= await openViewer();
   } catch {
-    note('This browser cannot draw in 3D (WebGL is off or missing). The model can be downloaded all the same.');
+    note(text('view.no-webgl'));
     return;
   }
   try {
-    const mesh = await readStl(await api.model(model.url, signal), (progress) => note('Loading the model', {progress}));
+    const mesh = await readStl(await api.model(model.url, signal), (progress) => note(text('view.loading'), {progress}));
     if (!signal.aborted) {
       show(element('filled'), mesh.filled !== null);
       viewer.show(mesh, {isFirst});
@@ -84,7 +85,7 @@ async function load(model, {isFirst = true} = {}) {
     }
   } catch (error) {
     if (!signal.aborted) {
-      note(format.sentence(error instanceof Error ? error.message : String(error)), {button: 'Try again'});
+      note(format.sentence(error instanceof Error ? error.message : String(error)), {button: text('view.retry')});
     }
   }
 }
@@ -155,7 +156,7 @@ function setModel({model, object: id}) {
     load(model, {isFirst});
   } else {
     viewer?.clear();
-    note('This is a large model.', {button: `Show it (${format.bytes(model.bytes)})`});
+    note(text('view.large'), {button: text('view.load', {bytes: format.bytes(model.bytes)})});
   }
 }
 
@@ -176,7 +177,7 @@ export function renderStage(stage) {
   show(element('camera'), stage.shows === 'camera');
   show(element('model'), stage.shows === 'model');
   setText(element('live-text'), stage.shows === 'model' ? stage.name :
-      [stage.isScanning ? 'Scanning' : stage.isLive ? 'Live depth' : 'No picture', stage.sensor].filter(Boolean).join(' · '));
+      [text(stage.isScanning ? 'stage.scanning' : stage.isLive ? 'stage.live' : 'stage.none'), stage.sensor].filter(Boolean).join(' · '));
   setGrowing(stage);
   setModel(stage);
   markPlaces();

@@ -1,5 +1,7 @@
 // Binary STL, read while it arrives, so that no more than the positions is ever in memory.
 
+import {text} from './texts.js';
+
 const headerBytes = 84;
 const recordBytes = 50;  // normal, three corners, two bytes of attributes
 const cornersAt = 12;
@@ -46,7 +48,7 @@ export async function readStl(chunks, onProgress = () => {}) {
     let at = 0;
     while (at < chunk.length) {
       if (bytes >= total) {
-        throw new Error('The model goes on after its last triangle');
+        throw new Error(text('view.stl-beyond'));
       }
       const inHeader = bytes < headerBytes;
       const target = inHeader ? header : record;
@@ -76,10 +78,10 @@ export async function readStl(chunks, onProgress = () => {}) {
     }
   }
   if (!corners || bytes < total) {
-    throw new Error('The model is cut short');
+    throw new Error(text('view.stl-short'));
   }
   if (corners.length === 0) {
-    throw new Error('The model is empty');
+    throw new Error(text('view.stl-empty'));
   }
   const positions = new Float32Array(corners.buffer);  // every machine with WebGL is little-endian
   return {positions, filled, ...bounds(positions)};

@@ -5,6 +5,7 @@ import * as api from './api_settings.js';
 import {copyOf, element, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
 import {nameOf, valueText} from './settings_form.js';
+import {text, translated} from './texts.js';
 
 /** @typedef {import('./api_settings.js').TurntableState} TurntableState */
 /** @typedef {import('./api_settings.js').TurnFinding} TurnFinding */
@@ -16,12 +17,11 @@ export function shownOf({state, error, test}) {
   const failure = error ?? (state === 'idle' ? test?.error ?? null : null);
   const isDone = state !== 'testing' && test?.state === 'done';
   const faults = isDone ? test.findings.filter((finding) => finding.state !== 'ok').length : 0;
-  const outcome = faults === 0 ? 'The turntable does what it is told.' : 'The turntable does not do what it is told.';
+  const outcome = text(faults === 0 ? 'turn.good' : 'turn.bad');
   return {
     isMoving: state !== 'idle',
     progress: state === 'testing' ? test?.done ?? 0 : null,
-    summary: state === 'testing' ? 'Turning and looking…' : state === 'jogging' ? 'Turning…' : isDone ? outcome :
-      test?.state === 'cancelled' ? 'The test was stopped.' : '',
+    summary: state === 'idle' && isDone ? outcome : state !== 'idle' ? text(`turn.${state}`) : test?.state === 'cancelled' ? text('turn.cancelled') : '',
     trouble: failure ? [failure.detail, failure.hint].map(sentence).join(' ') : '',
     findings: isDone ? test.findings : [],
   };
@@ -30,7 +30,7 @@ export function shownOf({state, error, test}) {
 /** What the button of a cure says, or nothing. Pure. @param {TurnFinding['set']} set */
 export function cureText(set) {
   const [cure] = Object.entries(set);
-  return cure ? `Set ${nameOf(`turntable.${cure[0]}`)} to ${valueText(cure[1])}` : '';
+  return cure ? text('turn.set', {name: nameOf(`turntable.${cure[0]}`), value: valueText(cure[1])}) : '';
 }
 
 let isFollowing = false;
@@ -40,7 +40,7 @@ function itemOf(finding, onSet) {
   const item = copyOf('turn-check');
   item.dataset.state = finding.state;
   part(item, 'use').setAttribute('href', `icons/symbols.svg#${finding.state}`);
-  setText(part(item, '.turn-name'), finding.name);
+  setText(part(item, '.turn-name'), translated(finding.name));
   setText(part(item, '.turn-measured'), sentence(finding.measured));
   setText(part(item, '.turn-advice'), sentence(finding.advice));
   const cure = part(item, 'button');
@@ -49,7 +49,7 @@ function itemOf(finding, onSet) {
   cure.addEventListener('click', async () => {
     if (await onSet(finding.set)) {
       show(cure, false);
-      setText(part(item, '.turn-advice'), 'It is set. Test again.');
+      setText(part(item, '.turn-advice'), text('turn.is-set'));
     }
   });
   return item;

@@ -3,6 +3,7 @@
 import * as api from './api.js';
 import {element, part, setText, show} from './dom.js';
 import {bytes, sentence} from './format.js';
+import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Update} Update */
 
@@ -30,41 +31,33 @@ export function phaseOf({update, sending, isAway, isFollowed}) {
   return isFollowed && isAway && phase === 'installing' ? 'restarting' : phase;
 }
 
-const words = {
-  sending: 'Sending the file',
-  installing: 'Checking and writing',
-  restarting: 'Starting again',
-  trial: 'Trying the new version',
-};
-
 /** @param {ReturnType<typeof phaseOf>} phase @param {State} state */
 function textOf(phase, {sending}) {
   switch (phase) {
-    case 'sending': return sending ? `${bytes(sending.sent)} of ${bytes(sending.total)}` : 'Another page sends a file.';
-    case 'installing': return 'The file is checked and written beside the version that runs. This takes a few minutes.';
-    case 'restarting': return 'This page goes on by itself when the scanner is back, in about a minute.';
-    case 'trial': return 'The new version runs. It is kept if it goes on running; else the earlier one comes back.';
+    case 'sending': return sending ? text('count.of', {done: bytes(sending.sent), total: bytes(sending.total)}) : text('update.elsewhere');
+    case 'installing': return text('update.installing-about');
+    case 'restarting': return text('update.restarting-about');
+    case 'trial': return text('update.trial-about');
     default: return '';
   }
 }
 
 /** @param {State} state */
 function outcomeOf({update, isFollowed, failure}) {
-  const version = update.update_version ? `to ${update.update_version} ` : '';
   if (failure) {
-    return {tone: 'bad', title: 'The update was not installed', detail: failure};
+    return {tone: 'bad', title: text('update.failed'), detail: failure};
   }
   switch (update.state) {
     case 'failed':
-      return {tone: 'bad', title: 'The update was not installed', detail: `${sentence(update.error)} Nothing was changed.`.trim()};
+      return {tone: 'bad', title: text('update.failed'), detail: `${sentence(update.error)} ${text('update.unchanged')}`.trim()};
     case 'returned':
       return {
         tone: 'warn',
-        title: `The update ${version}did not start; the earlier version is back`,
-        detail: sentence(update.error) || 'All scans and settings are still there.',
+        title: text(update.update_version ? 'update.returned-version' : 'update.returned', {version: update.update_version}),
+        detail: sentence(update.error) || text('update.returned-about'),
       };
     case 'kept':
-      return isFollowed ? {tone: 'good', title: `Octurn ${update.update_version || update.version} is running`, detail: ''} : null;
+      return isFollowed ? {tone: 'good', title: text('update.kept', {version: update.update_version || update.version}), detail: ''} : null;
     default:
       return null;
   }
@@ -76,19 +69,19 @@ export function shownOf(state) {
   const now = phase ? phases.indexOf(phase) : -1;
   return {
     phase,
-    summary: phase ? `${words[phase]}…` : `Octurn ${state.update.version} is in use.`,
+    summary: phase ? text(`update.${phase}`) : text('update.in-use', {version: state.update.version}),
     text: textOf(phase, state),
     steps: phases.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'})),
     progress: phase === 'sending' && state.sending ? state.sending.sent / state.sending.total : null,
     outcome: phase ? null : outcomeOf(state),
-    hint: state.isScanning ? 'A scan is running. Install the update after it.' : '',
+    hint: state.isScanning ? text('update.scanning') : '',
   };
 }
 
 /** Why a file can be no update, or nothing. Pure. @param {number} size  bytes */
 export function complaintOf(size) {
-  return size === 0 ? 'This file is empty.' :
-    size > mostBytes ? `This is no update: it has ${bytes(size)}, and an update has at most ${bytes(mostBytes)}.` : '';
+  return size === 0 ? text('update.empty') :
+    size > mostBytes ? text('update.too-large', {bytes: bytes(size), most: bytes(mostBytes)}) : '';
 }
 
 /** @type {State} */
@@ -108,7 +101,7 @@ function showChoice() {
   show(element('update-chosen'), file !== undefined);
   show(element('update-install'), file !== undefined);
   show(element('update-older'), file !== undefined);
-  setText(part(element('update-pick'), 'span'), file ? 'Choose another file' : 'Choose a file');
+  setText(part(element('update-pick'), 'span'), text(file ? 'update.pick-another' : 'update.pick'));
   setText(part(element('update-chosen'), 'strong'), file?.name ?? '');
   setText(part(element('update-chosen'), 'span'), file ? complaint || bytes(file.size) : '');
   element('update-install').setAttribute('aria-disabled', String(complaint !== '' || state.isScanning || state.isAway));
@@ -170,7 +163,7 @@ export const showScanning = (isScanning) => change({isScanning});
 /** What to say while the scanner does not answer, or null. */
 export function updateAway() {
   const phase = phaseOf(state);
-  return phase === 'restarting' || phase === 'trial' ? {title: 'The scanner starts again.', text: textOf('restarting', state)} : null;
+  return phase === 'restarting' || phase === 'trial' ? {title: text('update.away'), text: textOf('restarting', state)} : null;
 }
 
 /** Whether news are expected soon. */

@@ -4,6 +4,7 @@ import {renderBuilds} from './builds_view.js';
 import {tickWidth, ticks} from './dial.js';
 import {element, list, part, setText, show} from './dom.js';
 import {renderPoses} from './poses_view.js';
+import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
 
@@ -46,7 +47,7 @@ function showProgress(progress) {
   const dial = element('dial');
   dial.dataset.phase = progress.isStale ? '' : progress.phase;
   dial.setAttribute('aria-valuenow', String(progress.percent));
-  dial.setAttribute('aria-valuetext', `${done} of ${total} snapshots. ${progress.text}.`);
+  dial.setAttribute('aria-valuetext', text('progress.spoken', {done, total, phase: progress.text}));
   for (const [id, from, to] of /** @type {[string, number, number][]} */ ([
     ['ticks', 0, total], ['ticks-done', 0, done], ['tick-now', done, Math.min(done + 1, total)]])) {
     const path = element(id);
@@ -54,7 +55,7 @@ function showProgress(progress) {
     path.setAttribute('stroke-width', tickWidth(total).toFixed(2));
   }
   setText(element('dial-done'), String(done));
-  setText(element('dial-total'), `of ${total}`);
+  setText(element('dial-total'), text('progress.total', {total}));
   setText(element('phase'), progress.text);
   setText(element('left'), progress.left);
   setText(element('time'), progress.time);
@@ -85,7 +86,7 @@ function showVerdict(verdict) {
     list(element('reasons'), verdict.reasons, ({key}) => key, 'reason', (item, {detail, hint, action, places, isShown}) => {
       const toggle = part(item, '.reason-places');
       show(toggle, places.length > 0);
-      setText(toggle, isShown ? 'Hide where' : 'Show where');
+      setText(toggle, text(isShown ? 'reason.hide' : 'reason.show'));
       toggle.setAttribute('aria-pressed', String(isShown));
       setText(part(item, '.reason-detail'), detail);
       setText(part(item, '.reason-hint'), hint);
@@ -148,10 +149,10 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
   setText(element('library-count'), summary);
   show(element('no-match'), count > 0 && rows.length === 0);
   show(element('show-more'), more > 0);
-  setText(element('show-more'), `Show more (${more})`);
+  setText(element('show-more'), text('library.more', {count: more}));
   element('choose').setAttribute('aria-pressed', String(isChoosing));
   show(element('delete-chosen'), isChoosing);
-  setText(element('delete-chosen'), `Delete ${chosen}`);
+  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen}));
   element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
   list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
     item.classList.toggle('current', row.isCurrent);
@@ -159,7 +160,7 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
     const choice = part(item, '.scan-choice');
     show(choice, isChoosing && !row.isRunning);
     part(choice, 'input').checked = row.isChosen;
-    part(choice, 'input').setAttribute('aria-label', `Choose: ${row.name}`);
+    part(choice, 'input').setAttribute('aria-label', text('library.choose', {name: row.name}));
     const name = part(item, '.scan-name');
     setText(name, row.name);
     name.href = `#${row.id}`;
@@ -168,7 +169,7 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
     setText(part(item, '.scan-when'), row.when);
     setText(part(item, '.scan-about'), row.about);
     for (const action of item.querySelectorAll('[data-do]')) {
-      action.setAttribute('aria-label', `${action.title}: ${row.name}`);
+      action.setAttribute('aria-label', text('library.action', {action: action.title, name: row.name}));
     }
     const download = part(item, '[data-do=download]');
     show(download, row.download !== null);
@@ -240,7 +241,6 @@ function ask(dialog) {
 export async function askName(name) {
   const field = element('rename-name');
   field.value = name;
-  field.placeholder = 'Teapot';
   const answer = ask(element('rename-dialog'));
   field.select();
   return await answer && field.value.trim() !== name ? field.value.trim() : null;

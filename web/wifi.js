@@ -4,38 +4,35 @@ import * as api from './api.js';
 import {codes} from './countries.js';
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
+import {locale, text} from './texts.js';
 
 /** @typedef {import('./api.js').Wifi} Wifi */
 /** @typedef {import('./api.js').Network} Network */
 
-const quoted = (/** @type {string} */ name) => `“${name}”`;
-
 /** What to say of the WiFi. Pure. @param {Wifi} wifi */
 export function summaryOf({state, name, hotspot}) {
   switch (state) {
-    case 'joining': return `Joining ${quoted(name)}…`;
-    case 'joined': return `The scanner is in ${quoted(name)}.`;
-    case 'failed': return `The scanner is not in ${quoted(name)}.`;
-    case 'hotspot': return `The scanner has a WiFi of its own, ${quoted(hotspot)}. Choose the one that it shall join.`;
-    default: return 'The scanner is in no WiFi.';
+    case 'joining': return text('wifi.joining', {name});
+    case 'joined': return text('wifi.joined', {name});
+    case 'failed': return text('wifi.failed', {name});
+    case 'hotspot': return text('wifi.hotspot', {name: hotspot});
+    default: return text('wifi.none');
   }
 }
 
 /** What is wrong, or nothing. Pure. @param {Wifi} wifi */
 export const troubleOf = ({state, name, error}) => !error ? null :
-  {title: state !== 'joined' && name ? `${quoted(name)} could not be joined` : 'The WiFi was not changed', detail: sentence(error)};
+  {title: state !== 'joined' && name ? text('wifi.not-joined', {name}) : text('wifi.not-changed'), detail: sentence(error)};
 
 /** What comes if the scanner cannot join a WiFi. Pure. @param {Wifi} wifi */
-const fallbackOf = ({hotspot}) => hotspot ? `If it cannot join, ${quoted(hotspot)} is back in about a minute, and this page says why there.` :
-  'If it cannot join and has no cable, it makes a WiFi of its own in about a minute, where this page says why.';
+const fallbackOf = ({hotspot}) => hotspot ? text('wifi.back', {name: hotspot}) : text('wifi.fallback');
 
 /** What joining a WiFi means for who looks at this page. Pure. @param {Wifi} wifi @param {string} chosen @param {string} page  its address there */
 export function consequenceOf(wifi, chosen, page) {
   const {state, name, hotspot} = wifi;
-  const there = chosen ? quoted(chosen) : 'that WiFi';
-  const leaves = state === 'hotspot' ? `The scanner leaves ${quoted(hotspot)} and joins ${there}.` :
-    state === 'joined' && name !== chosen ? `The scanner leaves ${quoted(name)} and joins ${there}.` : `The scanner joins ${there}.`;
-  return `${leaves} Then put this device into ${there}, too, and open ${page}. ${fallbackOf(wifi)}`;
+  const there = chosen ? text('wifi.there', {name: chosen}) : text('wifi.there-unnamed');
+  const before = state === 'hotspot' ? hotspot : state === 'joined' && name !== chosen ? name : '';
+  return [before ? text('wifi.leaves', {before, there}) : text('wifi.joins', {there}), text('wifi.follow', {there, page}), fallbackOf(wifi)].join(' ');
 }
 
 /** How many of four bars a signal is worth. Pure. @param {number} dbm */
@@ -55,17 +52,17 @@ export function inPlace(shown, found, chosen) {
 /** Why a password is none, or nothing. Pure. @param {string} password @param {boolean} mayBeOpen */
 export function passwordComplaint(password, mayBeOpen) {
   if (password === '') {
-    return mayBeOpen ? '' : 'This WiFi has a password.';
+    return mayBeOpen ? '' : text('wifi.needs-password');
   }
   if (password !== password.trim()) {
-    return 'There is a blank before or after it.';
+    return text('wifi.blank');
   }
-  return /^([ -~]{8,63}|[0-9A-Fa-f]{64})$/.test(password) ? '' : 'A WiFi password has 8 to 63 letters, digits and signs, without accents.';
+  return /^([ -~]{8,63}|[0-9A-Fa-f]{64})$/.test(password) ? '' : text('wifi.password-shape');
 }
 
 /** Why a name is none, or nothing. Pure. @param {string} name */
-export const nameComplaint = (name) => name === '' ? 'Write the name of the WiFi.' :
-  new TextEncoder().encode(name).length > 32 ? 'A WiFi has a shorter name.' : '';
+export const nameComplaint = (name) => name === '' ? text('wifi.needs-name') :
+  new TextEncoder().encode(name).length > 32 ? text('wifi.name-long') : '';
 
 /** Where somebody probably is: the region of the browser's language. Pure. @param {readonly string[]} languages */
 export const regionOf = (languages) => languages.map((language) => /-([A-Z]{2})\b/.exec(language)?.[1] ?? '')
@@ -90,7 +87,7 @@ const chosenName = () => chosen() || element('wifi-name').value.trim();
 
 const isOpenWifi = () => networks.some(({name, secured}) => name === chosen() && !secured);
 
-const farewell = () => `Put this device into ${quoted(asked)}, too, and open ${page()}. ${fallbackOf(wifi)}`;
+const farewell = () => `${text('wifi.farewell', {there: text('wifi.there', {name: asked}), page: page()})} ${fallbackOf(wifi)}`;
 
 function showNetworks() {
   list(element('networks'), networks, ({name}) => name, 'network', (item, {name, signal_dbm, secured}) => {
@@ -98,7 +95,7 @@ function showNetworks() {
     setText(part(item, '.network-name'), name);
     part(item, '.network-signal use').setAttribute('href', `icons/symbols.svg#wifi-${barsOf(signal_dbm)}`);
     show(part(item, '.network-lock'), secured);
-    setText(part(item, '.unseen'), `${secured ? ' with a password' : ' open'}, ${barsOf(signal_dbm)} of 4 bars`);
+    setText(part(item, '.unseen'), text(secured ? 'wifi.secured' : 'wifi.open', {bars: barsOf(signal_dbm)}));
   });
 }
 
@@ -108,7 +105,7 @@ function showFields() {
   show(element('wifi-rest'), choice !== null);
   show(element('wifi-name-field'), isTyped);
   show(element('wifi-password-field'), choice !== null && !isOpenWifi());
-  setText(element('wifi-password-text'), isTyped ? 'Leave it empty if the WiFi has none.' : '');
+  setText(element('wifi-password-text'), isTyped ? text('wifi.password-about') : '');
   const password = element('wifi-password');
   password.setCustomValidity(choice === null || isOpenWifi() ? '' : passwordComplaint(password.value, isTyped));
   element('wifi-name').setCustomValidity(isTyped ? nameComplaint(chosenName()) : '');
@@ -117,15 +114,15 @@ function showFields() {
 
 function render() {
   const isJoining = wifi.state === 'joining' || isAsked;
-  const trouble = isJoining ? null : failure ? {title: 'The scanner was not told', detail: failure} : troubleOf(wifi);
+  const trouble = isJoining ? null : failure ? {title: text('wifi.not-told'), detail: failure} : troubleOf(wifi);
   setText(element('wifi-summary'), isJoining ? summaryOf({...wifi, state: 'joining', name: asked || wifi.name}) : summaryOf(wifi));
   show(element('wifi-joining'), isJoining);
-  setText(part(element('wifi-joining'), 'p'), asked ? farewell() : 'This takes up to a minute.');
+  setText(part(element('wifi-joining'), 'p'), asked ? farewell() : text('wifi.wait'));
   show(element('wifi-trouble'), trouble !== null);
   setText(part(element('wifi-trouble'), 'strong'), trouble?.title ?? '');
   setText(part(element('wifi-trouble'), 'p'), trouble?.detail ?? '');
   show(element('wifi-change'), !isJoining && !isOpen);
-  setText(part(element('wifi-change'), 'span'), wifi.state === 'joined' ? 'Join another WiFi' : 'Join a WiFi');
+  setText(part(element('wifi-change'), 'span'), text(wifi.state === 'joined' ? 'wifi.join-another' : 'wifi.join-one'));
   show(element('wifi-form'), !isJoining && isOpen);
   showNetworks();
   showFields();
@@ -172,7 +169,7 @@ export function showWifi(news) {
 /** What to say while the scanner does not answer, or null. */
 export function wifiAway() {
   return asked && wifi.state === 'joining' ? {
-    title: `The scanner joins ${quoted(asked)}.`,
+    title: text('wifi.joins-title', {name: asked}),
     text: farewell(),
   } : null;
 }
@@ -202,8 +199,8 @@ async function join() {
 }
 
 function offerCountries() {
-  const names = new Intl.DisplayNames(['en'], {type: 'region'});
-  const countries = codes.map((code) => ({code, name: names.of(code) ?? code})).sort((a, b) => a.name.localeCompare(b.name, 'en'));
+  const names = new Intl.DisplayNames([locale], {type: 'region'});
+  const countries = codes.map((code) => ({code, name: names.of(code) ?? code})).sort((a, b) => a.name.localeCompare(b.name, locale));
   element('wifi-country').append(...countries.map(({code, name}) => new Option(name, code)));
 }
 

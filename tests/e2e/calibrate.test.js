@@ -150,7 +150,7 @@ async function setScale(scanner, browser) {
   await page.getByText(/more than a sensor can be off by/).waitFor();
   await page.getByLabel('Length by calipers, mm').fill('101.2');
   await page.getByRole('button', {name: 'Set the scale'}).click();
-  await page.getByText('Models are made 1.20 % larger than the sensor tells.').waitFor();
+  await page.getByText('Models are made 1.20% larger than the sensor tells.').waitFor();
   assert.equal((await ask(scanner, 'calibration')).scale, 1.012);
 }
 

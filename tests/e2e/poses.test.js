@@ -24,7 +24,7 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await add.waitFor();
   await add.click();
   await page.getByText('Side 2 is in the model').waitFor();
-  assert.match(await page.locator('#side-rows').innerText(), /shares \d+ % of its surface[^]*fits to \d\.\d\d mm/);
+  assert.match(await page.locator('#side-rows').innerText(), /shares \d+% of its surface[^]*fits to \d\.\d\d mm/);
 
   const {scans: [pose, first]} = await ask(scanner, 'scans');
   assert.deepEqual([pose.pose_of.scan, first.poses.length, first.build], [first.id, 1, 1]);
@@ -41,7 +41,7 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
 
   await page.getByRole('button', {name: 'See the fit: side 2'}).click();
   const text = page.locator('#fit-text');
-  await text.filter({hasText: /^Fit 1 of \d, as in the model: \d+ % of this side/}).waitFor();
+  await text.filter({hasText: /^Fit 1 of \d, as in the model: \d+% of this side/}).waitFor();
   await picture(page, 'fit');
   assert.deepEqual(await complaints(page), []);
   await page.getByRole('button', {name: 'Looks wrong'}).click();

@@ -80,14 +80,14 @@ test('each stop has a bar, and one that a finding names is marked', () => {
 test('one known length gives the scale, on top of the one in force', () => {
   assert.deepEqual(texts.scaleOf(100, 101, 1), {scale: 1.01, problem: ''});
   assert.deepEqual(texts.scaleOf(101, 100, 1.01), {scale: 1, problem: ''});
-  assert.match(texts.scaleOf(100, 104, 1).problem, /4\.0 %, more than/);
+  assert.match(texts.scaleOf(100, 104, 1).problem, /4\.0%, more than/);
   assert.match(texts.scaleOf(Number.NaN, 104, 1).problem, /Both/);
 });
 
 test('a scale is told as what it does', () => {
   assert.match(texts.scaleText(1), /size that the sensor tells/);
-  assert.match(texts.scaleText(1.012), /1\.20 % larger/);
-  assert.match(texts.scaleText(0.99), /1\.00 % smaller/);
+  assert.match(texts.scaleText(1.012), /1\.20% larger/);
+  assert.match(texts.scaleText(0.99), /1\.00% smaller/);
 });
 
 test('earlier poses are told by their origin and what they cured', () => {

@@ -18,11 +18,11 @@ const merged = (candidate) => /** @type {import('../../web/api_poses.js').Pose} 
 
 test('the fit of the model is shown first, and another one can be asked for', () => {
   const fits = fitsOf(merged(0));
-  assert.match(textOf(fits, 2), /Fit 1 of 2, as in the model: 71 % .* to 0\.40 mm; 1 % /);
+  assert.match(textOf(fits, 2), /Fit 1 of 2, as in the model: 71% .* to 0\.40 mm; 1% /);
   assert.equal(choiceOf(fits), null);
   assert.deepEqual(fits.all[0].object_from_platform, at(0.11));
   const next = withStep(fits, 1);
-  assert.match(textOf(next, 2), /Fit 2 of 2, another way: 50 % .*25 % .*No further fit/);
+  assert.match(textOf(next, 2), /Fit 2 of 2, another way: 50% .*25% .*No further fit/);
   assert.deepEqual(choiceOf(next), {candidate: 1});
   assert.ok(!choicesOf(next).isWrong && choicesOf(next).isBack);
   assert.equal(withStep(next, 1).shown, 1);

@@ -5,7 +5,7 @@ import * as format from '../../web/format.js';
 
 test('bytes have three figures at most', () => {
   assert.deepEqual([0, 999, 1000, 9949, 9950, 999499, 50551684, 12.3e9].map(format.bytes),
-      ['0 B', '999 B', '1.0 kB', '9.9 kB', '10 kB', '999 kB', '51 MB', '12 GB']);
+      ['0 byte', '999 byte', '1.0 kB', '9.9 kB', '10 kB', '999 kB', '51 MB', '12 GB']);
 });
 
 test('durations go from hundredths to hours', () => {

@@ -17,7 +17,7 @@ test('a finished scan offers the underside, and another pose does not', () => {
 test('what fits is told with its figures, and what does not with the reason', () => {
   const [row] = posesOf(initial, {...finished, poses: [pose]}).rows;
   assert.equal(row.tone, 'good');
-  assert.match(row.text, /70 %.*0\.53 mm/);
+  assert.match(row.text, /70%.*0\.53 mm/);
   const [refused] = posesOf(initial, {...finished, poses: [{...pose, registration: {accepted: false, reason: 'too little is shared'}}]}).rows;
   assert.equal(refused.tone, 'warn');
   assert.match(refused.text, /Too little is shared\. The model stayed as it was/);

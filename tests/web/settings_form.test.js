@@ -50,7 +50,7 @@ test('values are told in words', () => {
 });
 
 test('help is a sentence for people', () => {
-  assert.equal(helpOf('threads', {type: 'integer', description: 'threads of `octurn`'}), 'Threads of octurn.');
+  assert.equal(helpOf('new', {type: 'integer', description: 'threads of `octurn`'}), 'Threads of octurn.');
   assert.match(helpOf('turntable.reversed', {type: 'boolean', description: '`true` if'}), /^On if/);
 });
 
@@ -58,7 +58,7 @@ test('a pose is told as distance, height and tilt', () => {
   const [sine, cosine] = [Math.sin(Math.PI / 6), Math.cos(Math.PI / 6)];
   // 0.6 m before the axis and 0.3 m up, looking along Y and 30 degrees down.
   const pose = [[1, 0, 0, 0], [0, -sine, cosine, -0.6], [0, -cosine, -sine, 0.3], [0, 0, 0, 1]];
-  assert.equal(poseText(pose), '600 mm from the platform\'s axis, 300 mm above its surface, looking 30.0° down.');
+  assert.equal(poseText(pose), '600 mm from the platform’s axis, 300 mm above its surface, looking 30.0° down.');
 });
 
 test('a turn has the steps of motor, driver and gear', () => {

@@ -1,0 +1,127 @@
+import assert from 'node:assert/strict';
+import {readFile, readdir} from 'node:fs/promises';
+import {test} from 'node:test';
+
+import {languageOf, languages, localeOf} from '../../web/texts.js';
+
+const folder = new URL('../../web/', import.meta.url);
+const files = new Map(await Promise.all(Object.keys(languages).map(async (language) =>
+  /** @type {const} */ ([language, await import(`../../web/texts/${language}.js`)]))));
+const english = files.get('en').texts;
+
+/** Of the page; what is for programmers and for the build is in English alone. */
+const sources = (await readdir(folder)).filter((name) => /\.(js|html)$/.test(name) && !/^(interface|openapi|render_help|three)\./.test(name));
+const written = new Map(await Promise.all(sources.map(async (name) =>
+  /** @type {const} */ ([name, await readFile(new URL(name, folder), 'utf8')]))));
+
+/** Keys that a file names: whole, and the beginnings of those that it puts together. */
+function namedIn(source) {
+  const whole = [...source.matchAll(/data-text(?:-label|-title|-placeholder)?="([^"]+)"/g)].map(([, key]) => key);
+  const quoted = [...source.matchAll(/'([a-z][a-z-]*(?:\.[a-z0-9_-]+)*)'/g)].map(([, key]) => key).filter((key) => key in english);
+  const begun = [...source.matchAll(/(?:text|isText)\(`([a-z.-]+)\$\{/g)].map(([, key]) => key);
+  const asked = [...source.matchAll(/\btext\('([^']+)'/g)].map(([, key]) => key);
+  return {whole: [...whole, ...asked], quoted, begun};
+}
+
+const named = [...written.values()].map(namedIn);
+
+test('every key that the page names has a text', () => {
+  const keys = new Set(named.flatMap(({whole}) => whole));
+  assert.deepEqual([...keys].filter((key) => !(key in english)), []);
+  assert.ok(keys.size > 300, `${keys.size} keys`);
+  for (const begun of new Set(named.flatMap((file) => file.begun))) {
+    assert.ok(Object.keys(english).some((key) => key.startsWith(begun)), begun);
+  }
+});
+
+test('no text is left that nobody shows', () => {
+  const keys = new Set(named.flatMap(({whole, quoted}) => [...whole, ...quoted]));
+  const begun = named.flatMap((file) => file.begun);
+  assert.deepEqual(Object.keys(english).filter((key) => !keys.has(key) && !begun.some((beginning) => key.startsWith(beginning))), []);
+});
+
+const placesIn = (text) => [...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name).sort();
+
+for (const [language, {texts, said}] of files) {
+  test(`${languages[language]} has every text, in every form, with the same values`, () => {
+    assert.deepEqual(Object.keys(texts).filter((key) => !(key in english)), []);
+    const forms = new Intl.PluralRules(language).resolvedOptions().pluralCategories.filter((form) => form !== 'many');
+    for (const [key, original] of Object.entries(english)) {
+      const text = texts[key];
+      if (typeof original === 'string') {
+        assert.equal(typeof text, 'string', key);
+        assert.ok(text.trim() !== '', key);
+        assert.deepEqual(placesIn(text), placesIn(original), key);
+      } else {
+        assert.deepEqual(Object.keys(text).sort(), [...forms].sort(), key);
+        Object.values(text).forEach((form) => assert.deepEqual(placesIn(form), placesIn(original.other), key));
+      }
+    }
+  });
+
+  test(`${languages[language]} keeps every value of the scanner's sentences`, () => {
+    for (const [original, translation] of Object.entries(said)) {
+      const values = original.split('{}').length - 1;
+      const used = [...translation.matchAll(/\{(\d?)\}/g)];
+      assert.equal(used.length, values, original);
+      assert.ok(used.every(([, place]) => Number(place) <= values), original);
+      assert.doesNotMatch(original, /\d/, `its numbers are written as {}: ${original}`);
+    }
+  });
+}
+
+/** All that the scanner could say: the literals of its sources, parts of one sentence joined. */
+async function scannersWords() {
+  const source = new URL(`file://${process.env.OCTURN_SOURCE}/`);
+  const files = (await Promise.all(['core/src/', 'firmware-app/'].map(async (path) =>
+    (await readdir(new URL(path, source), {recursive: true})).map((name) => new URL(path + name, source))))).flat();
+  const code = await Promise.all(files.filter(({pathname}) => /\.[ch]pp$/.test(pathname)).map((file) => readFile(file, 'utf8')));
+  return code.join('\n').replace(/"\s*\n\s*"/g, '').replace(/%\.?\d*[a-z]+/g, '{}');
+}
+
+test('each sentence that has a translation is one of the scanner', async () => {
+  const words = await scannersWords();
+  const pairsOf = (sentence) => sentence.split(/\{\}|[:;,.]/).flatMap((part) => {
+    const one = part.trim().split(' ');
+    return one.slice(1).map((word, index) => `${one[index]} ${word}`);
+  });
+  for (const sentence of Object.keys(files.get('de').said)) {
+    const unknown = pairsOf(sentence).filter((pair) => !words.includes(pair));
+    assert.ok(unknown.length <= 3, `${sentence}: ${unknown}`);  // where the scanner joins parts
+  }
+});
+
+test('German, French and Spanish are not English', () => {
+  const wordy = Object.entries(english).filter(([, text]) => typeof text === 'string' && /[a-z]{3,} [a-z]{3,}/.test(text));
+  assert.ok(wordy.length > 150);
+  for (const [language, {texts, said}] of files) {
+    if (language !== 'en') {
+      assert.deepEqual(wordy.filter(([key, text]) => texts[key] === text).map(([key]) => key), [], language);
+      assert.ok(Object.keys(said).length > 100, language);
+    }
+    assert.deepEqual(Object.keys(said).sort(), language === 'en' ? [] : Object.keys(files.get('de').said).sort(), language);
+  }
+});
+
+test('no word of the page stands outside the texts', () => {
+  const names = /^(Octurn|·|mm|°|[−+]?\d*°?|−|\+)$/;
+  for (const [name, source] of written) {
+    if (name.endsWith('.html')) {
+      const body = source.slice(Math.max(source.indexOf('<body>'), 0)).replace(/<noscript>.*?<\/noscript>/gs, '');
+      const words = [...body.matchAll(/>([^<>]*)</g)].map(([, text]) => text.trim()).filter((text) => text !== '' && !names.test(text));
+      assert.deepEqual(words, [], name);
+      assert.doesNotMatch(body, /\s(?:aria-label|title)="[^"]*[a-z]/, name);
+    } else {
+      const code = source.replace(/\/\*.*?\*\//gs, '').replace(/(^|\s)\/\/ .*$/gm, '');
+      assert.doesNotMatch(code, /['`][A-Z][a-z]+ [a-z][^'`]*['`]/, name);
+    }
+  }
+});
+
+test('the language is the chosen one, or the first of the browser that the page knows', () => {
+  assert.equal(languageOf(null, ['pt-BR', 'de-AT', 'en']), 'de');
+  assert.equal(languageOf('fr', ['de']), 'fr');
+  assert.equal(languageOf('xx', ['zh', 'ja']), 'en');
+  assert.equal(languageOf('toString', []), 'en');
+  assert.deepEqual([localeOf('de', ['en', 'de-AT']), localeOf('fr', ['en'])], ['de-AT', 'fr']);
+});

@@ -33,7 +33,7 @@ function render(scans) {
 
 /** Reads the bin where scans came or went. @param {number} current  revision of the scans */
 export async function seeRevision(current) {
-  if (current === revision) {
+  if (current === revision || !element('bin')) {  // nobody has been in the library yet
     return;
   }
   const before = revision;

@@ -76,8 +76,7 @@ export function seeReport({state}) {
 
 function listen() {
   part(element('first-steps'), '[data-step=check] button').addEventListener('click', () => {
-    element('examine').scrollIntoView({block: 'center'});
-    element('examine').focus({preventScroll: true});
+    location.hash = 'scanner';
     element('examine').click();
   });
   part(element('first-steps'), '[data-step=scan] button').addEventListener('click', () => element('start').focus());

@@ -86,7 +86,7 @@ const actions = {
   },
   'set-pose': () => goTo('calibrate'),
   'open-settings': () => goTo('settings'),
-  'choose-scans': () => element('scans-title').scrollIntoView(),
+  'choose-scans': () => goTo('library'),
 };
 
 /** @param {string} failure  what did not happen @param {unknown} error */

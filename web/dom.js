@@ -11,6 +11,12 @@ export function setText(target, text) {
   }
 }
 
+/** @param {HTMLElement} target @param {{tone?: string, text: string}} badge */
+export function setBadge(target, {tone, text}) {
+  setText(target, text);
+  target.dataset.tone = tone ?? '';
+}
+
 /** @param {Element} target  also of an SVG, which has no property for it @param {boolean} isShown */
 export function show(target, isShown) {
   target.toggleAttribute('hidden', !isShown);

@@ -11,12 +11,11 @@ import {prepareDoctor} from './doctor.js';
 import {element} from './dom.js';
 import * as events from './events.js';
 import {prepareForm} from './form.js';
-import * as library from './library.js';
 import {build, buildActions, poseActions} from './model_actions.js';
 import {asked, change, state} from './page.js';
 import {here, preparePlaces, showPlace} from './places.js';
 import {preparePoses} from './poses_view.js';
-import {cancel, emptyBin, end, importScan, pause, remove, removeChosen, rename, restore, resume, start} from './scan_actions.js';
+import {cancel, end, pause, rename, resume, start} from './scan_actions.js';
 import {screenOf} from './screen.js';
 import {prepareStage} from './stage.js';
 import * as states from './state.js';
@@ -113,32 +112,6 @@ function listen() {
       change(states.withReason(state, reason));
     }
   });
-  element('library-query').addEventListener('input', (/** @type {any} */ event) =>
-    change(states.withLibrary(state, {query: event.target.value, limit: library.step})));
-  element('library-order').addEventListener('change', (/** @type {any} */ event) =>
-    change(states.withLibrary(state, {order: event.target.value})));
-  element('import').addEventListener('change', (/** @type {any} */ event) => {
-    const [file] = event.target.files;
-    event.target.value = '';
-    file && importScan(file);
-  });
-  click('show-more', () => change(states.withLibrary(state, {limit: state.library.limit + library.step})));
-  click('choose', () => change(states.withLibrary(state, {chosen: state.library.chosen ? null : []})));
-  click('delete-chosen', removeChosen);
-  element('rows').addEventListener('change', (/** @type {any} */ event) => {
-    if (event.target.type === 'checkbox') {
-      change({...state, library: library.withToggled(state.library, event.target.closest('.scan').dataset.key)});
-    }
-  });
-  element('rows').addEventListener('click', (/** @type {any} */ event) => {
-    const id = event.target.closest('.scan').dataset.key;
-    const what = event.target.closest('[data-do]')?.dataset.do;
-    if (what === 'rename') {
-      rename(id);
-    } else if (what === 'delete') {
-      remove(id);
-    }
-  });
   addEventListener('hashchange', follow);
   document.addEventListener('visibilitychange', () => document.hidden || wake());
 }
@@ -153,5 +126,4 @@ watch();
 events.listenForNews(() => wake());
 watchCamera();
 watchAppliance();
-bin.prepareBin({restore: (id) => restore([id]), empty: emptyBin});
 prepareDoctor(seeReport).then(watchSteps);  // the first step is a check

@@ -1,5 +1,5 @@
-// The parts of the page. Each but the first has an address, '#' and its name, and a file NAME.html, which is fetched
-// together with its module when somebody first goes there.
+// The places of the page: Scan, Library and Scanner, of which Calibrate and Settings are parts. Each but the first has an
+// address, '#' and its name. Those with a module have a file NAME.html, too; both are fetched when somebody first goes there.
 
 import {element, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
@@ -7,8 +7,10 @@ import {text} from './texts.js';
 
 const first = 'scan';
 
-/** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>}>} */
+/** @type {Record<string, {title: string, load?: () => Promise<{prepare: () => void}>}>} */
 const others = {
+  library: {title: 'places.library', load: () => import('./library_page.js')},
+  scanner: {title: 'places.scanner'},
   calibrate: {title: 'places.calibrate', load: () => import('./calibrate.js')},
   settings: {title: 'places.settings', load: () => import('./settings_page.js')},
 };
@@ -26,22 +28,36 @@ export const here = () => placeOf(location.hash.slice(1));
 
 const mainOf = (/** @type {string} */ place) => /** @type {HTMLElement} */ (document.querySelector(`main[data-place=${place}]`));
 
-/** @type {Set<string>} of parts that have arrived, or are on their way */
-const begun = new Set([first]);
+/** @type {Set<string>} of places that have arrived, or are on their way */
+const begun = new Set();
 
 /** @param {string} place */
 async function arrive(place) {
-  if (begun.has(place)) {
+  const {load} = others[place] ?? {};
+  if (!load || begun.has(place)) {
     return;
   }
   begun.add(place);
   try {
-    const [module] = await Promise.all([others[place].load(), fetchFragment(mainOf(place), `${place}.html`)]);
+    const [module] = await Promise.all([load(), fetchFragment(mainOf(place), `${place}.html`)]);
     module.prepare();
   } catch {
     begun.delete(place);
     setText(mainOf(place), text('places.late'));
     setTimeout(() => here() === place && arrive(place), betweenAttempts);
+  }
+}
+
+const parts = new Set(['scanner', 'calibrate', 'settings']);
+
+/** Which of the three places an address belongs to: that of a scan is one of the library. @param {string} hash @returns {string} */
+export const tabOf = (hash) => parts.has(hash) ? 'scanner' : hash === '' ? first : 'library';
+
+/** @param {string} links @param {string} name  of the one that is current */
+function markCurrent(links, name) {
+  for (const link of document.querySelectorAll(`${links} a`)) {
+    const isCurrent = /** @type {HTMLElement} */ (link).dataset.to === name;
+    isCurrent ? link.setAttribute('aria-current', 'page') : link.removeAttribute('aria-current');
   }
 }
 
@@ -57,10 +73,9 @@ export function showPlace() {
   for (const main of document.querySelectorAll('main')) {
     show(main, main.dataset.place === place);
   }
-  for (const link of document.querySelectorAll('.places a')) {
-    const isCurrent = /** @type {HTMLElement} */ (link).dataset.to === place;
-    isCurrent ? link.setAttribute('aria-current', 'page') : link.removeAttribute('aria-current');
-  }
+  markCurrent('.places', tabOf(location.hash.slice(1)));
+  markCurrent('.parts', place);
+  show(/** @type {Element} */ (document.querySelector('.parts')), parts.has(place));
   arrive(place);
 }
 

@@ -26,6 +26,7 @@ export const pause = () => act('failure.pause', async () => {
 /** @param {File} file */
 export const importScan = (file) => act('failure.import', async () => {
   const scan = await api.importScan(file);
+  location.hash = scan.state === 'running' ? '' : scan.id;
   return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), scan.id);
 });
 

@@ -2,17 +2,12 @@
 
 import {renderBuilds} from './builds_view.js';
 import {tickWidth, ticks} from './dial.js';
-import {element, list, part, setText, show} from './dom.js';
+import {element, list, part, setBadge, setText, show} from './dom.js';
+import {renderLibrary} from './library_view.js';
 import {renderPoses} from './poses_view.js';
 import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
-
-/** @param {HTMLElement} target @param {{tone?: string, text: string}} badge */
-function setBadge(target, {tone, text}) {
-  setText(target, text);
-  target.dataset.tone = tone ?? '';
-}
 
 /** @param {Screen} screen */
 function showDevices({devices, isSimulated}) {
@@ -132,52 +127,6 @@ function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, do
   }
 }
 
-/** @param {HTMLElement} frame @param {string} url  empty: there is no picture */
-function showPicture(frame, url) {
-  const image = part(frame, 'img');
-  show(image, url !== '');
-  show(part(frame, 'svg'), url === '');
-  if (url !== '' && image.getAttribute('src') !== url) {
-    image.src = url;
-  }
-}
-
-/** @param {Screen} screen */
-function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
-  show(element('no-scans'), isListed && count === 0);
-  show(element('library-tools'), count > 1 || isChoosing);
-  setText(element('library-count'), summary);
-  show(element('no-match'), count > 0 && rows.length === 0);
-  show(element('show-more'), more > 0);
-  setText(element('show-more'), text('library.more', {count: more}));
-  element('choose').setAttribute('aria-pressed', String(isChoosing));
-  show(element('delete-chosen'), isChoosing);
-  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen}));
-  element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
-  list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
-    item.classList.toggle('current', row.isCurrent);
-    showPicture(part(item, '.scan-picture'), row.picture);
-    const choice = part(item, '.scan-choice');
-    show(choice, isChoosing && !row.isRunning);
-    part(choice, 'input').checked = row.isChosen;
-    part(choice, 'input').setAttribute('aria-label', text('library.choose', {name: row.name}));
-    const name = part(item, '.scan-name');
-    setText(name, row.name);
-    name.href = `#${row.id}`;
-    name.toggleAttribute('aria-current', row.isCurrent);
-    setBadge(part(item, '.badge'), row.badge);
-    setText(part(item, '.scan-when'), row.when);
-    setText(part(item, '.scan-about'), row.about);
-    for (const action of item.querySelectorAll('[data-do]')) {
-      action.setAttribute('aria-label', text('library.action', {action: action.title, name: row.name}));
-    }
-    const download = part(item, '[data-do=download]');
-    show(download, row.download !== null);
-    download.href = row.download ?? '';
-    show(part(item, '[data-do=delete]'), !row.isRunning);
-  });
-}
-
 /** @param {Screen} screen */
 function showNotices({isAway, isScanElsewhere, problem, faults}) {
   show(element('away'), isAway);
@@ -213,7 +162,7 @@ export function render(screen) {
   renderPoses(screen.panel === 'details' ? screen.poses : null);
   renderBuilds(screen.panel === 'details' ? screen.builds : null);
   showPanel(screen.panel);
-  showRows(screen);
+  renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
     element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled it keeps the focus

@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 const networks = [
@@ -109,6 +109,7 @@ async function joinWifi(appliance, browser, screen, colorScheme) {
   await wifi.getByText('Joining “Workshop”…').waitFor();
   assert.equal(String(await appliance.take('wifi')), 'wifi_name = Workshop\nwifi_country = AT\n');
   await appliance.answer('wifi', {state: 'joined', name: 'Workshop', country: 'AT'});
+  await goTo(page, 'Scanner');
   await wifi.getByText('The scanner is in “Workshop”.').waitFor();
   assert.notEqual(await firstSection(page), 'wifi', 'it has gone to its place at the end');
   await look(page, `wifi-joined-${screen}`);
@@ -122,7 +123,7 @@ async function installUpdate(appliance, browser, screen, colorScheme) {
   const {file, content} = await bundle(appliance, 20_000_000);
   await appliance.answer('update', {slot: 'a', state: 'none'});
   await appliance.answer('wifi', {state: 'joined', name: 'Home', country: 'DE'});
-  const {page} = await openPage(browser, appliance.url, {screen, colorScheme});
+  const {page} = await openPage(browser, `${appliance.url}#scanner`, {screen, colorScheme});
   const update = page.getByRole('region', {name: 'Update'});
   await update.getByText(/^Octurn .* is in use\.$/).waitFor();
   await look(page, `update-idle-${screen}`);
@@ -166,7 +167,7 @@ async function installUpdate(appliance, browser, screen, colorScheme) {
 /** While a file is on its way it can be called back; a slow network is made for that. */
 async function cancelUpdate(appliance, browser) {
   await appliance.answer('update', {slot: 'a', state: 'none'});
-  const {page} = await openPage(browser, appliance.url);
+  const {page} = await openPage(browser, `${appliance.url}#scanner`);
   const network = await page.context().newCDPSession(page);
   await network.send('Network.emulateNetworkConditions', {offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 1e6});
   const update = page.getByRole('region', {name: 'Update'});
@@ -185,7 +186,7 @@ async function cancelUpdate(appliance, browser) {
 
 /** A page of the version before is loaded again when the scanner has another one. */
 async function meetNewVersion(appliance, browser) {
-  const {page} = await openPage(browser, appliance.url);
+  const {page} = await openPage(browser, `${appliance.url}#scanner`);
   await page.locator('#update-summary').filter({hasText: 'is in use'}).waitFor();
   await page.evaluate(() => {
     globalThis.isOld = true;
@@ -211,7 +212,7 @@ test('the appliance is updated, and joins a WiFi, by its page', async (t) => {
 });
 
 test('elsewhere the page has neither', async (t) => {
-  const {page, faults} = await openPage(await openBrowser(t), (await startScanner(t)).url);
+  const {page, faults} = await openPage(await openBrowser(t), `${(await startScanner(t)).url}#scanner`);
   await page.getByRole('list', {name: 'Devices'}).getByText('ready').first().waitFor();
   assert.ok(await page.locator('#wifi').isHidden());
   assert.ok(await page.locator('#update').isHidden());

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {chooseQuickScan, openBrowser, openPage} from './browser.js';
+import {chooseQuickScan, goTo, openBrowser, openPage} from './browser.js';
 import {lifelike, startScanner} from './scanner.js';
 
 test('the page says that the scanner is gone, finds it again, and lists the scan that died with it', async (t) => {
@@ -21,5 +21,7 @@ test('the page says that the scanner is gone, finds it again, and lists the scan
   await scanner.restart();
   await page.locator('#away').waitFor({state: 'hidden'});
   await page.getByText('Scan interrupted', {exact: true}).waitFor();
+  await goTo(page, 'Library');
+  await page.locator('#rows > li').first().waitFor();
   assert.match(await page.locator('#rows').innerText(), /Interrupted[^]*\d+ of 200 snapshots kept/);
 });

@@ -34,12 +34,12 @@ const isLatePicture = (message) => message.location().url.includes('/api/v1/prev
  *
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
- * @param {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark'}} options
+ * @param {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark', locale?: string}} options
  * @returns {Promise<{page: import('playwright-core').Page, faults: string[]}>}  faults: what went wrong inside so
  *     far, errors on the console and requests to elsewhere among them
  */
-export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light'} = {}) {
-  const context = await browser.newContext({...screens[screen], colorScheme, reducedMotion: 'reduce'});
+export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light', locale = 'en-US'} = {}) {
+  const context = await browser.newContext({...screens[screen], colorScheme, locale, reducedMotion: 'reduce'});
   const page = await context.newPage();
   page.setDefaultTimeout(120000); // on a busy machine every picture takes its time
   const faults = [];
@@ -54,6 +54,15 @@ export async function openPage(browser, url, {screen = 'desktop', colorScheme = 
   await page.goto(url);
   await page.locator('[data-panel=waiting]').waitFor({state: 'hidden'});
   return {page, faults};
+}
+
+/** Goes to a place of the page by its links. @param {'Scan' | 'Library' | 'Scanner' | 'Calibrate' | 'Settings'} place */
+export async function goTo(page, place) {
+  const link = (name) => page.getByRole('navigation').getByRole('link', {name, exact: true});
+  if (place === 'Calibrate' || place === 'Settings') {
+    await link('Scanner').click();
+  }
+  await link(place).click();
 }
 
 /** Unfolds what stands behind the presets. */

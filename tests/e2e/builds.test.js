@@ -46,7 +46,7 @@ async function straighten(scanner, browser, screen, colorScheme) {
 
   const rows = page.locator('#build-rows > li');
   assert.equal(await rows.count(), 2);
-  assert.match(await rows.nth(1).innerText(), /Build 1[\s\S]*The scan's model/);
+  assert.match(await rows.nth(1).innerText(), /Build 1[\s\S]*The scan’s model/);
   await page.locator('#tools').waitFor();
   await picture(page, `straight-${screen}`);
   assert.deepEqual(await complaints(page), []);
@@ -78,7 +78,7 @@ async function buildAgain(scanner, {page, faults, made, rows}, screen) {
   await page.locator('#tools').waitFor();
 
   await rows.nth(2).getByRole('button', {name: 'Use this one'}).click();
-  await rows.nth(2).getByText('The scan\'s model').waitFor();
+  await rows.nth(2).getByText('The scan’s model').waitFor();
   assert.equal((await ask(scanner, `scans/${made.id}`)).build, 2);
   await rows.nth(1).getByRole('button', {name: 'Delete: Build 1'}).click();
   await page.getByRole('button', {name: 'Delete', exact: true}).click();

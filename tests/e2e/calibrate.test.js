@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
@@ -219,7 +219,7 @@ async function walk(scanner, browser, screen, colorScheme) {
   const {page} = await openPage(browser, scanner.url, {screen, colorScheme});
   let shown = runs.idle[0];
   await page.route('**/api/v1/calibration', async (route) => route.fulfill({json: {...await (await route.fetch()).json(), run: shown}}));
-  await page.getByRole('navigation').getByRole('link', {name: 'Calibrate'}).click();
+  await goTo(page, 'Calibrate');
   await page.locator('#pose-no-picture').waitFor({state: 'hidden'});
   for (const [name, [next, text]] of Object.entries(runs)) {
     shown = next;
@@ -248,13 +248,15 @@ test('a first visit is led from the check to the calibration to the scan', async
   await steps.waitFor();
   assert.equal(await state('check'), 'now');
   await steps.getByRole('button', {name: 'Check it'}).click();
+  await page.locator('.finding').first().waitFor();
+  await goTo(page, 'Scan');
   await steps.locator('[data-step=calibrate][data-state=now]').waitFor();
   await picture(page, 'first-steps');
   assert.deepEqual(await complaints(page), []);
   await steps.getByRole('link', {name: 'Calibrate'}).click();
   await page.getByRole('button', {name: 'Measure with a turn'}).click();
   await page.locator('#turn-outcome').waitFor({timeout: 600000});
-  await page.getByRole('navigation').getByRole('link', {name: 'Scan'}).click();
+  await goTo(page, 'Scan');
   await steps.locator('[data-step=scan][data-state=now]').waitFor();
   await scan(scanner, {...draft, snapshots: 4});
   await steps.waitFor({state: 'hidden'});

@@ -3,7 +3,7 @@ import {readFile, readdir} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
-import {chooseQuickScan, openBrowser, openPage} from './browser.js';
+import {chooseQuickScan, goTo, openBrowser, openPage} from './browser.js';
 import {measure} from '../web/mesh_file.js';
 import {ask, lifelike, scanFolders, startScanner} from './scanner.js';
 
@@ -17,9 +17,11 @@ test('a scan cancelled half way ends at once, and keeps its snapshots', async (t
   await page.getByRole('button', {name: 'End scan'}).click();
 
   await page.getByText('Scan ended', {exact: true}).waitFor();
+  await goTo(page, 'Library');
   const row = page.getByRole('listitem').filter({hasText: 'Ended'});
   const kept = Number(/(\d+) of 200 snapshots kept/.exec(await row.innerText())?.[1]);
   assert.ok(kept >= 5 && kept < snapshots, `${kept} kept`);
+  await page.goBack();
   const [folder] = await scanFolders(scanner);
   assert.equal((await readdir(join(folder, 'snapshots'))).length, kept);
   assert.equal((await ask(scanner, 'status')).scan, null);

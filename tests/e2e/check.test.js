@@ -10,7 +10,7 @@ const line = (page, name) => page.locator('.finding').filter({has: page.getByTex
 
 /** Checks the simulated rig by keyboard alone. */
 async function checkByKeyboard(scanner, browser) {
-  const {page, faults} = await openPage(browser, scanner.url);
+  const {page, faults} = await openPage(browser, `${scanner.url}#scanner`);
   await button(page).focus();
   await page.keyboard.press('Enter');
   await page.getByRole('progressbar', {name: 'Checking'}).waitFor();
@@ -24,7 +24,7 @@ async function checkByKeyboard(scanner, browser) {
 
 /** A scanner without a sensor, on one screen. */
 async function checkBrokenOne(scanner, browser, screen) {
-  const {page} = await openPage(browser, scanner.url, {screen});
+  const {page} = await openPage(browser, `${scanner.url}#scanner`, {screen});
   await button(page).click();
   await line(page, 'Sensor').waitFor();
   assert.match(await line(page, 'Sensor').innerText(), /Fault[^]*power supply/);
@@ -39,7 +39,7 @@ async function checkBrokenOne(scanner, browser, screen) {
 async function measurePlatform(scanner, browser) {
   const {platform_from_sensor: pose} = await ask(scanner, 'calibration');
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: pose.map((row, i) => i === 2 ? [...row.slice(0, 3), row[3] + 0.008] : row)});
-  const {page, faults} = await openPage(browser, scanner.url);
+  const {page, faults} = await openPage(browser, `${scanner.url}#scanner`);
   await button(page).click();
   assert.match(await line(page, 'Platform').innerText(), /\d+\.\d mm above where the calibration has it and (level|tilted by \d\.\d degrees)/);
   await page.locator('.doctor').scrollIntoViewIfNeeded();
@@ -54,7 +54,7 @@ async function measurePlatform(scanner, browser) {
 /** While a scan runs, what would disturb it is not measured. */
 async function checkDuringScan(scanner, browser) {
   const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 30, leaf_size_mm: 8});
-  const {page} = await openPage(browser, scanner.url);
+  const {page} = await openPage(browser, `${scanner.url}#scanner`);
   await button(page).click();
   await line(page, 'Sensor').waitFor();
   assert.match(await line(page, 'Sensor').innerText(), /Not known[^]*a scan is running/i);
@@ -64,7 +64,7 @@ async function checkDuringScan(scanner, browser) {
 
 /** The link gives the zip file, under its own name, while the page stays. */
 async function downloadDiagnostics(scanner, browser) {
-  const {page, faults} = await openPage(browser, scanner.url);
+  const {page, faults} = await openPage(browser, `${scanner.url}#scanner`);
   const link = page.getByRole('link', {name: 'Download diagnostics'});
   const [arrived] = await Promise.all([page.waitForEvent('download'), link.click()]);
   assert.match(arrived.suggestedFilename(), /^octurn-diagnostics-\d{8}-\d{6}\.zip$/);

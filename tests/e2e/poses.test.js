@@ -3,7 +3,7 @@ import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
+import {chooseQuickScan, goTo, openBrowser, openPage, picture} from './browser.js';
 import {measure} from '../web/mesh_file.js';
 import {ask, startScanner} from './scanner.js';
 
@@ -28,7 +28,10 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
 
   const {scans: [pose, first]} = await ask(scanner, 'scans');
   assert.deepEqual([pose.pose_of.scan, first.poses.length, first.build], [first.id, 1, 1]);
+  await goTo(page, 'Library');
+  await page.locator('#rows > li').first().waitFor();
   assert.equal(await page.locator('#rows > li').count(), 1, 'both are one entry of the list');
+  await page.goBack();
   const download = page.getByRole('link', {name: 'Download STL'}).first();
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   const mesh = measure(await readFile(await arrived.path()));

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {basename} from 'node:path';
 import {test} from 'node:test';
 
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, lifelike, scan, scanFolders, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
@@ -11,6 +11,7 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t);
   const {page, faults} = await openPage(browser, scanner.url);
+  await goTo(page, 'Library');
   await page.getByText('No scans yet').waitFor();
 
   const first = await scan(scanner, draft);
@@ -18,6 +19,7 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   await rows.first().locator('.scan-name').click(); // the page may not have seen it run
   await page.locator(`#download[href="${first.model.url}"]`).waitFor(); // so that nothing asks for its preview any more
   const second = await scan(scanner, draft);
+  await goTo(page, 'Library');
   await rows.nth(1).waitFor();
   assert.ok(await page.getByText('No scans yet').isHidden());
 
@@ -31,16 +33,20 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
   assert.equal((await ask(scanner, `scans/${first.id}`)).name, 'Möwe <b>1</b>');
 
+  await page.reload();  // the address holds
+  await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
+  await goTo(page, 'Library');
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
   await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
   await rows.nth(1).getByText('Möwe <b>1</b>').waitFor();
   await rows.nth(1).locator('.scan-name').click();
   await page.locator(`#download[href="${first.model.url}"]`).waitFor();
+  await page.goBack();
+  await rows.nth(1).waitFor();
 
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
-  await page.getByRole('heading', {name: 'New scan'}).waitFor();
   assert.deepEqual((await scanFolders(scanner)).map((path) => basename(path)), [second.id]);
 
   await page.getByText('Bin (1)').click();
@@ -59,6 +65,7 @@ test('what somebody else does to the scans is seen without a reload, and a refus
   const first = await scan(scanner, draft);
   const second = await scan(scanner, draft);
   const {page} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
+  await goTo(page, 'Library');
   const rows = page.locator('#rows > li');
   await rows.nth(1).waitFor();
   const longest = 'ü'.repeat(100);
@@ -86,7 +93,9 @@ test('a scan that somebody else starts is followed, and can be looked away from'
   const scanner = await startScanner(t, lifelike);
   const earlier = await scan(scanner, draft);
   const {page} = await openPage(await openBrowser(t), scanner.url);
+  await goTo(page, 'Library');
   await page.locator(`#rows [data-key="${earlier.id}"]`).waitFor();
+  await goTo(page, 'Scan');
   const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   const {page: byAddress} = await openPage(await openBrowser(t), `${scanner.url}#${id}`);

@@ -3,13 +3,13 @@ import {readFile, writeFile} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 async function openSettings(browser, scanner, options) {
   await Promise.all(browser.contexts().map((context) => context.close()));  // only so many pages may hear of events
   const opened = await openPage(browser, scanner.url, options);
-  await opened.page.getByRole('link', {name: 'Settings'}).click();
+  await goTo(opened.page, 'Settings');
   await opened.page.locator('#cards').waitFor();
   return opened;
 }
@@ -114,8 +114,8 @@ async function tellPoseInForce(scanner, browser) {
   const change = (pose) => fetch(new URL('api/v1/calibration', scanner.url), {
     method: 'PATCH', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({platform_from_sensor: pose})});
   assert.ok((await change(platform_from_sensor)).ok);
-  await page.getByRole('link', {name: 'Scan', exact: true}).click();
-  await page.getByRole('link', {name: 'Settings'}).click();
+  await goTo(page, 'Scan');
+  await goTo(page, 'Settings');
   await page.getByText('371 mm above its surface').waitFor();
   await page.getByText(/^Set by hand, /).waitFor();
 }

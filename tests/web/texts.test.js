@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile, readdir} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {languageOf, languages, localeOf} from '../../web/texts.js';
+import {languageOf, languages, localeOf, translated} from '../../web/texts.js';
 
 const folder = new URL('../../web/', import.meta.url);
 const files = new Map(await Promise.all(Object.keys(languages).map(async (language) =>
@@ -124,4 +124,10 @@ test('the language is the chosen one, or the first of the browser that the page 
   assert.equal(languageOf('xx', ['zh', 'ja']), 'en');
   assert.equal(languageOf('toString', []), 'en');
   assert.deepEqual([localeOf('de', ['en', 'de-AT']), localeOf('fr', ['en'])], ['de-AT', 'fr']);
+});
+
+test('a sentence that is not known stays as it is, whatever is in it', () => {
+  for (const sentence of ['', '640 x 480', '0.02, 0.03; 4', ', ', 'nobody has said this, 3 times; never']) {
+    assert.equal(translated(sentence), sentence);
+  }
 });

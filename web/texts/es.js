@@ -923,6 +923,7 @@ export const said = {
   'Keep sunlight and other depth cameras away, and let the sensor stand still and warm up.': 'Alejar el sol y otras cámaras de profundidad, y dejar el sensor quieto y que se caliente.',
   'there is no GPIO chip to look at': 'no hay chip GPIO que mirar',
   'there is no GPIO chip to use': 'no hay chip GPIO que usar',
+  '{} wake-ups, half of them within {} ms and all within {} ms': '{} despertares, la mitad en {} ms y todos en {} ms',
   'simulated: it needs no GPIO': 'simulado: no necesita GPIO',
   'counter-clockwise, seen from above, as it has to be': 'sentido antihorario, visto desde arriba, como debe ser',
   'clockwise, seen from above': 'sentido horario, visto desde arriba',

@@ -923,6 +923,7 @@ export const said = {
   'Keep sunlight and other depth cameras away, and let the sensor stand still and warm up.': 'Éloigner le soleil et d’autres caméras de profondeur, et laisser le capteur immobile et chauffer.',
   'there is no GPIO chip to look at': 'il n’y a pas de puce GPIO à regarder',
   'there is no GPIO chip to use': 'il n’y a pas de puce GPIO à utiliser',
+  '{} wake-ups, half of them within {} ms and all within {} ms': '{} réveils, la moitié en {} ms et tous en {} ms',
   'simulated: it needs no GPIO': 'simulé : il n’a pas besoin de GPIO',
   'counter-clockwise, seen from above, as it has to be': 'sens antihoraire, vu de dessus, comme il se doit',
   'clockwise, seen from above': 'sens horaire, vu de dessus',

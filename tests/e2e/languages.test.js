@@ -1,0 +1,126 @@
+// The page in each language: all of it, on a phone, where long words have the least room.
+
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {texts} from '../../web/texts/en.js';
+import {complaints, overflow} from './access.js';
+import {openBrowser, openPage, picture} from './browser.js';
+import {ask, scan, startScanner} from './scanner.js';
+
+const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
+
+/** No reader's language, but one in which no letter of A to Z is left: what still shows one was never given to translate. */
+const strange = (words) => words.replace(/\{\w+\}|[a-z]/gi, (part) => part.startsWith('{') ? part : 'ж');
+const strangeTexts = Object.fromEntries(Object.entries(texts).map(([key, text]) => [key, typeof text === 'string' ? strange(text) :
+  Object.fromEntries(Object.entries(text).map(([form, words]) => [form, strange(words)]))]));
+
+/** What the scanner says for people, which the page tells as it is where it knows no translation. */
+const said = new Set(['detail', 'hint', 'message', 'measured', 'advice', 'name', 'error', 'reason', 'title', 'x-unit']);
+const strangeAnswer = (value) => Array.isArray(value) ? value.map(strangeAnswer) : value === null || typeof value !== 'object' ? value :
+  Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, said.has(key) && typeof inner === 'string' ? strange(inner) : strangeAnswer(inner)]));
+
+/** Names, units, formats and what is the same in every language. */
+const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|AM|PM|UTC|Home Assistant|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|https?:\S+/g;
+
+/** Everything that is shown or spoken now and has a letter of English. */
+const lettersLeft = (page) => page.evaluate(() => {
+  const found = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const {parentElement, textContent} = walker.currentNode;
+    if (!parentElement.closest('[hidden], script, noscript, template, option[value*="/"], #countries') && textContent.trim()) {
+      found.push(textContent.trim());
+    }
+  }
+  for (const name of ['aria-label', 'title', 'placeholder', 'aria-valuetext']) {
+    document.querySelectorAll(`body [${name}]`).forEach((element) => element.closest('[hidden]') || found.push(element.getAttribute(name)));
+  }
+  return found;
+});
+
+async function readStrangely(scanner, browser, finished) {
+  const {page} = await openPage(browser, 'about:blank');
+  await page.route('**/texts/en*.js', (route) => route.fulfill({
+    contentType: 'text/javascript', body: `export const said = {}; export const texts = ${JSON.stringify(strangeTexts)};`}));
+  await page.route('**/api/v1/events', (route) => route.abort());
+  await page.route(/\/api\/v1\/(?!events|preview|.*\.(stl|png))/, async (route) => {
+    const response = await route.fetch().catch(() => null);
+    const json = await response?.json().catch(() => null);
+    return json ? route.fulfill({response, json: strangeAnswer(json)}) : response ? route.fulfill({response}) : route.abort();
+  });
+  const places = {
+    scan: () => page.locator('#all-settings').evaluate((details) => { details.open = true; }),
+    library: () => page.locator('#rows > li').first().waitFor(),
+    scanner: async () => {
+      await page.locator('#examine').click();
+      await page.locator('.finding').first().waitFor();
+    },
+    calibrate: () => page.locator('#pose-no-picture').waitFor({state: 'hidden'}),
+    settings: async () => {
+      await page.locator('#cards').waitFor();
+      await page.locator('#cards').evaluate((cards) => cards.querySelectorAll('details').forEach((details) => { details.open = true; }));
+    },
+    [finished.id]: () => page.locator('#build-again').evaluate((details) => { details.open = true; }),
+  };
+  for (const [place, reach] of Object.entries(places)) {
+    await page.goto(`${scanner.url}#${place === 'scan' ? '' : place}`);
+    await page.locator('#devices li').first().waitFor();
+    await reach();
+    const english = (await lettersLeft(page)).filter((text) => /[a-z]{2}/i.test(text.replace(known, '')));
+    assert.deepEqual(english, [], place);
+  }
+  await page.context().close();
+}
+
+/** Each place on a phone: nothing is cut off, and nobody shut out where most is shown. */
+async function readOnPhone(scanner, browser, finished, locale, checked) {
+  const {page, faults} = await openPage(browser, scanner.url, {screen: 'phone', locale});
+  assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
+  for (const place of ['', 'library', 'scanner', 'calibrate', 'settings', finished.id]) {
+    await page.goto(`${scanner.url}#${place}`);
+    await page.locator(place === 'settings' ? '#cards' : place === finished.id ? '#download' : `main:not([hidden]) :is(h1, h2)`).first().waitFor();
+    await page.evaluate(() => document.querySelectorAll('main:not([hidden]) details').forEach((details) => { details.open = true; }));
+    assert.ok(await overflow(page) <= 0, `${place} is ${await overflow(page)} pixels too wide in ${locale}`);
+    if (checked.includes(place)) {
+      assert.deepEqual(await complaints(page), [], `${place} in ${locale}`);
+    }
+    await picture(page, `${locale}-${place === finished.id ? 'result' : place || 'scan'}-phone`);
+  }
+  assert.deepEqual(faults.filter((fault) => !fault.includes('WebGL')), []);  // which this browser has not
+  return page;
+}
+
+test('the page speaks the language of its reader', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t, {hasWebGl: false});
+  const finished = await scan(scanner, draft);
+  await t.test('no word of it is left in English where everything is translated', () => readStrangely(scanner, browser, finished));
+  for (const [locale, checked] of [['de-DE', ['']], ['fr-FR', ['library']], ['es-ES', ['scanner']]]) {
+    await t.test(`it fits on a phone in ${locale}, and is for everyone`, async () =>
+      (await readOnPhone(scanner, browser, finished, locale, checked)).context().close());
+  }
+  await t.test('the one that is chosen in the settings holds', async () => {
+    const {page} = await openPage(browser, scanner.url, {locale: 'fr-FR'});
+    await page.goto(`${scanner.url}#settings`);
+    await page.getByRole('combobox', {name: 'Langue'}).selectOption('Deutsch');
+    await page.getByRole('heading', {name: 'Einstellungen'}).waitFor();
+    await page.reload();
+    await page.getByRole('heading', {name: 'Einstellungen'}).waitFor();
+    await page.getByRole('combobox', {name: 'Sprache'}).selectOption('Wie im Browser');
+    await page.getByRole('heading', {name: 'Réglages'}).waitFor();
+    await page.context().close();
+  });
+  await t.test('what the scanner refuses is told in it, with its values', async () => {
+    const {page} = await openPage(browser, scanner.url, {locale: 'de-DE'});
+    await page.route('**/api/v1/scans', (route) => route.request().method() === 'POST' ? route.fulfill({
+      status: 503, contentType: 'application/problem+json',
+      json: {code: 'sensor-silent', title: 'The sensor does not work', detail: 'sensor: no frame for 2500 ms', hint: 'Unplug the sensor, plug it in again, and retry.'},
+    }) : route.continue());
+    await page.getByRole('button', {name: 'Scan starten'}).click();
+    const alert = page.getByRole('alert').filter({hasText: 'Der Scan hat nicht begonnen'});
+    assert.match(await alert.innerText(), /Sensor: kein Bild seit 2500\sms\.[^]*Den Sensor abziehen, wieder einstecken/);
+    await page.context().close();
+  });
+  assert.equal((await ask(scanner, 'status')).scan, null);
+});

@@ -1,0 +1,70 @@
+// Puts the library into the DOM: the scans that are kept.
+
+import {element, list, part, setBadge, setText, show} from './dom.js';
+import {text} from './texts.js';
+
+/** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
+
+/** @param {HTMLElement} frame @param {string} url  empty: there is no picture */
+function showPicture(frame, url) {
+  const image = part(frame, 'img');
+  show(image, url !== '');
+  show(part(frame, 'svg'), url === '');
+  if (url !== '' && image.getAttribute('src') !== url) {
+    image.src = url;
+  }
+}
+
+/** @param {Screen} screen */
+function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
+  show(element('no-scans'), isListed && count === 0);
+  show(element('library-tools'), count > 1 || isChoosing);
+  setText(element('library-count'), summary);
+  show(element('no-match'), count > 0 && rows.length === 0);
+  show(element('show-more'), more > 0);
+  setText(element('show-more'), text('library.more', {count: more}));
+  element('choose').setAttribute('aria-pressed', String(isChoosing));
+  show(element('delete-chosen'), isChoosing);
+  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen}));
+  element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
+  list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
+    item.classList.toggle('current', row.isCurrent);
+    showPicture(part(item, '.scan-picture'), row.picture);
+    const choice = part(item, '.scan-choice');
+    show(choice, isChoosing && !row.isRunning);
+    part(choice, 'input').checked = row.isChosen;
+    part(choice, 'input').setAttribute('aria-label', text('library.choose', {name: row.name}));
+    const name = part(item, '.scan-name');
+    setText(name, row.name);
+    name.href = `#${row.id}`;
+    name.toggleAttribute('aria-current', row.isCurrent);
+    setBadge(part(item, '.badge'), row.badge);
+    setText(part(item, '.scan-when'), row.when);
+    setText(part(item, '.scan-about'), row.about);
+    for (const action of item.querySelectorAll('[data-do]')) {
+      action.setAttribute('aria-label', text('library.action', {action: action.title, name: row.name}));
+    }
+    const download = part(item, '[data-do=download]');
+    show(download, row.download !== null);
+    download.href = row.download ?? '';
+    show(part(item, '[data-do=delete]'), !row.isRunning);
+  });
+}
+
+let isHere = false;  // its part of the page
+/** @type {Screen | null} */
+let last = null;
+
+/** @param {Screen} screen */
+export function renderLibrary(screen) {
+  last = screen;
+  if (isHere) {
+    showRows(screen);
+  }
+}
+
+/** Its part of the page has arrived. */
+export function showLibrary() {
+  isHere = true;
+  last && showRows(last);
+}

@@ -39,8 +39,9 @@ const marked = new Marked({
   },
 });
 
-/** Tables and blocks of code scroll by themselves where a phone is too narrow for them. @param {string} html */
+/** Tables and blocks of code scroll by themselves where a phone is too narrow for them. A column without a name has no heading to read out. @param {string} html */
 const scrolling = (html) => html
+    .replace(/<th([^>]*)><\/th>/g, '<td$1></td>')
     .replaceAll('<table>', '<div class="wide" tabindex="0"><table>').replaceAll('</table>', '</table></div>')
     .replaceAll('<pre>', '<pre class="wide" tabindex="0">');
 

@@ -4,19 +4,33 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
 
+/** What is chosen can be told where Windows paints its own colours over. */
+async function lookInForcedColours(page, name) {
+  await page.emulateMedia({forcedColors: 'active'});
+  const outlineOf = (selector) => page.locator(selector).first().evaluate((element) => getComputedStyle(element).outlineStyle);
+  assert.deepEqual(await Promise.all(['.choice:has(:checked)', '.choice:not(:has(:checked))', '.places [aria-current]'].map(outlineOf)),
+      ['solid', 'none', 'solid']);
+  await picture(page, `${name}-forced`);
+  await page.emulateMedia({forcedColors: 'none'});
+}
+
 /** The states of the page, each with how to get there. */
 const states = {
-  idle: async () => {},
+  form: (page) => page.getByText('All settings').click(),
+  library: async (page) => {
+    await goTo(page, 'Library');
+    await page.locator('#rows > li').first().waitFor();
+  },
   checked: async (page) => {
+    await goTo(page, 'Scanner');
     await page.getByRole('button', {name: 'Check now'}).click();
     await page.locator('.finding').first().waitFor();
   },
-  advanced: (page) => page.getByText('All settings').click(),
   finished: async (page, finished) => {
     await page.goto(`${new URL('/', page.url())}#${finished.id}`);
     await page.locator('#tools').waitFor();
@@ -32,9 +46,12 @@ async function walk(scanner, browser, finished, screen, colorScheme) {
     assert.deepEqual(await complaints(page), [], name);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `${name}-${screen}-${colorScheme}`);
+    if (name === 'form') {
+      await lookInForcedColours(page, `${name}-${screen}`);
+    }
   }
   await page.keyboard.press('Escape');
-  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200, filter: 'average', frames: 30});
+  const {id} = await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
   await page.getByRole('link', {name: 'Show its progress'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   assert.deepEqual(await complaints(page), [], 'scanning');

@@ -1,0 +1,50 @@
+import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
+import {test} from 'node:test';
+
+const style = await readFile(new URL('../../web/style.css', import.meta.url), 'utf8');
+
+/** The colours of a scheme: the first :root is light, that of the dark scheme is over it. */
+const [light, darkOver] = style.split(':root {').slice(1, 3).map((block) =>
+  Object.fromEntries([...block.slice(0, block.indexOf('}')).matchAll(/--([a-z-]+): (#[0-9a-f]{6});/g)].map(([, name, colour]) => [name, colour])));
+const schemes = {light, dark: {...light, ...darkOver}};
+
+/** Relative luminance (WCAG 2.2). @param {string} colour */
+function luminanceOf(colour) {
+  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16) / 255)
+      .map((value) => value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+/** @param {string} one @param {string} other */
+function contrast(one, other) {
+  const [bright, dim] = [luminanceOf(one), luminanceOf(other)].sort((a, b) => b - a);
+  return (bright + 0.05) / (dim + 0.05);
+}
+
+const texts = [
+  ...['ink', 'muted', 'accent', 'bad'].flatMap((text) => ['ground', 'card', 'sunken'].map((ground) => [text, ground])),
+  ['on-accent', 'accent'], ['accent', 'accent-soft'], ['ink', 'accent-soft'],
+  ['good', 'good-soft'], ['warn', 'warn-soft'], ['bad', 'bad-soft'], ['muted', 'idle-soft'], ['ink', 'warn-soft'], ['muted', 'warn-soft'],
+];
+
+for (const [scheme, colours] of Object.entries(schemes)) {
+  test(`texts can be read in the ${scheme} colours`, () => {
+    for (const [text, ground] of texts) {
+      assert.ok(contrast(colours[text], colours[ground]) >= 4.5, `${text} on ${ground}: ${contrast(colours[text], colours[ground]).toFixed(2)}`);
+    }
+  });
+
+  test(`what marks a control can be seen in the ${scheme} colours: an unchosen choice, a tick of the dial`, () => {
+    for (const ground of ['card', 'sunken', 'ground']) {
+      assert.ok(contrast(colours['line-strong'], colours[ground]) >= 3, `on ${ground}: ${contrast(colours['line-strong'], colours[ground]).toFixed(2)}`);
+    }
+  });
+}
+
+test('controls are drawn with the line that can be seen', async () => {
+  const scan = await readFile(new URL('../../web/scan.css', import.meta.url), 'utf8');
+  assert.match(style, /\.choice \{[^}]*border: 1px solid var\(--line-strong\)/);
+  assert.match(style, /\.secondary, \.quiet \{ border-color: var\(--line-strong\)/);
+  assert.match(scan, /\.ticks \{[^}]*stroke: var\(--line-strong\)/);
+});

@@ -18,3 +18,20 @@ export function fitToCanvas(renderer, camera, canvas) {
   camera.updateProjectionMatrix();
   return true;
 }
+
+const longestClick = 6;  // pixels that a pointer may move meanwhile
+
+/** @param {HTMLCanvasElement} canvas @param {(x: number, y: number) => void} onPoint  where it was clicked and not dragged, CSS pixels */
+export function onClick(canvas, onPoint) {
+  /** @type {number[] | null} */
+  let down = null;
+  canvas.addEventListener('pointerdown', ({offsetX, offsetY}) => {
+    down = [offsetX, offsetY];
+  });
+  canvas.addEventListener('pointerup', ({offsetX, offsetY}) => {
+    if (down && Math.hypot(offsetX - down[0], offsetY - down[1]) < longestClick) {
+      onPoint(offsetX, offsetY);
+    }
+    down = null;
+  });
+}

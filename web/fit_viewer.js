@@ -4,7 +4,7 @@ import {
   BufferAttribute, BufferGeometry, Fog, Group, Matrix4, Mesh, MeshBasicMaterial, OrbitControls, PerspectiveCamera, Points, PointsMaterial, Scene,
   Sphere, SphereGeometry, Vector3, WebGLRenderer,
 } from './three.js';
-import {fitToCanvas} from './canvas.js';
+import {fitToCanvas, onClick} from './canvas.js';
 
 /** @typedef {{before_mm: number[][], pose_mm: number[][]}} Clouds */
 
@@ -12,7 +12,6 @@ const colours = [0x35c4bd, 0xf09a3e];  // seen before, and the side
 const pairColours = [0xff5c8a, 0xffe14d, 0x9b8cff];
 const pointSize = 2.6;  // pixels
 const reachOfClick = 18;  // pixels
-const longestClick = 6;  // pixels that a pointer moves in one
 const darkness = 0x14272f;  // that points far from the eye fade to
 const gap = 0.25;  // between clouds side by side, of the larger one's breadth
 const sight = new Vector3(0.42, -0.83, 0.37);  // from the middle to the eye
@@ -47,7 +46,6 @@ export class FitViewer {
   #isBeside = false;
   #isFrameDue = false;
   /** @type {number[] | null} where the pointer went down */
-  #down = null;
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -64,15 +62,7 @@ export class FitViewer {
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.addEventListener('change', () => this.#draw());
     new ResizeObserver(() => this.#resize()).observe(canvas);
-    canvas.addEventListener('pointerdown', ({offsetX, offsetY}) => {
-      this.#down = [offsetX, offsetY];
-    });
-    canvas.addEventListener('pointerup', ({offsetX, offsetY}) => {
-      if (this.#down && Math.hypot(offsetX - this.#down[0], offsetY - this.#down[1]) < longestClick) {
-        this.#click(offsetX, offsetY);
-      }
-      this.#down = null;
-    });
+    onClick(canvas, (x, y) => this.#click(x, y));
   }
 
   /** @param {Clouds} clouds */

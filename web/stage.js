@@ -3,6 +3,7 @@
 import * as api from './api.js';
 import {element, setText, show} from './dom.js';
 import * as format from './format.js';
+import {measureText, withPoint} from './measure.js';
 import {loadsUnasked} from './state.js';
 import {readStl} from './stl.js';
 import {text} from './texts.js';
@@ -44,6 +45,7 @@ async function openViewer() {
   return new Viewer(element('view'), {
     onTurning: (isTurning) => pressed('turn', isTurning),
     onLost: () => note(text('view.lost'), {button: text('view.again')}),
+    onPlace: (point) => measuring && setMeasure(withPoint(measuring, point)),
   });
 }
 
@@ -80,6 +82,8 @@ async function load(model, {isFirst = true} = {}) {
         viewer.turn(!isStill);
       }
       note('');
+      setMeasure(null);
+      setCut(false);
       marked = [];
       markPlaces();
     }
@@ -183,6 +187,32 @@ export function renderStage(stage) {
   markPlaces();
 }
 
+/** @type {number[][] | null} places that are measured between; null: nothing is */
+let measuring = null;
+
+/** @param {number[][] | null} points_mm */
+function setMeasure(points_mm) {
+  measuring = points_mm;
+  pressed('measure', points_mm !== null);
+  element('view').dataset.measuring = points_mm ? 'yes' : 'no';
+  show(element('measured'), points_mm !== null);
+  setText(element('measured'), points_mm ? measureText(points_mm) : '');
+  viewer?.showMeasure(points_mm ?? []);
+}
+
+/** @param {boolean} isCut */
+function setCut(isCut) {
+  pressed('cut', isCut);
+  show(element('cut-height'), isCut);
+  cutAt(isCut ? element('cut-share').valueAsNumber : 1);
+}
+
+/** @param {number} share  of the model's height */
+function cutAt(share) {
+  const height = viewer?.cut(share) ?? 0;
+  setText(element('cut-at'), format.millimetres(height, 1));
+}
+
 /** Makes the buttons on the picture work. */
 export function prepareStage() {
   element('load-model').addEventListener('click', () => wanted && load(wanted));
@@ -193,6 +223,12 @@ export function prepareStage() {
     pressed('filled', isShown);
     viewer?.showFilled(isShown);
   });
+  element('measure').addEventListener('click', () => setMeasure(measuring ? null : []));
+  element('cut').addEventListener('click', () => {
+    element('cut-share').value = 0.5;
+    setCut(element('cut').getAttribute('aria-pressed') !== 'true');
+  });
+  element('cut-share').addEventListener('input', () => cutAt(element('cut-share').valueAsNumber));
   element('edges').addEventListener('click', () => {
     const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
     pressed('edges', areShown);

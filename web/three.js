@@ -5,6 +5,8 @@ export {
   CircleGeometry,
   Color,
   DirectionalLight,
+  DoubleSide,
+  FloatType,
   Fog,
   Group,
   HemisphereLight,
@@ -18,9 +20,11 @@ export {
   Points,
   PointsMaterial,
   Scene,
+  ShaderMaterial,
   Sphere,
   SphereGeometry,
   Vector3,
+  WebGLRenderTarget,
   WebGLRenderer,
 } from 'three';
 export {OrbitControls} from 'three/addons/controls/OrbitControls.js';

@@ -1,82 +1,20 @@
 // The model in 3D, in millimetres, Z up, standing on a drawing of the platform.
 
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, Group, HemisphereLight, LineBasicMaterial,
-  LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, DirectionalLight, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
+  WebGLRenderer,
 } from './three.js';
-import {fitToCanvas} from './canvas.js';
+import {fitToCanvas, onClick} from './canvas.js';
+import {clayMaterial, platform, ringStep} from './clay.js';
+import {measureMark} from './measure_mark.js';
+import {placeAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
 
-const clay = 0xd8d2c4;
-const edgeColour = new Color(0x0e5a66);
-const filledColour = new Color(0xd9913f);
-const ringStep = 50;   // millimetres between the platform's rings
+const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
-
-/**
- * Flat-shaded clay that can show its triangles. Each triangle has its own three vertices, in order, so that a vertex's number
- * tells its corner, and a pixel's distance from the nearest side comes from interpolating the corners: no further buffers.
- * @param {{edges: {value: number}, filled: {value: number}}} strengths  of the edges, and of the colour of what was filled in: 0 hides them
- */
-function clayMaterial({edges, filled}) {
-  const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true});
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, {
-      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour},
-    });
-    shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\n${shader.vertexShader}`
-        .replace('void main() {', `void main() {
-      vFilled = filled;
-      int corner = gl_VertexID % 3;
-      vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
-    shader.fragmentShader = `varying vec3 vCorner;
-varying float vFilled;
-uniform float edgeStrength;
-uniform vec3 edgeColour;
-uniform float filledStrength;
-uniform vec3 filledColour;
-${shader.fragmentShader}`
-        .replace('#include <color_fragment>', `#include <color_fragment>
-      diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
-        .replace('#include <opaque_fragment>', `
-      vec3 perPixel = fwidth(vCorner);
-      vec3 inside = smoothstep(perPixel * 0.4, perPixel * 1.4, vCorner);
-      float edge = 1.0 - min(min(inside.x, inside.y), inside.z);
-      float widest = max(max(perPixel.x, perPixel.y), perPixel.z);
-      outgoingLight = mix(outgoingLight, edgeColour, edge * edgeStrength * (1.0 - smoothstep(0.5, 1.0, widest)));
-      #include <opaque_fragment>`);
-  };
-  return material;
-}
-
-/** @param {number} radius @returns {number[]} line segments of rings and two axes on the platform's surface */
-function platformLines(radius) {
-  const sides = 96;
-  const lines = [-radius, 0, 0, radius, 0, 0, 0, -radius, 0, 0, radius, 0];
-  for (let ring = ringStep; ring <= radius; ring += ringStep) {
-    for (let i = 0; i < sides; ++i) {
-      for (const at of [i, i + 1]) {
-        const angle = 2 * Math.PI * at / sides;
-        lines.push(ring * Math.cos(angle), ring * Math.sin(angle), 0);
-      }
-    }
-  }
-  return lines;
-}
-
-/** @param {number} radius  of the drawn platform, millimetres */
-function platform(radius) {
-  const lines = new BufferGeometry();
-  lines.setAttribute('position', new BufferAttribute(new Float32Array(platformLines(radius)), 3));
-  const disc = new Mesh(new CircleGeometry(radius, 96),
-      new MeshBasicMaterial({color: 0x5fb8b5, transparent: true, opacity: 0.07, depthWrite: false, side: 2}));
-  const grid = new LineSegments(lines, new LineBasicMaterial({color: 0x7fc4c4, transparent: true, opacity: 0.28}));
-  grid.add(disc);
-  return grid;
-}
 
 export class Viewer {
   #canvas;
@@ -86,22 +24,27 @@ export class Viewer {
   #scene = new Scene();
   #edges = {value: 0};
   #filled = {value: 0};
+  #top = {value: uncut};
+  #heights = [0, 0];  // of the model, millimetres
   #controls;
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
   #model = null;
   /** @type {any} */
   #places = null;
+  /** @type {any} */
+  #measure = null;
   #isAimed = false;  // by hand
   #isFrameDue = false;
   #drawnAt = 0;
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void}} events
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (point_mm: number[]) => void}} events  onPlace: of a
+   *     click on the model
    * @throws {Error} where there is no WebGL
    */
-  constructor(canvas, {onTurning, onLost}) {
+  constructor(canvas, {onTurning, onLost, onPlace}) {
     this.#canvas = canvas;
     this.#onTurning = onTurning;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
@@ -120,6 +63,10 @@ export class Viewer {
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
+    onClick(canvas, (x, y) => {
+      const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
+      place && onPlace(place);
+    });
   }
 
   /** The light comes from beside the eye, so that a shape reads from every side. */
@@ -152,7 +99,8 @@ export class Viewer {
     }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
-    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled}));
+    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, top: this.#top}));
+    this.#heights = [min[2], max[2]];
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
     this.#resize();
@@ -175,6 +123,7 @@ export class Viewer {
     this.#subject.clear();
     this.#model = null;
     this.#places = null;
+    this.#measure = null;
     this.turn(false);
   }
 
@@ -204,6 +153,30 @@ export class Viewer {
       this.#aim(sight, {center: ball.center, radius: Math.max(1.4 * ball.radius, radius / 2)});
     }
     this.#draw();
+  }
+
+  /** Draws a line between two places, or a dot. @param {number[][]} points_mm  none: nothing */
+  showMeasure(points_mm) {
+    this.#measure?.traverse((/** @type {any} */ object) => {
+      object.geometry?.dispose();
+      object.material?.dispose();
+    });
+    this.#measure?.removeFromParent();
+    this.#measure = points_mm.length > 0 ? measureMark(points_mm) : null;
+    this.#measure && this.#subject.add(this.#measure);
+    this.#draw();
+  }
+
+  /**
+   * Cuts off what is above a share of the model's height.
+   * @param {number} share  1: nothing
+   * @returns {number} the height of the cut, millimetres
+   */
+  cut(share) {
+    const height = this.#heights[0] + share * (this.#heights[1] - this.#heights[0]);
+    this.#top.value = share < 1 ? height : uncut;
+    this.#draw();
+    return height;
   }
 
   /** Looks at the whole model, or at a ball. @param {Vector3} sight  from it to the eye, of length 1 */

@@ -87,5 +87,19 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const share = await modelShare(page);
   assert.ok(share > 0.02, `a model in 3D, not ${share} of the view`);
   await picture(page, 'finished');
+
+  await page.getByRole('button', {name: 'Measure between two points'}).click();
+  const {width, height} = await page.locator('#view').boundingBox();
+  for (const [up, text] of [[0.45, 'Click another one.'], [0.52, /^\d+\.\d mm, along X, Y and Z/]]) {
+    await page.locator('#view').click({position: {x: 0.5 * width, y: up * height}});
+    await page.locator('#measured').filter({hasText: text}).waitFor();
+  }
+  const distance = parseFloat(await page.locator('#measured').innerText());
+  assert.ok(distance > 1 && distance < Math.hypot(...sides), `${distance} mm between two points of the model`);
+  await page.getByRole('button', {name: 'Cut the model open'}).click();
+  assert.equal(await page.locator('#cut-at').innerText(), `${((mesh.min[2] + mesh.max[2]) / 2).toFixed(1)} mm`);
+  const left = await modelShare(page);
+  assert.ok(left < 0.9 * share, `less of the model is left than ${share}, not ${left} of the view`);
+  await picture(page, 'measured');
   assert.deepEqual(faults, []);
 });

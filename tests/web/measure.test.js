@@ -1,0 +1,13 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {measureText, withPoint} from '../../web/measure.js';
+
+test('two places are measured between, and a third one begins anew', () => {
+  const [a, b, c] = [[0, 0, 0], [3, -4, 12], [1, 1, 1]];
+  const pair = withPoint(withPoint([], a), b);
+  assert.deepEqual(pair, [a, b]);
+  assert.equal(measureText(pair), '13.0 mm, along X, Y and Z 3.0 mm × 4.0 mm × 12.0 mm');
+  assert.deepEqual(withPoint(pair, c), [c]);
+  assert.notEqual(measureText([]), measureText([a]));
+});

@@ -1,0 +1,80 @@
+// What the viewer shows: a model of clay, and the platform below it.
+
+import {
+  BufferAttribute, BufferGeometry, CircleGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial,
+} from './three.js';
+
+const clay = 0xd8d2c4;
+const edgeColour = new Color(0x0e5a66);
+const filledColour = new Color(0xd9913f);
+export const ringStep = 50;   // millimetres between the platform's rings
+
+/**
+ * Flat-shaded clay that can show its triangles. Each triangle has its own three vertices, in order, so that a vertex's number
+ * tells its corner, and a pixel's distance from the nearest side comes from interpolating the corners: no further buffers.
+ * @param {Object} shown
+ * @param {{value: number}} shown.edges  how strongly, 0 to 1
+ * @param {{value: number}} shown.filled  how strongly what was filled in has its own colour, 0 to 1
+ * @param {{value: number}} shown.top  millimetres: what is higher is cut off, and lets the eye see inside
+ */
+export function clayMaterial({edges, filled, top}) {
+  const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true, side: DoubleSide});
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, {
+      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour}, top,
+    });
+    shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\nvarying float vHeight;\n${shader.vertexShader}`
+        .replace('void main() {', `void main() {
+      vFilled = filled;
+      vHeight = position.z;
+      int corner = gl_VertexID % 3;
+      vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
+    shader.fragmentShader = `varying vec3 vCorner;
+varying float vFilled;
+uniform float edgeStrength;
+uniform vec3 edgeColour;
+uniform float filledStrength;
+uniform vec3 filledColour;
+varying float vHeight;
+uniform float top;
+${shader.fragmentShader}`
+        .replace('#include <color_fragment>', `#include <color_fragment>
+      if (vHeight > top) discard;
+      diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
+        .replace('#include <opaque_fragment>', `
+      vec3 perPixel = fwidth(vCorner);
+      vec3 inside = smoothstep(perPixel * 0.4, perPixel * 1.4, vCorner);
+      float edge = 1.0 - min(min(inside.x, inside.y), inside.z);
+      float widest = max(max(perPixel.x, perPixel.y), perPixel.z);
+      outgoingLight = mix(outgoingLight, edgeColour, edge * edgeStrength * (1.0 - smoothstep(0.5, 1.0, widest)));
+      #include <opaque_fragment>`);
+  };
+  return material;
+}
+
+/** @param {number} radius @returns {number[]} line segments of rings and two axes on the platform's surface */
+function platformLines(radius) {
+  const sides = 96;
+  const lines = [-radius, 0, 0, radius, 0, 0, 0, -radius, 0, 0, radius, 0];
+  for (let ring = ringStep; ring <= radius; ring += ringStep) {
+    for (let i = 0; i < sides; ++i) {
+      for (const at of [i, i + 1]) {
+        const angle = 2 * Math.PI * at / sides;
+        lines.push(ring * Math.cos(angle), ring * Math.sin(angle), 0);
+      }
+    }
+  }
+  return lines;
+}
+
+/** @param {number} radius  of the drawn platform, millimetres */
+export function platform(radius) {
+  const lines = new BufferGeometry();
+  lines.setAttribute('position', new BufferAttribute(new Float32Array(platformLines(radius)), 3));
+  const disc = new Mesh(new CircleGeometry(radius, 96),
+      new MeshBasicMaterial({color: 0x5fb8b5, transparent: true, opacity: 0.07, depthWrite: false, side: 2}));
+  const grid = new LineSegments(lines, new LineBasicMaterial({color: 0x7fc4c4, transparent: true, opacity: 0.28}));
+  grid.add(disc);
+  return grid;
+}

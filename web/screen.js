@@ -67,7 +67,7 @@ function factsOf(scan) {
     {label: text('fact.snapshots'), text: text(`fact.${settings.filter}`, {taken: taken(scan), frames: settings.frames})},
     {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
     ...poseFacts(scan),
-    ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: scan.late_pulses})}] : []),
+    ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: format.number(scan.late_pulses)})}] : []),
   ];
   if (!model) {
     return capture;

@@ -52,6 +52,7 @@ export const locale = localeOf(language, preferred);
 const {texts, said} = await files[language]();
 const plurals = new Intl.PluralRules(locale);
 const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
+const exact = new Intl.NumberFormat(locale, {maximumFractionDigits: 6, useGrouping: false});
 
 /** @param {number} value */
 export const number = (value) => plain.format(value);
@@ -71,16 +72,19 @@ export const isText = (key) => Object.hasOwn(texts, key);
 export function text(key, values = {}) {
   const found = texts[key];
   const form = typeof found === 'string' ? found : found[plurals.select(Number(values.count))] ?? found.other ?? '';
-  return form.replace(/\{(\w+)\}/g, (_, name) => typeof values[name] === 'number' ? number(values[name]) : values[name]);
+  return form.replace(/\{(\w+)\}/g, (_, name) => typeof values[name] === 'number' ? exact.format(/** @type {number} */ (values[name])) : String(values[name]));
 }
 
 const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // that the scanner puts into its sentences: a name in quotes, or a number
+
+/** The translation with {} for each value, or null. @param {string} sentence */
+const saidOf = (sentence) => Object.hasOwn(said, sentence.replace(value, '{}')) ? said[sentence.replace(value, '{}')] : null;
 
 /** A sentence that is known in its parts alone, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
 function translatedParts(sentence) {
   const parts = sentence.split(/(, |; )/);
   const isWordless = (/** @type {string} */ part) => !/[a-z]{2}/i.test(part);
-  const isKnown = (/** @type {string} */ part) => isWordless(part) || part.replace(value, '{}') in said;
+  const isKnown = (/** @type {string} */ part) => isWordless(part) || saidOf(part) !== null;
   return parts.length > 1 && parts.every(isKnown) ? parts.map((part) => isWordless(part) ? part : translated(part)).join('') : sentence;
 }
 
@@ -91,8 +95,8 @@ function translatedParts(sentence) {
  */
 export function translated(sentence) {
   const values = sentence.match(value) ?? [];
-  const known = said[sentence.replace(value, '{}')];
-  if (known === undefined) {
+  const known = saidOf(sentence);
+  if (known === null) {
     return translatedParts(sentence);
   }
   const shown = values.map((one) => /^("|-?0\d)/.test(one) ? one : fixed(Number(one), one.split('.')[1]?.length ?? 0));

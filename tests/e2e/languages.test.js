@@ -41,7 +41,7 @@ const lettersLeft = (page) => page.evaluate(() => {
 
 async function readStrangely(scanner, browser, finished) {
   const {page} = await openPage(browser, 'about:blank');
-  await page.route('**/texts/en*.js', (route) => route.fulfill({
+  await page.route(/\/en(-\w+)?\.js$/, (route) => route.fulfill({
     contentType: 'text/javascript', body: `export const said = {}; export const texts = ${JSON.stringify(strangeTexts)};`}));
   await page.route('**/api/v1/events', (route) => route.abort());
   await page.route(/\/api\/v1\/(?!events|preview|.*\.(stl|png))/, async (route) => {

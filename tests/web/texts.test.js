@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile, readdir} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {languageOf, languages, localeOf, translated} from '../../web/texts.js';
+import {languageOf, languages, localeOf, text, translated} from '../../web/texts.js';
 
 const folder = new URL('../../web/', import.meta.url);
 const files = new Map(await Promise.all(Object.keys(languages).map(async (language) =>
@@ -127,7 +127,13 @@ test('the language is the chosen one, or the first of the browser that the page 
 });
 
 test('a sentence that is not known stays as it is, whatever is in it', () => {
-  for (const sentence of ['', '640 x 480', '0.02, 0.03; 4', ', ', 'nobody has said this, 3 times; never']) {
+  for (const sentence of ['', '640 x 480', '0.02, 0.03; 4', ', ', 'constructor', 'nobody has said this, 3 times; never']) {
     assert.equal(translated(sentence), sentence);
   }
+});
+
+test('numbers in a text lose none of their digits', () => {
+  assert.equal(text('settings.range', {minimum: 0.001, maximum: 1000}), 'It must be from 0.001 to 1000.');
+  assert.equal(text('count.snapshots', {count: 1}), '1 snapshot');
+  assert.equal(text('count.snapshots', {count: 0}), '0 snapshots');
 });

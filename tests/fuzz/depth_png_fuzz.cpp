@@ -7,8 +7,8 @@
 #include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 
-// Whatever the bytes, they are refused by an Error, or they are an image that comes back the same
-// from an encoder and decoder.
+// Whatever the bytes, they are refused by an Error, or they are a depth image or a camera's picture
+// that comes back the same from an encoder and decoder.
 
 namespace {
 
@@ -64,6 +64,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::byte> png(input.begin(), input.end());
   if (mended) {
     mend_checksums(png);
+  }
+  try {
+    const Picture picture = decode_picture_png("input", png, width, height);
+    const auto grey = encode_grey_png(width, height, picture.samples);
+    if (decode_picture_png("again", grey, width, height).samples != picture.samples) {
+      std::abort();
+    }
+  } catch (const Error&) {
+    // no picture; it may be a depth image
   }
   DepthFrame frame;
   try {

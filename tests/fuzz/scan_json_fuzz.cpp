@@ -20,6 +20,19 @@ void require(bool promise) {
   }
 }
 
+void check_file(const std::string& file) {
+  const std::filesystem::path there = ("/scan" / std::filesystem::path(file)).lexically_normal();
+  require(there.string().starts_with("/scan/") && there.has_filename());
+}
+
+void check(const octurn::LaserCamera& camera) {
+  require(!camera.lasers.empty());
+  for (const octurn::Laser& laser : camera.lasers) {
+    require(std::abs(laser.normal.norm() - 1) < 1e-9 && std::isfinite(laser.distance));
+    require(!laser.source || laser.source->allFinite());
+  }
+}
+
 void check(const octurn::Scan& scan) {
   const octurn::Intrinsics& intrinsics = scan.intrinsics;
   require(intrinsics.width > 0 && intrinsics.height > 0);
@@ -28,11 +41,17 @@ void check(const octurn::Scan& scan) {
   require(std::abs(rotation.determinant() - 1.0) < 1e-3);
   require((scan.clip.min.array() < scan.clip.max.array()).all());
   require(!scan.shots.empty());
+  if (scan.laser) {
+    check(*scan.laser);
+  }
   for (const octurn::Shot& shot : scan.shots) {
     require(std::isfinite(shot.angle));
-    const std::filesystem::path there =
-        ("/scan" / std::filesystem::path(shot.file)).lexically_normal();
-    require(there.string().starts_with("/scan/") && there.has_filename());
+    if (scan.laser) {
+      require(shot.pictures.size() == scan.laser->lasers.size() + 1);
+      std::for_each(shot.pictures.begin(), shot.pictures.end(), check_file);
+    } else {
+      check_file(shot.file);
+    }
     require(shot.pose >= 0 &&
             static_cast<std::size_t>(shot.pose) < std::max<std::size_t>(scan.poses.size(), 1));
   }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
+#include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -68,6 +70,26 @@ struct CalibrationReport {
 /// The same on every machine and for any number of threads. About 12 MB for 36 stops of 640 x 480.
 /// @throws std::invalid_argument  if a depth image has another size than the intrinsics say
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads = 1);
+
+/// What the lines of a turn tell of a camera and its lasers.
+struct LaserCalibration {
+  CalibrationReport report = {};
+  std::vector<Laser> lasers = {};  ///< as solved, without their sources
+  bool moved_a_plane = false;      ///< far enough that models should be made with it
+};
+
+/// Finds the sensor's pose and the lasers' planes from the pictures of one turn by laser line.
+///
+/// The lines on the platform must lie in its plane; and what one laser shows of the object must lie
+/// on what the others show. A turn without an object tells only the former, and so does a rig of
+/// one laser: then the pose stays as told, and each plane's height is solved with its turn about
+/// the vertical. docs/laser.md has the derivation.
+///
+/// The same for any number of threads.
+/// @throws Error  as `stored_snapshots`; "scan-malformed" if it is no turn by laser line
+/// @throws Stopped
+LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
+                                  int threads, const std::stop_token& stop = {});
 
 /// Where the platform's surface lies, in the platform frame as told.
 struct PlatformSurface {

@@ -41,6 +41,21 @@ std::vector<std::byte> encode_colour_png(int width, int height, std::span<const 
 DepthFrame decode_depth_png(std::string_view name, std::span<const std::byte> png, int width,
                             int height);
 
+/// A camera's picture.
+struct Picture {
+  int width = 0;                           ///< pixels
+  int height = 0;                          ///< pixels
+  std::vector<std::uint8_t> samples = {};  ///< luminance, width x height, row by row from the top
+};
+
+/// Decodes an 8-bit PNG of exactly that size in pixels: greyscale, or RGB, of which the luminance
+/// is taken (ITU-R BT.601).
+///
+/// @param name  of the file, for messages
+/// @throws Error "snapshot-malformed"  as `decode_depth_png`
+Picture decode_picture_png(std::string_view name, std::span<const std::byte> png, int width,
+                           int height);
+
 /// Writes a depth image as 16-bit greyscale PNG, whole or not at all, and returns when it is on the
 /// disk. Makes the file's folder where it is missing.
 ///

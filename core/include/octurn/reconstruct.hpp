@@ -43,6 +43,16 @@ enum class Parts {
 /// The choice's name in settings: "main", "all".
 std::string_view to_string(Parts parts);
 
+/// Options of the method `solid`, beside the error that its simplifier may make.
+struct SolidOptions {
+  /// Metres, how far before and behind a surface distances to it count; at least 2.5 voxels. 3
+  /// sigma of the sensor's noise: the default is a Kinect v1's at 0.65 m.
+  double truncation = 0.0035;
+
+  /// Of several poses one is kept: what was turned over is one object.
+  Parts parts = Parts::main;
+};
+
 /// Options of both methods, but where one is named.
 struct ReconstructOptions {
   Method method = Method::intersection;
@@ -75,8 +85,7 @@ struct ReconstructOptions {
   /// the triangles that it replaces; from a single one it may be farther. 0 keeps all triangles.
   double target_error = 0.00004;
 
-  /// `solid` only. Of several poses one is kept: what was turned over is one object.
-  Parts parts = Parts::main;
+  SolidOptions solid = {};
 
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;
@@ -88,6 +97,11 @@ struct ReconstructOptions {
   /// Bytes of the limit that the program takes, with its libraries: the caller knows them.
   std::size_t program_memory = 0;
 };
+
+/// `SolidOptions::truncation` of scans by laser line, metres. Their points have a sigma of 0.05 to
+/// 0.2 mm, but lines are a millimetre or two apart, and behind the surface the field must be known
+/// for as far to tell inside from outside.
+inline constexpr double laser_truncation = 0.002;
 
 /// What memory a model takes.
 struct MemoryNeed {

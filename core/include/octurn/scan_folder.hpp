@@ -9,16 +9,37 @@
 #include <string_view>
 #include <vector>
 
+#include "octurn/reconstruct.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
 
+/// A laser whose light is a plane, which shows as a line on what it meets.
+struct Laser {
+  std::string name = {};
+  /// Of length one. The plane holds the points p of the optical frame with normal . p = distance.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  double distance = 0;                         ///< metres
+  std::optional<Eigen::Vector3d> source = {};  ///< metres, optical frame: where its light is from
+};
+
+/// A camera with line lasers, in place of a depth sensor.
+struct LaserCamera {
+  /// Brown's radial distortion of normalised coordinates: x_d = x (1 + k1 r^2 + k2 r^4).
+  double k1 = 0;
+  double k2 = 0;
+  std::vector<Laser> lasers = {};  ///< at least one
+};
+
 /// An entry of a scan's list of snapshots.
 struct Shot {
   std::string file = {};  ///< the depth image, relative to the scan folder
-  double angle = 0.0;     ///< of the platform, radians, counter-clockwise seen from above
-  int pose = 0;           ///< index in the scan's poses
+  /// Of a scan by laser line, in its place: the picture without a laser, then one with each laser
+  /// on, in their order.
+  std::vector<std::string> pictures = {};
+  double angle = 0.0;  ///< of the platform, radians, counter-clockwise seen from above
+  int pose = 0;        ///< index in the scan's poses
   /// Metres, in place of what angle and calibration tell, if it is there.
   std::optional<Eigen::Isometry3d> object_from_sensor = {};
 };
@@ -30,6 +51,7 @@ struct SolvedPose {
   double direction_sigma = 0;                                              ///< radians
   double before = 0;  ///< metres, that two stops disagree about the object with the told pose
   double after = 0;   ///< the same with this one
+  std::vector<Laser> lasers = {};  ///< of a scan by laser line: their planes, without sources
 };
 
 /// One of several ways that the object lay on the platform, each for a turn of snapshots.
@@ -45,8 +67,9 @@ struct ScanPose {
 /// What `scan.json` says (format "octurn-scan", version 1 or 2).
 struct Scan {
   std::string sensor_name = {};
-  std::string sensor_serial = {};  ///< empty if it tells none
-  Intrinsics intrinsics = {};
+  std::string sensor_serial = {};         ///< empty if it tells none
+  Intrinsics intrinsics = {};             ///< of a camera with lasers without a depth unit
+  std::optional<LaserCamera> laser = {};  ///< none: the sensor measures depth
   /// As the rig was told when the scan was taken, metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};
@@ -67,6 +90,11 @@ inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
   return scan.solved ? scan.solved->platform_from_sensor : scan.platform_from_sensor;
 }
 
+/// The lasers with the planes that models are made with: the solved ones, else those that the rig
+/// was told.
+/// @param solved  of the scan, or of one of its poses
+std::vector<Laser> model_lasers(const LaserCamera& camera, const std::optional<SolvedPose>& solved);
+
 /// The pose that a shot has in models: optical frame to the object's frame, metres.
 /// @throws Error "scan-malformed"  that says the pose's number, if how the object lay is not known
 Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot);
@@ -78,6 +106,10 @@ std::vector<Placement> placements(const Scan& scan);
 /// all.
 /// @throws Error  as above
 Box model_clip(const Scan& scan);
+
+/// Sets what a model's options owe to the scan's sensor: of one by laser line the truncation, and
+/// the memory that its lines take.
+void fit_to_sensor(ReconstructOptions& options, const Scan& scan);
 
 /// Whether all shots are of one turn of the platform, with one calibration and clip box.
 bool is_one_turn(const Scan& scan);
@@ -104,13 +136,15 @@ DepthFrame corrected(DepthFrame frame, const Scan& scan);
 
 /// Reads the depth image of one shot, corrected by the scan's sensor map; its pose is `model_pose`.
 ///
+/// @throws Error "scan-malformed"      if it is a scan by laser line, which has none
 /// @throws Error "scan-missing"        if there is no such file
 /// @throws Error "snapshot-malformed"  if it is no 16-bit greyscale PNG, is damaged or cut short,
 /// or
 ///                                     has another size than `scan.json` says
 Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, const Shot& shot);
 
-/// The snapshots of a scan folder, read from the disk each time they are asked for.
+/// The snapshots of a scan folder, read from the disk each time they are asked for. Of a scan by
+/// laser line each picture is read once: its lines are kept, about 10 kB of each stop and laser.
 ///
 /// @param stop  once requested, a read throws `Stopped`
 SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,

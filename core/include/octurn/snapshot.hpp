@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -82,13 +83,27 @@ bool is_rigid(const Eigen::Matrix4d& matrix);
 /// @return Rz(-angle) * platform_from_sensor
 Eigen::Isometry3d object_from_sensor(const Eigen::Isometry3d& platform_from_sensor, double angle);
 
-/// One stop of the platform: a filtered, unclipped depth image and the pose it was taken from.
+/// The surface between a laser's line at one stop of the platform and its lines at the stops before
+/// and after: triangles between neighbouring rows of the picture and neighbouring lines.
+struct LineStrip {
+  using Triangle = std::array<std::uint32_t, 3>;  ///< indices of points
+
+  std::vector<Eigen::Vector3f> points = {};  ///< metres, object's frame: the stop's own come first
+  std::size_t own_points = 0;
+  std::vector<Triangle> to_previous = {};  ///< as many stops see each triangle as have its corners:
+  std::vector<Triangle> to_next = {};      ///< it is the next one's `to_previous`
+  std::optional<Eigen::Vector3d> source = {};  ///< metres, object's frame: the laser, if it is told
+};
+
+/// One stop of the platform: a filtered, unclipped depth image and the pose it was taken from; of a
+/// scan by laser line, strips of surface in place of the image.
 struct Snapshot {
-  DepthFrame frame = {};  ///< of the intrinsics' size
+  DepthFrame frame = {};  ///< of the intrinsics' size; empty if there are strips
   Intrinsics intrinsics = {};
   /// Optical frame to the object's frame, metres (as `object_from_sensor` makes it).
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();
-  int pose = 0;  ///< of a scan of several poses, its index
+  int pose = 0;                        ///< of a scan of several poses, its index
+  std::vector<LineStrip> strips = {};  ///< one for each laser; empty of a depth sensor
 };
 
 /// How the object lay on the platform in one of several poses.

@@ -91,21 +91,34 @@ void BennettReconstructor::add(const Snapshot& snapshot, const std::stop_token& 
 void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
                                     BrickLayers& slab) const {
   const SnapGrid snap_grid(octree.side());
-  PointGrid grid = world_points(snapshot);
-  clip(grid, options_.clip);
-  if (!options_.placements.empty()) {
-    clip(grid, find_placement(snapshot, options_));
+  const auto sink = [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                        const Eigen::Vector3f& c) {
+    const auto p = snap_grid.snap(a);
+    const auto q = snap_grid.snap(b);
+    const auto r = snap_grid.snap(c);
+    if (p && q && r) {
+      within_budget(octree, slab,
+                    [&] { voxelize_triangle(octree, *p, *q, *r, leaf_layers(slab)); });
+    }
+  };
+  const auto clip_points = [&](PointGrid& grid) {
+    clip(grid, options_.clip);
+    if (!options_.placements.empty()) {
+      clip(grid, find_placement(snapshot, options_));
+    }
+  };
+  const auto threshold = static_cast<float>(options_.threshold);
+  for (const LineStrip& strip : snapshot.strips) {
+    PointGrid grid{
+        .width = static_cast<int>(strip.points.size()), .height = 1, .points = strip.points};
+    clip_points(grid);
+    for_each_triangle(grid.points, strip.to_next, threshold, sink);
   }
-  triangulate(grid, static_cast<float>(options_.threshold),
-              [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-                const auto p = snap_grid.snap(a);
-                const auto q = snap_grid.snap(b);
-                const auto r = snap_grid.snap(c);
-                if (p && q && r) {
-                  within_budget(octree, slab,
-                                [&] { voxelize_triangle(octree, *p, *q, *r, leaf_layers(slab)); });
-                }
-              });
+  if (snapshot.strips.empty()) {
+    PointGrid grid = world_points(snapshot);
+    clip_points(grid);
+    triangulate(grid, threshold, sink);
+  }
 }
 
 /// Does what fills the octree, again each time that the budget is spent, after the slab has shrunk.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 
 #include "depth/back_project.hpp"
 
@@ -46,6 +47,22 @@ void triangulate(const PointGrid& grid, float threshold, Sink sink) {
           detail::near(lower[u + 1], lower[u], threshold)) {
         sink(upper[u + 1], lower[u + 1], lower[u]);
       }
+    }
+  }
+}
+
+/// The triangles of a mesh whose corners are points and whose sides, squared, are at most
+/// `threshold`.
+template <typename Sink>
+void for_each_triangle(std::span<const Eigen::Vector3f> points,
+                       std::span<const LineStrip::Triangle> triangles, float threshold, Sink sink) {
+  for (const LineStrip::Triangle& triangle : triangles) {
+    const Eigen::Vector3f& a = points[triangle[0]];
+    const Eigen::Vector3f& b = points[triangle[1]];
+    const Eigen::Vector3f& c = points[triangle[2]];
+    if (detail::near(a, b, threshold) && detail::near(b, c, threshold) &&
+        detail::near(c, a, threshold)) {
+      sink(a, b, c);
     }
   }
 }

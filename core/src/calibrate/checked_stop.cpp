@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
@@ -15,6 +16,8 @@ using Eigen::Vector3d;
 
 constexpr int thinning = ScanCheck::Stop::thinning;
 constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // that is kept
+// A point of a line stands for as many pixels: the lines of neighbouring stops are so far apart.
+constexpr std::size_t pixels_of_line = 4;
 constexpr int block = 4;                  // of these rows and columns to a side
 constexpr double readings_wanted = 400;   // of a stop, to compare
 constexpr double platform_radius = 0.13;  // metres, in which heights are counted
@@ -38,8 +41,15 @@ Intrinsics merged(Intrinsics lens, int size) {
   return lens;
 }
 
-/// Every other row and column of a depth image.
+/// Every other row and column of a depth image. Strips have none: their image is empty.
 Snapshot thinned(const Snapshot& snapshot) {
+  if (!snapshot.strips.empty()) {
+    Snapshot none{.intrinsics = snapshot.intrinsics,
+                  .object_from_sensor = snapshot.object_from_sensor};
+    none.intrinsics.width = 0;
+    none.intrinsics.height = 0;
+    return none;
+  }
   const DepthFrame& frame = snapshot.frame;
   const Intrinsics& lens = snapshot.intrinsics;
   check_size(frame, lens, "ScanCheck");
@@ -146,10 +156,54 @@ std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& len
   return nearest;
 }
 
+void keep_each_once(std::vector<ObjectCell>& cells) {
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  cells.shrink_to_fit();
+}
+
 }  // namespace
 
 ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
-    : Stop(thinned(snapshot), clip, make_mask(snapshot.object_from_sensor)) {}
+    : Stop(thinned(snapshot), clip, make_mask(snapshot.object_from_sensor)) {
+  for (const LineStrip& strip : snapshot.strips) {
+    add_line(strip, clip);
+  }
+  keep_each_once(seen);
+}
+
+/// Adds what a line shows. It is compared with no other stop: they see other lines.
+void ScanCheck::Stop::add_line(const LineStrip& strip, const Box& clip) {
+  const Eigen::Isometry3d sensor_from_object = object_from_sensor.inverse();
+  std::optional<Vector3d> before;  // the point in the row above
+  for (std::size_t i = 0; i < strip.own_points; ++i) {
+    const Vector3d point = strip.points[i].cast<double>();
+    if (!point.allFinite()) {
+      continue;
+    }
+    add_height(point, pixels_of_line);
+    const bool is_inside = contains(clip, point);
+    if (is_inside) {
+      object_pixels += pixels_of_line;
+      depths += (sensor_from_object * point).z() * static_cast<double>(pixels_of_line);
+      seen.push_back(to_object_cell(point));
+    }
+    if (before && (point - *before).norm() < max_cut_step && contains(clip, *before) != is_inside) {
+      const Vector3d& inside = is_inside ? point : *before;
+      const std::size_t side = side_between(clip, is_inside ? *before : point);
+      if (side < cut.size() && inside.z() > clip.min.z() + min_cut_height) {
+        cut[side].emplace_back(inside.cast<float>());
+      }
+    }
+    before = point;
+  }
+}
+
+void ScanCheck::Stop::add_height(const Vector3d& point, std::size_t count) {
+  if (std::abs(point.z()) < highest && point.head<2>().norm() < platform_radius) {
+    heights[static_cast<std::size_t>((point.z() + highest) / height_step)] += count;
+  }
+}
 
 ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask)
     : object_from_sensor(thin.object_from_sensor),
@@ -165,9 +219,7 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
         continue;
       }
       const Vector3d point = points.at(u, v);
-      if (std::abs(point.z()) < highest && point.head<2>().norm() < platform_radius) {
-        ++heights[static_cast<std::size_t>((point.z() + highest) / height_step)];
-      }
+      add_height(point, 1);
       if (contains(clip, point)) {
         object_pixels += pixels_for_one;
         depths += z * static_cast<double>(pixels_for_one);
@@ -178,9 +230,7 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
       }
     }
   }
-  std::ranges::sort(seen);
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  seen.shrink_to_fit();
+  keep_each_once(seen);
   const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / readings_wanted)));
   readings = view.readings(step);
   std::erase_if(readings, [&](const SurfaceReading& reading) {

@@ -44,6 +44,8 @@ struct ScanCheck::Stop {
 
  private:
   Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);
+  void add_line(const LineStrip& strip, const Box& clip);
+  void add_height(const Eigen::Vector3d& point, std::size_t count);
 };
 
 /// What comparing the stops gives.

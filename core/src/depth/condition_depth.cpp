@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "depth/depth_image.hpp"
 #include "depth/depth_limits.hpp"
@@ -245,6 +246,14 @@ ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,
     : intrinsics_(snapshot.intrinsics),
       sensor_from_object_(snapshot.object_from_sensor.inverse()),
       observations_(condition_depth(snapshot, clip, &placement)),
+      pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
+
+ConditionedDepth::ConditionedDepth(const Intrinsics& intrinsics,
+                                   const Eigen::Isometry3d& sensor_from_object,
+                                   std::vector<DepthObservation> observations)
+    : intrinsics_(intrinsics),
+      sensor_from_object_(sensor_from_object),
+      observations_(std::move(observations)),
       pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
 
 }  // namespace octurn

@@ -24,6 +24,11 @@ class ConditionedDepth {
   /// mix object and platform.
   ConditionedDepth(const Snapshot& snapshot, const Box& clip, const Placement& placement);
 
+  /// What was observed otherwise.
+  /// @param observations  of the intrinsics' size, row by row
+  ConditionedDepth(const Intrinsics& intrinsics, const Eigen::Isometry3d& sensor_from_object,
+                   std::vector<DepthObservation> observations);
+
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Eigen::Isometry3d& sensor_from_object() const { return sensor_from_object_; }
 

@@ -118,8 +118,19 @@ void PngSource::refuse(const std::string& what) const {
   throw Error(malformed, std::string(name) + ": " + what, std::string(hint));
 }
 
-GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
-                          const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+namespace {
+
+/// The pixels of a PNG as it stores them, in this machine's byte order.
+struct RawPng {
+  spng_ihdr header = {};
+  std::vector<std::byte> pixels = {};
+  std::string text = {};  // of the keyword
+};
+
+/// @param expect_header  throws if the pixels or their number are not what is wanted, before memory
+///                       is taken for them
+template <typename ExpectHeader>
+RawPng decode(const PngSource& source, std::string_view keyword, ExpectHeader expect_header) {
   const auto check = [&](int status) {
     if (status != 0) {
       source.refuse(std::string("not a whole PNG: ") + spng_strerror(status));
@@ -129,16 +140,13 @@ GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
   const Context context(spng_ctx_new(0));
   check(spng_set_chunk_limits(context.get(), max_chunk_bytes, max_chunk_bytes));
   check(spng_set_png_stream(context.get(), take, &input));
-  spng_ihdr header{};
-  check(spng_get_ihdr(context.get(), &header));
-  if (header.bit_depth != 16 || header.color_type != SPNG_COLOR_TYPE_GRAYSCALE) {
-    source.refuse("not a 16-bit greyscale PNG");
-  }
-  expect_size(header.width, header.height);
-  GreyPng image{.width = static_cast<int>(header.width), .height = static_cast<int>(header.height)};
-  image.samples.resize(std::size_t{header.width} * header.height);
-  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(image.samples));
-  check(spng_decode_image(context.get(), bytes.data(), bytes.size(), SPNG_FMT_PNG, 0));
+  RawPng image;
+  check(spng_get_ihdr(context.get(), &image.header));
+  expect_header(image.header);
+  std::size_t size = 0;
+  check(spng_decoded_image_size(context.get(), SPNG_FMT_PNG, &size));
+  image.pixels.resize(size);
+  check(spng_decode_image(context.get(), image.pixels.data(), size, SPNG_FMT_PNG, 0));
   check(spng_decode_chunks(context.get()));
   if (input.ran_out) {
     source.refuse("not a whole PNG: cut short at its end");
@@ -148,6 +156,51 @@ GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
   }
   image.text = find_text(context.get(), keyword);
   return image;
+}
+
+/// ITU-R BT.601, rounded.
+std::uint8_t luminance(const std::byte* rgb) {
+  const auto channel = [&](std::size_t i) { return std::to_integer<unsigned>(rgb[i]); };
+  return static_cast<std::uint8_t>((299 * channel(0) + 587 * channel(1) + 114 * channel(2) + 500) /
+                                   1000);
+}
+
+}  // namespace
+
+GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
+                          const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  RawPng raw = decode(source, keyword, [&](const spng_ihdr& header) {
+    if (header.bit_depth != 16 || header.color_type != SPNG_COLOR_TYPE_GRAYSCALE) {
+      source.refuse("not a 16-bit greyscale PNG");
+    }
+    expect_size(header.width, header.height);
+  });
+  GreyPng image{.width = static_cast<int>(raw.header.width),
+                .height = static_cast<int>(raw.header.height),
+                .samples = std::vector<std::uint16_t>(raw.pixels.size() / 2),
+                .text = std::move(raw.text)};
+  std::memcpy(image.samples.data(), raw.pixels.data(), raw.pixels.size());
+  return image;
+}
+
+std::vector<std::uint8_t> decode_luminance_png(
+    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  const RawPng raw = decode(source, "", [&](const spng_ihdr& header) {
+    if (header.bit_depth != 8 || (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE &&
+                                  header.color_type != SPNG_COLOR_TYPE_TRUECOLOR)) {
+      source.refuse("not an 8-bit greyscale or RGB PNG");
+    }
+    expect_size(header.width, header.height);
+  });
+  std::vector<std::uint8_t> samples(std::size_t{raw.header.width} * raw.header.height);
+  if (raw.header.color_type == SPNG_COLOR_TYPE_GRAYSCALE) {
+    std::memcpy(samples.data(), raw.pixels.data(), samples.size());
+  } else {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i] = luminance(&raw.pixels[3 * i]);
+    }
+  }
+  return samples;
 }
 
 std::vector<std::byte> encode_grey_png(int width, int height,

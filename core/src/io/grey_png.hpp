@@ -47,6 +47,12 @@ struct PngSource {
 GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
                           const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
 
+/// Decodes an 8-bit PNG, greyscale or RGB, to luminance: 0.299 R + 0.587 G + 0.114 B.
+/// @param expect_size  as above
+/// @throws Error "source.malformed"  as above
+std::vector<std::uint8_t> decode_luminance_png(
+    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
+
 /// Encodes a greyscale picture of 8 or 16 bits a sample.
 /// @throws std::invalid_argument  if it is empty, or there are not width x height samples
 std::vector<std::byte> encode_grey_png(int width, int height,

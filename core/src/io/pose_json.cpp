@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/laser_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 
@@ -10,23 +11,16 @@ namespace {
 
 using nlohmann::json;
 
-Eigen::Vector3d point_from(const JsonValue& array) {
-  Eigen::Vector3d point;
-  int axis = 0;
-  for (const JsonValue& value : array.elements(3)) {
-    point[axis++] = value.number();
-  }
-  return point;
-}
-
 SolvedPose solved_from(const JsonValue& solved) {
   JsonObject keys(solved);
   const auto metres = [&](std::string_view key) { return metres_from_mm(keys.at(key).number()); };
+  const auto lasers = keys.value("lasers");
   return {.platform_from_sensor = pose_from(keys.at("platform_from_sensor")),
           .position_sigma = metres("sigma_mm"),
           .direction_sigma = radians_from_degrees(keys.at("sigma_deg").number()),
           .before = metres("before_mm"),
-          .after = metres("after_mm")};
+          .after = metres("after_mm"),
+          .lasers = lasers ? lasers_from(*lasers) : std::vector<Laser>{}};
 }
 
 ScanPose scan_pose_from(const JsonValue& value, const Scan& scan) {
@@ -50,6 +44,15 @@ ScanPose scan_pose_from(const JsonValue& value, const Scan& scan) {
 }
 
 }  // namespace
+
+Eigen::Vector3d point_from(const JsonValue& array) {
+  Eigen::Vector3d point;
+  int axis = 0;
+  for (const JsonValue& value : array.elements(3)) {
+    point[axis++] = value.number();
+  }
+  return point;
+}
 
 Eigen::Isometry3d pose_from(const JsonValue& matrix) {
   Eigen::Matrix4d pose;
@@ -90,11 +93,15 @@ json to_json(const Box& box) {
 }
 
 json to_json(const SolvedPose& solved) {
-  return {{"platform_from_sensor", to_json(solved.platform_from_sensor)},
-          {"sigma_mm", mm_from_metres(solved.position_sigma)},
-          {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
-          {"before_mm", mm_from_metres(solved.before)},
-          {"after_mm", mm_from_metres(solved.after)}};
+  json value{{"platform_from_sensor", to_json(solved.platform_from_sensor)},
+             {"sigma_mm", mm_from_metres(solved.position_sigma)},
+             {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
+             {"before_mm", mm_from_metres(solved.before)},
+             {"after_mm", mm_from_metres(solved.after)}};
+  if (!solved.lasers.empty()) {
+    value["lasers"] = to_json(solved.lasers);
+  }
+  return value;
 }
 
 RigPose calibration_from(const JsonValue& calibration) {

@@ -14,6 +14,8 @@ namespace octurn {
 /// Poses, boxes and what was solved, as `scan.json` has them. Reading throws the Error of a value
 /// that is wrong.
 
+Eigen::Vector3d point_from(const JsonValue& array);
+
 Eigen::Isometry3d pose_from(const JsonValue& matrix);
 nlohmann::json to_json(const Eigen::Isometry3d& pose);
 

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/laser_json.hpp"
 #include "io/pose_json.hpp"
 #include "io/sensor_json.hpp"
 #include "octurn/depth_png.hpp"
@@ -26,15 +27,19 @@ constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 /// The root cube that models have by default: the clip box of a scan that tells none.
 const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
 
-Shot shot_from(const JsonValue& value, int version) {
+Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCamera>& laser) {
   JsonObject keys(value);
-  std::string file = file_inside(keys.at("file"), "a file in the scan's folder");
-  if (version == 1) {
-    return {.file = std::move(file), .angle = radians_from_degrees(keys.at("angle_deg").number())};
+  Shot shot;
+  if (laser) {
+    shot.pictures = pictures_from(keys.at("files"), *laser);
+  } else {
+    shot.file = file_inside(keys.at("file"), "a file in the scan's folder");
   }
-  Shot shot{.file = std::move(file),
-            .angle = 0.0,
-            .pose = keys.whole_number("pose", 0, max_poses).value_or(0)};
+  if (version == 1) {
+    shot.angle = radians_from_degrees(keys.at("angle_deg").number());
+    return shot;
+  }
+  shot.pose = keys.whole_number("pose", 0, max_poses).value_or(0);
   const auto matrix = keys.value("object_from_sensor");
   const auto angle = keys.value("angle_deg");
   if (matrix && angle) {
@@ -78,6 +83,19 @@ void read_rig(JsonObject& root, int version, Scan& scan) {
   }
 }
 
+/// @throws Error  that names the first solved laser that the sensor has not
+void expect_lasers(const Scan& scan, const std::optional<SolvedPose>& solved) {
+  if (!scan.laser || !solved) {
+    return;
+  }
+  for (const Laser& laser : solved->lasers) {
+    if (std::ranges::count(scan.laser->lasers, laser.name, &Laser::name) == 0) {
+      throw Error(malformed, "\"solved.lasers\" has \"" + laser.name +
+                                 "\", which is none of \"sensor.lasers\"");
+    }
+  }
+}
+
 /// @throws Error  that names the first snapshot of a pose that is not listed
 void expect_poses(const Scan& scan) {
   const std::size_t poses = std::max<std::size_t>(scan.poses.size(), 1);
@@ -101,23 +119,32 @@ Scan scan_from(const json& document) {
   }
   const int number = version.whole_number(1, 2);
   SensorJson sensor = sensor_from(root.at("sensor"));
+  if (sensor.laser && number < 2) {
+    version.refuse("2, as the sensor's kind is \"laser-line\"");
+  }
   Scan scan{.sensor_name = std::move(sensor.name),
             .sensor_serial = std::move(sensor.serial),
-            .intrinsics = sensor.intrinsics};
+            .intrinsics = sensor.intrinsics,
+            .laser = std::move(sensor.laser)};
   for (const JsonValue& shot : root.at("snapshots").elements()) {
-    scan.shots.push_back(shot_from(shot, number));
+    scan.shots.push_back(shot_from(shot, number, scan.laser));
   }
   if (scan.shots.empty()) {
     throw Error(ErrorCode::scan_empty, "\"snapshots\" is empty: there is nothing to reconstruct");
   }
   read_rig(root, number, scan);
   expect_poses(scan);
+  expect_lasers(scan, scan.solved);
+  for (const ScanPose& pose : scan.poses) {
+    expect_lasers(scan, pose.solved);
+  }
   take_single_pose(scan);
   return scan;
 }
 
-json shot_json(const Shot& shot) {
-  json value{{"file", shot.file}};
+json shot_json(const Shot& shot, const std::optional<LaserCamera>& laser) {
+  json value =
+      laser ? json{{"files", pictures_json(shot.pictures, *laser)}} : json{{"file", shot.file}};
   if (shot.object_from_sensor) {
     value["object_from_sensor"] = to_json(*shot.object_from_sensor);
   } else {
@@ -135,11 +162,6 @@ void write_document(const std::filesystem::path& folder, const json& document) {
              document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-std::string read_bytes(const std::filesystem::path& file) {
-  return read_bytes(file, ErrorCode::scan_missing, "Name a folder that holds a whole scan.",
-                    malformed);
-}
-
 }  // namespace
 
 Scan parse_scan(std::string_view text) {
@@ -153,7 +175,7 @@ Scan parse_scan(std::string_view text) {
 }
 
 Scan read_scan(const std::filesystem::path& folder) {
-  Scan scan = parse_scan(read_bytes(folder / "scan.json"));
+  Scan scan = parse_scan(read_scan_file(folder / "scan.json"));
   const std::filesystem::path map = folder / sensor_map_file;
   if (std::error_code ignored; std::filesystem::exists(map, ignored)) {
     use_sensor_map(scan, map);
@@ -178,7 +200,10 @@ DepthFrame corrected(DepthFrame frame, const Scan& scan) {
 
 Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, const Shot& shot) {
   const Intrinsics& intrinsics = scan.intrinsics;
-  const std::string png = read_bytes(folder / shot.file);
+  if (scan.laser) {
+    throw Error(malformed, "a scan by laser line has no depth images");
+  }
+  const std::string png = read_scan_file(folder / shot.file);
   DepthFrame frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
                                       intrinsics.height);
   return {.frame = corrected(std::move(frame), scan),
@@ -187,27 +212,18 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
           .pose = shot.pose};
 }
 
-SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
-                                const std::stop_token& stop) {
-  return {.count = scan.shots.size(), .read = [=](std::size_t i) {
-            if (stop.stop_requested()) {
-              throw Stopped{};
-            }
-            return read_snapshot(folder, scan, scan.shots[i]);
-          }};
-}
-
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
   json shots = json::array();
   for (const Shot& shot : scan.shots) {
-    shots.push_back(shot_json(shot));
+    shots.push_back(shot_json(shot, scan.laser));
   }
   json document{
       {"format", "octurn-scan"},
-      {"version", is_one_turn(scan) ? 1 : 2},
-      {"sensor",
-       to_json(SensorJson{
-           .name = scan.sensor_name, .serial = scan.sensor_serial, .intrinsics = scan.intrinsics})},
+      {"version", is_one_turn(scan) && !scan.laser ? 1 : 2},
+      {"sensor", to_json(SensorJson{.name = scan.sensor_name,
+                                    .serial = scan.sensor_serial,
+                                    .intrinsics = scan.intrinsics,
+                                    .laser = scan.laser})},
       {"calibration",
        to_json(RigPose{.platform_from_sensor = scan.platform_from_sensor, .solved = scan.solved})},
       {"clip_m", to_json(scan.clip)},
@@ -220,7 +236,7 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
 }
 
 void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved) {
-  const std::string text = read_bytes(folder / "scan.json");
+  const std::string text = read_scan_file(folder / "scan.json");
   parse_scan(text);  // refuses what is no scan
   json document = parse_json(text, malformed, "scan.json");
   document["calibration"]["solved"] = to_json(solved);

@@ -24,6 +24,22 @@ const Eigen::Isometry3d& known(const Scan& scan, int pose) {
 
 }  // namespace
 
+std::vector<Laser> model_lasers(const LaserCamera& camera,
+                                const std::optional<SolvedPose>& solved) {
+  std::vector<Laser> lasers = camera.lasers;
+  if (!solved) {
+    return lasers;
+  }
+  for (Laser& laser : lasers) {
+    const auto found = std::ranges::find(solved->lasers, laser.name, &Laser::name);
+    if (found != solved->lasers.end()) {
+      laser.normal = found->normal;
+      laser.distance = found->distance;
+    }
+  }
+  return lasers;
+}
+
 Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot) {
   if (shot.object_from_sensor) {
     return *shot.object_from_sensor;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "io/laser_json.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 
@@ -27,6 +28,10 @@ double positive_in(JsonObject& keys, std::string_view key) {
 
 SensorJson sensor_from(const JsonValue& object) {
   JsonObject keys(object);
+  const auto kind = keys.value("kind");
+  if (kind && kind->text() != "laser-line") {
+    kind->refuse("\"laser-line\", or left out for a sensor that measures depth");
+  }
   SensorJson sensor{.name = keys.at("name").text(),
                     .serial = {},
                     .intrinsics = {.width = keys.at("width").whole_number(2, max_side),
@@ -34,8 +39,12 @@ SensorJson sensor_from(const JsonValue& object) {
                                    .fx = positive_in(keys, "fx"),
                                    .fy = positive_in(keys, "fy"),
                                    .cx = keys.at("cx").number(),
-                                   .cy = keys.at("cy").number(),
-                                   .depth_unit = positive_in(keys, "depth_unit_m")}};
+                                   .cy = keys.at("cy").number()}};
+  if (kind) {
+    sensor.laser = laser_camera_from(keys, sensor.intrinsics);
+  } else {
+    sensor.intrinsics.depth_unit = positive_in(keys, "depth_unit_m");
+  }
   sensor.serial = keys.text("serial").value_or("");
   return sensor;
 }
@@ -45,7 +54,12 @@ nlohmann::json to_json(const SensorJson& sensor) {
   nlohmann::json object{{"name", sensor.name},         {"width", intrinsics.width},
                         {"height", intrinsics.height}, {"fx", intrinsics.fx},
                         {"fy", intrinsics.fy},         {"cx", intrinsics.cx},
-                        {"cy", intrinsics.cy},         {"depth_unit_m", intrinsics.depth_unit}};
+                        {"cy", intrinsics.cy}};
+  if (sensor.laser) {
+    add_laser_camera(object, *sensor.laser);
+  } else {
+    object["depth_unit_m"] = intrinsics.depth_unit;
+  }
   if (!sensor.serial.empty()) {
     object["serial"] = sensor.serial;
   }
@@ -73,6 +87,11 @@ std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std
     throw Error(malformed, file.string() + ": too large for a file of a scan");
   }
   return read_regular_file(file, max_file_bytes).value_or("");
+}
+
+std::string read_scan_file(const std::filesystem::path& file) {
+  return read_bytes(file, ErrorCode::scan_missing, "Name a folder that holds a whole scan.",
+                    ErrorCode::scan_malformed);
 }
 
 }  // namespace octurn

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "octurn/json_object.hpp"
+#include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -15,6 +17,7 @@ struct SensorJson {
   std::string name = {};
   std::string serial = {};  ///< empty if there is none
   Intrinsics intrinsics = {};
+  std::optional<LaserCamera> laser = {};  ///< none: the sensor measures depth
 };
 
 SensorJson sensor_from(const JsonValue& object);
@@ -29,5 +32,8 @@ std::string file_inside(const JsonValue& value, const std::string& must);
 /// @param malformed  code of the error if it is too large
 std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std::string_view hint,
                        ErrorCode malformed);
+
+/// The content of a file of a scan folder. @throws Error "scan-missing", "scan-malformed"
+std::string read_scan_file(const std::filesystem::path& file);
 
 }  // namespace octurn

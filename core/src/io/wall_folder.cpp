@@ -25,7 +25,11 @@ Wall wall_from(const json& document) {
   if (const JsonValue version = root.at("version"); version.number() != 1) {
     version.refuse("1, which this program reads");
   }
-  SensorJson sensor = sensor_from(root.at("sensor"));
+  const JsonValue of_sensor = root.at("sensor");
+  SensorJson sensor = sensor_from(of_sensor);
+  if (sensor.laser) {
+    of_sensor.refuse("one that measures depth");
+  }
   Wall wall{.sensor_name = std::move(sensor.name),
             .sensor_serial = std::move(sensor.serial),
             .intrinsics = sensor.intrinsics,

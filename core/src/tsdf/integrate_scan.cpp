@@ -16,16 +16,17 @@ void integrate_in_parallel(TsdfVolume& volume, const ConditionedSource& snapshot
   const auto at_once = static_cast<std::size_t>(threads);
   for (std::size_t first = 0; first < snapshots.count; first += at_once) {
     const std::size_t count = std::min(at_once, snapshots.count - first);
-    std::vector<std::optional<ConditionedDepth>> depths(count);
+    std::vector<std::vector<ConditionedDepth>> depths(count);
     fork_join(static_cast<int>(count), [&](int i) {
       throw_if_stopped(stop);
       const auto index = static_cast<std::size_t>(i);
-      depths[index].emplace(snapshots.make(first + index));
+      depths[index] = snapshots.make(first + index);
     });
     std::vector<const ConditionedDepth*> in_order;
-    in_order.reserve(count);
-    for (const std::optional<ConditionedDepth>& depth : depths) {
-      in_order.push_back(&*depth);
+    for (const std::vector<ConditionedDepth>& of_snapshot : depths) {
+      for (const ConditionedDepth& depth : of_snapshot) {
+        in_order.push_back(&depth);
+      }
     }
     integrate(volume, in_order, threads, stop);
   }
@@ -38,16 +39,16 @@ void integrate_in_order(TsdfVolume& volume, const ConditionedSource& snapshots, 
     throw_if_stopped(stop);
     return index < snapshots.count ? std::optional(index++) : std::nullopt;
   };
-  OrderedPipeline<decltype(next), std::optional<ConditionedDepth>> pipeline(next, threads);
+  OrderedPipeline<decltype(next), std::vector<ConditionedDepth>> pipeline(next, threads);
   fork_join(threads, [&](int) {
-    pipeline.run(
-        [&](std::size_t index, std::optional<ConditionedDepth>& depth) {
-          depth.emplace(snapshots.make(index));
-        },
-        [&](std::optional<ConditionedDepth>& depth) {
-          integrate(volume, *depth, stop);
-          depth.reset();
-        });
+    pipeline.run([&](std::size_t index,
+                     std::vector<ConditionedDepth>& depths) { depths = snapshots.make(index); },
+                 [&](std::vector<ConditionedDepth>& depths) {
+                   for (const ConditionedDepth& depth : depths) {
+                     integrate(volume, depth, stop);
+                   }
+                   depths.clear();
+                 });
   });
 }
 

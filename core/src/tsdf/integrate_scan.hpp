@@ -3,16 +3,18 @@
 #include <cstddef>
 #include <functional>
 #include <stop_token>
+#include <vector>
 
 #include "depth/condition_depth.hpp"
 #include "tsdf/tsdf_volume.hpp"
 
 namespace octurn {
 
-/// The conditioned depth of snapshots, by their index; made by several threads at once.
+/// What snapshots observed, by their index: one conditioned depth image, or several of a scan by
+/// laser line. Made by several threads at once.
 struct ConditionedSource {
   std::size_t count = 0;
-  std::function<ConditionedDepth(std::size_t)> make = {};
+  std::function<std::vector<ConditionedDepth>(std::size_t)> make = {};
 };
 
 /// Makes and integrates all snapshots of a scan, in their order, on several threads.

@@ -96,6 +96,9 @@ ReconstructOptions checked_solid_options(ReconstructOptions options) {
   if (options.level) {
     throw Error(ErrorCode::bad_settings, "level: the method solid has none");
   }
+  if (!std::isfinite(options.solid.truncation) || options.solid.truncation <= 0) {
+    throw Error(ErrorCode::bad_settings, "truncation: must be above 0");
+  }
   if (!std::isfinite(options.target_error) || options.target_error < 0) {
     throw Error(ErrorCode::bad_settings, "max error: must be 0 or above");
   }

@@ -8,8 +8,6 @@
 namespace octurn {
 namespace {
 
-// Truncation distance: 3 sigma of a Kinect v1's noise at 0.65 m, and at least 2.5 voxels.
-constexpr double truncation = 0.0035;  // metres
 constexpr double min_truncation_voxels = 2.5;
 constexpr double foot_room = 1.5;  // truncations below the platform of the first of several poses
 
@@ -18,7 +16,7 @@ constexpr double foot_room = 1.5;  // truncations below the platform of the firs
 VoxelGrid make_solid_grid(const ReconstructOptions& options) {
   const int levels = checked_levels(options);
   const double voxel_side = options.root_size / (1 << levels);
-  const double distance = std::max(truncation, min_truncation_voxels * voxel_side);
+  const double distance = std::max(options.solid.truncation, min_truncation_voxels * voxel_side);
   // Of several poses, room for the surface of a foot that is seen from below.
   const int below = options.placements.empty()
                         ? 0

@@ -8,6 +8,7 @@
 #include "depth/condition_depth.hpp"
 #include "depth/crop.hpp"
 #include "depth/find_placement.hpp"
+#include "laser/strip_views.hpp"
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
@@ -57,7 +58,9 @@ SolidReconstructor::SolidReconstructor(const ReconstructOptions& options)
 void SolidReconstructor::add(const Snapshot& snapshot, const std::stop_token& stop) try {
   throw_if_stopped(stop);
   counted_.reset();
-  integrate(volume_, condition(snapshot), stop);
+  for (const ConditionedDepth& depth : condition(snapshot)) {
+    integrate(volume_, depth, stop);
+  }
   ++added_;
 } catch (const OutOfBudget&) {
   throw_memory_limit(options_);
@@ -188,12 +191,20 @@ int SolidReconstructor::base_layer() const {
 }
 
 /// @throws std::invalid_argument  if the snapshot is of a pose that the options do not list
-ConditionedDepth SolidReconstructor::condition(const Snapshot& snapshot) const {
-  const Snapshot window = crop(snapshot, volume_.grid().box());
-  if (options_.placements.empty()) {
-    return {window, options_.clip};
+std::vector<ConditionedDepth> SolidReconstructor::condition(const Snapshot& snapshot) const {
+  const Placement* placement =
+      options_.placements.empty() ? nullptr : &find_placement(snapshot, options_);
+  if (!snapshot.strips.empty()) {
+    return strip_views(snapshot, options_.clip, placement);
   }
-  return {window, options_.clip, find_placement(snapshot, options_)};
+  const Snapshot window = crop(snapshot, volume_.grid().box());
+  std::vector<ConditionedDepth> depth;
+  if (placement == nullptr) {
+    depth.emplace_back(window, options_.clip);
+  } else {
+    depth.emplace_back(window, options_.clip, *placement);
+  }
+  return depth;
 }
 
 HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known,
@@ -212,7 +223,7 @@ HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known,
 StandingParts SolidReconstructor::keep_parts(const HoleFilledSdf& sdf,
                                              const std::stop_token& stop) const {
   if (options_.placements.empty()) {
-    return standing_parts(sdf, options_.parts, stop);
+    return standing_parts(sdf, options_.solid.parts, stop);
   }
   StandingParts parts{.mask = sdf.inside(stop)};
   parts.dropped = keep_main_component(parts.mask, 0, stop);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "depth/condition_depth.hpp"
 #include "octurn/reconstruct.hpp"
@@ -16,8 +17,9 @@ namespace octurn {
 
 /// Reconstruction of one closed solid by a truncated signed distance function.
 ///
-/// Each snapshot is conditioned (`ConditionedDepth`) and integrated (`integrate`) into a
-/// `TsdfVolume`, in the order of the scan; each voxel's distance and state are kept
+/// Each snapshot is conditioned (`ConditionedDepth`; strips of lines: `strip_views`) and integrated
+/// (`integrate`) into a `TsdfVolume`, in the order of the scan; each voxel's distance and state are
+/// kept
 /// (`CompactTsdf`). Then holes are filled (`HoleFilledSdf`), what stands on the platform is kept
 /// (`standing_parts`) without spurs and cavities (`VoxelMask`), marching cubes draw its surface
 /// (`marching_cubes`) and edges are collapsed (`StreamSimplifier`), all of it streamed.
@@ -49,7 +51,7 @@ class SolidReconstructor final : public Reconstructor {
   int min_votes() const;
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
   int base_layer() const;
-  ConditionedDepth condition(const Snapshot& snapshot) const;
+  std::vector<ConditionedDepth> condition(const Snapshot& snapshot) const;
   HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop) const;
   StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop) const;
   SurfaceCount make_surface(const CompactTsdf& known, const HoleFilledSdf& sdf,

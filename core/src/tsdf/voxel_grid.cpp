@@ -7,10 +7,14 @@
 namespace octurn {
 namespace {
 
-// A block has about the size of the smallest detail that a Kinect v1 resolves.
-constexpr double block_side = 0.004;  // metres
+// A block has about the size of the smallest detail that a Kinect v1 resolves, and of the band in
+// which distances behind a surface are known: in a larger one free voxels outweigh them, and what
+// lies inside would be filled as if it were outside.
+constexpr double max_block_side = 0.004;  // metres
+constexpr double block_truncations = 1.15;
 
-int block_voxels_for(double voxel_side) {
+int block_voxels_for(double voxel_side, double truncation) {
+  const double block_side = std::min(max_block_side, block_truncations * truncation);
   int voxels = 2;
   while (voxels < VoxelGrid::brick_side && voxels * voxel_side * 1.5 < block_side) {
     voxels *= 2;
@@ -25,7 +29,7 @@ VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double trunc
       levels_(levels),
       voxel_side_(root_side / (1 << levels)),
       truncation_(truncation),
-      block_voxels_(block_voxels_for(voxel_side_)) {
+      block_voxels_(block_voxels_for(voxel_side_, truncation)) {
   const double brick_metres = voxel_side_ * brick_side;
   const auto bricks = [&](Eigen::Index axis) {
     const double corner = axis < 2 ? -root_side / 2 : 0.0;

@@ -1,6 +1,8 @@
 #include "octurn/calibrate.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
@@ -51,9 +53,36 @@ std::string to_text(const CalibrationReport& report) {
   return text.str();
 }
 
+/// How each laser's plane was turned, as lines for people.
+std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(3);
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    const double turn = std::acos(std::clamp(told[i].normal.dot(solved[i].normal), -1.0, 1.0));
+    text << "The plane of laser " << solved[i].name << " is " << degrees_from_radians(turn)
+         << " degrees from where it was told.\n";
+  }
+  return text.str();
+}
+
 void write_report(const CalibrationReport& report, const std::vector<double>& angles,
                   const CalibrateArguments& arguments) {
   write_standard_output(arguments.json ? to_json(report, angles).dump() + "\n" : to_text(report));
+}
+
+void write_solution(const ScanSolution& solution, const Scan& scan,
+                    const CalibrateArguments& arguments) {
+  const std::vector<Laser>& lasers = solution.solved.lasers;
+  if (lasers.empty()) {
+    write_report(solution.report, stop_angles(scan), arguments);
+  } else if (arguments.json) {
+    write_standard_output(to_json(solution.report, stop_angles(scan), lasers).dump() + "\n");
+  } else {
+    const bool accepted = solution.report.accepted;
+    write_standard_output(to_text(solution.report) +
+                          (accepted ? to_text(scan.laser->lasers, lasers) : ""));
+  }
 }
 
 bool calibrate_from(const std::filesystem::path& folder, const CalibrateArguments& arguments) {
@@ -62,13 +91,15 @@ bool calibrate_from(const std::filesystem::path& folder, const CalibrateArgument
   if (arguments.sensor_map) {
     use_sensor_map(scan, *arguments.sensor_map);
   }
-  const CalibrationReport report =
-      solve_pose(scan, stored_snapshots(folder, scan, signal.token()), available_threads());
-  if (arguments.apply && report.accepted) {
-    write_solved_pose(folder, to_solved_pose(report));
+  const std::stop_token stop = signal.token();
+  const ScanSolution solution =
+      solve_scan(folder, scan, stored_snapshots(folder, scan, stop), available_threads(), stop);
+  const bool accepted = solution.report.accepted;
+  if (arguments.apply && accepted) {
+    write_solved_pose(folder, solution.solved);
   }
-  write_report(report, stop_angles(scan), arguments);
-  return report.accepted;
+  write_solution(solution, scan, arguments);
+  return accepted;
 }
 
 /// Shows progress until the turn has ended; a signal cancels it.

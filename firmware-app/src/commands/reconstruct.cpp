@@ -53,9 +53,12 @@ std::uint64_t peak_memory_bytes() {
   return 0;
 }
 
-ModelSettings settings_from(const nlohmann::json& given) {
+ModelSettings settings_from(const nlohmann::json& given, const Scan& scan) {
   JsonObject keys(given, ErrorCode::bad_settings, "");
   ModelSettings settings;
+  if (scan.laser) {
+    use_laser_defaults(settings.scan);
+  }
   read_fields(keys, fields(settings));
   expect_options_of_method(given, fields(settings), to_string(settings.scan.method));
   check_leaf(keys, settings.scan);
@@ -65,9 +68,11 @@ ModelSettings settings_from(const nlohmann::json& given) {
   return settings;
 }
 
-ReconstructOptions options_from(const ModelSettings& settings) {
+ReconstructOptions options_from(const ModelSettings& settings, const Scan& scan) {
   ReconstructOptions options = reconstruct_options(settings.scan, settings.limits);
   options.level = settings.level;
+  options.placements = placements(scan);
+  fit_to_sensor(options, scan);
   return options;
 }
 
@@ -181,12 +186,13 @@ PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelS
   if (settings.scan.pose == PoseSource::told) {
     take_told_poses(posed.scan);
   } else if (!posed.scan.solved && is_one_turn(posed.scan)) {
-    CalibrationReport report =
-        solve_pose(posed.scan, stored_snapshots(folder, posed.scan, stop), settings.limits.threads);
-    if (report.accepted && !report.confirms_told()) {
-      posed.scan.solved = to_solved_pose(report);
+    ScanSolution solution =
+        solve_scan(folder, posed.scan, stored_snapshots(folder, posed.scan, stop),
+                   settings.limits.threads, stop);
+    if (solution.replaces_told) {
+      posed.scan.solved = std::move(solution.solved);
     }
-    posed.findings = std::move(report.findings);
+    posed.findings = std::move(solution.report.findings);
   }
   add_stored_move(folder, posed.findings);
   return posed;
@@ -206,15 +212,14 @@ Scan read_scan_of(const ReconstructArguments& arguments) {
 void reconstruct(const ReconstructArguments& arguments) try {
   const SignalStop signal;
   const std::stop_token stop = signal.token();
-  ModelSettings settings = settings_from(arguments.settings);
+  Scan told = read_scan_of(arguments);
+  ModelSettings settings = settings_from(arguments.settings, told);
   expect_writable(arguments.output);
-  const auto [scan, findings] =
-      with_pose(read_scan_of(arguments), arguments.folder, settings, stop);
+  const auto [scan, findings] = with_pose(std::move(told), arguments.folder, settings, stop);
   if (!arguments.settings.contains("clip_mm")) {
     settings.scan.clip = model_clip(scan);
   }
-  ReconstructOptions options = options_from(settings);
-  options.placements = placements(scan);
+  const ReconstructOptions options = options_from(settings, scan);
   if (options.memory_limit != 0) {
     return_freed_memory();
   }

@@ -80,13 +80,13 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
     findings = findings_of(input.job);
   } else if (settings.scan.pose == PoseSource::solved && is_one_turn(scan)) {
     progress(Phase::calibrating, 0);
-    const CalibrationReport report =
-        solve_pose(scan, readable_snapshots(input.folder, scan, stop), limits.threads);
+    const ScanSolution solution = solve_scan(
+        input.folder, scan, readable_snapshots(input.folder, scan, stop), limits.threads, stop);
     throw_if_stopped(stop);
-    build.calibration = to_scan_calibration(report);
-    findings = report.findings;
-    if (report.accepted && !report.confirms_told()) {
-      scan.solved = to_solved_pose(report);
+    build.calibration = to_scan_calibration(solution.report);
+    findings = solution.report.findings;
+    if (solution.replaces_told) {
+      scan.solved = solution.solved;
     }
   }
 
@@ -96,6 +96,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   options.level = settings.level;
   options.clip = clip_of(scan, input);
   options.placements = placements(scan);
+  fit_to_sensor(options, scan);
   PoseChecks checks(options.placements, options.clip, scan.shots.size());
   const SnapshotSource stored = readable_snapshots(input.folder, scan, stop);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);

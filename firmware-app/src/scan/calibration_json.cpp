@@ -85,6 +85,18 @@ json to_json(const CalibrationReport& report, const std::vector<double>& angles)
           {"findings", to_json(report.findings)}};
 }
 
+json to_json(const CalibrationReport& report, const std::vector<double>& angles,
+             const std::vector<Laser>& lasers) {
+  json object = to_json(report, angles);
+  object["lasers"] = json::array();
+  for (const Laser& laser : lasers) {
+    const Eigen::Vector3d& n = laser.normal;
+    object["lasers"].push_back(
+        {{"name", laser.name}, {"plane_m", {n.x(), n.y(), n.z(), laser.distance}}});
+  }
+  return object;
+}
+
 json to_json(const ScanCalibration& calibration) {
   return {{"accepted", calibration.accepted},
           {"confirms_told", calibration.confirms_told},

@@ -13,6 +13,10 @@ namespace octurn {
 /// @param angles  of the stops as told, radians
 nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles);
 
+/// The same of a scan by laser line.
+nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles,
+                       const std::vector<Laser>& lasers);
+
 /// A scan's calibration as the API and `job.json` have it.
 nlohmann::json to_json(const ScanCalibration& calibration);
 

@@ -37,6 +37,10 @@ void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
   const auto refuse = [&](const std::string& what, const std::string& hint) {
     throw Error(ErrorCode::scan_malformed, folder.string() + ": " + what, hint);
   };
+  if (scan.laser) {
+    refuse("is by laser line, and has no depth images to register",
+           "Merge scans of a sensor that measures depth.");
+  }
   if (!turns.empty() && !(turns.front().scan.intrinsics == scan.intrinsics)) {
     refuse("is of another sensor than " + turns.front().folder.string(),
            "Merge scans of one sensor.");

@@ -21,6 +21,7 @@ void stream_model(const RebuildCommand& command) {
   ReconstructOptions options = command.options;
   options.clip = model_clip(scan);
   options.placements = placements(scan);
+  fit_to_sensor(options, scan);
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   reconstruction->add(snapshots, stop);
   const SurfaceCount count = reconstruction->count(snapshots, stop);

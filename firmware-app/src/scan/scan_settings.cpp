@@ -199,6 +199,11 @@ std::size_t half_of_memory() {
   return static_cast<std::size_t>(bytes_from_mb(std::floor(mb_from_bytes(half))));
 }
 
+void use_laser_defaults(ScanSettings& settings) {
+  settings.leaf_size = 0.0005;
+  settings.target_error = 0.00001;
+}
+
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {
   return {.method = settings.method,
           .leaf_size = settings.leaf_size,
@@ -206,7 +211,7 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
           .threshold = settings.threshold,
           .clip = settings.clip,
           .target_error = settings.target_error,
-          .parts = settings.parts,
+          .solid = {.parts = settings.parts},
           .threads = limits.threads,
           .memory_limit = limits.memory_bytes,
           .program_memory =

@@ -75,6 +75,9 @@ std::vector<Field> model_fields(ScanSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
 
+/// What a model of a scan by laser line has by default: finer than a depth sensor's.
+void use_laser_defaults(ScanSettings& settings);
+
 /// The settings of the reconstruction among them.
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
 

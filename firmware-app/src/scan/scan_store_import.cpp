@@ -22,9 +22,12 @@ constexpr std::size_t max_name = 400;  // bytes of 100 characters
 
 /// What the other Octurn tells of the scan; of a folder that only has the scan itself, the usual
 /// settings.
-Job read_adopted_job(const fs::path& folder) {
+Job read_adopted_job(const fs::path& folder, const Scan& scan) {
   const auto text = read_regular_file(folder / "job.json", max_job_bytes);
   Job job = text ? to_job(parse_json(*text, ErrorCode::bad_request, "job.json")) : Job{};
+  if (!text && scan.laser) {
+    use_laser_defaults(job.settings);
+  }
   job.name = read_regular_file(folder / "name.txt", max_name).value_or("");
   if (!is_one_line(job.name)) {
     job.name.clear();
@@ -65,7 +68,7 @@ fs::path ScanStore::begin_import() {
 
 Job ScanStore::adopt(const fs::path& beginning) {
   const Scan scan = read_scan(beginning);
-  Job job = to_waiting(read_adopted_job(beginning), scan);
+  Job job = to_waiting(read_adopted_job(beginning, scan), scan);
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
   job.id = to_scan_id(now);

@@ -1,5 +1,8 @@
 #include "scan/solve_pose.hpp"
 
+#include <utility>
+#include <vector>
+
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -58,6 +61,20 @@ SolvedPose to_solved_pose(const CalibrationReport& report) {
           .direction_sigma = report.direction_sigma,
           .before = report.before,
           .after = report.after};
+}
+
+ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
+                        const SnapshotSource& snapshots, int threads, const std::stop_token& stop) {
+  const LaserCalibration found =
+      scan.laser ? calibrate_lasers(folder, scan, threads, stop)
+                 : LaserCalibration{.report = solve_pose(scan, snapshots, threads)};
+  const CalibrationReport& report = found.report;
+  ScanSolution solution{
+      .report = report,
+      .solved = to_solved_pose(report),
+      .replaces_told = report.accepted && (found.moved_a_plane || !report.confirms_told())};
+  solution.solved.lasers = found.lasers;
+  return solution;
 }
 
 std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {

@@ -88,5 +88,32 @@ TEST(DepthPng, IsNotMadeOfAFrameThatIsNotWhole) {
   EXPECT_THROW(encode_depth_png({}), std::invalid_argument);
 }
 
+TEST(PicturePng, IsReadAsAnotherProgramWroteIt) {
+  const auto samples = [](const std::string& png) {
+    return decode_picture_png("dark.png", std::as_bytes(std::span(png)), 4, 3).samples;
+  };
+  const std::vector<std::uint8_t> grey = {0, 10, 20, 30, 40, 50, 100, 150, 200, 250, 254, 255};
+  // Red, green, blue and white; then greys, whose luminance is their own.
+  const std::vector<std::uint8_t> of_colours = {76,  150, 29,  255, 40,  50,
+                                                100, 150, 200, 250, 254, 255};
+  EXPECT_EQ(samples(golden("picture_grey8_4x3.png")), grey);
+  EXPECT_EQ(samples(golden("picture_rgb8_4x3.png")), of_colours);
+}
+
+TEST(PicturePng, IsRefusedIfItIsAnotherKindOrSizeOrDamaged) {
+  const auto refusal = [](const std::string& png, int width) {
+    return error_thrown_by(
+        [&] { decode_picture_png("dark.png", std::as_bytes(std::span(png)), width, 3); });
+  };
+  const std::string whole = golden("picture_rgb8_4x3.png");
+  EXPECT_EQ(refusal(golden("depth_4x3.png"), 4).code(), ErrorCode::snapshot_malformed);
+  EXPECT_NE(std::string(refusal(whole, 5).what()).find("4 x 3"), std::string::npos);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_EQ(refusal(whole.substr(0, size), 4).code(), ErrorCode::snapshot_malformed)
+        << size << " bytes";
+  }
+  EXPECT_EQ(refusal(whole + "x", 4).code(), ErrorCode::snapshot_malformed);
+}
+
 }  // namespace
 }  // namespace octurn

@@ -31,8 +31,10 @@ struct Made {
 };
 
 Made make(const SnapshotSource& snapshots, Parts parts, double bottom = 0.002) {
-  SolidReconstructor solid(
-      {.method = Method::solid, .leaf_size = leaf_size, .clip = make_clip(bottom), .parts = parts});
+  SolidReconstructor solid({.method = Method::solid,
+                            .leaf_size = leaf_size,
+                            .clip = make_clip(bottom),
+                            .solid = {.parts = parts}});
   solid.add(snapshots);
   Made made;
   made.count = solid.surface(snapshots, [&](std::span<const Facet> some) {

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+namespace octurn {
+
+/// Brown's radial distortion of a lens, on normalised coordinates: a point at radius r from the
+/// principal point appears at r (1 + k1 r^2 + k2 r^4).
+struct RadialDistortion {
+  double k1 = 0;
+  double k2 = 0;
+
+  /// What the coordinates of a point that appears at `distorted_radius` are to be multiplied by, to
+  /// take the distortion out: found by Newton's method.
+  /// @param distorted_radius  at most one that passed `is_invertible_to`
+  double undistorting_factor(double distorted_radius) const;
+
+  /// Whether each radius up to this one, as it appears, is that of a single point: beyond where the
+  /// distortion folds the picture over, it is not.
+  bool is_invertible_to(double distorted_radius) const;
+
+ private:
+  double distorted(double r) const { return r * (1 + r * r * (k1 + r * r * k2)); }
+  double slope(double r) const { return 1 + r * r * (3 * k1 + r * r * 5 * k2); }
+};
+
+}  // namespace octurn

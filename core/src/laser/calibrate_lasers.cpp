@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "io/number_text.hpp"
+#include "laser/laser_lines.hpp"
+#include "laser/rig_solver.hpp"
+#include "octurn/calibrate.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+// A rig comes out of true in one of two ways: the camera with its lasers was moved, or a laser was
+// turned in its holder. Each leaves the other as it was told; only if neither explains what is
+// seen, both are free.
+const RigTrust trusted_pose{.pose_shift = 0.0002,
+                            .pose_turn = radians_from_degrees(0.02),
+                            .plane_shift = 0.003,
+                            .plane_turn = radians_from_degrees(0.5)};
+const RigTrust trusted_planes{.pose_shift = 0.02,
+                              .pose_turn = radians_from_degrees(3),
+                              .plane_shift = 0.00005,
+                              .plane_turn = radians_from_degrees(0.01)};
+const RigTrust trusted_in_part{.pose_shift = 0.005,
+                               .pose_turn = radians_from_degrees(1),
+                               .plane_shift = 0.0005,
+                               .plane_turn = radians_from_degrees(0.1)};
+constexpr double cheaper = 0.95;  // than the simpler explanation
+constexpr double far_cheaper = 0.85;
+
+constexpr std::size_t min_platform_points = 500;
+constexpr std::size_t min_pairs = 500;
+constexpr double max_height = 0.0003;        // metres, median of the platform's lines
+constexpr double max_disagreement = 0.0004;  // metres, median between two lasers
+constexpr double max_shift = 0.04;           // metres
+constexpr double max_turn_deg = 6;
+constexpr double lever = 0.05;  // metres above the platform, where positions are judged
+
+// A change that is worth another model.
+constexpr double least_shift = 0.00005;  // metres
+constexpr double least_turn_deg = 0.004;
+
+double median_of(std::vector<float> values) {
+  if (values.empty()) {
+    return 0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return static_cast<double>(*middle);
+}
+
+/// What two lasers disagree by; without an object, how far the platform's lines are from it.
+double disagreement(const RigSolution& solution) {
+  return solution.between.size() >= min_pairs ? median_of(solution.between)
+                                              : median_of(solution.platform);
+}
+
+RigSolution best_of(const RigSolver& solver) {
+  RigSolution best = solver.solve(trusted_pose);
+  RigSolution other = solver.solve(trusted_planes);
+  if (other.cost < cheaper * best.cost) {
+    best = std::move(other);
+  }
+  if (disagreement(best) > max_disagreement / 4 || median_of(best.platform) > max_height / 3) {
+    other = solver.solve(trusted_in_part);
+    if (other.cost < far_cheaper * best.cost) {
+      best = std::move(other);
+    }
+  }
+  return best;
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// How the axis moves, in the sensor's frame.
+void compare_poses(const Eigen::Isometry3d& told, CalibrationReport& report) {
+  const Eigen::Isometry3d change = report.platform_from_sensor * told.inverse();
+  const Vector3d origin = change.inverse() * Vector3d::Zero();
+  report.shift = origin.head<2>().norm();
+  report.lift = origin.z();
+  report.tilt = angle_between(change.linear() * Vector3d::UnitZ(), Vector3d::UnitZ());
+}
+
+void set_sigmas(const RigSolution& solution, CalibrationReport& report) {
+  const Eigen::MatrixXd& spread = solution.covariance;
+  report.direction_sigma = std::sqrt(std::max(spread(0, 0), spread(1, 1)));
+  report.position_sigma = std::sqrt(std::max(spread(2, 2) + lever * lever * spread(1, 1),
+                                             spread(3, 3) + lever * lever * spread(0, 0)));
+}
+
+bool moved_a_plane(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const double turn = angle_between(told[i].normal, solved[i].normal);
+    // Where the plane passes nearest to the camera: 0.1 mm there are as much at the object.
+    const double shift = std::abs(told[i].distance - solved[i].distance);
+    if (turn > radians_from_degrees(least_turn_deg) || shift > least_shift) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Why a solution is not to be trusted; empty if it is.
+std::string refusal(const RigSolution& solution, const CalibrationReport& report,
+                    const std::vector<Laser>& told) {
+  if (median_of(solution.platform) > max_height) {
+    return "the lines on the platform are " + mm_text(median_of(solution.platform), 2) +
+           " from flat";
+  }
+  if (solution.between.size() >= min_pairs && disagreement(solution) > max_disagreement) {
+    return "two lasers disagree about the object by " + mm_text(disagreement(solution), 2) +
+           ": the object or a laser moved";
+  }
+  if (report.after > report.before) {
+    return "what was told fits better than what was solved";
+  }
+  const bool far_turned = std::ranges::any_of(solution.rig.lasers, [&](const Laser& laser) {
+    const auto was = std::ranges::find(told, laser.name, &Laser::name);
+    return angle_between(was->normal, laser.normal) > radians_from_degrees(max_turn_deg);
+  });
+  if (report.shift > max_shift || report.tilt > radians_from_degrees(max_turn_deg) || far_turned) {
+    return "the rig is too far from where it was told";
+  }
+  return "";
+}
+
+}  // namespace
+
+LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
+                                  int threads, const std::stop_token& stop) {
+  if (!scan.laser || !is_one_turn(scan)) {
+    throw Error(ErrorCode::scan_malformed, "lasers are calibrated from one turn by laser line");
+  }
+  throw_if_stopped(stop);
+  const LaserRig told{.platform_from_sensor = scan.platform_from_sensor,
+                      .lasers = scan.laser->lasers};
+  const LaserLines lines(folder, scan);
+  const RigSolver solver(lines, told, threads, stop);
+  LaserCalibration calibration{.lasers = told.lasers};
+  CalibrationReport& report = calibration.report;
+  report.platform_from_sensor = told.platform_from_sensor;
+  if (solver.platform_points() < min_platform_points) {
+    report.reason = "the lasers' lines are not seen on the platform";
+    return calibration;
+  }
+  report.before = disagreement(solver.as_told());
+  const RigSolution best = best_of(solver);
+  report.platform_from_sensor = best.rig.platform_from_sensor;
+  report.after = disagreement(best);
+  compare_poses(told.platform_from_sensor, report);
+  set_sigmas(best, report);
+  report.reason = refusal(best, report, told.lasers);
+  report.accepted = report.reason.empty();
+  calibration.lasers = best.rig.lasers;
+  for (Laser& laser : calibration.lasers) {
+    laser.source.reset();
+  }
+  calibration.moved_a_plane = report.accepted && moved_a_plane(told.lasers, best.rig.lasers);
+  return calibration;
+}
+
+}  // namespace octurn

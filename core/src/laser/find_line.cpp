@@ -1,0 +1,191 @@
+#include "laser/find_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "laser/line_pieces.hpp"
+
+namespace octurn {
+namespace {
+
+// Rows are smoothed by the binomial filter 1 4 6 4 1, whose gain is 16.
+constexpr int gain = 16;
+constexpr int reach = 2;                 // pixels of the filter to each side
+constexpr int min_peak = 8 * gain;       // grey levels over room light
+constexpr int noise = 2 * gain;          // grey levels that are no light
+constexpr int min_valley = 5 * gain;     // grey levels that part two pieces, and a fifth of a peak
+constexpr int valley_share = 5;          //
+constexpr int light_share = 20;          // of a peak, at which its line ends
+constexpr int max_half_width = 40;       // pixels: no line is wider
+constexpr float min_light = 25;          // grey levels in all
+constexpr int saturated = 250;           // grey levels
+constexpr int max_saturated_share = 2;   // of a line's pixels: half of them
+constexpr int min_saturated_pixels = 6;  // a line is no wider where it is only bright
+constexpr double wide = 2.5;             // times the usual width, in standard deviations
+constexpr double wide_pixels = 0.5;      // and so much more
+
+/// A candidate, and how wide its light is.
+struct Candidate {
+  LineSample sample;
+  float deviation = 0;  // pixels
+};
+
+/// One row of two pictures.
+struct Row {
+  std::span<const std::uint8_t> dark;
+  std::span<const std::uint8_t> lit;
+  std::vector<int> smooth = {};  // the smoothed difference, times the gain
+
+  int difference(int u) const {
+    const auto i = static_cast<std::size_t>(u);
+    return static_cast<int>(lit[i]) - static_cast<int>(dark[i]);
+  }
+  int at(int u) const { return smooth[static_cast<std::size_t>(u)]; }
+  int width() const { return static_cast<int>(lit.size()); }
+};
+
+/// @return false if no pixel is bright enough for a line
+bool smooth(Row& row, std::vector<int>& difference) {
+  const auto width = row.lit.size();
+  int brightest = 0;
+  for (std::size_t u = 0; u < width; ++u) {
+    difference[u] = static_cast<int>(row.lit[u]) - static_cast<int>(row.dark[u]);
+    brightest = std::max(brightest, difference[u]);
+  }
+  if (brightest * gain < min_peak) {
+    return false;
+  }
+  for (std::size_t u = reach; u + reach < width; ++u) {
+    row.smooth[u] = difference[u - 2] + difference[u + 2] +
+                    4 * (difference[u - 1] + difference[u + 1]) + 6 * difference[u];
+  }
+  return true;
+}
+
+/// The last pixel of a peak's light in one direction, or -1 if a higher peak follows without a
+/// valley between.
+int end_of_light(const Row& row, int peak, int step) {
+  const int top = row.at(peak);
+  const int floor = std::max(noise, top / light_share);
+  const int valley = std::max(min_valley, top / valley_share);
+  int lowest = top;
+  int lowest_at = peak;
+  for (int u = peak; u >= reach && u < row.width() - reach && std::abs(u - peak) <= max_half_width;
+       u += step) {
+    const int value = row.at(u);
+    if (value < floor) {
+      return u - step;
+    }
+    if (value > lowest + valley) {
+      return lowest_at;
+    }
+    if (value > top || (value == top && step < 0 && lowest < top)) {
+      return -1;
+    }
+    if (value < lowest) {
+      lowest = value;
+      lowest_at = u;
+    }
+  }
+  return lowest_at;
+}
+
+/// The centre of mass of the light from one pixel to another.
+Candidate centre_of(const Row& row, int first, int last) {
+  double light = 0;
+  double moment = 0;
+  double second = 0;
+  for (int u = first; u <= last; ++u) {
+    const int value = std::max(row.difference(u), 0);
+    light += value;
+    moment += static_cast<double>(value) * (u - first);
+    second += static_cast<double>(value) * (u - first) * (u - first);
+  }
+  if (light <= 0) {
+    return {};
+  }
+  const double mean = moment / light;
+  return {.sample = {.u = static_cast<float>(first + mean), .light = static_cast<float>(light)},
+          .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
+}
+
+/// Whether most of the light is lost above the camera's range, as in a glare.
+bool is_glare(const Row& row, int first, int last) {
+  int count = 0;
+  for (int u = first; u <= last; ++u) {
+    count += row.lit[static_cast<std::size_t>(u)] >= saturated ? 1 : 0;
+  }
+  return count >= min_saturated_pixels && count * max_saturated_share > last - first + 1;
+}
+
+void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) {
+  for (int u = reach; u < row.width() - reach; ++u) {
+    if (row.at(u) < min_peak || row.at(u) < row.at(u - 1) || row.at(u) <= row.at(u + 1)) {
+      continue;
+    }
+    const int first = end_of_light(row, u, -1);
+    const int last = end_of_light(row, u, 1);
+    if (first < 0 || last < 0 || first == last || is_glare(row, first, last)) {
+      continue;
+    }
+    Candidate found = centre_of(row, first, last);
+    if (found.sample.light >= min_light) {
+      found.sample.row = v;
+      candidates.push_back(found);
+    }
+  }
+}
+
+/// Drops candidates that are far wider than most: light from within the object, or from two
+/// surfaces at once.
+std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
+  std::vector<float> widths;
+  std::ranges::transform(candidates, std::back_inserter(widths), &Candidate::deviation);
+  std::vector<LineSample> samples;
+  if (widths.empty()) {
+    return samples;
+  }
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::ranges::nth_element(widths, middle);
+  const auto limit = static_cast<float>(wide * static_cast<double>(*middle) + wide_pixels);
+  for (const Candidate& candidate : candidates) {
+    if (candidate.deviation <= limit) {
+      samples.push_back(candidate.sample);
+    }
+  }
+  return samples;
+}
+
+}  // namespace
+
+LineScale line_scale(double pixel) {
+  constexpr double fit_reach = 0.0011;  // metres: finer detail is not more than noise
+  constexpr double edge = 0.0004;       // half a line's width
+  constexpr double jump = 0.0012;
+  const auto rows = [&](double length, int max) {
+    return std::clamp(static_cast<int>(std::lround(length / pixel)), 1, max);
+  };
+  return {.fit_rows = rows(fit_reach, 12),
+          .edge_rows = rows(edge, 4),
+          .max_jump = static_cast<float>(std::clamp(jump / pixel, 2.0, 12.0))};
+}
+
+std::vector<LineSample> find_line(const Picture& dark, const Picture& lit, const LineScale& scale) {
+  const auto width = static_cast<std::size_t>(lit.width);
+  std::vector<int> difference(width);
+  Row row;
+  row.smooth.resize(width);
+  std::vector<Candidate> candidates;
+  for (int v = 0; v < lit.height; ++v) {
+    const std::size_t begin = static_cast<std::size_t>(v) * width;
+    row.dark = std::span(dark.samples).subspan(begin, width);
+    row.lit = std::span(lit.samples).subspan(begin, width);
+    if (smooth(row, difference)) {
+      find_candidates(row, v, candidates);
+    }
+  }
+  return smoothed_pieces(without_wide(candidates), scale);
+}
+
+}  // namespace octurn

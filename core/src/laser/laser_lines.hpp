@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "laser/line_profile.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+
+/// The lines in the pictures of a scan folder. A stop's pictures are read when its lines are first
+/// asked for, and only these are kept: 12 bytes for each row that a line crosses.
+class LaserLines {
+ public:
+  /// @param scan  by laser line
+  LaserLines(std::filesystem::path folder, Scan scan);
+
+  /// What the lines of a whole scan take, bytes.
+  static std::size_t expected_bytes(const Scan& scan);
+
+  const Scan& scan() const { return scan_; }
+
+  /// The lines of a stop, one for each laser. Called by several threads at once.
+  /// @throws Error "scan-missing", "snapshot-malformed"
+  const std::vector<LineProfile>& at(std::size_t stop) const;
+
+  /// A stop's strips, with the planes and the pose that models are made with; it reads the stops
+  /// before and after it in the same pose, too.
+  /// @throws Error  as above
+  Snapshot snapshot(std::size_t stop) const;
+
+ private:
+  struct Stop {
+    std::once_flag read = {};
+    std::vector<LineProfile> lines = {};
+  };
+  struct Beside {
+    std::size_t previous = 0;  // itself, if there is no other stop in its pose
+    std::size_t next = 0;
+  };
+
+  Scan scan_;
+  std::filesystem::path folder_;
+  LineScale scale_;
+  std::unique_ptr<Stop[]> stops_;
+  std::vector<Beside> beside_ = {};
+};
+
+}  // namespace octurn

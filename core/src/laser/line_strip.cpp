@@ -1,0 +1,155 @@
+#include "laser/line_strip.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double max_row_side = 0.0025;  // metres, between neighbouring rows of one line
+constexpr double gap = 0.0015;           // metres, beside the way that the platform turned
+constexpr double max_side = 0.01;        // metres, however few the stops are
+
+/// A line's points in the optical frame of the stop whose strip is made, in the order of its rays.
+std::vector<Vector3d> points_of(const PlacedLine& line, const Eigen::Isometry3d& own_from_line) {
+  std::vector<Vector3d> points;
+  points.reserve(line.profile.rays.size());
+  for (const LineProfile::Ray& ray : line.profile.rays) {
+    points.push_back(own_from_line * meet(ray, line.laser));
+  }
+  return points;
+}
+
+double column(const Vector3d& point) { return point.x() / point.z(); }
+
+/// Joins a stop's line with one beside it.
+class Joint {
+ public:
+  /// @param first  index of the other line's first point in the strip
+  Joint(const PlacedLine& own, const std::vector<Vector3d>& own_points, const PlacedLine& other,
+        std::size_t first)
+      : own_(own.profile),
+        other_(other.profile),
+        own_points_(own_points),
+        own_from_other_(own.object_from_sensor.inverse() * other.object_from_sensor),
+        other_points_(points_of(other, own_from_other_)),
+        first_(first) {}
+
+  const std::vector<Vector3d>& other_points() const { return other_points_; }
+
+  std::vector<LineStrip::Triangle> triangles() const {
+    std::vector<LineStrip::Triangle> triangles;
+    for (std::size_t v = 0; v + 1 < own_.rows.size(); ++v) {
+      for (auto i = own_.rows[v]; i < own_.rows[v + 1]; ++i) {
+        if (own_.rays[static_cast<std::size_t>(i)].next >= 0) {
+          join(static_cast<std::size_t>(i), v, triangles);
+        }
+      }
+    }
+    return triangles;
+  }
+
+ private:
+  struct Limits {
+    double side = 0;  // metres
+    double towards =
+        0;  // the sign of the columns' change, on a surface that turned with the platform
+  };
+
+  Limits limits_at(const Vector3d& point) const {
+    const Vector3d turned = own_from_other_ * point;
+    return {.side = std::min(gap + (turned - point).norm(), max_side),
+            .towards = column(turned) - column(point)};
+  }
+
+  static bool near(const Vector3d& a, const Vector3d& b, double max) {
+    return (a - b).squaredNorm() <= max * max;
+  }
+
+  bool joins(const Vector3d& own, const Vector3d& other, const Limits& limits) const {
+    return near(own, other, limits.side) && (column(other) - column(own)) * limits.towards > 0;
+  }
+
+  /// The other line's point in that row that is nearest to an own one, if they can be joined.
+  std::int32_t match(const Vector3d& own, std::size_t v, const Limits& limits) const {
+    std::int32_t best = -1;
+    double best_square = limits.side * limits.side;
+    for (auto j = other_.rows[v]; j < other_.rows[v + 1]; ++j) {
+      const Vector3d& other = other_points_[static_cast<std::size_t>(j)];
+      const double square = (own - other).squaredNorm();
+      if (square < best_square && joins(own, other, limits)) {
+        best = j;
+        best_square = square;
+      }
+    }
+    return best;
+  }
+
+  void join(std::size_t i, std::size_t v, std::vector<LineStrip::Triangle>& triangles) const {
+    const auto below = static_cast<std::size_t>(own_.rays[i].next);
+    const Vector3d& a = own_points_[i];
+    const Vector3d& b = own_points_[below];
+    const Limits limits = limits_at(a);
+    const std::int32_t matched = match(a, v, limits);
+    if (matched < 0) {
+      return;
+    }
+    const auto j = static_cast<std::size_t>(matched);
+    const Vector3d& c = other_points_[j];
+    if (!joins(b, c, limits)) {
+      return;
+    }
+    const auto at = [this](std::size_t point) {
+      return static_cast<std::uint32_t>(first_ + point);
+    };
+    const auto own_at = [](std::size_t point) { return static_cast<std::uint32_t>(point); };
+    if (near(a, b, max_row_side)) {
+      triangles.push_back({own_at(i), own_at(below), at(j)});
+    }
+    if (const std::int32_t next = other_.rays[j].next; next >= 0) {
+      const Vector3d& d = other_points_[static_cast<std::size_t>(next)];
+      if (near(c, d, max_row_side) && joins(b, d, limits)) {
+        triangles.push_back({own_at(below), at(static_cast<std::size_t>(next)), at(j)});
+      }
+    }
+  }
+
+  const LineProfile& own_;
+  const LineProfile& other_;
+  const std::vector<Vector3d>& own_points_;
+  Eigen::Isometry3d own_from_other_;
+  std::vector<Vector3d> other_points_;
+  std::size_t first_;
+};
+
+}  // namespace
+
+LineStrip make_strip(const PlacedLine& own, const PlacedLine* previous, const PlacedLine* next) {
+  const std::vector<Vector3d> own_points = points_of(own, Eigen::Isometry3d::Identity());
+  LineStrip strip{.own_points = own_points.size()};
+  const auto append = [&](const std::vector<Vector3d>& points) {
+    for (const Vector3d& point : points) {
+      strip.points.emplace_back((own.object_from_sensor * point).cast<float>());
+    }
+  };
+  append(own_points);
+  const auto join = [&](const PlacedLine* other) -> std::vector<LineStrip::Triangle> {
+    if (other == nullptr) {
+      return {};
+    }
+    const Joint joint(own, own_points, *other, strip.points.size());
+    append(joint.other_points());
+    return joint.triangles();
+  };
+  strip.to_previous = join(previous);
+  strip.to_next = join(next);
+  if (own.laser.source) {
+    strip.source = own.object_from_sensor * *own.laser.source;
+  }
+  return strip;
+}
+
+}  // namespace octurn

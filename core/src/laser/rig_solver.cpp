@@ -1,0 +1,270 @@
+#include "laser/rig_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "laser/surface_points.hpp"
+#include "parallel/fork_join.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double platform_radius = 0.14;   // metres, in which lines on the platform are looked for
+constexpr double platform_search = 0.025;  // metres above and below where it was told
+constexpr double height_step = 0.0005;
+constexpr double object_margin = 0.003;   // metres around the object
+constexpr double platform_reach = 0.003;  // metres from the height where most points lie
+constexpr std::size_t platform_wanted = 6000;
+constexpr std::size_t surface_wanted = 4000;  // of each laser
+constexpr double object_height = 0.004;       // metres above the platform
+constexpr double cost_scale = 0.0001;         // metres
+// Neighbours on a line share speckle and smoothing.
+constexpr double surface_correlation = 10;
+constexpr double platform_correlation = 25;
+
+// Cauchy's scale, metres: far starts first.
+constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
+                               0.0002, 0.0002, 0.0002, 0.0002, 0.0002};
+
+double weight_of(double residual, double scale) {
+  const double part = residual / scale;
+  return 1 / (1 + part * part);
+}
+
+double cost_of(const std::vector<float>& residuals) {
+  double sum = 0;
+  for (const float residual : residuals) {
+    const double part = static_cast<double>(residual) / cost_scale;
+    sum += std::log1p(part * part);
+  }
+  return residuals.empty() ? 0 : sum / static_cast<double>(residuals.size());
+}
+
+Vector3d turned_to_stop(const Vector3d& object, double angle) {
+  return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * object;
+}
+
+}  // namespace
+
+/// Normal equations of one kind of residuals.
+struct RigSolver::Sums {
+  explicit Sums(Index unknowns)
+      : matrix(Eigen::MatrixXd::Zero(unknowns, unknowns)), right(VectorXd::Zero(unknowns)) {}
+
+  void add(const VectorXd& row, double residual, double its_weight) {
+    matrix.noalias() += its_weight * row * row.transpose();
+    right -= its_weight * residual * row;
+    weight += its_weight;
+    squares += its_weight * residual * residual;
+    residuals.push_back(static_cast<float>(std::abs(residual)));
+  }
+
+  /// In units of the residuals' own variance, so that a prior with its sigma can be added.
+  double information(double correlation) const {
+    constexpr double least = 1e-10;  // square metres: 10 micrometres are never known better
+    return weight > 0 ? 1 / (std::max(squares / weight, least) * correlation) : 0;
+  }
+
+  Eigen::MatrixXd matrix;
+  VectorXd right;
+  double weight = 0;
+  double squares = 0;
+  std::vector<float> residuals = {};
+};
+
+RigSolver::RigSolver(const LaserLines& lines, LaserRig told, int threads,
+                     const std::stop_token& stop)
+    : lines_(lines), stop_(stop), told_(std::move(told)) {
+  const auto stops = static_cast<int>(lines.scan().shots.size());
+  fork_join(threads, [&](int thread) {
+    for (int at = thread; at < stops; at += threads) {
+      throw_if_stopped(stop_);
+      lines.at(static_cast<std::size_t>(at));
+    }
+  });
+  find_platform();
+}
+
+/// What the told rig sees within reach of the platform. Sets the pivots, about which turn and shift
+/// of a plane are nearly independent.
+std::vector<RigSolver::Reading> RigSolver::read_all() {
+  std::vector<Reading> readings;
+  pivots_.clear();
+  for (std::size_t laser = 0; laser < told_.lasers.size(); ++laser) {
+    const Laser& of = told_.lasers[laser];
+    Vector3d sum = Vector3d::Zero();
+    double count = 0;
+    for (std::size_t stop = 0; stop < lines_.scan().shots.size(); ++stop) {
+      for (const LineProfile::Ray& ray : lines_.at(stop)[laser].rays) {
+        const Vector3d point = meet(ray, of);
+        const Vector3d at = told_.platform_from_sensor * point;
+        const double radius = at.head<2>().norm();
+        if (radius < platform_radius && at.z() > -platform_search) {
+          sum += point;
+          count += 1;
+          readings.push_back(
+              {.point = {.laser = laser, .ray = ray}, .height = at.z(), .radius = radius});
+        }
+      }
+    }
+    pivots_.push_back(count > 0 ? Vector3d(sum / count) : Vector3d(of.normal * of.distance));
+  }
+  return readings;
+}
+
+/// Finds the rays that end on the platform: at the height, near the told one, where most lie, and
+/// farther from the axis than the object reaches, as its foot is nearly as low.
+void RigSolver::find_platform() {
+  std::vector<Reading> readings = read_all();
+  const double height = usual_height(readings);
+  const double object = object_radius(readings, height + object_height);
+  std::erase_if(readings,
+                [&](const Reading& r) { return std::abs(r.height - height) > platform_reach; });
+  const auto beside = [&](const Reading& r) { return r.radius > object + object_margin; };
+  if (static_cast<std::size_t>(std::ranges::count_if(readings, beside)) >= platform_wanted / 3) {
+    std::erase_if(readings, [&](const Reading& r) { return !beside(r); });
+  }
+  const std::size_t step = std::max<std::size_t>(1, readings.size() / platform_wanted);
+  for (std::size_t i = 0; i < readings.size(); i += step) {
+    platform_.push_back(readings[i].point);
+  }
+}
+
+/// The height, within the search, at which most readings lie.
+double RigSolver::usual_height(const std::vector<Reading>& readings) {
+  std::vector<std::size_t> counts(static_cast<std::size_t>(2 * platform_search / height_step) + 1);
+  for (const Reading& reading : readings) {
+    if (reading.height < platform_search) {
+      ++counts[static_cast<std::size_t>((reading.height + platform_search) / height_step)];
+    }
+  }
+  const auto most = std::ranges::max_element(counts) - counts.begin();
+  return (static_cast<double>(most) + 0.5) * height_step - platform_search;
+}
+
+/// How far from the axis nearly all readings above a height lie.
+double RigSolver::object_radius(const std::vector<Reading>& readings, double height) {
+  std::vector<double> radii;
+  for (const Reading& reading : readings) {
+    if (reading.height > height) {
+      radii.push_back(reading.radius);
+    }
+  }
+  if (radii.empty()) {
+    return 0;
+  }
+  const auto nearly_last =
+      radii.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(radii.size()) * 0.995);
+  std::ranges::nth_element(radii, nearly_last);
+  return *nearly_last;
+}
+
+void RigSolver::add_platform(const LaserRig& rig, double scale, Sums& sums) const {
+  VectorXd row(sums.right.size());
+  for (const PlatformPoint& point : platform_) {
+    const SeenPoint seen(rig, pivots_, point.laser, point.ray);
+    const double height = seen.in_platform().z();
+    row.setZero();
+    seen.add_row(Vector3d::UnitZ(), 1, row);
+    sums.add(row, height, weight_of(height, scale));
+  }
+}
+
+void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) const {
+  std::vector<SurfacePoints> surfaces;
+  for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
+    surfaces.emplace_back(lines_, rig, laser, object_height);
+  }
+  const std::vector<Shot>& shots = lines_.scan().shots;
+  VectorXd row(sums.right.size());
+  for (std::size_t from = 0; from < surfaces.size(); ++from) {
+    const std::vector<SurfacePoint>& points = surfaces[from].all();
+    const std::size_t step = std::max<std::size_t>(1, points.size() / surface_wanted);
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      for (std::size_t to = 0; to < surfaces.size(); ++to) {
+        const SurfacePoint& p = points[i];
+        const SurfacePoint* q = to == from ? nullptr : surfaces[to].nearest(p.point, p.normal);
+        if (q == nullptr) {
+          continue;
+        }
+        const Vector3d normal = q->normal.cast<double>();
+        const double residual = normal.dot((p.point - q->point).cast<double>());
+        row.setZero();
+        const auto add = [&](const SurfacePoint& point, std::size_t laser, double factor) {
+          const SeenPoint seen(rig, pivots_, laser, lines_.at(point.stop)[laser].rays[point.ray]);
+          seen.add_row(turned_to_stop(normal, shots[point.stop].angle), factor, row);
+        };
+        add(p, from, 1);
+        add(*q, to, -1);
+        sums.add(row, residual, weight_of(residual, scale));
+      }
+    }
+  }
+}
+
+/// The normal equations of a rig, in units of the residuals' variance.
+struct RigSolver::Look {
+  Eigen::MatrixXd matrix;
+  VectorXd right;
+};
+
+/// @param solution  gets how well it fits
+RigSolver::Look RigSolver::look(const LaserRig& rig, double scale, RigSolution& solution) const {
+  throw_if_stopped(stop_);
+  const auto unknowns = pose_unknowns + plane_unknowns * static_cast<Index>(rig.lasers.size());
+  Sums of_platform(unknowns);
+  Sums of_surfaces(unknowns);
+  add_platform(rig, scale, of_platform);
+  add_surfaces(rig, scale, of_surfaces);
+  solution.cost = cost_of(of_platform.residuals) + cost_of(of_surfaces.residuals);
+  solution.platform = std::move(of_platform.residuals);
+  solution.between = std::move(of_surfaces.residuals);
+  const double platform = of_platform.information(platform_correlation);
+  const double surfaces = of_surfaces.information(surface_correlation);
+  return {.matrix = platform * of_platform.matrix + surfaces * of_surfaces.matrix,
+          .right = platform * of_platform.right + surfaces * of_surfaces.right};
+}
+
+RigSolution RigSolver::as_told() const {
+  RigSolution solution{.rig = told_};
+  look(told_, scales.back(), solution);
+  return solution;
+}
+
+RigSolution RigSolver::solve(const RigTrust& trust) const {
+  const auto unknowns = pose_unknowns + plane_unknowns * static_cast<Index>(told_.lasers.size());
+  VectorXd sigmas(unknowns);
+  sigmas.head<2>().setConstant(trust.pose_turn);
+  sigmas.segment<3>(2).setConstant(trust.pose_shift);
+  for (Index first = pose_unknowns; first < unknowns; first += plane_unknowns) {
+    sigmas.segment<3>(first) << trust.plane_turn, trust.plane_turn, trust.plane_shift;
+  }
+  const VectorXd prior = sigmas.array().square().inverse();
+  VectorXd moved_so_far = VectorXd::Zero(unknowns);
+  RigSolution solution{.rig = told_};
+  for (const double scale : scales) {
+    const Look at = look(solution.rig, scale, solution);
+    Eigen::MatrixXd matrix = at.matrix;
+    matrix.diagonal() += prior;
+    const VectorXd change = matrix.ldlt().solve(at.right - prior.cwiseProduct(moved_so_far));
+    if (!change.allFinite()) {
+      break;
+    }
+    solution.rig = moved(solution.rig, pivots_, change);
+    moved_so_far += change;
+  }
+  Look last = look(solution.rig, scales.back(), solution);
+  last.matrix.diagonal() += prior;
+  solution.covariance = last.matrix.inverse();
+  return solution;
+}
+
+}  // namespace octurn

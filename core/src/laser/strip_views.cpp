@@ -1,0 +1,247 @@
+#include "laser/strip_views.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "depth/back_project.hpp"
+#include "depth/depth_limits.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr int margin = 2;                  // pixels around what a view shows
+constexpr int max_side = 4096;             // pixels of a view
+constexpr double own_share = 0.49;         // of a point between two lines: they overlap by a little
+constexpr float min_cosine = 0.15F;        // of incidence: 81 degrees
+constexpr float weight_of_line = 2.0F;     // a point's, which outweighs what one ray sees through
+constexpr double platform_slack = 0.0015;  // metres above the platform that may be the platform
+constexpr double corner = 1e-6;            // pixels around a triangle
+
+/// Whether each point of a strip may make a surface, 1 or 0.
+std::vector<char> find_inside(const LineStrip& strip, Box clip_box, const Placement* placement) {
+  PointGrid grid{
+      .width = static_cast<int>(strip.points.size()), .height = 1, .points = strip.points};
+  if (placement == nullptr) {
+    clip_box.min.z() = std::max(clip_box.min.z(), platform_slack);
+  }
+  clip(grid, clip_box);
+  if (placement != nullptr) {
+    clip(grid, *placement);
+  }
+  std::vector<char> inside;
+  std::ranges::transform(grid.points, std::back_inserter(inside), [](const Eigen::Vector3f& point) {
+    return static_cast<char>(is_point(point) ? 1 : 0);
+  });
+  return inside;
+}
+
+/// Draws a strip's triangles into the image of a pinhole camera.
+class StripView {
+ public:
+  /// @param lens  focal lengths; the view's window and principal point are found here
+  StripView(const LineStrip& strip, const std::vector<char>& inside,
+            const Eigen::Isometry3d& sensor_from_object, const Intrinsics& lens)
+      : strip_(strip), inside_(inside), lens_(lens), sensor_from_object_(sensor_from_object) {
+    for (const Eigen::Vector3f& point : strip.points) {
+      points_.push_back(sensor_from_object * point.cast<double>());
+    }
+  }
+
+  /// Nothing if the strip is empty or not before the camera.
+  std::optional<ConditionedDepth> draw() {
+    if (!find_window()) {
+      return std::nullopt;
+    }
+    observations_.resize(static_cast<std::size_t>(lens_.width) *
+                         static_cast<std::size_t>(lens_.height));
+    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next}) {
+      for (const LineStrip::Triangle& triangle : *triangles) {
+        draw(triangle);
+      }
+    }
+    return ConditionedDepth(lens_, sensor_from_object_, std::move(observations_));
+  }
+
+ private:
+  struct Corner {
+    double u = 0;  // pixels
+    double v = 0;
+    double inverse_depth = 0;
+  };
+
+  Corner corner_of(std::uint32_t point) const {
+    const Eigen::Vector3d& p = points_[point];
+    const double inverse = 1 / p.z();
+    return {.u = p.x() * inverse * lens_.fx + lens_.cx,
+            .v = p.y() * inverse * lens_.fy + lens_.cy,
+            .inverse_depth = inverse};
+  }
+
+  /// Moves the view's window to the strip.
+  bool find_window() {
+    double u0 = 1e9, u1 = -1e9, v0 = 1e9, v1 = -1e9;
+    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next}) {
+      for (const LineStrip::Triangle& triangle : *triangles) {
+        for (const std::uint32_t point : triangle) {
+          if (!(points_[point].z() > nearest_z)) {
+            return false;
+          }
+          const Corner at = corner_of(point);
+          u0 = std::min(u0, at.u);
+          u1 = std::max(u1, at.u);
+          v0 = std::min(v0, at.v);
+          v1 = std::max(v1, at.v);
+        }
+      }
+    }
+    if (!(u1 - u0 < max_side) || !(v1 - v0 < max_side) || u1 < u0) {
+      return false;
+    }
+    const double left = std::floor(u0) - margin;
+    const double top = std::floor(v0) - margin;
+    lens_.cx -= left;
+    lens_.cy -= top;
+    lens_.width = static_cast<int>(u1 - left) + 1 + margin;
+    lens_.height = static_cast<int>(v1 - top) + 1 + margin;
+    return true;
+  }
+
+  void draw(const LineStrip::Triangle& triangle) {
+    std::array<Corner, 3> c;
+    std::ranges::transform(triangle, c.begin(),
+                           [this](std::uint32_t point) { return corner_of(point); });
+    const double area =
+        (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
+    if (std::abs(area) < corner) {
+      return;
+    }
+    const std::optional<DepthObservation> plane = plane_of(triangle);
+    if (!plane) {
+      return;
+    }
+    const auto [u0, u1] = std::minmax({c[0].u, c[1].u, c[2].u});
+    const auto [v0, v1] = std::minmax({c[0].v, c[1].v, c[2].v});
+    for (int v = static_cast<int>(std::ceil(v0)); v <= static_cast<int>(v1); ++v) {
+      for (int u = static_cast<int>(std::ceil(u0)); u <= static_cast<int>(u1); ++u) {
+        const double b =
+            ((u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (v - c[0].v)) / area;
+        const double d =
+            ((c[1].u - c[0].u) * (v - c[0].v) - (u - c[0].u) * (c[1].v - c[0].v)) / area;
+        const double a = 1 - b - d;
+        if (a >= -corner && b >= -corner && d >= -corner) {
+          set(u, v, triangle, {a, b, d},
+              a * c[0].inverse_depth + b * c[1].inverse_depth + d * c[2].inverse_depth, *plane);
+        }
+      }
+    }
+  }
+
+  /// The plane of a triangle; nothing if it is seen too flat.
+  std::optional<DepthObservation> plane_of(const LineStrip::Triangle& triangle) const {
+    const Eigen::Vector3d& p = points_[triangle[0]];
+    const Eigen::Vector3d side = points_[triangle[1]] - p;
+    const Eigen::Vector3d normal = side.cross(points_[triangle[2]] - p);
+    const double towards = -normal.dot(p);
+    const double length = normal.norm();
+    if (!(length > 0)) {
+      return std::nullopt;
+    }
+    const double sign = towards < 0 ? -1 : 1;
+    const auto cosine = static_cast<float>(std::abs(towards) / (length * p.norm()));
+    if (cosine < min_cosine) {
+      return std::nullopt;
+    }
+    const Eigen::Vector3d unit = normal * (sign / length);
+    return DepthObservation{.normal = {static_cast<float>(unit.x()), static_cast<float>(unit.y()),
+                                       static_cast<float>(unit.z())},
+                            .offset = static_cast<float>(-unit.dot(p)),
+                            .weight = weight_of_line};
+  }
+
+  void set(int u, int v, const LineStrip::Triangle& triangle, const std::array<double, 3>& shares,
+           double inverse_depth, const DepthObservation& plane) {
+    double own = 0;
+    bool is_inside = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      own += triangle[i] < strip_.own_points ? shares[i] : 0;
+      is_inside &= inside_[triangle[i]] != 0;
+    }
+    if (own < own_share) {
+      return;
+    }
+    DepthObservation& at =
+        observations_[static_cast<std::size_t>(v) * static_cast<std::size_t>(lens_.width) +
+                      static_cast<std::size_t>(u)];
+    const auto z = static_cast<float>(1 / inverse_depth);
+    if (at.free_space_depth > 0 && at.free_space_depth <= z) {
+      return;
+    }
+    at = plane;
+    at.weight = is_inside ? plane.weight : 0.0F;
+    at.free_space_depth = z;
+  }
+
+  const LineStrip& strip_;
+  const std::vector<char>& inside_;
+  Intrinsics lens_;
+  Eigen::Isometry3d sensor_from_object_;
+  std::vector<Eigen::Vector3d> points_ = {};  // optical frame
+  std::vector<DepthObservation> observations_ = {};
+};
+
+/// The view of a laser: Z towards the middle of its own line.
+std::optional<Eigen::Isometry3d> laser_from_object(const LineStrip& strip) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (std::size_t i = 0; i < strip.own_points; ++i) {
+    if (is_point(strip.points[i])) {
+      middle += strip.points[i].cast<double>();
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d towards = middle / count - *strip.source;
+  if (towards.norm() < nearest_z) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d z = towards.normalized();
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitZ().cross(z);
+  if (x.norm() < 0.05) {  // a laser right above the object
+    return std::nullopt;
+  }
+  Eigen::Isometry3d object_from_laser = Eigen::Isometry3d::Identity();
+  object_from_laser.linear().col(0) = x.normalized();
+  object_from_laser.linear().col(1) = z.cross(x.normalized());
+  object_from_laser.linear().col(2) = z;
+  object_from_laser.translation() = *strip.source;
+  return object_from_laser.inverse();
+}
+
+}  // namespace
+
+std::vector<ConditionedDepth> strip_views(const Snapshot& snapshot, const Box& clip,
+                                          const Placement* placement) {
+  std::vector<ConditionedDepth> views;
+  const auto add = [&](std::optional<ConditionedDepth> view) {
+    if (view) {
+      views.push_back(*std::move(view));
+    }
+  };
+  for (const LineStrip& strip : snapshot.strips) {
+    const std::vector<char> inside = find_inside(strip, clip, placement);
+    add(StripView(strip, inside, snapshot.object_from_sensor.inverse(), snapshot.intrinsics)
+            .draw());
+    if (strip.source) {
+      if (const auto pose = laser_from_object(strip)) {
+        add(StripView(strip, inside, *pose, snapshot.intrinsics).draw());
+      }
+    }
+  }
+  return views;
+}
+
+}  // namespace octurn

@@ -1,0 +1,100 @@
+#include "laser/surface_points.hpp"
+
+#include <cmath>
+
+#include "laser/line_strip.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float cell_side = 0.0025F;  // metres
+constexpr float max_distance = 0.0025F;
+constexpr float min_agreement = 0.7F;  // cosine between two normals
+
+using Cell = std::array<int, 3>;
+
+Cell cell_of(const Vector3f& point) {
+  const auto at = [&](int axis) { return static_cast<int>(std::floor(point[axis] / cell_side)); };
+  return {at(0), at(1), at(2)};
+}
+
+std::uint64_t key_of(const Cell& cell) {
+  constexpr int offset = 1 << 20;
+  const auto part = [](int at) { return static_cast<std::uint64_t>(at + offset) & 0x1fffffU; };
+  return part(cell[0]) | part(cell[1]) << 21U | part(cell[2]) << 42U;
+}
+
+}  // namespace
+
+SurfacePoints::SurfacePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
+                             double min_height) {
+  const std::vector<Shot>& shots = lines.scan().shots;
+  const auto placed = [&](std::size_t stop) -> PlacedLine {
+    return {.profile = lines.at(stop)[laser],
+            .laser = rig.lasers[laser],
+            .object_from_sensor = object_from_sensor(rig.platform_from_sensor, shots[stop].angle)};
+  };
+  for (std::size_t stop = 0; stop < shots.size(); ++stop) {
+    const PlacedLine next = placed((stop + 1) % shots.size());
+    const PlacedLine own = placed(stop);
+    add_stop(make_strip(own, nullptr, &next), stop, min_height,
+             own.object_from_sensor.translation().cast<float>());
+  }
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    cells_.emplace(key_of(cell_of(points_[i].point)), i);
+  }
+}
+
+void SurfacePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_height,
+                             const Vector3f& camera) {
+  std::vector<Vector3f> normals(strip.own_points, Vector3f::Zero());
+  for (const LineStrip::Triangle& triangle : strip.to_next) {
+    const Vector3f& a = strip.points[triangle[0]];
+    Vector3f normal = (strip.points[triangle[1]] - a).cross(strip.points[triangle[2]] - a);
+    if (normal.dot(camera - a) < 0) {
+      normal = -normal;
+    }
+    for (const std::uint32_t corner : triangle) {
+      if (corner < strip.own_points) {
+        normals[corner] += normal;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const float length = normals[i].norm();
+    if (length > 0 && static_cast<double>(strip.points[i].z()) > min_height) {
+      points_.push_back({.point = strip.points[i],
+                         .normal = normals[i] / length,
+                         .stop = static_cast<std::uint32_t>(stop),
+                         .ray = static_cast<std::uint32_t>(i)});
+    }
+  }
+}
+
+const SurfacePoint* SurfacePoints::nearest(const Vector3f& point, const Vector3f& normal) const {
+  const Cell middle = cell_of(point);
+  std::uint32_t best = 0;
+  float best_square = max_distance * max_distance;
+  bool found = false;
+  for (int i = 0; i < 27; ++i) {
+    const Cell cell{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1};
+    const auto [first, end] = cells_.equal_range(key_of(cell));
+    for (auto at = first; at != end; ++at) {
+      const SurfacePoint& other = points_[at->second];
+      const float square = (other.point - point).squaredNorm();
+      // Of two as near the first one, whatever the order of the table is.
+      const bool nearer =
+          square < best_square || (found && square == best_square && at->second < best);
+      if (nearer && other.normal.dot(normal) > min_agreement) {
+        best = at->second;
+        best_square = square;
+        found = true;
+      }
+    }
+  }
+  return found ? &points_[best] : nullptr;
+}
+
+}  // namespace octurn

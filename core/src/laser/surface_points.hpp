@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "laser/laser_lines.hpp"
+#include "laser/laser_rig.hpp"
+
+namespace octurn {
+
+/// A ray of a line, and the surface that it met.
+struct SurfacePoint {
+  Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres, object's frame
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of length one, towards the camera
+  std::uint32_t stop = 0;
+  std::uint32_t ray = 0;  ///< index in the stop's profile
+};
+
+/// What one laser shows of an object, to be looked up by place.
+class SurfacePoints {
+ public:
+  /// @param lines  read for all stops
+  /// @param min_height  metres above the platform, as the rig has it: what is lower is its own
+  SurfacePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser, double min_height);
+
+  const std::vector<SurfacePoint>& all() const { return points_; }
+
+  /// The nearest point within 2.5 mm whose normal agrees within 45 degrees; null if there is none.
+  const SurfacePoint* nearest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
+
+ private:
+  void add_stop(const LineStrip& strip, std::size_t stop, double min_height,
+                const Eigen::Vector3f& camera);
+
+  std::vector<SurfacePoint> points_ = {};
+  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_ = {};
+};
+
+}  // namespace octurn

@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/laser/lit_scene.hpp"
+#include "octurn/calibrate.hpp"
+
+namespace octurn {
+namespace {
+
+const LitScene two_balls{.balls = {{.centre = {0.014, -0.003, 0.022}, .radius = 0.022},
+                                   {.centre = {-0.022, 0.006, 0.013}, .radius = 0.013}}};
+
+/// A scan's pictures, to be solved with what is told differently from what they show.
+class Turn {
+ public:
+  explicit Turn(const LitScene& scene) : truth_(write_laser_scan(folder_.path(), scene, 60)) {}
+
+  static const Turn& of_two_balls() {
+    static const Turn turn(two_balls);
+    return turn;
+  }
+
+  const Scan& truth() const { return truth_; }
+  LaserCalibration solve(const Scan& told, int threads = 1) const {
+    return calibrate_lasers(folder_.path(), told, threads);
+  }
+
+ private:
+  TemporaryFolder folder_ = {};
+  Scan truth_;
+};
+
+/// The laser turned in its holder, about the vertical through its source.
+Laser turned(const Laser& laser, double degrees) {
+  const Eigen::Vector3d up = laser_rig_pose().linear().transpose() * Eigen::Vector3d::UnitZ();
+  Laser other = laser;
+  other.normal = Eigen::AngleAxisd(radians_from_degrees(degrees), up) * laser.normal;
+  other.distance = other.normal.dot(*laser.source);
+  return other;
+}
+
+/// The largest distance between two planes within 4 cm of the axis, metres.
+double distance_at_object(const Laser& a, const Laser& b) {
+  const Eigen::Isometry3d sensor_from_platform = laser_rig_pose().inverse();
+  double largest = 0;
+  for (const double x : {-0.04, 0.04}) {
+    for (const double z : {0.0, 0.04}) {
+      const Eigen::Vector3d point = sensor_from_platform * Eigen::Vector3d(x, x / 2, z);
+      largest = std::max(
+          largest, std::abs(a.normal.dot(point) - a.distance - (b.normal.dot(point) - b.distance)));
+    }
+  }
+  return largest;
+}
+
+double degrees_between(const Laser& a, const Laser& b) {
+  return degrees_from_radians(std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal)));
+}
+
+TEST(CalibrateLasers, LeavesWhatIsRightAsItIs) {
+  const Scan& truth = Turn::of_two_balls().truth();
+  const LaserCalibration found = Turn::of_two_balls().solve(truth);
+
+  ASSERT_TRUE(found.report.accepted) << found.report.reason;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LT(distance_at_object(found.lasers[i], truth.laser->lasers[i]), 3e-5);
+  }
+  EXPECT_LT(found.report.shift, 1e-4);
+}
+
+TEST(CalibrateLasers, FindsPlanesThatWereTurnedInTheirHolders) {
+  const Scan& truth = Turn::of_two_balls().truth();
+  Scan told = truth;
+  told.laser->lasers[0] = turned(truth.laser->lasers[0], -0.1);
+  told.laser->lasers[1] = turned(truth.laser->lasers[1], 0.1);
+  ASSERT_GT(distance_at_object(told.laser->lasers[0], truth.laser->lasers[0]), 4e-4);
+
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
+
+  ASSERT_TRUE(found.report.accepted) << found.report.reason;
+  EXPECT_TRUE(found.moved_a_plane);
+  EXPECT_LT(found.report.after, found.report.before / 3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LT(distance_at_object(found.lasers[i], truth.laser->lasers[i]), 5e-5);
+  }
+}
+
+TEST(CalibrateLasers, FindsAPoseThatWasToldWrong) {
+  const Scan& truth = Turn::of_two_balls().truth();
+  Scan told = truth;
+  told.platform_from_sensor =
+      Eigen::Translation3d(0.003, -0.002, 0.004) *
+      Eigen::AngleAxisd(radians_from_degrees(0.7), Eigen::Vector3d::UnitX()) *
+      truth.platform_from_sensor;
+
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
+
+  ASSERT_TRUE(found.report.accepted) << found.report.reason;
+  const Eigen::Isometry3d left =
+      found.report.platform_from_sensor * truth.platform_from_sensor.inverse();
+  // Up to a turn about the axis: where the axis and the platform are, 3 cm up.
+  const Eigen::Vector3d up = left * Eigen::Vector3d(0, 0, 0.03);
+  EXPECT_LT(up.head<2>().norm(), 1.5e-4);
+  EXPECT_NEAR(up.z(), 0.03, 1e-4);
+}
+
+TEST(CalibrateLasers, FindsThePlanesByThePlatformAlone) {
+  const Turn empty(LitScene{});
+  Scan told = empty.truth();
+  told.laser->lasers[0] = turned(empty.truth().laser->lasers[0], 0.05);
+
+  const LaserCalibration found = empty.solve(told);
+
+  ASSERT_TRUE(found.report.accepted) << found.report.reason;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_LT(degrees_between(found.lasers[i], empty.truth().laser->lasers[i]), 0.01);
+  }
+}
+
+TEST(CalibrateLasers, IsRefusedWhereThePlatformIsNotSeen) {
+  const Turn floating(LitScene{.balls = two_balls.balls, .platform_radius = 0});
+
+  const LaserCalibration found = floating.solve(floating.truth());
+
+  EXPECT_FALSE(found.report.accepted);
+  EXPECT_FALSE(found.report.reason.empty());
+}
+
+TEST(CalibrateLasers, IsTheSameForAnyThreads) {
+  const Scan& truth = Turn::of_two_balls().truth();
+  Scan told = truth;
+  told.laser->lasers[0] = turned(truth.laser->lasers[0], 0.08);
+
+  const LaserCalibration alone = Turn::of_two_balls().solve(told, 1);
+  const LaserCalibration several = Turn::of_two_balls().solve(told, 3);
+
+  EXPECT_EQ(alone.report.platform_from_sensor.matrix(),
+            several.report.platform_from_sensor.matrix());
+  EXPECT_EQ(alone.lasers[0].normal, several.lasers[0].normal);
+}
+
+}  // namespace
+}  // namespace octurn

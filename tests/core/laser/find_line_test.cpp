@@ -1,0 +1,162 @@
+#include "laser/find_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "support/random.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr int width = 120;
+constexpr int height = 60;
+
+/// Light at the middle of a pixel, grey levels.
+using Light = std::function<double(double u, int v)>;
+
+Picture draw(const Light& light) {
+  Picture picture{.width = width, .height = height, .samples = {}};
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      picture.samples.push_back(
+          static_cast<std::uint8_t>(std::clamp(std::lround(light(u, v)), 0L, 255L)));
+    }
+  }
+  return picture;
+}
+
+double line(double u, double middle, double peak, double deviation = 1.2) {
+  const double off = (u - middle) / deviation;
+  return peak * std::exp(-off * off / 2);
+}
+
+const Picture no_light = draw([](double, int) { return 0; });
+
+TEST(FindLine, FindsItsColumnToAFractionOfAPixel) {
+  const auto middle = [](int v) { return 40.3 + 0.23 * v; };
+  const Picture lit = draw([&](double u, int v) { return line(u, middle(v), 150); });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));  // without its ends
+  for (const LineSample& sample : samples) {
+    EXPECT_NEAR(sample.u, middle(sample.row), 0.02) << "row " << sample.row;  // of 8 bits
+  }
+}
+
+TEST(FindLine, FindsEveryPieceInARow) {
+  const Picture lit = draw([](double u, int v) {
+    return line(u, 30.5, 200) + (v > 10 && v < 50 ? line(u, 75.25, 40) : 0);
+  });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  const auto faint = std::ranges::count_if(samples, [](const auto& s) { return s.u > 60; });
+  EXPECT_EQ(samples.size() - static_cast<std::size_t>(faint), static_cast<std::size_t>(height - 2));
+  EXPECT_EQ(faint, 39 - 2);
+}
+
+TEST(FindLine, PartsTwoPiecesThatNearlyTouch) {
+  const Picture lit = draw([](double u, int) { return line(u, 30, 180) + line(u, 37, 120); });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  ASSERT_EQ(samples.size(), 2U * (height - 2));
+  EXPECT_NEAR(samples[0].u, 30, 0.1);
+  EXPECT_NEAR(samples[1].u, 37, 0.1);
+}
+
+TEST(FindLine, IsNotMovedByRoomLight) {
+  const auto room = [](double u, int) { return u < 50 ? 30 : 90.0; };  // changes in the line
+  const Picture dark = draw(room);
+  const Picture lit = draw([&](double u, int v) { return room(u, v) + line(u, 50.4, 120); });
+
+  const std::vector<LineSample> samples = find_line(dark, lit, {});
+
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));
+  EXPECT_NEAR(samples[20].u, 50.4, 0.02);
+}
+
+TEST(FindLine, LeavesOutGlowAndSpecks) {
+  const Picture lit = draw([](double u, int v) {
+    const double glow = v > 30 ? line(u, 90, 120, 9) : 0;  // light from within the object
+    const double speck = v == 7 || v == 8 ? line(u, 70, 200) : 0;
+    return line(u, 30.5, 200) + glow + speck;
+  });
+
+  for (const LineSample& sample : find_line(no_light, lit, {})) {
+    EXPECT_NEAR(sample.u, 30.5, 0.1) << "row " << sample.row;
+  }
+}
+
+TEST(FindLine, LeavesOutGlare) {
+  const Picture lit = draw([](double u, int v) {
+    return line(u, 30.5, 150) + (v > 20 && v < 40 && u > 60 && u < 72 ? 255 : 0);
+  });
+
+  for (const LineSample& sample : find_line(no_light, lit, {})) {
+    EXPECT_NEAR(sample.u, 30.5, 0.1) << "row " << sample.row;
+  }
+}
+
+TEST(FindLine, LeavesOutTheRowsAtTheEndsOfAPiece) {
+  const Picture lit =
+      draw([](double u, int v) { return v >= 10 && v < 30 ? line(u, 50, 150) : 0; });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {.edge_rows = 2});
+
+  ASSERT_FALSE(samples.empty());
+  EXPECT_EQ(samples.front().row, 12);
+  EXPECT_EQ(samples.back().row, 27);
+}
+
+TEST(FindLine, LinksEachSampleToTheNextRowOfItsPiece) {
+  const Picture lit = draw([](double u, int v) {
+    return line(u, v < 30 ? 40 : 70, 150);  // a step between two surfaces
+  });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  int ends = 0;
+  for (const LineSample& sample : samples) {
+    if (sample.next < 0) {
+      ++ends;
+      continue;
+    }
+    const LineSample& next = samples[static_cast<std::size_t>(sample.next)];
+    EXPECT_EQ(next.row, sample.row + 1);
+    EXPECT_NEAR(next.u, sample.u, 0.1);
+  }
+  EXPECT_EQ(ends, 2);
+}
+
+TEST(FindLine, AveragesSpeckleAlongTheLine) {
+  Random random(3);
+  std::vector<double> speckle;
+  for (int i = 0; i < width * height; ++i) {
+    speckle.push_back(std::max(0.0, 1 + 0.3 * random.normal()));
+  }
+  const auto middle = [](int v) { return 40 + 0.004 * v * v; };
+  const Picture lit = draw([&](double u, int v) {
+    return line(u, middle(v), 150) * speckle[static_cast<std::size_t>(v * width + std::lround(u))];
+  });
+
+  const auto rms = [&](int fit_rows) {
+    double squares = 0;
+    const std::vector<LineSample> samples = find_line(no_light, lit, {.fit_rows = fit_rows});
+    EXPECT_GT(samples.size(), 50U);
+    for (const LineSample& sample : samples) {
+      squares += std::pow(static_cast<double>(sample.u) - middle(sample.row), 2);
+    }
+    return std::sqrt(squares / static_cast<double>(samples.size()));
+  };
+  // A quadratic through 2 n + 1 = 9 columns has 0.51 times their noise in the middle, and through
+  // 3 it has all.
+  EXPECT_LT(rms(4), 0.7 * rms(1));
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "core/laser/lit_scene.hpp"
+#include "core/mesh/surface.hpp"
+#include "octurn/mesh_report.hpp"
+#include "octurn/reconstruct.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+// The pictures' pixels are 0.9 mm wide at the ball, and the line two of them.
+const LitScene ball_on_platform{.balls = {{.centre = {0.004, -0.003, 0.022}, .radius = 0.022}}};
+
+/// One scan for all tests here: its pictures take most of their time.
+struct LaserScan {
+  TemporaryFolder folder = {};
+  Scan scan = write_laser_scan(folder.path(), ball_on_platform, 60);
+
+  static const LaserScan& get() {
+    static const LaserScan scan;
+    return scan;
+  }
+  SnapshotSource snapshots() const {
+    return stored_snapshots(folder.path(), read_scan(folder.path()));
+  }
+};
+
+ReconstructOptions options(Method method, double leaf_size) {
+  ReconstructOptions options{
+      .method = method, .leaf_size = leaf_size, .root_size = 0.256, .clip = laser_rig(1).clip};
+  fit_to_sensor(options, LaserScan::get().scan);
+  return options;
+}
+
+std::vector<Facet> model(const ReconstructOptions& options) {
+  const SnapshotSource snapshots = LaserScan::get().snapshots();
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  reconstruction->add(snapshots);
+  std::vector<Facet> facets;
+  reconstruction->surface(snapshots, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  return facets;
+}
+
+TEST(LaserScan, HasItsPointsOnTheSurface) {
+  const SnapshotSource snapshots = LaserScan::get().snapshots();
+  std::vector<double> errors;
+  for (std::size_t stop = 0; stop < snapshots.count; stop += 7) {
+    const Snapshot snapshot = snapshots.read(stop);
+    ASSERT_EQ(snapshot.strips.size(), 2U);
+    for (const LineStrip& strip : snapshot.strips) {
+      for (std::size_t i = 0; i < strip.own_points; ++i) {
+        errors.push_back(std::abs(ball_on_platform.distance(strip.points[i].cast<double>())));
+      }
+    }
+  }
+  ASSERT_GT(errors.size(), 1000U);
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 0.00005);        // a twentieth of a pixel
+  EXPECT_LT(errors[errors.size() * 95 / 100], 0.0002);  // where the line grazes, or ends
+}
+
+TEST(LaserScan, HasTrianglesBetweenLinesButNoneAcrossGaps) {
+  const SnapshotSource snapshots = LaserScan::get().snapshots();
+  const Snapshot snapshot = snapshots.read(3);
+  const Snapshot next = snapshots.read(4);
+  for (std::size_t laser = 0; laser < 2; ++laser) {
+    const LineStrip& strip = snapshot.strips[laser];
+    ASSERT_GT(strip.to_next.size(), 100U);
+    EXPECT_NEAR(static_cast<double>(next.strips[laser].to_previous.size()),
+                static_cast<double>(strip.to_next.size()),
+                0.1 * static_cast<double>(strip.to_next.size()));
+    for (const LineStrip::Triangle& triangle : strip.to_next) {
+      Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+      for (const std::uint32_t point : triangle) {
+        middle += strip.points[point] / 3;
+      }
+      // Chords of 3 mm lie up to 3^2 / (8 * 22) = 0.05 mm inside the ball. One that bridged the gap
+      // from ball to platform would be farther off.
+      EXPECT_LT(std::abs(ball_on_platform.distance(middle.cast<double>())), 0.0004);
+    }
+  }
+}
+
+TEST(LaserScan, MakesASolidOfTheBallsVolume) {
+  const std::vector<Facet> facets = model(options(Method::solid, 0.001));
+  MeshCheck check;
+  check.add(facets);
+  const double volume = 4.0 / 3 * std::numbers::pi * std::pow(22, 3);  // mm3
+  EXPECT_TRUE(topology_of(facets).manifold);
+  EXPECT_EQ(topology_of(facets).euler, 2);
+  // A ball stands on a point: below, where neither camera nor laser reaches, a foot is filled in.
+  EXPECT_GT(check.volume_mm3(), 0.98 * volume);
+  EXPECT_LT(check.volume_mm3(), 1.12 * volume);
+  double worst = 0;
+  for (const Facet& facet : facets) {
+    for (const auto& corner : std::array(facet.corners)) {
+      const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
+      if (facet.attributes != filled_in && point.z() > 0.02) {
+        worst = std::max(worst, std::abs(ball_on_platform.distance(point)));
+      }
+    }
+  }
+  EXPECT_LT(worst, 0.0008);  // less than a voxel, or a picture's pixel
+}
+
+TEST(LaserScan, IsMetByTheLeavesOfTheIntersection) {
+  const double leaf = 0.002;
+  const std::vector<Facet> facets = model(options(Method::intersection, leaf));
+  ASSERT_GT(facets.size(), 1000U);
+  for (const Facet& facet : facets) {
+    for (const auto& corner : std::array(facet.corners)) {
+      const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
+      EXPECT_LT(std::abs(ball_on_platform.distance(point)), leaf * std::sqrt(3.0) + 0.0004);
+    }
+  }
+}
+
+TEST(LaserScan, HasTheSameBytesForAnyThreadsAndMemory) {
+  for (const Method method : {Method::solid, Method::intersection}) {
+    const ReconstructOptions alone = options(method, 0.001);
+    ReconstructOptions several = alone;
+    several.threads = 3;
+    several.memory_limit = std::size_t{60} << 20U;
+    EXPECT_TRUE(same_bytes(model(alone), model(several))) << to_string(method);
+  }
+}
+
+TEST(LaserScan, NamesThePictureThatIsMissingOrDamaged) {
+  TemporaryFolder folder;
+  write_laser_scan(folder.path(), ball_on_platform, 3);
+  const auto read = [&](std::size_t stop) {
+    return error_thrown_by(
+        [&] { stored_snapshots(folder.path(), read_scan(folder.path())).read(stop); });
+  };
+  const std::filesystem::path left = folder.path() / "snapshots" / "1-left.png";
+  put(left, content_of(left).substr(0, 700));
+  const Error damaged = read(1);
+  std::filesystem::remove(left);
+  const Error missing = read(1);
+
+  EXPECT_EQ(damaged.code(), ErrorCode::snapshot_malformed);
+  EXPECT_NE(std::string(damaged.what()).find("1-left.png"), std::string::npos) << damaged.what();
+  EXPECT_EQ(missing.code(), ErrorCode::scan_missing);
+  EXPECT_NE(std::string(missing.what()).find("1-left.png"), std::string::npos) << missing.what();
+}
+
+}  // namespace
+}  // namespace octurn

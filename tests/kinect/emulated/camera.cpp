@@ -140,8 +140,7 @@ int Camera::next_packet(std::span<std::uint8_t> packet) {
 void Camera::begin_frame() {
   ++frame_;
   frame_is_damaged_ = false;
-  const std::size_t at = static_cast<std::size_t>(frame_) * pixels % frames_.size();
-  packed_ = packed(frames_.subspan(at, pixels));
+  packed_ = packed(frames_(frame_));
 }
 
 /// Whether a packet of this frame goes with those that this frame or the one before loses.
@@ -151,6 +150,13 @@ bool Camera::is_lost(int packet) const {
            number < kinect_.first_lost + kinect_.lost_packets;
   };
   return loses(frame_, packet) || loses(frame_ - 1, packet + packets_in_frame);
+}
+
+Camera::Frames over_and_over(std::span<const Camera::Reading> frames) {
+  return [frames](int frame) {
+    return frames.subspan(static_cast<std::size_t>(frame) * Camera::pixels % frames.size(),
+                          Camera::pixels);
+  };
 }
 
 }  // namespace octurn

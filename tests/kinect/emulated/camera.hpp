@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -18,12 +19,12 @@ class Camera {
  public:
   using Reading = std::uint16_t;
   static constexpr std::size_t pixels = std::size_t{640} * 480;
+  /// What is seen in each frame since the stream began: a view that lives until the next call.
+  using Frames = std::function<std::span<const Reading>(int frame)>;
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 
-  /// @param frames  a whole number of them, at least one
-  Camera(EmulatedKinect& kinect, std::span<const Reading> frames)
-      : kinect_(kinect), frames_(frames) {}
+  Camera(EmulatedKinect& kinect, Frames frames) : kinect_(kinect), frames_(std::move(frames)) {}
 
   /// Takes a command. @return whether it is one
   bool command(std::span<const std::uint8_t> message);
@@ -42,7 +43,7 @@ class Camera {
   bool is_lost(int packet) const;
 
   EmulatedKinect& kinect_;
-  std::span<const Reading> frames_;
+  Frames frames_;
   std::map<std::uint16_t, std::uint16_t> registers_ = {};
   std::vector<std::uint8_t> reply_ = {};
   std::vector<std::uint8_t> packed_ = {};  // the frame that is being sent, 11 bits a reading
@@ -51,5 +52,8 @@ class Camera {
   bool frame_is_damaged_ = false;
   std::uint8_t sequence_ = 0;
 };
+
+/// The same frames again and again. @param frames  a whole number of them, at least one
+Camera::Frames over_and_over(std::span<const Camera::Reading> frames);
 
 }  // namespace octurn

@@ -11,13 +11,13 @@
 
 #include "kinect/emulated/camera.hpp"
 #include "kinect/emulated/mapped_file.hpp"
+#include "kinect/emulated/usb_parts.hpp"
 
 // What libusb's headers leave open: its stand-in's devices, and its view of the bus.
 
 struct libusb_device {
-  enum class Part { camera, motor, audio };
   libusb_context* context = nullptr;
-  Part part = Part::camera;
+  octurn::KinectPart part = octurn::KinectPart::camera;
 };
 
 struct libusb_device_handle {
@@ -34,7 +34,8 @@ struct libusb_context {
     octurn::MappedFile control;
     octurn::MappedFile frames;
     octurn::EmulatedKinect& kinect = control.as<octurn::EmulatedKinect>();
-    octurn::Camera camera = octurn::Camera(kinect, frames.values<octurn::Camera::Reading>());
+    octurn::Camera camera =
+        octurn::Camera(kinect, octurn::over_and_over(frames.values<octurn::Camera::Reading>()));
   };
 
   std::optional<Bus> bus = {};

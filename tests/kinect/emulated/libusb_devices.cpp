@@ -7,32 +7,20 @@
 
 #include <libusb.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <string_view>
-#include <vector>
 
 #include "kinect/emulated/libusb_context.hpp"
 
 using octurn::EmulatedKinect;
 using octurn::KinectModel;
+using octurn::KinectPart;
 
 namespace {
 
 constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to a request that a device has not
-
-int reply_of_motor(const EmulatedKinect& kinect, std::span<std::uint8_t> reply) {
-  std::ranges::fill(reply, std::uint8_t{0});
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto counts = static_cast<std::uint16_t>(kinect.acceleration[axis].load());
-    reply[2 + 2 * axis] = static_cast<std::uint8_t>(counts >> 8U);
-    reply[3 + 2 * axis] = static_cast<std::uint8_t>(counts & 0xFFU);
-  }
-  return static_cast<int>(reply.size());
-}
 
 }  // namespace
 
@@ -41,7 +29,7 @@ extern "C" {
 int libusb_init(libusb_context** context) {
   auto made = std::make_unique<libusb_context>();
   for (std::size_t part = 0; part < made->devices.size(); ++part) {
-    made->devices[part] = {made.get(), static_cast<libusb_device::Part>(part)};
+    made->devices[part] = {made.get(), static_cast<KinectPart>(part)};
   }
   if (const char* folder = std::getenv(octurn::emulated_kinect_variable)) {
     made->bus.emplace(folder);
@@ -59,8 +47,8 @@ ssize_t libusb_get_device_list(libusb_context* context, libusb_device*** list) {
   ssize_t count = 0;
   if (context->bus && context->bus->kinect.plugged) {
     for (libusb_device& device : context->devices) {
-      const bool is_there = device.part != libusb_device::Part::motor ||
-                            context->bus->kinect.model == KinectModel::k1414;
+      const bool is_there =
+          device.part != KinectPart::motor || context->bus->kinect.model == KinectModel::k1414;
       if (is_there) {
         devices[count++] = &device;
       }
@@ -78,18 +66,13 @@ libusb_device* libusb_ref_device(libusb_device* device) { return device; }
 void libusb_unref_device(libusb_device* /*device*/) {}
 
 int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor* descriptor) {
-  using Part = libusb_device::Part;
   const KinectModel model = device->context->bus->kinect.model;
-  const bool for_windows = model == KinectModel::for_windows;
   *descriptor = {};
   descriptor->bLength = LIBUSB_DT_DEVICE_SIZE;
   descriptor->bDescriptorType = LIBUSB_DT_DEVICE;
-  descriptor->idVendor = 0x045E;
-  descriptor->idProduct =
-      static_cast<std::uint16_t>(device->part == Part::motor    ? 0x02B0
-                                 : device->part == Part::camera ? (for_windows ? 0x02BF : 0x02AE)
-                                                                : (for_windows ? 0x02BE : 0x02AD));
-  descriptor->bcdDevice = model == KinectModel::k1414 ? 0x010B : 0x0114;
+  descriptor->idVendor = octurn::microsoft;
+  descriptor->idProduct = octurn::usb_product(device->part, model);
+  descriptor->bcdDevice = octurn::usb_release(model);
   descriptor->iSerialNumber = 3;
   descriptor->bNumConfigurations = 1;
   return 0;
@@ -109,7 +92,7 @@ void libusb_free_config_descriptor(libusb_config_descriptor* configuration) {
 }
 
 int libusb_get_max_iso_packet_size(libusb_device* /*device*/, unsigned char /*endpoint*/) {
-  return 1920;
+  return octurn::max_iso_packet_bytes;
 }
 
 std::uint8_t libusb_get_bus_number(libusb_device* /*device*/) { return 1; }
@@ -137,9 +120,8 @@ libusb_device* libusb_get_device(libusb_device_handle* handle) { return handle->
 
 int libusb_get_string_descriptor_ascii(libusb_device_handle* /*handle*/, std::uint8_t /*index*/,
                                        unsigned char* data, int length) {
-  constexpr std::string_view serial = "A00000000000000A";
-  const auto count =
-      serial.copy(reinterpret_cast<char*>(data), static_cast<std::size_t>(length) - 1);
+  const auto count = octurn::kinect_serial_number.copy(reinterpret_cast<char*>(data),
+                                                       static_cast<std::size_t>(length) - 1);
   data[count] = 0;
   return static_cast<int>(count);
 }
@@ -156,27 +138,17 @@ int libusb_set_interface_alt_setting(libusb_device_handle* /*handle*/, int /*num
 int libusb_reset_device(libusb_device_handle* /*handle*/) { return 0; }
 
 int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
-                            std::uint16_t /*value*/, std::uint16_t /*index*/, unsigned char* data,
+                            std::uint16_t value, std::uint16_t index, unsigned char* data,
                             std::uint16_t length, unsigned /*timeout*/) {
   if (is_dead(*handle)) {
     return LIBUSB_ERROR_NO_DEVICE;
   }
   auto& bus = *handle->device->context->bus;
-  const std::span buffer(data, length);
-  const bool is_in = (type & LIBUSB_ENDPOINT_IN) != 0;
-  if (handle->device->part == libusb_device::Part::motor && is_in && request == 0x32) {
-    return reply_of_motor(bus.kinect, buffer);
-  }
-  if (handle->device->part != libusb_device::Part::camera) {
-    return is_in ? stalled : 0;
-  }
-  if (!is_in) {
-    return bus.camera.command(buffer) ? int{length} : stalled;
-  }
-  const std::vector<std::uint8_t> reply = bus.camera.take_reply();
-  const std::size_t size = std::min(reply.size(), buffer.size());
-  std::copy_n(reply.begin(), size, buffer.begin());
-  return static_cast<int>(size);
+  const auto transferred = octurn::vendor_request(
+      handle->device->part,
+      {.type = type, .request = request, .value = value, .index = index, .length = length},
+      bus.kinect, bus.camera, std::span(data, length));
+  return transferred ? static_cast<int>(*transferred) : stalled;
 }
 
 int libusb_bulk_transfer(libusb_device_handle* /*handle*/, unsigned char /*endpoint*/,

@@ -1,30 +1,14 @@
 // Two clouds of points in 3D: one laid over the other, or side by side to set pairs of points.
 
-import {
-  BufferAttribute, BufferGeometry, Fog, Group, Matrix4, Mesh, MeshBasicMaterial, OrbitControls, PerspectiveCamera, Points, PointsMaterial, Scene,
-  Sphere, SphereGeometry, Vector3, WebGLRenderer,
-} from './three.js';
+import {Fog, Group, Matrix4, Mesh, MeshBasicMaterial, OrbitControls, Scene, SphereGeometry, WebGLRenderer} from './three.js';
 import {fitToCanvas, onClick} from './canvas.js';
+import {besides, cloudOf, lookAt, makeEye, pointAt} from './fit_clouds.js';
 
 /** @typedef {{before_mm: number[][], pose_mm: number[][]}} Clouds */
 
 const colours = [0x35c4bd, 0xf09a3e];  // seen before, and the side
 const pairColours = [0xff5c8a, 0xffe14d, 0x9b8cff];
-const pointSize = 2.6;  // pixels
-const reachOfClick = 18;  // pixels
 const darkness = 0x14272f;  // that points far from the eye fade to
-const gap = 0.25;  // between clouds side by side, of the larger one's breadth
-const sight = new Vector3(0.42, -0.83, 0.37);  // from the middle to the eye
-
-/** @param {number[][]} points_mm @param {number} colour */
-function cloudOf(points_mm, colour) {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(points_mm.flat()), 3));
-  geometry.computeBoundingSphere();
-  const cloud = new Points(geometry, new PointsMaterial({color: colour, size: pointSize * Math.min(devicePixelRatio, 2), sizeAttenuation: false}));
-  cloud.matrixAutoUpdate = false;
-  return cloud;
-}
 
 /** @param {number} pair @param {number} radius */
 function markOf(pair, radius) {
@@ -37,7 +21,7 @@ export class FitViewer {
   #canvas;
   #onPoint;
   #renderer;
-  #camera = new PerspectiveCamera(32);
+  #camera = makeEye();
   #scene = new Scene();
   #controls;
   #marks = new Group();
@@ -45,7 +29,6 @@ export class FitViewer {
   #clouds = [];
   #isBeside = false;
   #isFrameDue = false;
-  /** @type {number[] | null} where the pointer went down */
 
   /**
    * @param {HTMLCanvasElement} canvas
@@ -57,7 +40,6 @@ export class FitViewer {
     this.#canvas = canvas;
     this.#onPoint = onPoint;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
-    this.#camera.up.set(0, 0, 1);
     this.#scene.add(this.#camera, this.#marks);
     this.#controls = new OrbitControls(this.#camera, canvas);
     this.#controls.addEventListener('change', () => this.#draw());
@@ -95,11 +77,9 @@ export class FitViewer {
 
   /** Shows both side by side, each as it stood. @param {number[][]} points_mm  that were clicked, of the one and the other in turn */
   showBeside(points_mm) {
-    const [before, side] = this.#clouds.map(({geometry}) => geometry.boundingSphere);
-    const distance = (1 + gap) * (before.radius + side.radius);
     const isFirst = !this.#isBeside;
     this.#isBeside = true;
-    this.#place(new Matrix4().makeTranslation(before.center.x + distance - side.center.x, before.center.y - side.center.y, 0), isFirst);
+    this.#place(besides(this.#clouds), isFirst);
     this.#showMarks(points_mm);
   }
 
@@ -133,45 +113,20 @@ export class FitViewer {
 
   /** Looks at both clouds. */
   #aim() {
-    const balls = this.#clouds.map(({geometry, matrixWorld}) => geometry.boundingSphere.clone().applyMatrix4(matrixWorld));
-    const {center, radius} = balls.reduce((all, ball) => all.union(ball), new Sphere().copy(balls[0]));
     this.#resize();
-    const from = this.#isBeside ? new Vector3(0, -0.9, 0.43) : sight;
-    const {aspect} = this.#camera;
-    const reach = this.#isBeside ? Math.max(balls[0].radius, balls[1].radius, radius / aspect) : radius / Math.min(1, aspect);
-    const distance = 1.05 * reach / Math.sin(this.#camera.fov / 2 * Math.PI / 180);
-    this.#scene.fog = new Fog(darkness, distance - balls[0].radius / 2, distance + 2 * balls[0].radius);
-    this.#camera.position.copy(center).addScaledVector(from.clone().normalize(), distance);
-    this.#camera.near = distance / 100;
-    this.#camera.far = distance * 20;
-    this.#camera.updateProjectionMatrix();
+    const {middle, distance, depth} = lookAt(this.#camera, this.#clouds, this.#isBeside);
+    this.#scene.fog = new Fog(darkness, distance - depth / 2, distance + 2 * depth);
     this.#controls.minDistance = distance / 20;
     this.#controls.maxDistance = distance * 4;
-    this.#controls.target.copy(center);
+    this.#controls.target.copy(middle);
     this.#controls.update();
   }
 
-  /** Tells of the point nearest to where somebody clicked; of those in reach, the one nearest to the eye. */
+  /** Tells of the point where somebody clicked. */
   #click(/** @type {number} */ x, /** @type {number} */ y) {
-    if (!this.#isBeside) {
-      return;
-    }
-    const {clientWidth, clientHeight} = this.#canvas;
-    const at = new Vector3();
-    let best = {depth: Infinity, cloud: -1, index: -1};
-    this.#clouds.forEach((cloud, number) => {
-      const positions = cloud.geometry.getAttribute('position');
-      for (let index = 0; index < positions.count; ++index) {
-        at.fromBufferAttribute(positions, index).applyMatrix4(cloud.matrixWorld).project(this.#camera);
-        const aside = Math.hypot((at.x + 1) / 2 * clientWidth - x, (1 - at.y) / 2 * clientHeight - y);
-        if (aside < reachOfClick && at.z + aside * 1e-4 < best.depth) {
-          best = {depth: at.z + aside * 1e-4, cloud: number, index};
-        }
-      }
-    });
-    if (best.cloud >= 0) {
-      at.fromBufferAttribute(this.#clouds[best.cloud].geometry.getAttribute('position'), best.index);
-      this.#onPoint([at.x, at.y, at.z], best.cloud === 1);
+    const found = this.#isBeside ? pointAt(this.#clouds, this.#camera, this.#canvas, x, y) : null;
+    if (found) {
+      this.#onPoint(found.point_mm, found.cloud === 1);
     }
   }
 

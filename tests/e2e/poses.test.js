@@ -15,6 +15,66 @@ async function clickUntil(page, {x, y, width, height}, part, hasHelped) {
   assert.ok(await hasHelped());
 }
 
+/**
+ * Where to click in the dialog of the fit for three pairs, and how far to drag the picture in between, as a point that faces the eye
+ * on the one cloud may lie behind on the other. Runs in the page.
+ * @param {{scan: string, object_from_platform: number[][]}} fit  which is right
+ * @returns {Promise<{drag: number, pairs: number[][][]} | undefined>}  pixels of the canvas: of what was seen before, and after dragging of the side
+ */
+async function clicksOfPairs({scan, object_from_platform}) {
+  const [{Matrix4, Vector3}, {besides, cloudOf, lookAt, makeEye, pointAt}] = await Promise.all([import('/three.js'), import('/fit_clouds.js')]);
+  const canvas = document.getElementById('fit-view');
+  const {clientWidth: width, clientHeight: height} = canvas;
+  const {before_mm, pose_mm} = await (await fetch(`/api/v1/scans/${scan}/poses/1/points`)).json();
+  const clouds = [cloudOf(before_mm, 0), cloudOf(pose_mm, 0)];
+  clouds[1].matrix.copy(besides(clouds));
+  clouds[1].updateMatrixWorld(true);
+  const eyeAfter = (drag) => {
+    const eye = makeEye();
+    eye.aspect = width / height;
+    const {middle} = lookAt(eye, clouds, true);
+    eye.position.sub(middle).applyAxisAngle(eye.up, -2 * Math.PI * drag / height).add(middle);
+    eye.lookAt(middle);
+    eye.updateMatrixWorld(true);
+    return eye;
+  };
+  /** Where a point of a cloud is clicked, if one near it is found there. */
+  const clickOf = (eye, number, point) => {
+    const at = point.clone().applyMatrix4(clouds[number].matrixWorld).project(eye);
+    const [x, y] = [(at.x + 1) / 2 * width, (1 - at.y) / 2 * height];
+    const found = x > 0 && x < width && y > 0 && y < height ? pointAt(clouds, eye, canvas, x, y) : null;
+    return found?.cloud === number && point.distanceTo(new Vector3(...found.point_mm)) < 3 ? [x, y] : null;
+  };
+  const before_from_side = new Matrix4().set(...object_from_platform.slice(0, 3).flatMap(([x, y, z, shift]) => [x, y, z, 1000 * shift]), 0, 0, 0, 1);
+  const places = pose_mm.filter((_, i) => i % 11 === 0).map((point) => {
+    const side = new Vector3(...point);
+    const before = side.clone().applyMatrix4(before_from_side);
+    return {side, before, click: clickOf(eyeAfter(0), 0, before)};
+  }).filter(({click}) => click);
+  for (const eighths of [4, 3, -3, 2, -2, 1, -1, 0]) {
+    const drag = eighths / 8 * height;
+    const eye = eyeAfter(drag);
+    const pairs = [];
+    for (const {side, before, click} of places) {
+      const isApart = pairs.every((pair) => pair.before.distanceTo(before) > 25) && (pairs.length !== 2 ||
+          pairs[1].before.clone().sub(pairs[0].before).cross(before.clone().sub(pairs[0].before)).length() > 800);
+      const other = isApart && clickOf(eye, 1, side);
+      if (other) {
+        pairs.push({before, clicks: [click, other]});
+      }
+      if (pairs.length === 3) {
+        return {drag, pairs: pairs.map(({clicks}) => clicks)};
+      }
+    }
+  }
+}
+
+/** Degrees between two poses of 4 x 4 numbers. */
+function degreesBetween(one, other) {
+  const trace = [0, 1, 2].reduce((sum, row) => sum + [0, 1, 2].reduce((part, column) => part + one[row][column] * other[row][column], 0), 0);
+  return Math.acos(Math.min((trace - 1) / 2, 1)) * 180 / Math.PI;
+}
+
 test('an object is scanned, turned over, scanned again, and downloaded as one model; the other side is taken back', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '20']});
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
@@ -63,6 +123,42 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await page.getByRole('button', {name: 'Use this fit'}).click();
   // Whether an arm on the wrong side contradicts too much is a close thing with this object: either is an answer.
   await page.getByText('The model was not built').or(page.getByText('Build 2, of 2 sides')).first().waitFor();
+
+  const {object_from_platform} = pose.pose_of.registration;
+  await page.getByRole('button', {name: 'See the fit: side 2'}).click();
+  await page.getByRole('button', {name: 'Set three pairs'}).click();
+  await text.filter({hasText: /^Pair 1 of 3/}).waitFor();
+  const {drag, pairs} = await page.evaluate(clicksOfPairs, {scan: first.id, object_from_platform});
+  const turn = async (by) => {
+    await page.mouse.move(canvas.x + canvas.width / 2 - by / 2, canvas.y + canvas.height - 10);
+    await page.mouse.down();
+    await page.mouse.move(canvas.x + canvas.width / 2 + by / 2, canvas.y + canvas.height - 10, {steps: 4});
+    await page.mouse.up();
+  };
+  for (const [before, side] of pairs) {
+    await page.mouse.click(canvas.x + before[0], canvas.y + before[1]);
+    await turn(drag);
+    await page.mouse.click(canvas.x + side[0], canvas.y + side[1]);
+    await turn(-drag);
+  }
+  await text.filter({hasText: 'Three pairs are set.'}).waitFor();
+  await picture(page, 'fit-three-pairs');
+  await page.getByRole('button', {name: 'Fit by these pairs'}).click();
+  await page.waitForFunction(async (scan) => {
+    const {poses: [{registration}]} = await (await fetch(`/api/v1/scans/${scan}/poses`)).json();
+    return registration.candidate === null;
+  }, first.id, {polling: 300});
+  const {poses: [{registration}]} = await ask(scanner, `scans/${first.id}/poses`);
+  assert.ok(degreesBetween(registration.object_from_platform, object_from_platform) < 1, 'the pairs tell the pose that was found');
+  assert.equal((await ask(scanner, `scans/${first.id}`)).model.watertight, true);
+
+  await page.getByRole('button', {name: 'Scan one more side'}).click();
+  await page.getByText('Side 3 is in the model').waitFor();
+  const {poses, model} = await ask(scanner, `scans/${first.id}`);
+  assert.deepEqual([poses.length, model.watertight], [2, true]);
+  await picture(page, 'three-sides');
+  await page.getByRole('button', {name: 'Take back: side 3'}).click();
+  await page.getByText('Side 3 is in the model').waitFor({state: 'detached'});
 
   await page.getByRole('button', {name: 'Take back: side 2'}).click();
   await add.waitFor();

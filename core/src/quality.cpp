@@ -140,6 +140,16 @@ void judge_box(Judgement& judgement, const ScanFigures& scan) {
   }
 }
 
+void add_missing(Judgement& judgement, MissingPart missing) {
+  judgement.add(
+      Verdict::look,
+      {.code = "part-missing",
+       .detail = "a part of the object, " + mm_text(missing.length, text_digits) +
+                 " long, was seen by several stops and is not in the model",
+       .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
+       .places = std::move(missing.places)});
+}
+
 void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
   auto missing = find_missing_part(scan, model);
   if (model.dropped.volume > min_dropped && model.dropped.volume > max_dropped * model.volume) {
@@ -152,14 +162,22 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
          .hint = "Scan one object at a time, or build the model of all parts.",
          .places = missing ? std::move(missing->places) : std::vector<Eigen::Vector3d>()});
   } else if (missing) {
-    judgement.add(
-        Verdict::look,
-        {.code = "part-missing",
-         .detail = "a part of the object, " + mm_text(missing->length, text_digits) +
-                   " long, was seen by several stops and is not in the model",
-         .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
-         .places = std::move(missing->places)});
+    add_missing(judgement, *std::move(missing));
   }
+}
+
+/// Judges another side of a model. What is filled in, and what was dropped, is no side's own.
+Quality judge_side(const ScanFigures& scan, const ModelReport& model) {
+  Judgement judgement;
+  judge_agreement(judgement, scan);
+  judge_height(judgement, scan, {});
+  if (scan.platform_height.value_or(0) <= look_height) {
+    judge_box(judgement, scan);
+    if (auto missing = find_missing_part(scan, model)) {
+      add_missing(judgement, *std::move(missing));
+    }
+  }
+  return judgement.take();
 }
 
 /// Adds the reasons of another side: each code once.
@@ -202,15 +220,12 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
 
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings) {
-  Quality quality = judge(poses.front(), model, findings);
+  ScanFigures first = poses.front();
+  // What one side's stops left out, another's may have seen.
+  first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
+  Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    Judgement judgement;
-    judge_agreement(judgement, poses[i]);
-    judge_height(judgement, poses[i], {});
-    if (poses[i].platform_height.value_or(0) <= look_height) {
-      judge_box(judgement, poses[i]);
-    }
-    add_reasons(quality, judgement.take(), "side " + std::to_string(i + 1) + ": ");
+    add_reasons(quality, judge_side(poses[i], model), "side " + std::to_string(i + 1) + ": ");
   }
   return quality;
 }

@@ -153,6 +153,27 @@ TEST(Judge, LooksAtEachPoseOfSeveral) {
   EXPECT_EQ(quality.reasons.front().detail.find("side 2: the platform is seen 20"), 0U);
 }
 
+TEST(Judge, MissesAPartThatOnlyTheUndersidesScanSaw) {
+  std::vector<ScanFigures> poses(2, right_scan());
+  add_seen_limb(poses[1]);
+  ModelReport model = right_model();
+  model.places.surface.add(Eigen::Vector3d(0, 0, 0.05));
+  const Quality quality = judge(poses, model);
+  ASSERT_EQ(codes(quality), Codes{"part-missing"});
+  EXPECT_EQ(quality.reasons[0].detail.find("side 2: a part of the object, 60.0 mm"), 0U);
+  EXPECT_FALSE(quality.reasons[0].places.empty());
+}
+
+TEST(Judge, CallsASideUnseenOnlyIfNoPoseWasTurnedAllAround) {
+  std::vector<ScanFigures> poses(2, right_scan());
+  poses[0].widest_gap = radians_from_degrees(180);
+  EXPECT_EQ(judge(poses, right_model()), Quality{});
+  poses[1].widest_gap = radians_from_degrees(120);
+  const Quality quality = judge(poses, right_model());
+  ASSERT_EQ(codes(quality), Codes{"little-seen"});
+  EXPECT_EQ(quality.verdict, Verdict::look);
+}
+
 TEST(Judge, TakesOverWhatTheCalibrationFound) {
   const std::vector<CalibrationFinding> findings{
       {.code = "moved", .detail = "the object moved", .hint = "Fix it.", .stop = {}, .angle = {}},

@@ -48,9 +48,31 @@ Box clip_of(const Scan& scan, const BuildInput& input) {
   return is_own && !scan.poses.empty() ? model_clip(scan) : wanted;
 }
 
-/// What the scan's own calibration found, where its pose is used again.
-std::vector<CalibrationFinding> findings_of(const Job& job) {
+std::vector<CalibrationFinding> calibration_findings(const Job& job) {
   return job.calibration ? job.calibration->findings : std::vector<CalibrationFinding>{};
+}
+
+/// Solves the pose of a scan, if it is to be solved and is not yet.
+/// @param[out] build  gets the calibration
+/// @return what that has found, or what the scan's own has, whose pose is used again
+std::vector<CalibrationFinding> solve(Scan& scan, Build& build, const BuildInput& input,
+                                      int threads, const std::stop_token& stop,
+                                      const BuildProgress& progress) {
+  if (scan.solved) {
+    return calibration_findings(input.job);
+  }
+  if (input.settings.scan.pose != PoseSource::solved || !is_one_turn(scan)) {
+    return {};
+  }
+  progress(Phase::calibrating, 0);
+  const ScanSolution solution =
+      solve_scan(input.folder, scan, readable_snapshots(input.folder, scan, stop), threads, stop);
+  throw_if_stopped(stop);
+  build.calibration = to_scan_calibration(solution.report);
+  if (solution.replaces_told) {
+    scan.solved = solution.solved;
+  }
+  return solution.report.findings;
 }
 
 /// Counts the snapshots that are read, for `progress`.
@@ -67,6 +89,12 @@ SnapshotSource counted(SnapshotSource snapshots, const BuildProgress& progress) 
 
 }  // namespace
 
+std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder) {
+  auto findings = calibration_findings(job);
+  add_stored_move(folder, findings);
+  return findings;
+}
+
 std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
                                  const std::filesystem::path& file, const std::stop_token& stop,
                                  const BuildProgress& progress) try {
@@ -75,22 +103,11 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   Build build{.settings = settings};
   Scan scan = to_scan(input);
   const auto all = static_cast<int>(scan.shots.size());
-  std::vector<CalibrationFinding> findings;
-  if (scan.solved) {
-    findings = findings_of(input.job);
-  } else if (settings.scan.pose == PoseSource::solved && is_one_turn(scan)) {
-    progress(Phase::calibrating, 0);
-    const ScanSolution solution = solve_scan(
-        input.folder, scan, readable_snapshots(input.folder, scan, stop), limits.threads, stop);
-    throw_if_stopped(stop);
-    build.calibration = to_scan_calibration(solution.report);
-    findings = solution.report.findings;
-    if (solution.replaces_told) {
-      scan.solved = solution.solved;
-    }
+  auto findings = input.findings;
+  if (!findings) {
+    findings = solve(scan, build, input, limits.threads, stop, progress);
+    add_stored_move(input.folder, *findings);
   }
-
-  add_stored_move(input.folder, findings);
 
   ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
   options.level = settings.level;
@@ -107,7 +124,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   if (!report) {
     return std::nullopt;
   }
-  Quality quality = judge(checks.figures(limits.threads), *report, findings);
+  Quality quality = judge(checks.figures(limits.threads), *report, *findings);
   report->places = {};  // a job's figures are copied for each look at them
   build.model = {.report = *std::move(report),
                  .build_time = Clock::now() - begin,

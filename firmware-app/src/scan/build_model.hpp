@@ -4,7 +4,9 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
+#include "octurn/calibrate.hpp"
 #include "scan/job.hpp"
 
 namespace octurn {
@@ -14,7 +16,13 @@ struct BuildInput {
   const Job& job;                       ///< of the scan
   const std::filesystem::path& folder;  ///< of the same, or of its poses; nothing in it is changed
   const BuildSettings& settings;
+  /// Of several poses: what was found as they were scanned. Of one turn it is found here.
+  std::optional<std::vector<CalibrationFinding>> findings = {};
 };
+
+/// What was found as a scan was taken: by its own calibration, and by its last look.
+/// @param folder  of the scan. @throws Error  as `read_scan`
+std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder);
 
 /// Told on any thread what a build is doing, and how many snapshots it has read.
 using BuildProgress = std::function<void(Phase phase, int snapshots_done)>;

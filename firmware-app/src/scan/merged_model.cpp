@@ -47,14 +47,32 @@ BuildSettings merged_settings(const Job& first, const Job& pose) {
   return settings;
 }
 
+std::optional<std::vector<CalibrationFinding>> pose_findings(
+    const ScanStore& store, const Job& first, const std::vector<std::string>& poses) {
+  if (poses.empty()) {
+    return std::nullopt;
+  }
+  auto findings = scan_findings(first, store.folder(first.id));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (CalibrationFinding& finding : scan_findings(store.get(poses[i]), store.folder(poses[i]))) {
+      finding.detail.insert(0, "side " + std::to_string(i + 2) + ": ");
+      findings.push_back(std::move(finding));
+    }
+  }
+  return findings;
+}
+
 std::optional<Build> build_merged(ScanStore& store, const Job& first, const MergedTurns& merged,
                                   const BuildSettings& settings, int number, const Limits& limits,
                                   const std::stop_token& stop, const BuildProgress& progress) {
   const std::filesystem::path file = store.begin_build(first.id, number);
   const std::filesystem::path folder = file.parent_path() / merged_folder;
   write_merged_scan(folder, merged.turns, merged.registration);
-  auto build = build_model({.job = first, .folder = folder, .settings = settings}, limits, file,
-                           stop, progress);
+  auto build = build_model({.job = first,
+                            .folder = folder,
+                            .settings = settings,
+                            .findings = pose_findings(store, first, merged.poses)},
+                           limits, file, stop, progress);
   if (build) {
     build->number = number;
     build->poses = merged.poses;

@@ -27,6 +27,13 @@ std::vector<std::string> merged_poses(const Job& first, const std::string& witho
 /// The settings of a model of all poses: as the last one was scanned, with the first one's box.
 BuildSettings merged_settings(const Job& first, const Job& pose);
 
+/// What was found as the scans of several poses were taken; of the other ones the side is named.
+/// @param poses  ids of the other ones
+/// @return nothing if there are none
+std::optional<std::vector<CalibrationFinding>> pose_findings(const ScanStore& store,
+                                                             const Job& first,
+                                                             const std::vector<std::string>& poses);
+
 /// Builds the model of all poses, in a folder of a build that is begun by it.
 /// @param number  of the build
 /// @return nothing if stopped first

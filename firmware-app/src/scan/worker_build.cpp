@@ -28,9 +28,11 @@ bool build_and_keep(const BuildCommand& command, const Limits& limits, const Wor
   const std::filesystem::path file = ports.store.begin_build(run.scan, run.number);
   const Build* const chosen = find_build(job, job.builds.chosen);
   const auto poses = chosen != nullptr ? chosen->poses : std::vector<std::string>{};
-  std::optional<Build> build = build_model(
-      {.job = job, .folder = ports.store.merged_scan(run.scan, poses), .settings = run.settings},
-      limits, file, stop, show);
+  std::optional<Build> build = build_model({.job = job,
+                                            .folder = ports.store.merged_scan(run.scan, poses),
+                                            .settings = run.settings,
+                                            .findings = pose_findings(ports.store, job, poses)},
+                                           limits, file, stop, show);
   if (!build) {
     return false;
   }

@@ -81,6 +81,10 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
   EXPECT_TRUE(report["accepted"]);
   EXPECT_FALSE(report["symmetric"]);
   EXPECT_EQ(json::parse(content_of(merged_ / "scan.json"))["version"], 2);
+  for (const ScanPose& pose : read_scan(merged_).poses) {
+    EXPECT_GT(pose.clip.max.z(), figure_height);
+    EXPECT_LT(pose.clip.max.z(), figure_height + 0.03) << "empty space costs time and memory";
+  }
   const fs::path model = folder_.path() / "Scan.stl";
   Program program({octurn_program(), "reconstruct", merged_.string(), "-o", model.string(),
                    "--method", "solid", "--json"});

@@ -14,6 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t max_kept_bytes = 16'000'000;  // of depth images, of all turns
+
+// Metres, around what a turn saw in its clip box. Boxes that lie askew to each other span much
+// empty space, which would cost more than the object. Lower readings may be the platform's.
+constexpr double clip_margin = 0.020;
+constexpr double min_height = 0.004;
+
 /// One pose of a scan, as a scan of one turn.
 Scan to_turn(const Scan& scan, int number) {
   const ScanPose& pose = scan.poses[static_cast<std::size_t>(number)];
@@ -75,6 +82,44 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
   }
 }
 
+/// What the object's readings of one stop span that lie in a turn's clip box: metres, platform
+/// frame at angle 0. Every other row and column is enough.
+Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Scan& scan, double angle) {
+  const Intrinsics& lens = scan.intrinsics;
+  const Eigen::Isometry3d pose = object_from_sensor(model_pose(scan), angle);
+  Eigen::AlignedBox3d extent;
+  for (int v = 0; v < frame.height; v += 2) {
+    const auto row = frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
+    for (int u = 0; u < frame.width; u += 2) {
+      if (row[u] > 0) {
+        const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+        const Eigen::Vector3d point = pose * (ray * (row[u] * lens.depth_unit));
+        if (point.z() > min_height && contains(scan.clip, point)) {
+          extent.extend(point);
+        }
+      }
+    }
+  }
+  return extent;
+}
+
+/// A turn's clip box without the space at its sides and its top where nothing was seen.
+Box drawn_in(const StoredTurn& turn) {
+  const Box& clip = turn.scan.clip;
+  Eigen::AlignedBox3d extent;
+  for (const auto& of_stop : turn.extents) {
+    extent.extend(of_stop);
+  }
+  if (extent.isEmpty()) {
+    return clip;
+  }
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(clip_margin);
+  Box box{.min = clip.min.cwiseMax(extent.min() - margin),
+          .max = clip.max.cwiseMin(extent.max() + margin)};
+  box.min.z() = clip.min.z();
+  return box;
+}
+
 /// Files the snapshots of all turns into a folder. @return the scan that they make
 Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
             const Registration& registration) {
@@ -89,7 +134,7 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
     merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
                             .platform_from_sensor = scan.platform_from_sensor,
                             .solved = scan.solved,
-                            .clip = scan.clip});
+                            .clip = drawn_in(turns[i])});
     for (Shot shot : scan.shots) {
       const std::string file = shot_file(static_cast<int>(merged.shots.size()));
       link_or_copy(turns[i].folder / shot.file, folder / file);
@@ -136,8 +181,15 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
     if (turn.scan.solved) {
       continue;
     }
-    const CalibrationReport report =
-        solve_pose(turn.scan, stored_snapshots(turn.folder, turn.scan, stop), threads);
+    const SnapshotSource stored = stored_snapshots(turn.folder, turn.scan, stop);
+    const auto kept = std::make_shared<KeptFrames>(stored.count, max_kept_bytes / turns.size());
+    const SnapshotSource read_once{.count = stored.count, .read = [&](std::size_t index) {
+                                     Snapshot snapshot = stored.read(index);
+                                     kept->keep(index, snapshot.frame);
+                                     return snapshot;
+                                   }};
+    const CalibrationReport report = solve_pose(turn.scan, read_once, threads);
+    turn.kept = kept;
     if (report.accepted && !report.confirms_told()) {
       turn.scan.solved = to_solved_pose(report);
     }
@@ -147,10 +199,11 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
   }
 }
 
-Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
+Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop) {
   std::vector<RegistrationTurn> seen;
-  for (const StoredTurn& turn : turns) {
+  for (StoredTurn& turn : turns) {
+    turn.extents.assign(turn.scan.shots.size(), {});
     RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
                          .platform_from_sensor = model_pose(turn.scan),
                          .angles = {},
@@ -161,8 +214,11 @@ Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
     for (const Shot& shot : turn.scan.shots) {
       one.angles.push_back(shot.angle);
     }
-    one.read = [snapshots = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t index) {
-      return snapshots.read(index).frame;
+    one.read = [&turn, stored = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t i) {
+      auto kept = turn.kept ? turn.kept->find(i) : std::nullopt;
+      DepthFrame frame = kept ? *std::move(kept) : stored.read(i).frame;
+      turn.extents[i] = extent_of(frame, turn.scan, turn.scan.shots[i].angle);
+      return frame;
     };
     seen.push_back(std::move(one));
   }

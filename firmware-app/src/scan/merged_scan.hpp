@@ -1,11 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
+#include "scan/kept_frames.hpp"
 
 namespace octurn {
 
@@ -17,6 +20,10 @@ struct StoredTurn {
   std::optional<Eigen::Isometry3d> object_from_platform = {};
   /// The same, roughly, as a person says: it is refined from there.
   std::optional<Eigen::Isometry3d> told_object_from_platform = {};
+  /// Its depth images, where they were read already.
+  std::shared_ptr<const KeptFrames> kept = {};
+  /// What each stop saw in the clip box, once it is registered: metres, platform frame at angle 0.
+  std::vector<Eigen::AlignedBox3d> extents = {};
 };
 
 /// The turns of scan folders, in their order. How the object lay is known of the first folder's
@@ -30,12 +37,14 @@ std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& fol
 /// they solve.
 void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
 
-/// Registers the turns. @throws Error, Stopped  as `read_snapshot` and `register_turns`
-Registration register_turns(const std::vector<StoredTurn>& turns, int threads,
+/// Registers the turns, and keeps what they saw. @throws Error, Stopped  as `read_snapshot` and
+/// `register_turns`
+Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop);
 
 /// Writes one scan folder of several poses, whole or not at all: its snapshots are hard links to
-/// those of the turns, or copies where the file system has no such links.
+/// those of the turns, or copies where the file system has no such links. The clip box of each pose
+/// is drawn in to what was seen inside it.
 ///
 /// @param folder  must not exist, or be empty
 /// @throws Error "disk-full", "write-failed"

@@ -57,7 +57,7 @@ bool Worker::join(const std::stop_token& stop) try {
   ports_.store.withdraw_pose(job_.pose_of->scan, job_.id);  // of an earlier attempt
   const Job first = ports_.store.get(job_.pose_of->scan);
   std::vector<std::string> poses = merged_poses(first, job_.id);
-  const std::vector<StoredTurn> turns =
+  std::vector<StoredTurn> turns =
       read_turns({ports_.store.merged_scan(first.id, poses), ports_.store.folder(job_.id)});
   poses.push_back(job_.id);
   const Registration registration = register_turns(turns, limits_.threads, stop);

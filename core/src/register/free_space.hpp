@@ -6,6 +6,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "register/nearest_points.hpp"
 #include "register/reading_fit.hpp"
 
 namespace octurn {
@@ -21,8 +22,8 @@ class FreeSpace {
 
   /// Whether a point lies in a voxel of empty space. @param point  metres
   bool is_free(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3i at = ((point - low_) / voxel_side).array().floor().cast<int>();
-    return (at.array() < 0).any() || (at.array() >= size_.array()).any() || free_[index(at)] != 0;
+    const Eigen::Vector3d at = (point - low_) / voxel_side;
+    return !is_inside(at, size_) || free_[index(at.cast<int>())] != 0;
   }
 
  private:

@@ -8,6 +8,12 @@
 
 namespace octurn {
 
+/// Whether a place lies in a volume of so many voxels. @param at  in voxels from its corner
+inline bool is_inside(const Eigen::Vector3d& at, const Eigen::Vector3i& size) {
+  return at.x() >= 0 && at.y() >= 0 && at.z() >= 0 && at.x() < size.x() && at.y() < size.y() &&
+         at.z() < size.z();
+}
+
 /// A volume around points that knows the nearest of them to each voxel.
 class NearestPoints {
  public:
@@ -23,11 +29,11 @@ class NearestPoints {
 
   /// The nearest point, to within a voxel of 3 mm; null if all are far.
   const SurfacePoint* find(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3i at = ((point - low_) / voxel_side).array().floor().cast<int>();
-    if ((at.array() < 0).any() || (at.array() >= size_.array()).any()) {
+    const Eigen::Vector3d at = (point - low_) / voxel_side;
+    if (!is_inside(at, size_)) {
       return nullptr;
     }
-    const std::int32_t nearest = nearest_[index(at)];
+    const std::int32_t nearest = nearest_[index(at.cast<int>())];
     return nearest < 0 ? nullptr : &points_[static_cast<std::size_t>(nearest)];
   }
 

@@ -1,7 +1,6 @@
 #include "register/stop_view.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -120,7 +119,7 @@ std::optional<SurfacePoint> StopView::look_up(const Vector3d& point) const {
   if (!(u > 0 && v > 0 && u < window_.width && v < window_.height)) {
     return std::nullopt;
   }
-  return read(static_cast<int>(std::lround(u)), static_cast<int>(std::lround(v)));
+  return read(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
 }
 
 std::vector<SurfacePoint> StopView::readings(int step) const {

@@ -16,20 +16,23 @@ namespace {
 using Eigen::Vector3d;
 
 // A rig comes out of true in one of two ways: the camera with its lasers was moved, or a laser was
-// turned in its holder. Each leaves the other as it was told; only if neither explains what is
-// seen, both are free.
+// turned in its holder, mostly about the vertical. Each leaves the other as it was told; only if
+// neither explains what is seen, both are free.
 const RigTrust trusted_pose{.pose_shift = 0.0002,
                             .pose_turn = radians_from_degrees(0.02),
                             .plane_shift = 0.003,
-                            .plane_turn = radians_from_degrees(0.5)};
+                            .plane_turn = radians_from_degrees(0.5),
+                            .plane_tilt = radians_from_degrees(0.02)};
 const RigTrust trusted_planes{.pose_shift = 0.02,
                               .pose_turn = radians_from_degrees(3),
                               .plane_shift = 0.00005,
-                              .plane_turn = radians_from_degrees(0.01)};
+                              .plane_turn = radians_from_degrees(0.01),
+                              .plane_tilt = radians_from_degrees(0.01)};
 const RigTrust trusted_in_part{.pose_shift = 0.005,
                                .pose_turn = radians_from_degrees(1),
                                .plane_shift = 0.0005,
-                               .plane_turn = radians_from_degrees(0.1)};
+                               .plane_turn = radians_from_degrees(0.1),
+                               .plane_tilt = radians_from_degrees(0.1)};
 constexpr double cheaper = 0.95;  // than the simpler explanation
 constexpr double far_cheaper = 0.85;
 

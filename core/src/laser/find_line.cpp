@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <span>
 
 #include "laser/line_pieces.hpp"
@@ -11,19 +13,26 @@ namespace {
 
 // Rows are smoothed by the binomial filter 1 4 6 4 1, whose gain is 16.
 constexpr int gain = 16;
-constexpr int reach = 2;                 // pixels of the filter to each side
-constexpr int min_peak = 8 * gain;       // grey levels over room light
-constexpr int noise = 2 * gain;          // grey levels that are no light
-constexpr int min_valley = 5 * gain;     // grey levels that part two pieces, and a fifth of a peak
-constexpr int valley_share = 5;          //
-constexpr int light_share = 20;          // of a peak, at which its line ends
-constexpr int max_half_width = 40;       // pixels: no line is wider
-constexpr float min_light = 25;          // grey levels in all
-constexpr int saturated = 250;           // grey levels
-constexpr int max_saturated_share = 2;   // of a line's pixels: half of them
-constexpr int min_saturated_pixels = 6;  // a line is no wider where it is only bright
-constexpr double wide = 2.5;             // times the usual width, in standard deviations
-constexpr double wide_pixels = 0.5;      // and so much more
+constexpr int reach = 2;  // pixels of the filter to each side
+
+// Grey levels over the dark picture, times the gain.
+constexpr int min_peak = 8 * gain;
+constexpr int noise = 2 * gain;       // that are no light
+constexpr int min_valley = 5 * gain;  // that part two pieces; of a bright one more
+constexpr int valley_share = 5;       // of a peak: a fifth
+constexpr int light_share = 20;       // of a peak, down to which its light is the line's
+
+constexpr int max_half_width = 40;  // pixels: no line is wider
+constexpr float min_light = 25;     // grey levels in all
+
+// Glare: where most of so many pixels or more are as bright as a camera tells.
+constexpr int saturated = 250;  // grey levels
+constexpr int min_saturated_pixels = 6;
+constexpr int max_saturated_share = 2;  // half of the pixels
+
+// A line's standard deviation, where it is more than this times the usual one and so many pixels.
+constexpr double wide = 2.5;
+constexpr double wide_pixels = 0.5;
 
 /// A candidate, and how wide its light is.
 struct Candidate {

@@ -1,7 +1,7 @@
 #include "laser/laser_lines.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>

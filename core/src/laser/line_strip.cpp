@@ -1,5 +1,6 @@
 #include "laser/line_strip.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>

@@ -245,7 +245,7 @@ RigSolution RigSolver::solve(const RigTrust& trust) const {
   sigmas.head<2>().setConstant(trust.pose_turn);
   sigmas.segment<3>(2).setConstant(trust.pose_shift);
   for (Index first = pose_unknowns; first < unknowns; first += plane_unknowns) {
-    sigmas.segment<3>(first) << trust.plane_turn, trust.plane_turn, trust.plane_shift;
+    sigmas.segment<3>(first) << trust.plane_turn, trust.plane_tilt, trust.plane_shift;
   }
   const VectorXd prior = sigmas.array().square().inverse();
   VectorXd moved_so_far = VectorXd::Zero(unknowns);

@@ -14,7 +14,8 @@ struct RigTrust {
   double pose_shift = 0;   ///< metres
   double pose_turn = 0;    ///< radians
   double plane_shift = 0;  ///< metres, at the object
-  double plane_turn = 0;   ///< radians
+  double plane_turn = 0;   ///< radians, about the vertical
+  double plane_tilt = 0;   ///< radians, about the horizontal in the plane
 };
 
 /// A solved rig.

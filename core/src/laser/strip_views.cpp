@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "depth/back_project.hpp"
 #include "depth/depth_limits.hpp"

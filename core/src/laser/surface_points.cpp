@@ -1,5 +1,6 @@
 #include "laser/surface_points.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "laser/line_strip.hpp"

@@ -64,7 +64,10 @@ async function walk(scanner, browser, finished, screen, colorScheme) {
 
 /** Starts a scan without touching the mouse. */
 async function startByKeyboard(scanner, browser) {
-  const {page} = await openPage(browser, scanner.url);
+  const {page} = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => localStorage.setItem('octurn-scan', '{"filter": "basic"}'));  // one picture a stop
+  await page.goto(scanner.url);
+  await page.locator('[data-panel=form]').waitFor();
   await page.locator('#all-settings > summary').focus();
   await page.keyboard.press('Enter');
   const snapshots = page.getByLabel('Snapshots a turn', {exact: true});
@@ -87,7 +90,7 @@ async function startByKeyboard(scanner, browser) {
 
 /** Looks at a scan on a phone as if its file had `bytes`. */
 async function lookAtLarge(scanner, browser, finished, bytes) {
-  const {page} = await openPage(browser, scanner.url, {screen: 'phone'});
+  const {page} = await openPage(browser, 'about:blank', {screen: 'phone'});
   await page.route('**/api/v1/scans', async (route) => {
     const body = await (await route.fetch()).json();
     body.scans.find(({id}) => id === finished.id).model.bytes = bytes;
@@ -98,7 +101,6 @@ async function lookAtLarge(scanner, browser, finished, bytes) {
     body.builds[0].model.bytes = bytes;
     await route.fulfill({json: body});
   });
-  await page.goto('about:blank');
   await page.goto(`${scanner.url}#${finished.id}`);
   await page.getByRole('button', {name: 'Show it (21 MB)'}).click();
   await page.locator('#tools').waitFor();

@@ -1,0 +1,64 @@
+// The Kinect of the appliance's twin, as its test tells it what to do: see kinect.cpp, which runs in the guest.
+
+import {once} from 'node:events';
+import {createServer} from 'node:net';
+import {createInterface} from 'node:readline';
+
+export class TwinKinect {
+  #server;
+  #socket;
+  #waiting = [];
+
+  /** Waits for the guest's program at a port of this machine's loopback. @param {() => number} angle  of the platform */
+  static async listen(angle) {
+    const kinect = new TwinKinect();
+    kinect.#server = createServer((socket) => kinect.#welcome(socket, angle)).listen(0, '127.0.0.1');
+    await once(kinect.#server, 'listening');
+    return kinect;
+  }
+
+  get port() {
+    return this.#server.address().port;
+  }
+
+  /** Waits for the guest's program. */
+  async connected() {
+    if (!this.#socket) {
+      await once(this.#server, 'connection');
+    }
+  }
+
+  /** Has it carry out an order. @throws {Error}  unless it does */
+  async tell(order) {
+    this.#socket.write(`${order}\n`);
+    const answer = await new Promise((come) => this.#waiting.push(come));
+    if (answer !== 'ok') {
+      throw new Error(`the Kinect, told "${order}": ${answer}`);
+    }
+  }
+
+  async close() {
+    this.#socket?.destroy();
+    this.#server.close();
+    await once(this.#server, 'close');
+  }
+
+  #welcome(socket, angle) {
+    this.#socket = socket;
+    socket.setNoDelay(true);
+    socket.on('error', () => {});  // the guest loses power
+    socket.once('close', () => {
+      if (this.#socket === socket) {
+        this.#socket = undefined;
+      }
+    });
+    createInterface({input: socket}).on('line', (line) => {
+      if (line === 'look') {
+        // Pulses of before have come by another socket, and are read first: twice, since this may be the first half of a turn.
+        setImmediate(() => setImmediate(() => socket.write(`angle ${angle()}\n`)));
+      } else {
+        this.#waiting.shift()(line);
+      }
+    });
+  }
+}

@@ -1,0 +1,85 @@
+// The twin's turntable: alone, and on the GPIO block of QEMU's Raspberry Pi 3, whose registers are written here.
+
+import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import {once} from 'node:events';
+import {test} from 'node:test';
+
+import {GpioWitness, Turntable} from './turntable.mjs';
+
+const step = 17;
+const direction = 27;
+const enable = 5;
+
+const pulse = (turntable) => {
+  turntable.change(step, 1);
+  turntable.change(step, 0);
+};
+const steps = (turntable, count) => Array.from({length: count}).forEach(() => pulse(turntable));
+
+test('the platform turns by a microstep with each rising edge, in the direction of DIR', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  steps(turntable, 200);
+  assert.equal(turntable.angle, Math.PI / 2);
+  turntable.change(direction, 0);
+  steps(turntable, 300);
+  assert.equal(turntable.position, -100);
+  assert.equal(turntable.pulses, 500);
+});
+
+test('it stands while ENABLE is high, as it is until somebody drives it, and while it is stuck', () => {
+  const turntable = new Turntable();
+  turntable.change(direction, 1);
+  steps(turntable, 5);
+  assert.equal(turntable.position, 0);
+  turntable.change(enable, 0);
+  turntable.isEnableStuck = true;
+  steps(turntable, 5);
+  assert.equal(turntable.position, 0);
+  turntable.isEnableStuck = false;
+  steps(turntable, 5);
+  assert.equal(turntable.position, 5);
+});
+
+test('the motor misses the pulses that it is told to', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  turntable.lose(3, 10);
+  steps(turntable, 10);
+  assert.equal(turntable.position, 10);
+  steps(turntable, 10);
+  assert.equal(turntable.position, 17);
+});
+
+test('QEMU tells each change of the lines that are outputs', async () => {
+  const changes = [];
+  const witness = await GpioWitness.listen((line, level) => changes.push([line, level]));
+  // -S: its processor stands still, so that nobody else writes to the registers.
+  const qemu = spawn('qemu-system-aarch64', ['-M', 'raspi3b', '-S', '-display', 'none', '-monitor', 'none', ...witness.options],
+    {stdio: 'ignore'});
+  const until = async (count) => {
+    while (changes.length < count) {
+      assert.equal(qemu.exitCode, null);
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    }
+  };
+  try {
+    await until(1);  // ENABLE, pulled up
+    const [functions1, functions2, set, clear] = [0x3f200004, 0x3f200008, 0x3f20001c, 0x3f200028];
+    witness.write(functions1, 1 << 21);  // GPIO17 is an output
+    witness.write(set, 1 << step | 1 << direction);
+    witness.write(clear, 1 << step | 1 << direction);
+    witness.write(functions2, 1 << 21);  // and GPIO27
+    witness.write(set, 1 << direction);
+    witness.write(set, 1 << step);
+    await until(5);
+    assert.deepEqual(changes, [[enable, 1], [step, 1], [step, 0], [direction, 1], [step, 1]]);
+  } finally {
+    qemu.kill('SIGKILL');
+    await once(qemu, 'exit');
+    await witness.close();
+  }
+});

@@ -17,9 +17,11 @@ import {here, preparePlaces, showPlace} from './places.js';
 import {preparePoses} from './poses_view.js';
 import {cancel, end, pause, rename, resume, start} from './scan_actions.js';
 import {screenOf} from './screen.js';
+import {prepareSend} from './send.js';
 import {prepareStage} from './stage.js';
 import * as states from './state.js';
 import {fillTexts, language} from './texts.js';
+import {seeWarnings} from './warnings.js';
 
 /** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
@@ -45,6 +47,7 @@ async function look() {
     const status = events.told(asked) ?? await askForStatus();
     seeStatus(status);
     seeNewest(status);
+    seeWarnings(status);
     bin.seeRevision(status.scans_revision);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
@@ -122,6 +125,7 @@ follow();
 listen();
 preparePlaces();
 prepareStage();
+prepareSend();
 watch();
 events.listenForNews(() => wake());
 watchCamera();

@@ -11,6 +11,8 @@ import {makeField} from './settings_fields.js';
 import {areEqual, changeOf, joined, keyOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt} from './settings_form.js';
 import {prepareKeys} from './keys.js';
 import {prepareMachine} from './machine.js';
+import {prepareOutgoing} from './outgoing.js';
+import {preparePower} from './power.js';
 import {chooseLanguage, chosenLanguage, languages, text} from './texts.js';
 import {prepareTurntable} from './turntable.js';
 
@@ -264,6 +266,8 @@ async function begin() {
   }
   show(element('cards'), true);
   prepareKeys();
+  prepareOutgoing();
+  preparePower();
   prepareTurntable(setTurntable);
   take(told);
 }

@@ -39,6 +39,29 @@ TEST(Appliance, KnowsNothingBeforeRootHasAnswered) {
   EXPECT_FALSE(appliance.is_updating());
 }
 
+TEST(Appliance, AsksRootToEndTheMachineOrToSetItsClock) {
+  const Folder folder;
+  Appliance appliance(folder.path());
+  const auto asked = [&](const ControlRequest& request) {
+    appliance.ask_for_control(request);
+    return content_of(folder.requests() / "control");
+  };
+  EXPECT_EQ(asked(PowerEnd::restart), "restart\n");
+  EXPECT_EQ(asked(PowerEnd::off), "off\n");
+  EXPECT_EQ(asked(clock_from({{"unix_s", 1795555555.9}})), "clock 1795555555\n");
+}
+
+TEST(Appliance, IsGivenATimeOfThisCentury) {
+  for (const nlohmann::json& body :
+       std::vector<nlohmann::json>{nlohmann::json::object(),
+                                   {{"unix_s", 0}},
+                                   {{"unix_s", 5e9}},
+                                   {{"unix_s", "now"}},
+                                   {{"unix_s", 1795555555}, {"zone", "UTC"}}}) {
+    EXPECT_EQ(code_thrown_by([&] { clock_from(body); }), "bad-settings") << body;
+  }
+}
+
 TEST(Appliance, TellsWhatRootAnswered) {
   const Folder folder;
   const Appliance appliance(folder.path());

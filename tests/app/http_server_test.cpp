@@ -67,6 +67,54 @@ TEST(HttpServer, AnswersAHeadWithoutTheBody) {
   EXPECT_EQ(std::stoul(head.header("Content-Length")), whole.body.size() + 1);  // HEAD for GET
 }
 
+/// Sends a request on a connection that is kept, and reads its answer, whose body has 4 bytes.
+std::string ask_on(const FileDescriptor& socket) {
+  send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n\r\n");
+  std::string told;
+  for (char byte = 0;
+       !told.ends_with("\r\n\r\nbody") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
+    told += byte;
+  }
+  return told;
+}
+
+TEST(HttpServer, KeepsTheConnectionOfWhoAsksForIt) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0},
+                          [](const Request&) { return Response{.body = "body"}; });
+  const FileDescriptor socket = connected(server.port());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(reply_from(ask_on(socket)).header("Connection"), "keep-alive");
+  }
+  send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(reply_from(receive_all(socket)).header("Connection"), "close");
+}
+
+TEST(HttpServer, ClosesWhereABodyMayBeUnread) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0},
+                          [](const Request&) { return Response{.status = 409}; });
+  const Reply chunked = reply_to(server.port(),
+                                 "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n"
+                                 "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
+  EXPECT_EQ(chunked.header("Connection"), "close");
+  const Reply reply =
+      reply_to(server.port(),
+               "PUT / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n"
+               "Content-Type: application/octet-stream\r\nContent-Length: 4\r\n\r\nbody");
+  EXPECT_EQ(reply.header("Connection"), "close");
+}
+
+// Idle connections hold a thread each; a visitor beside them is answered, as they are cut first.
+TEST(HttpServer, AnswersOthersBesideKeptConnections) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0},
+                          [](const Request&) { return Response{.body = "body"}; });
+  std::vector<FileDescriptor> idle;
+  for (int i = 0; i < 60; ++i) {
+    idle.push_back(connected(server.port()));
+    EXPECT_EQ(reply_from(ask_on(idle.back())).status, 200);
+  }
+  EXPECT_EQ(request(server.port(), "GET", "/").status, 200);
+}
+
 TEST(HttpServer, LeavesPreflightsToItsOwner) {
   const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
   const Reply reply = request(server.port(), "OPTIONS", "/", "",

@@ -52,6 +52,39 @@ TEST_F(PageTest, IsNotSentAgainUntilItChanges) {
   EXPECT_EQ(get("/app.js", {{"If-None-Match", tag}}).status, 200);
 }
 
+TEST_F(PageTest, IsSentPackedToWhoTakesThat) {
+  put(folder_.path() / "app.js.gz", "packed");
+  for (const char* accepted : {"gzip", "deflate, gzip;q=0.5, br", "br,gzip"}) {
+    const Response packed = get("/app.js", {{"Accept-Encoding", accepted}});
+    EXPECT_EQ(std::get<std::string>(packed.body), "packed") << accepted;
+    EXPECT_EQ(header(packed, "Content-Encoding"), "gzip");
+    EXPECT_EQ(header(packed, "Content-Type"), "text/javascript; charset=utf-8");
+    EXPECT_EQ(header(packed, "Vary"), "Accept-Encoding");
+  }
+  for (const char* accepted : {"", "br", "gzip;q=0", "gzip;q=0.0, br", "x-gzipped"}) {
+    const Response plain = get("/app.js", {{"Accept-Encoding", accepted}});
+    EXPECT_EQ(std::get<std::string>(plain.body), "export {};") << accepted;
+    EXPECT_EQ(header(plain, "Content-Encoding"), "");
+    EXPECT_EQ(header(plain, "Vary"), "Accept-Encoding");
+  }
+  EXPECT_EQ(code_thrown_by([&] { get("/app.js.gz"); }), "not-found");
+}
+
+TEST_F(PageTest, HasATagForEachOfItsForms) {
+  put(folder_.path() / "app.js.gz", "packed");
+  const std::string plain = header(get("/app.js"), "ETag");
+  const std::string packed = header(get("/app.js", {{"Accept-Encoding", "gzip"}}), "ETag");
+  EXPECT_NE(plain, packed);
+  EXPECT_EQ(get("/app.js", {{"Accept-Encoding", "gzip"}, {"If-None-Match", packed}}).status, 304);
+  EXPECT_EQ(get("/app.js", {{"If-None-Match", packed}}).status, 200);
+}
+
+TEST_F(PageTest, IsKeptForEverWhereItsNamesChangeWithTheContent) {
+  put(folder_.path() / "assets" / "main-7F3A.js", "1");
+  EXPECT_EQ(header(get("/assets/main-7F3A.js"), "Cache-Control"), "max-age=31536000, immutable");
+  EXPECT_EQ(header(get("/app.js"), "Cache-Control"), "no-cache");
+}
+
 TEST_F(PageTest, SaysThatThereIsNone) {
   EXPECT_EQ(code_thrown_by([&] { Page(folder_.path() / "lib"); }), "page-missing");
 }

@@ -6,6 +6,7 @@ import {test} from 'node:test';
 import {complaints, overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
+import {fromSide, planOf} from '../../web/plans.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
 
@@ -101,14 +102,14 @@ async function dragSpace(scanner, browser) {
   const top = page.getByLabel('Space upwards, to');
   await page.waitForFunction(() => document.querySelector('#space [data-clip="5"]')?.value === '400');
   await page.locator('#overlay [data-line=box][d]').waitFor({state: 'attached'});
-  const [x, y] = await page.evaluate(async () => {
-    const {fromSide, planOf} = await import('./plans.js');
+  const plan = await page.evaluate(() => {
     const canvas = document.getElementById('plan-side');
     canvas.scrollIntoView({block: 'center'});
     const {left, top} = canvas.getBoundingClientRect();
-    const [right, up] = planOf(fromSide, [-140, -140, 5, 140, 140, 400], 150, canvas.clientWidth, canvas.clientHeight).toPixel(0, 400);
-    return [left + right, top + up];
+    return {left, top, width: canvas.clientWidth, height: canvas.clientHeight};
   });
+  const [right, up] = planOf(fromSide, [-140, -140, 5, 140, 140, 400], 150, plan.width, plan.height).toPixel(0, 400);
+  const [x, y] = [plan.left + right, plan.top + up];
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x, y + 40, {steps: 4});

@@ -24,6 +24,9 @@ async function beginOf(folder, name) {
   return buffer.toString('latin1');
 }
 
+/** In the place of the others that the examples name: nobody listens there. */
+const nobody = 'http://127.0.0.1:9';
+
 test('those with curl do what they say', async (t) => {
   const scanner = await startScanner(t);
   const folder = await mkdtemp(join(tmpdir(), 'octurn-examples-'));
@@ -31,14 +34,17 @@ test('those with curl do what they say', async (t) => {
   const {key} = await ask(scanner, 'keys', 'POST', {name: 'curl', access: 'full'});
   const examples = await examplesIn('sh');
   assert.ok(examples.length >= 7);
-  const {stdout} = await promisify(execFile)('sh', ['-euc', examples.join('echo; echo ----\n')],
+  const script = examples.join('echo; echo ----\n').replaceAll(/http:\/\/\w+\.local:\d+/g, nobody);
+  const {stdout} = await promisify(execFile)('sh', ['-euc', script],
       {cwd: folder, env: {...process.env, OCTURN: scanner.url.replace(/\/$/, ''), KEY: key}, maxBuffer: 1 << 24});
 
   const said = stdout.split('\n----\n').map((text) => text.trim());
   assert.equal(said.length, examples.length);
   assert.equal(JSON.parse(said[0]).scan, null);
-  assert.match(said.at(-2), /^data: \{"scans_revision":\d+\}$/);
-  assert.equal(JSON.parse(said.at(-1)).code, 'no-such-scan');
+  assert.match(said.at(-4), /^data: \{"scans_revision":\d+\}$/);
+  assert.equal(JSON.parse(said.at(-3)).code, 'no-such-scan');
+  assert.equal(JSON.parse(said.at(-2)).webhooks[0].address, nobody);
+  assert.deepEqual([await ask(scanner, 'webhooks'), await ask(scanner, 'printers')].map(({webhooks, printers}) => webhooks ?? printers), [[], []]);
   const {scans} = await ask(scanner, 'scans');
   assert.deepEqual(scans.map(({name}) => name), ['Owl', 'Owl']);  // scanned here, and taken in
   assert.equal((await ask(scanner, `scans/${scans[1].id}/builds`)).builds.length, 2);

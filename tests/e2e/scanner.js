@@ -72,8 +72,9 @@ export async function startScanner(t, {rig = ['--simulate', '--simulate-speed', 
 
 /** @returns {Promise<any>} the body of an answer of the API */
 export async function ask(scanner, path, method = 'GET', body = undefined) {
+  // A test that is busy for seconds would not see that a connection which it kept is closed meanwhile.
   const response = await fetch(`${scanner.url}api/v1/${path}`,
-      {method, headers: {'Content-Type': 'application/json'}, body: body && JSON.stringify(body)});
+      {method, headers: {'Content-Type': 'application/json', 'Connection': 'close'}, body: body && JSON.stringify(body)});
   if (!response.ok) {
     throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
   }

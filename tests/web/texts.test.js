@@ -10,7 +10,7 @@ const files = new Map(await Promise.all(Object.keys(languages).map(async (langua
 const english = files.get('en').texts;
 
 /** Of the page; what is for programmers and for the build is in English alone. */
-const sources = (await readdir(folder)).filter((name) => /\.(js|html)$/.test(name) && !/^(interface|openapi|render_help|three)\./.test(name));
+const sources = (await readdir(folder)).filter((name) => /\.(js|html)$/.test(name) && !/^(bundle|interface|openapi|render_help|three)\./.test(name));
 const written = new Map(await Promise.all(sources.map(async (name) =>
   /** @type {const} */ ([name, await readFile(new URL(name, folder), 'utf8')]))));
 

@@ -167,6 +167,10 @@ void Appliance::ask_for_machine(const MachineRequest& machine) {
   write_file(request("machine"), to_text(machine), for_root_alone);
 }
 
+void Appliance::ask_for_control(const ControlRequest& control) {
+  write_file(request("control"), to_text(control), for_root_alone);
+}
+
 std::string Appliance::errors() const { return read_end(folder_ / "errors"); }
 
 void Appliance::ask_for_wifi(const WifiRequest& wifi) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "appliance/control_request.hpp"
 #include "appliance/machine_request.hpp"
 #include "appliance/wifi_networks.hpp"
 #include "appliance/wifi_request.hpp"
@@ -66,6 +67,10 @@ class Appliance {
 
   /// Asks root for another name or time zone. @throws Error  if the request cannot be written
   void ask_for_machine(const MachineRequest& request);
+
+  /// Asks root to restart this machine, shut it down or set its clock.
+  /// @throws Error  if the request cannot be written
+  void ask_for_control(const ControlRequest& control);
 
   /// Asks root to join a WiFi. @throws Error  if the request cannot be written
   void ask_for_wifi(const WifiRequest& request);

@@ -5,6 +5,7 @@
 #include "appliance/appliance.hpp"
 #include "commands/commands.hpp"
 #include "http/api.hpp"
+#include "http/captive_portal.hpp"
 #include "http/http_server.hpp"
 #include "log.hpp"
 #include "process_memory.hpp"
@@ -108,6 +109,8 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
                                    return find_machine_warnings(
                                        doctor_input(rig, settings, scanner.calibration(), store));
                                  }});
+  AddressBook addresses(config.data / "addresses.json");
+  PrinterUploads uploads;
   Api api({.scanner = scanner,
            .store = store,
            .page = machine.page,
@@ -115,10 +118,17 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
            .turntable = turntable,
            .keys = keys,
            .machine = health,
+           .addresses = addresses,
+           .uploads = uploads,
            .rig = rig,
            .appliance = machine.appliance ? &*machine.appliance : nullptr});
+  const auto gate = [&](const Request& request) {
+    return machine.appliance
+               ? captive_answer(request, settings.config().host_names, *machine.appliance)
+               : std::nullopt;
+  };
   const HttpServer server(
-      config.http, [&](const Request& request) { return api.answer(request); }, &keys);
+      config.http, [&](const Request& request) { return api.answer(request); }, &keys, gate);
 
   settings.keep_as_good();
   announce(machine, config.http, server.port());

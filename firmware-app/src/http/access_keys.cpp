@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "http/random_digits.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "random_digits.hpp"
 #include "utc.hpp"
 
 namespace octurn {

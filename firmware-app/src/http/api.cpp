@@ -1,35 +1,21 @@
 #include "http/api.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 #include <variant>
 
-#include "http/handlers/appliance.hpp"
-#include "http/handlers/archives.hpp"
-#include "http/handlers/bin.hpp"
-#include "http/handlers/builds.hpp"
-#include "http/handlers/calibration.hpp"
 #include "http/handlers/events.hpp"
-#include "http/handlers/formats.hpp"
-#include "http/handlers/keys.hpp"
-#include "http/handlers/models.hpp"
-#include "http/handlers/poses.hpp"
-#include "http/handlers/scans.hpp"
-#include "http/handlers/settings.hpp"
-#include "http/handlers/system.hpp"
-#include "http/handlers/turntable.hpp"
 #include "http/json_body.hpp"
+#include "http/packed.hpp"
 #include "http/problem.hpp"
+#include "http/routes.hpp"
 #include "http/same_origin.hpp"
+#include "http/scan_news.hpp"
 #include "log.hpp"
 
 namespace octurn {
 namespace {
-
-constexpr std::string_view update_path = "/api/v1/update";
-constexpr std::string_view import_path = "/api/v1/scans/import";
 
 /// The parts of a path for which its route has `{id}` and `{number}`; empty if it has not.
 struct PathParts {
@@ -64,14 +50,6 @@ std::optional<PathParts> match(std::string_view route, std::string_view path) {
   return parts;
 }
 
-/// A handler takes what it needs of the request and of the parts of its path.
-using Handler =
-    std::variant<Response (*)(App&), Response (*)(App&, const Request&),
-                 Response (*)(EventFeed&, const Request&), Response (*)(App&, std::string_view id),
-                 Response (*)(App&, const Request&, std::string_view id),
-                 Response (*)(App&, std::string_view id, std::string_view number),
-                 Response (*)(App&, const Request&, std::string_view id, std::string_view number)>;
-
 /// Calls any of the handlers.
 struct Call {
   App& app;
@@ -100,9 +78,6 @@ struct Call {
     return handler(app, request, parts.id, parts.number);
   }
 };
-
-/// What a handler may wait for, for seconds.
-enum class WaitsFor { nothing, look, start };
 
 /// Holds one of the places that a semaphore counts; none where there is no semaphore.
 class Place {
@@ -142,14 +117,10 @@ Response wrong_method(const Request& request, const std::string& allowed) {
 
 }  // namespace
 
-struct Api::Route {
-  std::string_view method;
-  std::string_view path;
-  Handler handler;
-  WaitsFor waits_for = WaitsFor::nothing;
-};
-
-Api::Api(App app) : app_(std::move(app)), events_(StatusNews(app_)) {}
+Api::Api(App app) : app_(std::move(app)), events_(StatusNews(app_)) {
+  app_.webhooks = std::make_unique<WebhookSender>(
+      app_.addresses, [this, news = ScanNews()]() mutable { return news.next(app_); });
+}
 
 Response Api::answer(const Request& request) {
   try {
@@ -157,7 +128,7 @@ Response Api::answer(const Request& request) {
                                            ? upload_type
                                            : "application/json";
     const auto refused = refusal(request, app_.settings.config().host_names, body_type);
-    return refused ? problem(*refused) : tagged(request, dispatch(request));
+    return refused ? problem(*refused) : packed(request, tagged(request, dispatch(request)));
   } catch (const Error& error) {
     return problem(to_failure(error));
   } catch (const std::exception& error) {
@@ -165,84 +136,6 @@ Response Api::answer(const Request& request) {
     return problem(
         {.code = ErrorCode::internal, .detail = error.what(), .hint = "Please report this."});
   }
-}
-
-std::span<const Api::Route> Api::scan_routes() {
-  static const std::array all{
-      Route{"GET", "/api/v1/scans", list_scans},
-      Route{"POST", "/api/v1/scans", start_scan, WaitsFor::start},
-      Route{"POST", "/api/v1/scans/estimate", send_estimate},
-      Route{"GET", "/api/v1/scans/{id}", send_scan},
-      Route{"PATCH", "/api/v1/scans/{id}", rename_scan},
-      Route{"DELETE", "/api/v1/scans/{id}", remove_scan},
-      Route{"POST", "/api/v1/scans/{id}/cancel", cancel_scan},
-      Route{"POST", "/api/v1/scans/{id}/end", cancel_scan},
-      Route{"POST", "/api/v1/scans/{id}/pause", pause_scan},
-      Route{"POST", "/api/v1/scans/{id}/restore", restore_scan},
-      Route{"POST", "/api/v1/scans/{id}/resume", resume_scan, WaitsFor::start},
-      Route{"GET", "/api/v1/scans/{id}/Scan.stl", send_model},
-      Route{"POST", import_path, import_scan, WaitsFor::start},
-      Route{"GET", "/api/v1/scans/{id}/scan.zip", send_archive},
-      Route{"GET", "/api/v1/scans/{id}/Scan.3mf", send_mesh},
-      Route{"GET", "/api/v1/scans/{id}/Scan.ply", send_mesh},
-      Route{"GET", "/api/v1/scans/{id}/Scan.glb", send_mesh},
-      Route{"GET", "/api/v1/scans/{id}/thumbnail.png", send_thumbnail},
-      Route{"GET", "/api/v1/scans/{id}/preview.stl", send_preview},
-      Route{"GET", "/api/v1/scans/{id}/builds", list_builds},
-      Route{"POST", "/api/v1/scans/{id}/builds", start_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}", send_build},
-      Route{"DELETE", "/api/v1/scans/{id}/builds/{number}", remove_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{number}/cancel", cancel_build},
-      Route{"POST", "/api/v1/scans/{id}/builds/{number}/choose", choose_build},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.stl", send_build_model},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.3mf", send_build_mesh},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.ply", send_build_mesh},
-      Route{"GET", "/api/v1/scans/{id}/builds/{number}/Scan.glb", send_build_mesh},
-      Route{"GET", "/api/v1/scans/{id}/poses", list_poses},
-      Route{"POST", "/api/v1/scans/{id}/poses", start_pose, WaitsFor::start},
-      Route{"POST", "/api/v1/scans/{id}/poses/{number}", choose_pose},
-      Route{"DELETE", "/api/v1/scans/{id}/poses/{number}", remove_pose},
-      Route{"GET", "/api/v1/scans/{id}/poses/{number}/points", send_pose_points},
-  };
-  return all;
-}
-
-std::span<const Api::Route> Api::other_routes() {
-  static const std::array all{
-      Route{"GET", "/Scan.stl", send_newest_model},
-      Route{"GET", "/api/v1/openapi.json", send_description},
-      Route{"GET", "/api/v1/status", send_status},
-      Route{"GET", "/api/v1/events", send_events},
-      Route{"GET", "/api/v1/settings", send_settings},
-      Route{"PATCH", "/api/v1/settings", change_settings},
-      Route{"GET", "/api/v1/settings/backup", send_backup},
-      Route{"POST", "/api/v1/settings/backup", restore_backup},
-      Route{"PUT", "/api/v1/settings/password", set_page_password},
-      Route{"GET", "/api/v1/keys", list_keys},
-      Route{"POST", "/api/v1/keys", make_key},
-      Route{"DELETE", "/api/v1/keys/{id}", revoke_key},
-      Route{"GET", "/api/v1/calibration", send_calibration},
-      Route{"PATCH", "/api/v1/calibration", change_calibration},
-      Route{"POST", "/api/v1/calibration", start_calibration, WaitsFor::start},
-      Route{"GET", "/api/v1/calibration/sensor-map", send_sensor_map},
-      Route{"POST", "/api/v1/calibration/cancel", cancel_calibration},
-      Route{"POST", "/api/v1/calibration/undo", undo_calibration},
-      Route{"GET", "/api/v1/preview/points", send_points, WaitsFor::look},
-      Route{"GET", "/api/v1/turntable", send_turntable},
-      Route{"POST", "/api/v1/turntable", move_turntable},
-      Route{"GET", "/api/v1/doctor", send_findings, WaitsFor::look},
-      Route{"GET", "/api/v1/diagnostics.zip", send_diagnostics, WaitsFor::look},
-      Route{"GET", "/api/v1/preview/depth.png", send_depth_picture, WaitsFor::look},
-      Route{"GET", "/api/v1/bin", send_bin},
-      Route{"DELETE", "/api/v1/bin", empty_bin},
-      Route{"GET", update_path, send_update_state},
-      Route{"PUT", update_path, take_update},
-      Route{"GET", "/api/v1/machine", send_machine},
-      Route{"PATCH", "/api/v1/machine", change_machine},
-      Route{"GET", "/api/v1/wifi", send_wifi_state},
-      Route{"PUT", "/api/v1/wifi", join_wifi},
-  };
-  return all;
 }
 
 std::vector<RouteName> Api::routes() {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <semaphore>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +15,8 @@ struct RouteName {
   std::string_view method;
   std::string_view path;
 };
+
+struct Route;
 
 /// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
 /// thread may call it.
@@ -33,10 +34,6 @@ class Api {
   static std::vector<RouteName> routes();
 
  private:
-  struct Route;
-
-  static std::span<const Route> scan_routes();
-  static std::span<const Route> other_routes();
   std::counting_semaphore<>* places_for(const Route& route);
   Response dispatch(const Request& request);
 

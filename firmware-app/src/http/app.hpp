@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "appliance/appliance.hpp"
 #include "config/config_store.hpp"
 #include "doctor/doctor.hpp"
@@ -7,6 +9,9 @@
 #include "doctor/turntable_runner.hpp"
 #include "http/access_keys.hpp"
 #include "http/page.hpp"
+#include "outgoing/address_book.hpp"
+#include "outgoing/printer_uploads.hpp"
+#include "outgoing/webhook_sender.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
@@ -20,8 +25,12 @@ struct App {
   TurntableRunner& turntable;
   AccessKeys& keys;
   const MachineWatch& machine;
+  AddressBook& addresses;
+  PrinterUploads& uploads;
   RigOptions rig;                  ///< that the scanner works with
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
+  /// That Api begins, as it looks at all of this. The last member, so that it ends first.
+  std::unique_ptr<WebhookSender> webhooks = {};
 
   DoctorInput doctor_input() const {
     return octurn::doctor_input(rig, settings, scanner.calibration(), store);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <utility>
 #include <vector>
@@ -31,8 +32,10 @@ const Headers common_headers{
     {"X-Content-Type-Options", "nosniff"},
     {"Referrer-Policy", "no-referrer"},
     {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Connection", "close"},
 };
+const Headers closing_headers{{"Connection", "close"}};
+const Headers keeping_headers{{"Connection", "keep-alive"},
+                              {"Keep-Alive", "timeout=" + std::to_string(idle_seconds)}};
 
 /// Nothing of a body whose end nobody knows yet.
 std::optional<std::uint64_t> body_length(const Response& response) {
@@ -45,7 +48,24 @@ std::optional<std::uint64_t> body_length(const Response& response) {
   return std::get<std::string>(response.body).size();
 }
 
-std::string to_head(const Response& response) {
+/// Whether a client asks that its connection be kept for its next request: browsers do. One with a
+/// body is closed, as some of that may be unread.
+bool asks_to_keep(const mg_request_info& info) {
+  const std::string_view method = info.request_method;
+  const auto headers =
+      std::span(info.http_headers).first(static_cast<std::size_t>(info.num_headers));
+  const bool has_body =
+      info.content_length > 0 || std::ranges::any_of(headers, [](const mg_header& header) {
+        return same_token(header.name, "Transfer-Encoding");
+      });
+  return (method == "GET" || method == "HEAD") && !has_body &&
+         std::string_view(info.http_version) == "1.1" &&
+         std::ranges::any_of(headers, [](const mg_header& header) {
+           return same_token(header.name, "Connection") && same_token(header.value, "keep-alive");
+         });
+}
+
+std::string to_head(const Response& response, bool keeps) {
   const char* const reason = mg_get_response_code_text(nullptr, response.status);
   std::string head = "HTTP/1.1 " + std::to_string(response.status) + " " + reason + "\r\n";
   const auto append = [&](const Headers& headers) {
@@ -55,6 +75,7 @@ std::string to_head(const Response& response) {
   };
   append(response.headers);
   append(common_headers);
+  append(keeps ? keeping_headers : closing_headers);
   const auto length = body_length(response);
   if (length && response.status != 204 && response.status != 304) {
     head += "Content-Length: " + std::to_string(*length) + "\r\n";
@@ -94,8 +115,9 @@ Exchange::Exchange(mg_connection& connection, ConnectionGuard& guard)
   }
 }
 
-Request Exchange::head() const {
+Request Exchange::head() {
   const mg_request_info& info = *mg_get_request_info(&connection_);
+  may_keep_ = asks_to_keep(info);
   Request request{.method = info.request_method,
                   .path = info.local_uri != nullptr ? info.local_uri : "",
                   .parameters = to_parameters(info.query_string)};
@@ -178,7 +200,8 @@ bool Exchange::write(std::string_view bytes) {
   return true;
 }
 
-void Exchange::send_slice(const FileSlice& slice) {
+/// @return false if the client has not got all of it
+bool Exchange::send_slice(const FileSlice& slice) {
   std::vector<char> buffer(file_part);
   std::uint64_t sent = 0;
   while (sent < slice.length) {
@@ -187,13 +210,14 @@ void Exchange::send_slice(const FileSlice& slice) {
                                 static_cast<off_t>(slice.offset + sent));
     if (got <= 0) {
       log::error("http", "a model could not be read to its end");
-      return;  // the connection closes short of Content-Length, which tells the client
+      return false;  // the connection closes short of Content-Length, which tells the client
     }
     if (!write({buffer.data(), static_cast<std::size_t>(got)})) {
-      return;
+      return false;
     }
     sent += static_cast<std::uint64_t>(got);
   }
+  return true;
 }
 
 void Exchange::send_stream(ByteStream& stream) {
@@ -205,20 +229,27 @@ void Exchange::send_stream(ByteStream& stream) {
 
 void Exchange::send(std::string_view method, Response response) {
   guard_.restart(key_, Wait::server);
-  const std::string head = to_head(response);
   const auto* text = std::get_if<std::string>(&response.body);
   const auto* slice = std::get_if<FileSlice>(&response.body);
+  auto* const stream = std::get_if<ByteStream>(&response.body);
+  const std::string head = to_head(response, may_keep_ && stream == nullptr);
+  bool is_whole = false;
   if (method == "HEAD") {
-    write(head);
+    is_whole = write(head);
   } else if (text != nullptr) {
-    write(head + *text);
+    is_whole = write(head + *text);
   } else if (!write(head)) {
-    return;
+    is_whole = false;
   } else if (slice != nullptr) {
-    send_slice(*slice);
+    is_whole = send_slice(*slice);
   } else {
-    send_stream(std::get<ByteStream>(response.body));
+    send_stream(*stream);  // which may end early: only closing tells
   }
+  if (may_keep_ && stream == nullptr && is_whole) {
+    guard_.restart(key_, Wait::head);
+    return;
+  }
+  mg_disable_connection_keep_alive(&connection_);
   guard_.restart(key_, Wait::close);
 }
 

@@ -12,6 +12,9 @@ struct mg_connection;
 
 namespace octurn {
 
+/// How long a connection is kept for a next request.
+inline constexpr int idle_seconds = 5;
+
 /// One request and its answer over a connection of civetweb, within the limits of the guard.
 class Exchange {
  public:
@@ -20,7 +23,7 @@ class Exchange {
 
   /// The request without its body. The host of an absolute request target is in force over the
   /// Host header (RFC 9112, section 3.2.2).
-  Request head() const;
+  Request head();
 
   /// The whole body.
   /// @throws Error "too-large", "too-slow"; "cut-short", "bad-request" if it is not what was
@@ -37,12 +40,13 @@ class Exchange {
  private:
   int read(std::span<char> buffer, Wait wait);
   bool write(std::string_view bytes);
-  void send_slice(const FileSlice& slice);
+  bool send_slice(const FileSlice& slice);
   void send_stream(ByteStream& stream);
 
   mg_connection& connection_;
   ConnectionGuard& guard_;
   ConnectionGuard::Key key_ = ConnectionGuard::unknown;
+  bool may_keep_ = false;  // the client asks for that
 };
 
 }  // namespace octurn

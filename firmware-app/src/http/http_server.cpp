@@ -30,8 +30,8 @@ constexpr std::size_t threads = 32;
 constexpr std::size_t spare_threads = 4;
 
 constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
-    {"max_request_size", "16384"},  // of the head, bytes
-    {"enable_keep_alive", "no"},
+    {"max_request_size", "16384"},       // of the head, bytes
+    {"enable_keep_alive", "yes"},        // Exchange decides
     {"enable_auth_domain_check", "no"},  // that an absolute request target names the server by
     {"tcp_nodelay", "1"},
     {"enable_directory_listing", "no"},
@@ -44,6 +44,7 @@ struct Service {
   HttpServer::Answer answer = {};
   std::optional<Login> login = {};  // where not everybody may open the page
   const AccessKeys* keys = nullptr;
+  HttpServer::Gate gate = {};
   std::latch started{1};  // there is a guard
   std::optional<ConnectionGuard> guard = {};
 
@@ -57,9 +58,12 @@ Service& to_service(const mg_connection* connection) {
   return *static_cast<Service*>(mg_get_user_data(mg_get_context(connection)));
 }
 
-/// The answer to who may not open the page; nothing if it is let in.
+/// The answer of the gate, or to who may not open the page; nothing if it is let in.
 std::optional<Response> refusal(mg_connection& connection, const Request& request,
                                 Service& service) {
+  if (auto answer = service.gate ? service.gate(request) : std::nullopt) {
+    return answer;
+  }
   if (const auto key = key_in(request); key && service.keys != nullptr) {
     return refuse_key(*service.keys, request, *key);
   }
@@ -140,8 +144,10 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
                            Service& service) {
   const std::string patience = std::to_string(options.patience.count());
   const std::string num_threads = std::to_string(threads);
-  std::vector<const char*> settings{"listening_ports", listening.c_str(), "request_timeout_ms",
-                                    patience.c_str(),  "num_threads",     num_threads.c_str()};
+  const std::string idle = std::to_string(idle_seconds * 1000);
+  std::vector<const char*> settings{
+      "listening_ports", listening.c_str(),   "request_timeout_ms",    patience.c_str(),
+      "num_threads",     num_threads.c_str(), "keep_alive_timeout_ms", idle.c_str()};
   for (const auto& [name, value] : fixed_options) {
     settings.insert(settings.end(), {name, value});
   }
@@ -176,7 +182,7 @@ struct HttpServer::Server {
   mg_context* context = nullptr;
 };
 
-HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys)
+HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys, Gate gate)
     : server_(std::make_unique<Server>()) {
   if (!options.password_file.empty() && ::access(options.password_file.c_str(), R_OK) != 0) {
     throw Error(ErrorCode::bad_password_file, options.password_file.string() + ": cannot be read",
@@ -187,6 +193,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
   Service& service = server_->service;
   service.answer = std::move(answer);
   service.keys = keys;
+  service.gate = std::move(gate);
   if (!options.password_file.empty()) {
     service.login.emplace(options.password_file);
   }

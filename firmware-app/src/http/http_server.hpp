@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "http/access_keys.hpp"
 #include "http/message.hpp"
@@ -16,10 +17,15 @@ class HttpServer {
  public:
   using Answer = std::function<Response(const Request&)>;
 
+  /// Answers before anybody has proved who they are; nothing where that is not its business.
+  using Gate = std::function<std::optional<Response>(const Request&)>;
+
   /// @param answer  called by any thread of the pool; must not throw
   /// @param keys    let programs in as the password lets people in; null: there are none
+  /// @param gate    as `answer`
   /// @throws Error "listen-failed", "bad-password-file"
-  HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys = nullptr);
+  HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys = nullptr,
+             Gate gate = {});
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

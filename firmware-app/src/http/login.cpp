@@ -9,8 +9,8 @@
 
 #include "http/password_file.hpp"
 #include "http/problem.hpp"
-#include "http/random_digits.hpp"
 #include "log.hpp"
+#include "random_digits.hpp"
 
 namespace octurn {
 namespace {

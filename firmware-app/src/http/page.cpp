@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "http/entity_tags.hpp"
+#include "http/packed.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -32,6 +33,15 @@ constexpr std::array content_types{
     ContentType{".txt", "text/plain; charset=utf-8"},
 };
 
+constexpr std::string_view assets = "/assets/";
+constexpr const char* for_ever = "max-age=31536000, immutable";  // a year: RFC 8246
+
+/// The tag of the same content as gzip has it: a strong one names bytes (RFC 9110, 8.8.3.3).
+std::string packed_tag(std::string tag) {
+  tag.insert(tag.size() - 1, "-gzip");
+  return tag;
+}
+
 std::string read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -50,12 +60,12 @@ std::string read(const fs::path& file) {
 
 fs::path page_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const fs::path folder : {"../share/octurn/web", "../web"}) {
+  for (const fs::path folder : {"../share/octurn/web", "../page"}) {
     if (fs::exists(program / folder / "index.html")) {
       return (program / folder).lexically_normal();
     }
   }
-  no_page((program / "../web").lexically_normal().string());
+  no_page((program / "../page").lexically_normal().string());
 }
 
 Page::Page(const fs::path& folder) {
@@ -69,6 +79,9 @@ Page::Page(const fs::path& folder) {
       continue;
     }
     File file{.content_type = std::string(type->name), .content = read(entry.path())};
+    if (const fs::path packed = entry.path().string() + ".gz"; fs::exists(packed)) {
+      file.packed = read(packed);
+    }
     // All files of an image have the same date: a tag from date and size could outlive an update.
     file.tag = to_entity_tag(file.content);
     files_.emplace("/" + fs::relative(entry.path(), folder).generic_string(), std::move(file));
@@ -81,12 +94,21 @@ Response Page::file(const Request& request) const {
     throw Error(ErrorCode::not_found, "there is no " + request.path, "The page is at /.");
   }
   const File& file = found->second;
-  Headers headers{{"ETag", file.tag}, {"Cache-Control", "no-cache"}};
-  if (client_has(request, file.tag)) {
+  const bool is_packed = !file.packed.empty() && takes_gzip(request);
+  const std::string tag = is_packed ? packed_tag(file.tag) : file.tag;
+  Headers headers{{"ETag", tag},
+                  {"Cache-Control", found->first.starts_with(assets) ? for_ever : "no-cache"}};
+  if (!file.packed.empty()) {
+    headers.emplace_back("Vary", "Accept-Encoding");
+  }
+  if (client_has(request, tag)) {
     return {.status = 304, .headers = std::move(headers)};
   }
   headers.emplace_back("Content-Type", file.content_type);
-  return {.headers = std::move(headers), .body = file.content};
+  if (is_packed) {
+    headers.emplace_back("Content-Encoding", "gzip");
+  }
+  return {.headers = std::move(headers), .body = is_packed ? file.packed : file.content};
 }
 
 }  // namespace octurn

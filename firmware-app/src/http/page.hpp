@@ -10,11 +10,13 @@
 namespace octurn {
 
 /// The folder of the page that belongs to this program: `../share/octurn/web` beside where it is
-/// installed, `../web` where it was built.
+/// installed, `../page` where it was built.
 /// @throws Error "page-missing"  if there is neither
 std::filesystem::path page_folder();
 
-/// The files of the page, read once and held in memory: a request can name nothing else.
+/// The files of the page, read once and held in memory: a request can name nothing else. Beside a
+/// file may lie the same packed, NAME.gz, for clients that take that; of files below `assets/` the
+/// name changes with the content, so that they may be kept for ever.
 class Page {
  public:
   /// @throws Error "page-missing"  if the folder has no index.html
@@ -27,6 +29,7 @@ class Page {
   struct File {
     std::string content_type = {};
     std::string content = {};
+    std::string packed = {};  // by gzip; empty: it is not
     std::string tag = {};
   };
   std::map<std::string, File, std::less<>> files_ = {};

@@ -47,10 +47,14 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
 
 }  // namespace
 
+bool is_own_host(std::string_view host, std::span<const std::string> host_names) {
+  return is_ours(to_host_name(host), host_names);
+}
+
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type) {
   const std::string_view host = request.header("Host").value_or("");
-  if (!is_ours(to_host_name(host), host_names)) {
+  if (!is_own_host(host, host_names)) {
     return Failure{.code = ErrorCode::wrong_host,
                    .detail = "\"" + std::string(host) + "\" is not a name of this scanner",
                    .hint =

@@ -10,6 +10,10 @@
 
 namespace octurn {
 
+/// Whether a `Host` is an address or a name of this host.
+/// @param host_names  besides the local ones
+bool is_own_host(std::string_view host, std::span<const std::string> host_names);
+
 /// Whether a request may be answered at all, and may change something.
 ///
 /// Any page that a browser has open may send requests here. Two rules keep other sites out: the

@@ -1,13 +1,11 @@
 #include "http/handlers/appliance.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "host_name.hpp"
 #include "http/json_body.hpp"
 #include "log.hpp"
 #include "version.hpp"
@@ -25,12 +23,6 @@ json to_json(const UpdateState& update) {
           {"state", update.state},
           {"update_version", update.version},
           {"error", update.error}};
-}
-
-std::string host_name() {
-  std::array<char, 65> name{};  // HOST_NAME_MAX and its end
-  ::gethostname(name.data(), name.size() - 1);
-  return name.data();
 }
 
 json to_json(const WifiState& wifi) {
@@ -74,17 +66,17 @@ UpdateAge to_update_age(const Headers& parameters) {
   return age;
 }
 
-/// @throws Error "not-an-appliance"
+}  // namespace
+
 Appliance& expect_appliance(const App& app) {
   if (app.appliance == nullptr) {
     throw Error(
-        ErrorCode::not_an_appliance, "updates and WiFi are not Octurn's business on this machine",
-        "It has them on a Raspberry Pi with the image of image-build; here the system does.");
+        ErrorCode::not_an_appliance,
+        "updates, WiFi, clock and power are not Octurn's business on this machine",
+        "They are on a Raspberry Pi with the image of image-build; here they are the system's.");
   }
   return *app.appliance;
 }
-
-}  // namespace
 
 void expect_no_update(const App& app) {
   if (app.appliance != nullptr && app.appliance->is_updating()) {

@@ -8,6 +8,9 @@ namespace octurn {
 // What the appliance answers: updates, its name and WiFi. Each handler throws Error
 // "not-an-appliance" where the system of the machine is somebody else's business.
 
+/// @throws Error "not-an-appliance"
+Appliance& expect_appliance(const App& app);
+
 /// @throws Error "busy"  if this machine may start again at any moment
 void expect_no_update(const App& app);
 

@@ -68,22 +68,34 @@ void write_mesh(MeshFormat format, const fs::path& model, const fs::path& thumbn
   }
 }
 
+/// The file of a model in another format, made if it is not there.
+fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, MeshFormat format,
+                    const std::string& extension) {
+  fs::path file = model.parent_path() / ("Scan" + extension);
+  const auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
+  const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
+  keep_fresh(file, source,
+             [&] { write_mesh(format, model, thumbnail, download_name(job, ""), file); });
+  return file;
+}
+
 /// A model in the format that its path ends with.
 /// @param suffix  of the name under which a browser saves it, before the extension
 Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
                         const std::string& suffix) {
   const std::string extension = fs::path(request.path).extension().string();
   const MeshFormat format = mesh_format_of(extension).value();  // as its route has it
-  const fs::path file = model.parent_path() / ("Scan" + extension);
-  const auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
-  const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
-  keep_fresh(file, source,
-             [&] { write_mesh(format, model, thumbnail, download_name(job, ""), file); });
-  return file_response(request, file, std::string(media_type(format)),
-                       download_name(job, suffix + extension));
+  return file_response(request, fresh_mesh(app, job, model, format, extension),
+                       std::string(media_type(format)), download_name(job, suffix + extension));
 }
 
 }  // namespace
+
+fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
+  fs::path model = find_model(app, job);
+  const auto format = mesh_format_of(extension);
+  return format ? fresh_mesh(app, job, model, *format, extension) : model;
+}
 
 Response send_mesh(App& app, const Request& request, std::string_view id) {
   const Job job = find_scan(app, id);

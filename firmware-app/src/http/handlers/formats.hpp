@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "http/app.hpp"
@@ -9,6 +11,9 @@ namespace octurn {
 
 // What is made of a scan's model when somebody asks for it first, and then lies beside it: other
 // formats, and a picture. Each throws Error "no-such-scan", "no-model", "disk-full".
+
+/// The file of a scan's model. @param extension  ".stl", or of another format, which is made first
+std::filesystem::path model_in_format(const App& app, const Job& job, const std::string& extension);
 
 /// The model in the format that the path's ending names: 3MF, PLY or GLB.
 Response send_mesh(App& app, const Request& request, std::string_view id);

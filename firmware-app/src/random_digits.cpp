@@ -1,4 +1,4 @@
-#include "http/random_digits.hpp"
+#include "random_digits.hpp"
 
 #include <unistd.h>
 

@@ -1,0 +1,35 @@
+#include "appliance/control_request.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "octurn/json_object.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono;
+
+// Whoever is outside of these has no clock either.
+constexpr sys_seconds earliest = sys_days(year(2026) / January / 1);
+constexpr sys_seconds latest = sys_days(year(2100) / January / 1);
+
+double to_number(sys_seconds time) { return static_cast<double>(time.time_since_epoch().count()); }
+
+}  // namespace
+
+sys_seconds clock_from(const nlohmann::json& body) {
+  JsonObject keys(body, ErrorCode::bad_settings, "");
+  const double seconds_since_1970 =
+      keys.at("unix_s").number(to_number(earliest), to_number(latest));
+  keys.refuse_unread();
+  return sys_seconds(seconds(static_cast<seconds::rep>(seconds_since_1970)));
+}
+
+std::string to_text(const ControlRequest& request) {
+  if (const auto* time = std::get_if<sys_seconds>(&request)) {
+    return "clock " + std::to_string(time->time_since_epoch().count()) + "\n";
+  }
+  return std::get<PowerEnd>(request) == PowerEnd::restart ? "restart\n" : "off\n";
+}
+
+}  // namespace octurn

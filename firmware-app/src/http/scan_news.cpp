@@ -1,0 +1,115 @@
+#include "http/scan_news.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
+
+#include "doctor/finding.hpp"
+#include "host_name.hpp"
+#include "http/scan_view.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+Happening happening(const std::string& event, const char* key, const json& about) {
+  json body{{"event", event},
+            {"scanner", host_name()},
+            {"time", utc_text(std::chrono::system_clock::now(), rfc3339)}};
+  if (key != nullptr) {
+    body[key] = about;
+  }
+  return {.event = event, .body = body.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+/// The event that tells of a state; empty if none does.
+std::string event_of(JobState state) {
+  switch (state) {
+    case JobState::running:
+      return "scan-started";
+    case JobState::paused:
+      return "scan-paused";
+    case JobState::finished:
+      return "scan-finished";
+    case JobState::failed:
+      return "scan-failed";
+    case JobState::cancelled:
+      return "scan-cancelled";
+    case JobState::interrupted:
+      break;  // this program ended, and tells nothing
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<ScanEvent> changes(const ScanStates& before, const ScanStates& now,
+                               const std::string& newest) {
+  std::vector<ScanEvent> events;
+  for (const auto& [id, state] : now) {
+    const auto earlier = before.find(id);
+    const bool is_news = earlier != before.end() ? earlier->second != state : id > newest;
+    if (const std::string event = event_of(state); is_news && !event.empty()) {
+      events.push_back({.event = event, .id = id});
+    }
+  }
+  return events;
+}
+
+std::vector<ScanEvent> ScanNews::next_scans(const App& app) {
+  const Status status = app.scanner.status();
+  Mark mark{app.store.revision(), status.job ? status.job->id : "",
+            status.job ? status.job->state : JobState::finished};
+  if (mark == mark_) {
+    return {};
+  }
+  ScanStates now;
+  for (const Job& job : all_scans(app)) {
+    now.emplace(job.id, job.state);
+  }
+  std::vector<ScanEvent> events;
+  if (mark_) {
+    events = changes(states_, now, newest_);
+  }
+  mark_ = std::move(mark);
+  states_ = std::move(now);
+  if (!states_.empty()) {
+    newest_ = std::max(newest_, states_.rbegin()->first);
+  }
+  return events;
+}
+
+std::vector<Happening> ScanNews::next_warnings(const App& app) {
+  if (app.addresses.webhooks().empty()) {  // nobody is told: the machine is not looked at
+    warnings_.reset();
+    return {};
+  }
+  std::vector<Happening> happenings;
+  std::set<std::string> now;
+  const auto health = app.machine.health();
+  for (const Finding& warning : health->warnings) {
+    now.insert(warning.check);
+    if (warnings_ && !warnings_->contains(warning.check)) {
+      happenings.push_back(
+          happening("warning", "warning", to_json(std::span(&warning, 1)).at("findings").at(0)));
+    }
+  }
+  warnings_ = std::move(now);
+  return happenings;
+}
+
+std::vector<Happening> ScanNews::next(const App& app) {
+  std::vector<Happening> happenings = next_warnings(app);
+  for (const ScanEvent& event : next_scans(app)) {
+    happenings.push_back(happening(event.event, "scan", to_json(app, find_scan(app, event.id))));
+  }
+  return happenings;
+}
+
+Happening test_happening() { return happening("test", nullptr, {}); }
+
+}  // namespace octurn

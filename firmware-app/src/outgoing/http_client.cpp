@@ -1,0 +1,236 @@
+#include "outgoing/http_client.hpp"
+
+#include <curl/curl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+namespace octurn {
+namespace {
+
+constexpr std::size_t max_answer = std::size_t{64} << 10U;  // bytes
+constexpr long connect_seconds = 5;
+constexpr long still_seconds = 30;
+constexpr int poll_ms = 1000;
+
+/// Owns an object of libcurl's.
+template <auto release>
+struct Release {
+  template <typename T>
+  void operator()(T* object) const {
+    release(object);
+  }
+};
+using Easy = std::unique_ptr<CURL, Release<curl_easy_cleanup>>;
+using Multi = std::unique_ptr<CURLM, Release<curl_multi_cleanup>>;
+using Lines = std::unique_ptr<curl_slist, Release<curl_slist_free_all>>;
+using Form = std::unique_ptr<curl_mime, Release<curl_mime_free>>;
+using Address = std::unique_ptr<CURLU, Release<curl_url_cleanup>>;
+using File = std::unique_ptr<std::FILE, Release<std::fclose>>;
+
+void begin_with_curl() {
+  [[maybe_unused]] static const CURLcode begun = curl_global_init(CURL_GLOBAL_DEFAULT);
+}
+
+extern "C" std::size_t keep_answer(char* bytes, std::size_t size, std::size_t count, void* answer) {
+  std::string& kept = *static_cast<std::string*>(answer);
+  const std::size_t room = max_answer - std::min(max_answer, kept.size());
+  kept.append(bytes, std::min(room, size * count));
+  return size * count;
+}
+
+/// One request on its way, with all that libcurl refers to.
+class Transfer {
+ public:
+  explicit Transfer(const OutgoingRequest& request) : easy_(curl_easy_init()) {
+    set(CURLOPT_URL, request.url.c_str());
+    set(CURLOPT_CUSTOMREQUEST, request.method.c_str());
+    limit(request);
+    prove(request);
+    add_headers(request.headers);
+    add_body(request);
+    set(CURLOPT_WRITEFUNCTION, keep_answer);
+    set(CURLOPT_WRITEDATA, &answer_.body);
+    set(CURLOPT_ERRORBUFFER, reason_.data());
+  }
+
+  CURL* get() const { return easy_.get(); }
+
+  /// What is wrong with the request, before it is made.
+  const std::string& trouble() const { return answer_.trouble; }
+
+  std::uint64_t sent() const {
+    curl_off_t bytes = 0;
+    curl_easy_getinfo(easy_.get(), CURLINFO_SIZE_UPLOAD_T, &bytes);
+    return static_cast<std::uint64_t>(std::max<curl_off_t>(bytes, 0));
+  }
+
+  /// @param result  nothing: it was stopped
+  OutgoingAnswer finish(std::optional<CURLcode> result) {
+    if (!result) {
+      answer_.trouble = "it was stopped";
+    } else if (*result != CURLE_OK) {
+      answer_.trouble = reason_[0] != '\0' ? reason_.data() : curl_easy_strerror(*result);
+    } else {
+      long status = 0;
+      curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
+      answer_.status = static_cast<int>(status);
+    }
+    return std::move(answer_);
+  }
+
+ private:
+  template <typename T>
+  void set(CURLoption option, T value) {
+    curl_easy_setopt(easy_.get(), option, value);
+  }
+
+  void limit(const OutgoingRequest& request) {
+    set(CURLOPT_NOSIGNAL, 1L);  // there are other threads
+    set(CURLOPT_QUICK_EXIT, 1L);
+    set(CURLOPT_PROTOCOLS_STR, "http,https");
+    set(CURLOPT_FOLLOWLOCATION, 0L);
+    set(CURLOPT_PROXY, "");
+    set(CURLOPT_CONNECTTIMEOUT, connect_seconds);
+    set(CURLOPT_TIMEOUT_MS, static_cast<long>(request.time_limit.count()));
+    set(CURLOPT_LOW_SPEED_LIMIT, 1L);
+    set(CURLOPT_LOW_SPEED_TIME, still_seconds);
+  }
+
+  void prove(const OutgoingRequest& request) {
+    if (!request.user.empty()) {
+      set(CURLOPT_HTTPAUTH, CURLAUTH_DIGEST);
+      set(CURLOPT_USERNAME, request.user.c_str());
+      set(CURLOPT_PASSWORD, request.password.c_str());
+    }
+  }
+
+  void add_headers(const std::vector<std::string>& headers) {
+    for (const std::string& header : headers) {
+      lines_.reset(curl_slist_append(lines_.release(), header.c_str()));
+    }
+    set(CURLOPT_HTTPHEADER, lines_.get());
+  }
+
+  void add_body(const OutgoingRequest& request) {
+    if (request.file.empty()) {
+      if (!request.body.empty()) {
+        set(CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(request.body.size()));
+        set(CURLOPT_COPYPOSTFIELDS, request.body.data());
+      }
+      return;
+    }
+    std::error_code unreadable;
+    const auto bytes = std::filesystem::file_size(request.file, unreadable);
+    file_.reset(std::fopen(request.file.c_str(), "rbe"));
+    if (unreadable || file_ == nullptr) {
+      answer_.trouble = "the file is no longer there";
+    } else if (request.form_name.empty()) {
+      set(CURLOPT_UPLOAD, 1L);
+      set(CURLOPT_READDATA, file_.get());
+      set(CURLOPT_INFILESIZE_LARGE, static_cast<curl_off_t>(bytes));
+    } else {
+      add_form(request);
+    }
+  }
+
+  void add_form(const OutgoingRequest& request) {
+    form_.reset(curl_mime_init(easy_.get()));
+    for (const auto& [name, value] : request.fields) {
+      curl_mimepart* const part = curl_mime_addpart(form_.get());
+      curl_mime_name(part, name.c_str());
+      curl_mime_data(part, value.data(), value.size());
+    }
+    curl_mimepart* const part = curl_mime_addpart(form_.get());
+    curl_mime_name(part, "file");
+    curl_mime_filedata(part, request.file.c_str());
+    curl_mime_filename(part, request.form_name.c_str());
+    curl_mime_type(part, "application/octet-stream");
+    set(CURLOPT_MIMEPOST, form_.get());
+  }
+
+  File file_ = {};
+  Easy easy_;
+  Lines lines_ = {};
+  Form form_ = {};  // after easy_, so that it is freed first
+  std::array<char, CURL_ERROR_SIZE> reason_{};
+  OutgoingAnswer answer_ = {};
+};
+
+/// The result of what has ended.
+std::optional<CURLcode> result_of(CURLM* multi) {
+  int left = 0;
+  const CURLMsg* const message = curl_multi_info_read(multi, &left);
+  return message != nullptr && message->msg == CURLMSG_DONE ? std::optional(message->data.result)
+                                                            : std::nullopt;
+}
+
+/// A part of an address; empty if it has none.
+std::string part_of(CURLU* address, CURLUPart part) {
+  char* text = nullptr;
+  std::string found;
+  if (curl_url_get(address, part, &text, 0) == CURLUE_OK) {
+    found = text;
+  }
+  curl_free(text);
+  return found;
+}
+
+}  // namespace
+
+OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
+                   const std::function<void(std::uint64_t)>& on_sent) {
+  begin_with_curl();
+  Transfer transfer(request);
+  if (!transfer.trouble().empty()) {
+    return {.trouble = transfer.trouble()};
+  }
+  const Multi multi(curl_multi_init());
+  curl_multi_add_handle(multi.get(), transfer.get());
+  const std::stop_callback wake(stop, [&] { curl_multi_wakeup(multi.get()); });
+  int running = 1;
+  while (running > 0 && !stop.stop_requested() &&
+         curl_multi_perform(multi.get(), &running) == CURLM_OK) {
+    if (on_sent) {
+      on_sent(transfer.sent());
+    }
+    if (running > 0) {
+      curl_multi_poll(multi.get(), nullptr, 0, poll_ms, nullptr);
+    }
+  }
+  OutgoingAnswer answer = transfer.finish(result_of(multi.get()));
+  curl_multi_remove_handle(multi.get(), transfer.get());
+  return answer;
+}
+
+std::string origin_of(const std::string& url) {
+  begin_with_curl();
+  const Address address(curl_url());
+  if (curl_url_set(address.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
+    return "";
+  }
+  const std::string scheme = part_of(address.get(), CURLUPART_SCHEME);
+  const std::string host = part_of(address.get(), CURLUPART_HOST);
+  const std::string port = part_of(address.get(), CURLUPART_PORT);
+  const bool has_more = !part_of(address.get(), CURLUPART_USER).empty() ||
+                        !part_of(address.get(), CURLUPART_PASSWORD).empty() ||
+                        !part_of(address.get(), CURLUPART_FRAGMENT).empty();
+  if ((scheme != "http" && scheme != "https") || host.empty() || has_more) {
+    return "";
+  }
+  return scheme + "://" + host + (port.empty() ? "" : ":" + port);
+}
+
+std::string to_path_part(const std::string& text) {
+  begin_with_curl();
+  char* const escaped = curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size()));
+  std::string part = escaped != nullptr ? escaped : "";
+  curl_free(escaped);
+  return part;
+}
+
+}  // namespace octurn

@@ -1,0 +1,136 @@
+#include "outgoing/print_server.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// An upload may take long, as long as it goes on.
+constexpr std::chrono::hours upload_limit{1};
+
+OutgoingRequest authorized(const Printer& printer, std::string method, const std::string& path) {
+  OutgoingRequest request{.method = std::move(method), .url = printer.url + path};
+  if (!printer.user.empty()) {
+    request.user = printer.user;
+    request.password = printer.key;
+  } else if (!printer.key.empty()) {
+    request.headers.push_back("X-Api-Key: " + printer.key);
+  }
+  return request;
+}
+
+std::string program_name(PrinterKind kind) {
+  switch (kind) {
+    case PrinterKind::octoprint:
+      return "OctoPrint";
+    case PrinterKind::moonraker:
+      return "Moonraker";
+    case PrinterKind::prusalink:
+      break;
+  }
+  return "PrusaLink";
+}
+
+/// What to do where a print server takes no model.
+std::string slicing_hint(PrinterKind kind) {
+  std::string hint = program_name(kind);
+  hint += kind == PrinterKind::octoprint ? " takes STL where a plug-in slices it."
+                                         : " takes what is sliced already.";
+  hint += " Download the model, slice it, and upload the G-code.";
+  return hint;
+}
+
+}  // namespace
+
+OutgoingRequest upload_request(const Printer& printer, const std::filesystem::path& file,
+                               const std::string& name, const std::string& storage) {
+  OutgoingRequest request;
+  switch (printer.kind) {
+    case PrinterKind::octoprint:
+      request = authorized(printer, "POST", "/api/files/local");
+      request.form_name = name;
+      request.fields = {{"select", "false"}, {"print", "false"}};
+      break;
+    case PrinterKind::moonraker:
+      request = authorized(printer, "POST", "/server/files/upload");
+      request.form_name = name;
+      request.fields = {{"root", "gcodes"}, {"print", "false"}};
+      break;
+    case PrinterKind::prusalink:
+      request = authorized(printer, "PUT", "/api/v1/files" + storage + "/" + to_path_part(name));
+      // Booleans of structured fields: RFC 9651, section 3.3.6.
+      request.headers.insert(request.headers.end(), {"Content-Type: application/octet-stream",
+                                                     "Print-After-Upload: ?0", "Overwrite: ?1"});
+      break;
+  }
+  request.file = file;
+  request.time_limit = upload_limit;
+  return request;
+}
+
+OutgoingRequest storage_request(const Printer& printer) {
+  return authorized(printer, "GET", "/api/v1/storage");
+}
+
+std::optional<std::string> usable_storage(const std::string& body) try {
+  const json answer = parse_json(body, ErrorCode::bad_json, "it");
+  JsonObject object(answer, ErrorCode::bad_json, "");
+  for (const JsonValue& value : object.at("storage_list").elements()) {
+    JsonObject storage(value);
+    std::string path = storage.at("path").text();
+    while (path.ends_with('/')) {
+      path.pop_back();
+    }
+    const bool is_usable =
+        storage.flag("available").value_or(true) && !storage.flag("read_only").value_or(false);
+    if (is_usable && path.starts_with('/')) {
+      return path;
+    }
+  }
+  return std::nullopt;
+} catch (const Error&) {
+  return std::nullopt;  // it is not PrusaLink's answer
+}
+
+std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingAnswer& answer) {
+  const std::string program = program_name(printer.kind);
+  const std::string answered = program + " answered " + std::to_string(answer.status);
+  if (answer.status >= 200 && answer.status < 300) {
+    return std::nullopt;
+  }
+  if (answer.status >= 300 && answer.status < 400) {
+    return PrinterTrouble{answered + ", a redirect",
+                          "It is not followed: give the printer the address that it leads to."};
+  }
+  switch (answer.status) {
+    case 0:
+      return PrinterTrouble{
+          program + " cannot be reached: " + answer.trouble,
+          "Check that it is on and in this network, and its address in the settings."};
+    case 401:
+    case 403:
+      return PrinterTrouble{answered + ": it does not accept the key",
+                            "Give it a key in the settings that may upload files."};
+    case 404:
+    case 405:
+      return PrinterTrouble{answered + ": it has no such address",
+                            "Check its kind and its address in the settings."};
+    case 409:
+      return PrinterTrouble{answered + ": it cannot take the file now",
+                            "It may be printing the file of that name. Try again later."};
+    case 413:
+    case 507:
+      return PrinterTrouble{answered + ": it has no room for the file",
+                            "Delete files there, or send a model with a larger leaf size."};
+    case 400:
+    case 415:
+      return PrinterTrouble{answered + ": it does not take this kind of file",
+                            slicing_hint(printer.kind)};
+    default:
+      return PrinterTrouble{answered, "Look into its own log, and try again."};
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,168 @@
+#include "outgoing/webhook_sender.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "log.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr int pause_growth = 3;
+
+bool wants(const Webhook& webhook, const std::string& event) {
+  return webhook.events.empty() || std::ranges::count(webhook.events, event) > 0;
+}
+
+}  // namespace
+
+std::string_view to_string(WebhookState::Outcome outcome) {
+  switch (outcome) {
+    case WebhookState::Outcome::waiting:
+      return "waiting";
+    case WebhookState::Outcome::delivered:
+      return "delivered";
+    case WebhookState::Outcome::failed:
+      break;
+  }
+  return "failed";
+}
+
+std::string webhook_trouble(const OutgoingAnswer& answer) {
+  if (answer.status == 0) {
+    return answer.trouble;
+  }
+  if (answer.status >= 300 && answer.status < 400) {
+    return "it answered " + std::to_string(answer.status) +
+           ", a redirect, which is not followed: give the address that it leads to";
+  }
+  return answer.status < 300 ? "" : "it answered " + std::to_string(answer.status);
+}
+
+// Too early, too many, or its own fault: RFC 9110, section 15.
+bool is_worth_another_attempt(const OutgoingAnswer& answer) {
+  return answer.status == 0 || answer.status == 408 || answer.status == 425 ||
+         answer.status == 429 || answer.status >= 500;
+}
+
+WebhookSender::WebhookSender(const AddressBook& book, std::function<std::vector<Happening>()> look,
+                             const WebhookLimits& limits)
+    : book_(book),
+      look_(std::move(look)),
+      limits_(limits),
+      worker_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void WebhookSender::tell(const std::string& id, Happening happening) {
+  add({.webhook = id, .happening = std::move(happening), .due = Clock::now()});
+}
+
+std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = states_.find(id);
+  return found == states_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void WebhookSender::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    try {
+      spread(look_());
+      if (auto due = take_due()) {
+        attempt(std::move(*due), stop);
+        continue;
+      }
+    } catch (const std::exception& error) {
+      log::error("outgoing", std::string("webhooks are not told: ") + error.what());
+    }
+    std::unique_lock lock(mutex_);
+    added_.wait_for(lock, stop, limits_.look_interval, [this] {
+      return std::ranges::any_of(
+          waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });
+    });
+  }
+}
+
+void WebhookSender::spread(const std::vector<Happening>& happenings) {
+  if (happenings.empty()) {
+    return;
+  }
+  for (const Webhook& webhook : book_.webhooks()) {
+    for (const Happening& happening : happenings) {
+      if (wants(webhook, happening.event)) {
+        tell(webhook.id, happening);
+      }
+    }
+  }
+}
+
+void WebhookSender::add(Delivery delivery) {
+  std::optional<Delivery> given_up;
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= limits_.max_waiting) {
+      given_up = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    if (delivery.attempts == 0) {
+      states_[delivery.webhook] = {.event = delivery.happening.event};
+    }
+    waiting_.push_back(std::move(delivery));
+  }
+  added_.notify_all();
+  if (given_up) {
+    set_state(*given_up, WebhookState::Outcome::failed, "too much waited to be sent");
+  }
+}
+
+std::optional<WebhookSender::Delivery> WebhookSender::take_due() {
+  const std::lock_guard lock(mutex_);
+  const auto due = std::ranges::find_if(
+      waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });
+  if (due == waiting_.end()) {
+    return std::nullopt;
+  }
+  Delivery taken = std::move(*due);
+  waiting_.erase(due);
+  return taken;
+}
+
+void WebhookSender::attempt(Delivery delivery, const std::stop_token& stop) {
+  const auto webhook = book_.find_webhook(delivery.webhook);
+  if (!webhook) {
+    return;  // removed meanwhile
+  }
+  const OutgoingAnswer answer = ask({.method = "POST",
+                                     .url = webhook->url,
+                                     .headers = {"Content-Type: application/json"},
+                                     .body = delivery.happening.body,
+                                     .time_limit = limits_.patience},
+                                    stop);
+  const std::string trouble = webhook_trouble(answer);
+  ++delivery.attempts;
+  if (trouble.empty()) {
+    set_state(delivery, WebhookState::Outcome::delivered, "");
+  } else if (!is_worth_another_attempt(answer) || delivery.attempts >= limits_.max_attempts) {
+    set_state(delivery, WebhookState::Outcome::failed, trouble);
+    log::warning("outgoing",
+                 "a webhook of " + origin_of(webhook->url) + " is given up: " + trouble);
+  } else {
+    set_state(delivery, WebhookState::Outcome::waiting, trouble);
+    std::chrono::milliseconds pause = limits_.first_pause;
+    for (int i = 1; i < delivery.attempts; ++i) {
+      pause *= pause_growth;
+    }
+    delivery.due = Clock::now() + pause;
+    add(std::move(delivery));
+  }
+}
+
+void WebhookSender::set_state(const Delivery& delivery, WebhookState::Outcome outcome,
+                              std::string trouble) {
+  const std::lock_guard lock(mutex_);
+  states_[delivery.webhook] = {.outcome = outcome,
+                               .event = delivery.happening.event,
+                               .time = utc_text(std::chrono::system_clock::now(), rfc3339),
+                               .trouble = std::move(trouble)};
+}
+
+}  // namespace octurn

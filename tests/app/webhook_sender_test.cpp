@@ -1,0 +1,224 @@
+#include "outgoing/webhook_sender.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "http/http_server.hpp"
+#include "support/patience.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr WebhookLimits brisk{.look_interval = 1ms, .first_pause = 1ms, .max_attempts = 3};
+
+/// A server that answers each request with the next of these states, the last one for ever.
+class Receiver {
+ public:
+  explicit Receiver(std::vector<int> answers) : answers_(std::move(answers)) {}
+
+  std::string url() const {
+    return "http://127.0.0.1:" + std::to_string(server_.port()) + "/hook?secret=1";
+  }
+
+  std::vector<Request> wait_for(std::size_t count) const {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < deadline) {
+      if (std::vector<Request> now = received(); now.size() >= count) {
+        return now;
+      }
+      std::this_thread::yield();
+    }
+    return received();
+  }
+
+  std::vector<Request> received() const {
+    const std::lock_guard lock(mutex_);
+    return received_;
+  }
+
+ private:
+  Response take(const Request& request) {
+    const std::lock_guard lock(mutex_);
+    received_.push_back(request);
+    const int status = answers_[std::min(received_.size(), answers_.size()) - 1];
+    return {.status = status, .headers = {{"Location", "/elsewhere"}}};
+  }
+
+  mutable std::mutex mutex_ = {};  // guards received_
+  std::vector<Request> received_ = {};
+  std::vector<int> answers_;
+  HttpServer server_{{.address = "127.0.0.1", .port = 0},
+                     [this](const Request& request) { return take(request); }};
+};
+
+/// A sender and its address book, with one webhook.
+class Sender {
+ public:
+  explicit Sender(const Receiver& receiver, std::vector<std::string> events = {},
+                  const WebhookLimits& limits = brisk)
+      : id_(book_.add(Webhook{.url = receiver.url(), .events = std::move(events)}).id),
+        sender_(
+            book_, [this] { return std::exchange(happened_, {}); }, limits) {}
+
+  void tell(const std::string& event, const std::string& body = "{}") {
+    sender_.tell(id_, {.event = event, .body = body});
+  }
+
+  WebhookState wait_for(WebhookState::Outcome outcome) const {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    std::optional<WebhookState> state = sender_.state(id_);
+    while ((!state || state->outcome != outcome) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+      state = sender_.state(id_);
+    }
+    return state.value_or(WebhookState{});
+  }
+
+ protected:
+  TemporaryFolder folder_ = {};
+  AddressBook book_{folder_.path() / "addresses.json"};
+  std::vector<Happening> happened_ = {};
+  std::string id_;
+  WebhookSender sender_;
+};
+
+TEST(WebhookSender, TellsWhatHappenedAsJson) {
+  const Receiver receiver({200});
+  Sender sender(receiver);
+  sender.tell("scan-finished", R"({"event":"scan-finished"})");
+  const std::vector<Request> received = receiver.wait_for(1);
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].method, "POST");
+  EXPECT_EQ(received[0].path, "/hook");
+  EXPECT_EQ(received[0].header("Content-Type"), "application/json");
+  EXPECT_EQ(received[0].body, R"({"event":"scan-finished"})");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::delivered).trouble, "");
+}
+
+TEST(WebhookSender, TriesAgainWhatWasNotTaken) {
+  const Receiver receiver({500, 503, 204});
+  Sender sender(receiver);
+  sender.tell("warning");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::delivered).event, "warning");
+  EXPECT_EQ(receiver.received().size(), 3U);
+}
+
+TEST(WebhookSender, GivesUpInTheEnd) {
+  const Receiver receiver({500});
+  Sender sender(receiver);
+  sender.tell("warning");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "it answered 500");
+  EXPECT_EQ(receiver.received().size(), 3U);
+}
+
+TEST(WebhookSender, DoesNotInsistWhereItIsRefused) {
+  const Receiver receiver({410});
+  Sender sender(receiver);
+  sender.tell("warning");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "it answered 410");
+  EXPECT_EQ(receiver.received().size(), 1U);
+}
+
+TEST(WebhookSender, FollowsNoRedirect) {
+  const Receiver receiver({307});
+  Sender sender(receiver);
+  sender.tell("warning");
+  EXPECT_NE(sender.wait_for(WebhookState::Outcome::failed).trouble.find("redirect"),
+            std::string::npos);
+  EXPECT_EQ(receiver.received().size(), 1U);
+}
+
+TEST(WebhookSender, SaysThatNobodyAnswers) {
+  std::string url;
+  {
+    const Receiver gone({200});
+    url = gone.url();
+  }
+  const TemporaryFolder folder;
+  AddressBook book(folder.path() / "addresses.json");
+  const std::string id = book.add(Webhook{.url = url}).id;
+  WebhookSender sender(
+      book, [] { return std::vector<Happening>{}; }, brisk);
+  sender.tell(id, {.event = "test", .body = "{}"});
+  std::optional<WebhookState> state = sender.state(id);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (state->outcome != WebhookState::Outcome::failed &&
+         std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+    state = sender.state(id);
+  }
+  EXPECT_EQ(state->outcome, WebhookState::Outcome::failed);
+  EXPECT_NE(state->trouble, "");
+}
+
+TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
+  const Receiver receiver({500});
+  WebhookLimits limits = brisk;
+  limits.first_pause = 1h;
+  limits.max_waiting = 2;
+  Sender sender(receiver, {}, limits);
+  sender.tell("scan-started");
+  receiver.wait_for(1);
+  for (const char* event : {"scan-paused", "scan-failed", "warning"}) {
+    sender.tell(event);
+  }
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "too much waited to be sent");
+}
+
+/// Whose look finds something once.
+class News : public Sender {
+ public:
+  News(const Receiver& receiver, std::vector<std::string> events)
+      : Sender(receiver, std::move(events)),
+        other_(
+            book_, [this] { return std::exchange(news_, {}); }, brisk) {}
+
+ private:
+  std::vector<Happening> news_{{.event = "scan-started", .body = "1"},
+                               {.event = "scan-finished", .body = "2"}};
+  WebhookSender other_;
+};
+
+TEST(WebhookSender, TellsEachOneWhatItWants) {
+  const Receiver picky({200});
+  const Receiver curious({200});
+  const News one(picky, {"scan-finished"});
+  const News other(curious, {});
+  EXPECT_EQ(curious.wait_for(2).size(), 2U);
+  ASSERT_EQ(picky.wait_for(1).size(), 1U);
+  EXPECT_EQ(picky.received()[0].body, "2");
+}
+
+TEST(WebhookSender, EndsAtOnceWhileAReceiverIsSlow) {
+  std::promise<void> asked;
+  std::promise<void> answered;
+  auto release = answered.get_future().share();
+  const HttpServer slow({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+    asked.set_value();
+    release.wait();
+    return Response{};
+  });
+  const TemporaryFolder folder;
+  AddressBook book(folder.path() / "addresses.json");
+  const std::string url = "http://127.0.0.1:" + std::to_string(slow.port()) + "/";
+  const std::string id = book.add(Webhook{.url = url}).id;
+  {
+    WebhookLimits patient = brisk;
+    patient.patience = 1h;
+    WebhookSender sender(
+        book, [] { return std::vector<Happening>{}; }, patient);
+    sender.tell(id, {.event = "test", .body = "{}"});
+    asked.get_future().wait();
+  }  // ends here, or the test's own limit does
+  answered.set_value();
+}
+
+}  // namespace
+}  // namespace octurn

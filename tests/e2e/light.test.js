@@ -1,0 +1,76 @@
+// How much a first visit brings, and in how many round trips: counted in a browser, at the real program.
+
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {openBrowser} from './browser.js';
+import {scan, startScanner} from './scanner.js';
+
+const maxForm = 75e3;  // bytes, without the live picture, which goes on
+const maxViewer = 200e3;  // scripts and styles, with those that draw models
+const maxRounds = 4;
+
+/**
+ * Notes what a page brings, as it goes over the network: heads and bodies.
+ * @returns {Promise<{all: {url: string, bytes: number, after: string | null}[]}>}  after: what had to come first
+ */
+async function count(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send('Network.enable');
+  const open = new Map();
+  const all = [];
+  session.on('Network.requestWillBeSent', ({requestId, request: {url}, initiator, documentURL}) => {
+    const frames = [];
+    for (let stack = initiator.stack; stack; stack = stack.parent) {
+      frames.push(...stack.callFrames.map((frame) => frame.url));
+    }
+    open.set(requestId, {url, bytes: 0, after: url === documentURL ? null : frames.find(Boolean) ?? initiator.url ?? documentURL});
+  });
+  session.on('Network.loadingFinished', ({requestId, encodedDataLength}) => {
+    const request = open.get(requestId);
+    if (request) {
+      all.push({...request, bytes: encodedDataLength});
+    }
+  });
+  return {all};
+}
+
+/** How many round trips a request needs: one more than what had to come first. */
+function rounds(all, {after}) {
+  const first = all.find(({url}) => url === after);
+  return after === null || !first ? 1 : 1 + rounds(all, first);
+}
+
+const sum = (all) => all.reduce((bytes, request) => bytes + request.bytes, 0);
+const table = (all) => all.map((request) => `${rounds(all, request)} ${request.bytes} ${request.url}`).join('\n');
+
+test('the form comes in at most 75 kB and four round trips, what draws models in at most 200 kB, and only once', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  const page = await (await browser.newContext()).newPage();
+  const {all} = await count(page);
+  await page.goto(scanner.url);
+  await page.locator('#start').waitFor();
+  await page.waitForFunction(() => performance.getEntriesByType('resource').some(({name, responseEnd}) => name.endsWith('/api/v1/settings') && responseEnd > 0));
+  const form = all.filter(({url}) => !url.includes('/preview/'));
+  t.diagnostic(`form: ${sum(form)} bytes, ${form.length} files, ${Math.max(...form.map((request) => rounds(form, request)))} round trips`);
+  assert.ok(form.length >= 5 && sum(form) > 20e3, table(form));
+  assert.ok(sum(form) <= maxForm, `${sum(form)} bytes:\n${table(form)}`);
+  assert.ok(form.every((request) => rounds(form, request) <= maxRounds), table(form));
+
+  const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
+  const isModel = ({url}) => url.endsWith('/Scan.stl');
+  const awaitModel = () => page.waitForFunction(() => performance.getEntriesByType('resource').some(({name, responseEnd}) => name.endsWith('/Scan.stl') && responseEnd > 0));
+  await page.goto(`${scanner.url}#${id}`);
+  await awaitModel();
+  const viewer = all.filter((request) => !isModel(request) && /assets/.test(request.url));
+  t.diagnostic(`with what draws models: ${sum(viewer)} bytes of scripts and styles; the model itself ${sum(all.filter(isModel))}`);
+  assert.ok(viewer.some(({bytes}) => bytes > 100e3), table(viewer));  // three.js
+  assert.ok(sum(viewer) <= maxViewer, `${sum(viewer)} bytes:\n${table(viewer)}`);
+
+  const before = all.length;
+  await page.reload();
+  await awaitModel();
+  const again = all.slice(before).filter(({url}) => url.includes('/assets/'));
+  assert.equal(sum(again), 0, `what is kept for ever came again:\n${table(again)}`);
+});

@@ -1,0 +1,199 @@
+// What the scanner tells others by itself: webhooks, and models for printers. Each printer here answers as its
+// interface is documented, and remembers what it was sent.
+
+import assert from 'node:assert/strict';
+import {createHash} from 'node:crypto';
+import {once} from 'node:events';
+import {readFile} from 'node:fs/promises';
+import {createServer} from 'node:http';
+import {join} from 'node:path';
+import {test} from 'node:test';
+
+import {ask, scan, scanFolders, startScanner} from './scanner.js';
+
+/**
+ * A server on loopback for a test.
+ * @param {(request: any, body: Buffer) => {status: number, headers?: Object, body?: any}} answer
+ */
+async function serve(t, answer) {
+  const received = [];
+  const server = createServer(async (request, response) => {
+    const parts = [];
+    for await (const part of request) {
+      parts.push(part);
+    }
+    const body = Buffer.concat(parts);
+    const given = answer(request, body);
+    received.push({method: request.method, url: request.url, headers: request.headers, body, status: given.status});
+    response.writeHead(given.status, {'Content-Type': 'application/json', ...given.headers});
+    response.end(given.body === undefined ? '' : JSON.stringify(given.body));
+  });
+  server.listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  t.after(() => {
+    server.closeAllConnections();
+    server.close();
+  });
+  return {url: `http://127.0.0.1:${server.address().port}`, received};
+}
+
+/** The fields of a form, and its file. @param {{headers: any, body: Buffer}} request */
+async function formOf({headers, body}) {
+  const form = await new Response(body, {headers: {'Content-Type': headers['content-type']}}).formData();
+  const file = form.get('file');
+  return {form, name: file.name, bytes: Buffer.from(await file.arrayBuffer())};
+}
+
+/** Until something is so. @template T @param {() => T | Promise<T>} look @returns {Promise<T>} */
+async function until(look) {
+  for (;;) {
+    const found = await look();
+    if (found) {
+      return found;
+    }
+    await new Promise((done) => {
+      setTimeout(done, 20);
+    });
+  }
+}
+
+/** Sends a scan to a printer, to the end. */
+async function send(scanner, id, body) {
+  await ask(scanner, `scans/${id}/send`, 'POST', body);
+  return until(async () => {
+    const upload = await ask(scanner, `scans/${id}/send`);
+    return upload.state !== 'sending' && upload;
+  });
+}
+
+const key = 'a-key-of-the-printer';
+
+/** As docs.octoprint.org, "File operations": the key in X-Api-Key, a form with `file`; 415 for what it cannot use. */
+const octoprint = (takes) => (request, body) => {
+  if (request.headers['x-api-key'] !== key) {
+    return {status: 403};
+  }
+  if (request.method !== 'POST' || request.url !== '/octoprint/api/files/local') {
+    return {status: 404};
+  }
+  const name = /filename="([^"]*)"/.exec(body.toString('latin1'))[1];
+  return takes.test(name) ? {status: 201, body: {files: {local: {name, origin: 'local'}}, done: true}} : {status: 415};
+};
+
+/** As moonraker.readthedocs.io, "File upload": a form with `file` and `root`; 201. */
+const moonraker = (request) => request.method === 'POST' && request.url === '/server/files/upload' ?
+  {status: 201, body: {item: {path: 'x', root: 'gcodes'}, print_started: false, action: 'create_file'}} : {status: 404};
+
+/** As PrusaLink's openapi.yaml: Digest; GET /api/v1/storage; PUT /api/v1/files/STORAGE/NAME. */
+const prusalink = (takes) => (request) => {
+  const given = request.headers.authorization ?? '';
+  const field = (name) => new RegExp(`${name}="?([^",]*)`).exec(given)?.[1];
+  const md5 = (text) => createHash('md5').update(text).digest('hex');
+  const proof = md5([md5(`maker:Printer API:${key}`), 'n1', field('nc'), field('cnonce'), 'auth', md5(`${request.method}:${request.url}`)].join(':'));
+  if (field('response') !== proof) {
+    return {status: 401, headers: {'WWW-Authenticate': 'Digest realm="Printer API", nonce="n1", qop="auth"'}};
+  }
+  if (request.method === 'GET' && request.url === '/api/v1/storage') {
+    return {status: 200, body: {storage_list: [
+      {name: 'SD', type: 'SDCARD', path: '/sdcard', available: true, read_only: true},
+      {name: 'USB', type: 'USB', path: '/usb', available: true, read_only: false}]}};
+  }
+  if (request.method !== 'PUT' || !request.url.startsWith('/api/v1/files/usb/')) {
+    return {status: 404};
+  }
+  return {status: takes.test(request.url) ? 201 : 415};
+};
+
+test('a model goes to each kind of printer, whole, and nothing is printed', async (t) => {
+  const scanner = await startScanner(t);
+  const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  await ask(scanner, `scans/${id}`, 'PATCH', {name: 'Ölkanne 1'});
+  const [folder] = await scanFolders(scanner);
+  const model = await readFile(join(folder, 'Scan.stl'));
+
+  const octo = await serve(t, octoprint(/\.stl$/));
+  await ask(scanner, 'printers', 'POST', {name: 'Ender', kind: 'octoprint', url: `${octo.url}/octoprint/`, key});
+  const upload = await send(scanner, id, {printer: 'Ender'});
+  assert.deepEqual([upload.state, upload.progress, upload.file], ['sent', 1, 'Ölkanne 1.stl'], upload.detail);
+  const sent = await formOf(octo.received.at(-1));
+  assert.equal(sent.name, 'Ölkanne 1.stl');
+  assert.equal(sent.form.get('print'), 'false');
+  assert.ok(sent.bytes.equals(model));
+
+  const moon = await serve(t, moonraker);
+  const voron = await ask(scanner, 'printers', 'POST', {name: 'Voron', kind: 'moonraker', url: moon.url});
+  assert.equal((await send(scanner, id, {printer: voron.id, format: '3mf'})).state, 'sent');
+  const threemf = await formOf(moon.received.at(-1));
+  assert.equal(threemf.form.get('root'), 'gcodes');
+  assert.ok(threemf.bytes.equals(await readFile(join(folder, 'Scan.3mf'))));
+
+  const prusa = await serve(t, prusalink(/\.stl$/));
+  await ask(scanner, 'printers', 'POST', {name: 'MK4', kind: 'prusalink', url: prusa.url, user: 'maker', key});
+  const last = await send(scanner, id, {printer: 'MK4'});
+  assert.equal(last.state, 'sent', last.detail);
+  const put = prusa.received.at(-1);
+  assert.equal(put.url, `/api/v1/files/usb/${encodeURIComponent('Ölkanne 1.stl')}`);
+  assert.equal(put.headers['print-after-upload'], '?0');
+  assert.ok(put.body.equals(model));
+
+  assert.ok(!JSON.stringify(await ask(scanner, 'printers')).includes(key));
+  const diagnostics = Buffer.from(await (await fetch(`${scanner.url}api/v1/diagnostics.zip`)).arrayBuffer());
+  assert.ok(!diagnostics.includes(key)); // its files are stored without compression
+});
+
+test('a printer that does not take a model says why, and what to do', async (t) => {
+  const scanner = await startScanner(t);
+  const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const plain = await serve(t, octoprint(/\.gcode$/));
+  const {url} = plain;
+  const prusa = await serve(t, prusalink(/\.b?gcode$/));
+  const redirect = await serve(t, () => ({status: 302, headers: {Location: `${url}/elsewhere`}}));
+  const printers = [
+    ['no slicer', {kind: 'octoprint', url: `${url}/octoprint`, key}, /415/, /plug-in/],
+    ['wrong key', {kind: 'octoprint', url: `${url}/octoprint`, key: 'another'}, /403/, /key/],
+    ['wrong kind', {kind: 'moonraker', url: `${url}/octoprint`, key}, /404/, /kind/],
+    ['wrong password', {kind: 'prusalink', url: prusa.url, user: 'maker', key: 'another'}, /401/, /key/],
+    ['only G-code', {kind: 'prusalink', url: prusa.url, user: 'maker', key}, /415/, /slice/],
+    ['moved', {kind: 'moonraker', url: redirect.url}, /302/, /address/],
+    ['off', {kind: 'moonraker', url: 'http://127.0.0.1:9'}, /reached/, /is on/],
+  ];
+  for (const [name, printer, detail, hint] of printers) {
+    await ask(scanner, 'printers', 'POST', {name, ...printer});
+    const upload = await send(scanner, id, {printer: name});
+    assert.equal(upload.state, 'failed', name);
+    assert.match(upload.detail, detail);
+    assert.match(upload.hint, hint);
+    assert.ok(!JSON.stringify(upload).includes(key));
+  }
+  assert.ok(plain.received.every(({url: asked}) => asked !== '/elsewhere'));
+  await assert.rejects(ask(scanner, `scans/${id}/send`, 'POST', {printer: 'nobody'}), /bad-settings/);
+});
+
+test('a webhook is told what happens, and again if it did not listen', async (t) => {
+  const scanner = await startScanner(t);
+  let isListening = true;
+  const hub = await serve(t, () => ({status: isListening ? 204 : 500}));
+  const told = () => hub.received.filter(({status}) => status === 204).map(({body}) => JSON.parse(body));
+  const hook = await ask(scanner, 'webhooks', 'POST', {url: `${hub.url}/hook/secret`, events: ['scan-finished', 'scan-started']});
+  assert.ok(!JSON.stringify(await ask(scanner, 'webhooks')).includes('secret'));
+
+  const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const end = await until(() => told().find(({event}) => event === 'scan-finished'));
+  assert.equal(end.scan.id, id);
+  assert.equal(end.scan.state, 'finished');
+  assert.ok(Math.abs(Date.parse(end.time) - Date.now()) < 3600e3);
+
+  isListening = false;
+  const heard = hub.received.length;
+  await ask(scanner, `webhooks/${hook.id}/test`, 'POST', {});
+  await until(() => hub.received.length > heard);
+  assert.match((await until(async () => {
+    const {webhooks: [{last}]} = await ask(scanner, 'webhooks');
+    return last.event === 'test' && last.trouble !== '' && last;
+  })).trouble, /500/);
+  isListening = true;
+  await until(() => told().some(({event}) => event === 'test'));
+
+  await ask(scanner, `webhooks/${hook.id}`, 'DELETE');
+  assert.deepEqual((await ask(scanner, 'webhooks')).webhooks, []);
+});

@@ -1,0 +1,42 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {aboutPrinter, aboutWebhook} from '../../web/outgoing.js';
+import {linesOf, needsClock} from '../../web/power.js';
+import {aboutUpload, scanIn} from '../../web/send.js';
+import {textOf} from '../../web/warnings.js';
+
+test('a printer, and how a model gets there, are told in words', () => {
+  assert.equal(aboutPrinter({id: '1', name: 'Voron', kind: 'moonraker', address: 'http://voron.local:7125', has_key: true}), 'Moonraker · http://voron.local:7125');
+  const upload = {printer: 'Voron', state: 'sending', progress: 0.499, detail: '', hint: ''};
+  assert.equal(aboutUpload(upload), 'Sending to Voron, 49 %');
+  assert.match(aboutUpload({...upload, state: 'sent'}), /^Voron has the model/);
+  assert.equal(aboutUpload({...upload, state: 'failed', detail: 'it is off', hint: 'Turn it on.'}), 'It is off. Turn it on.');
+});
+
+test('a webhook says what became of its last message', () => {
+  const webhook = {id: '1', address: 'http://hub', events: [], last: null};
+  assert.equal(aboutWebhook(webhook), 'Nothing was sent yet.');
+  const last = {outcome: 'waiting', event: 'test', time: null, trouble: ''};
+  assert.equal(aboutWebhook({...webhook, last}), 'A message is on its way.');
+  assert.equal(aboutWebhook({...webhook, last: {...last, trouble: 'it answered 500'}}), 'Not arrived yet: it answered 500. It is tried again.');
+  assert.equal(aboutWebhook({...webhook, last: {...last, outcome: 'failed', trouble: 'it answered 410'}}), 'The last message did not arrive: it answered 410.');
+});
+
+test('the scan of a download is found in its address', () => {
+  assert.equal(scanIn('/api/v1/scans/20261121-081500-3f2a/Scan.stl'), '20261121-081500-3f2a');
+  assert.equal(scanIn('/api/v1/scans/7/builds/2/Scan.stl'), '7');
+  assert.equal(scanIn(''), '');
+});
+
+test('a clock is lent to an appliance that warns of its own', () => {
+  const clock = {check: 'clock', name: 'Clock', state: 'warning', measured: '1970-01-01', advice: '', action: ''};
+  assert.equal(needsClock({appliance: true, warnings: [clock]}), true);
+  assert.equal(needsClock({appliance: false, warnings: [clock]}), false);
+  assert.equal(needsClock({appliance: true, warnings: []}), false);
+});
+
+test('warnings and messages are for people', () => {
+  assert.deepEqual(textOf({name: 'Supply', measured: 'below 4.63 V', advice: 'use the right one'}), {title: 'Supply: below 4.63 V.', text: 'Use the right one.'});
+  assert.equal(linesOf({log: ['2026-11-21T08:15:00Z <6>scanner: started'], errors: ['wifi: gone']}), 'wifi: gone\n2026-11-21T08:15:00Z scanner: started');
+});

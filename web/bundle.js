@@ -1,0 +1,89 @@
+// Makes the page as it is served of its modules: node bundle.js SOURCE TARGET FILE...
+//
+// The scripts and styles of each document that has some become a few files under assets/, whose names change with
+// their content, so that a browser may keep them for ever. Files that are neither are copied. Beside each
+// text lies the same, packed, as NAME.gz.
+
+import {build} from 'esbuild';
+import {cp, mkdir, readFile, readdir, rm, writeFile} from 'node:fs/promises';
+import {basename, dirname, join, relative} from 'node:path';
+import {gzipSync} from 'node:zlib';
+
+const [source, target, ...files] = process.argv.slice(2);
+const stylesheet = /^ *<link rel="stylesheet" href="([^"]+)">\n/gm;
+const script = /<script type="module" src="([^"]+)"><\/script>/;
+const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
+const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
+const common = {
+  bundle: true, minify: true, format: 'esm', target: 'es2022', charset: 'utf8', legalComments: 'none', logLevel: 'warning',
+  metafile: true, absWorkingDir: source, outdir: join(target, 'assets'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
+};
+
+/** The file of the page that an entry was made into, from `outputs` of a metafile. @returns {string} */
+function madeOf(outputs, entry) {
+  const [path] = Object.entries(outputs).find(([, {entryPoint}]) => entryPoint === entry);
+  return path;
+}
+
+/** What a script needs before it runs, itself first: their names below `target`. @returns {string[]} */
+function needed(outputs, path, seen = []) {
+  if (!seen.includes(path)) {
+    seen.push(path);
+    outputs[path].imports.filter(({kind}) => kind === 'import-statement').forEach((other) => needed(outputs, other.path, seen));
+  }
+  return seen;
+}
+
+/** @param {string} path  as esbuild has it, from `source` */
+const fromPage = (path) => relative(target, join(source, path));
+
+/** One file of a document's stylesheets, in their order. @param {string[]} files @returns {Promise<string>} */
+async function bundleStyles(files) {
+  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], stdin: {
+    contents: files.map((file) => `@import "./${file}";`).join('\n'), loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
+  return fromPage(Object.keys(metafile.outputs)[0]);
+}
+
+/** @param {string} folder @returns {Promise<string[]>} all files below it */
+async function filesBelow(folder) {
+  const entries = await readdir(folder, {withFileTypes: true});
+  const below = await Promise.all(entries.map((entry) => entry.isDirectory() ?
+    filesBelow(join(folder, entry.name)) : [join(folder, entry.name)]));
+  return below.flat();
+}
+
+await rm(target, {recursive: true, force: true});
+await mkdir(target, {recursive: true});
+const documents = new Map();
+for (const file of files.filter((name) => !/\.(js|css)$/.test(name))) {
+  await mkdir(join(target, dirname(file)), {recursive: true});
+  await cp(join(source, file), join(target, file));
+  const text = file.endsWith('.html') ? await readFile(join(source, file), 'utf8') : '';
+  if (text.search(stylesheet) >= 0) {
+    documents.set(file, text);
+  }
+}
+
+const entries = [...documents.values()].flatMap((text) => script.exec(text)?.[1] ?? []);
+const {metafile: {outputs}} = await build({...common, entryPoints: entries, splitting: true});
+for (const [file, text] of documents) {
+  const folder = dirname(file);
+  const entry = script.exec(text)?.[1];
+  const [main, ...others] = entry ? needed(outputs, madeOf(outputs, entry)).map(fromPage) : [];
+  const styles = [...text.matchAll(stylesheet)].map(([, name]) => join(folder, name));
+  const head = [
+    `  <link rel="stylesheet" href="${relative(folder, await bundleStyles(styles))}">`,
+    ...others.map((other) => `  <link rel="modulepreload" href="${other}">`), ''].join('\n');
+  const bare = text.replace(preload, '');
+  const first = bare.search(stylesheet);
+  const rest = bare.replace(stylesheet, '').replace(script, `<script type="module" src="${main}"></script>`);
+  await writeFile(join(target, file), rest.slice(0, first) + head + rest.slice(first));
+}
+
+for (const file of await filesBelow(target)) {
+  const content = await readFile(file);
+  const small = gzipSync(content, {level: 9});
+  if (packed.test(file) && small.length < content.length) {
+    await writeFile(`${file}.gz`, small);
+  }
+}

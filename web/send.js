@@ -1,0 +1,100 @@
+// "Send to printer" below the download of a model, where the scanner has printers.
+
+import {Problem, json, sending} from './api.js';
+import {element, setText, show} from './dom.js';
+import {sentence} from './format.js';
+import {text} from './texts.js';
+
+/** @typedef {{printer: string, state: 'sending' | 'sent' | 'failed' | 'cancelled', progress: number, detail: string, hint: string}} Upload */
+
+const pause = 500;  // milliseconds between looks
+
+/** How a model is on its way, in words. Pure. @param {Upload} upload */
+export function aboutUpload({printer, state, progress, detail, hint}) {
+  const words = {
+    sending: () => text('send.sending', {printer, percent: Math.floor(progress * 100)}),
+    sent: () => text('send.sent', {printer}),
+    failed: () => [detail, hint].map(sentence).join(' '),
+    cancelled: () => text('send.cancelled'),
+  };
+  return words[state]();
+}
+
+/** The scan whose model the link downloads. Pure. @param {string} href */
+export const scanIn = (href) => /scans\/([^/]+)\//.exec(href)?.[1] ?? '';
+
+/** @param {string} words @param {'good' | 'bad' | ''} tone */
+function say(words, tone) {
+  setText(element('send-said'), words);
+  element('send-said').dataset.tone = tone;
+}
+
+const shownScan = () => scanIn(element('download').getAttribute('href') ?? '');
+
+/** Follows an upload to its end, or until another scan is looked at. @param {string} id */
+async function follow(id) {
+  for (;;) {
+    const upload = /** @type {Upload} */ (await json(`scans/${id}/send`));
+    if (shownScan() !== id) {
+      return;
+    }
+    say(aboutUpload(upload), upload.state === 'sent' ? 'good' : upload.state === 'failed' ? 'bad' : '');
+    if (upload.state !== 'sending') {
+      return;
+    }
+    await new Promise((done) => {
+      setTimeout(done, pause);
+    });
+  }
+}
+
+async function send() {
+  const id = shownScan();
+  const button = element('send-start');
+  if (button.getAttribute('aria-disabled') === 'true') {
+    return;
+  }
+  button.setAttribute('aria-disabled', 'true');
+  try {
+    await json(`scans/${id}/send`, sending('POST', {printer: element('send-printer').value}));
+    await follow(id);
+  } catch (error) {
+    const {detail, title, hint} = error instanceof Problem ? error : new Problem('page', String(error));
+    say([detail || title, hint].map(sentence).join(' ').trim(), 'bad');
+  } finally {
+    button.removeAttribute('aria-disabled');
+  }
+}
+
+let asked = '';  // for which scan the printers were asked for
+
+/** Offers the printers that there are when another model is shown. */
+async function offer() {
+  const id = shownScan();
+  if (element('download').hidden || id === '') {
+    show(element('send'), false);
+  } else if (id !== asked) {
+    asked = id;
+    say('', '');
+    const {printers} = await json('printers').catch(() => ({printers: []}));
+    const chosen = element('send-printer').value;
+    element('send-printer').replaceChildren(...printers.map((/** @type {{id: string, name: string}} */ printer) => new Option(printer.name, printer.id)));
+    element('send-printer').value = printers.some((/** @type {{id: string}} */ printer) => printer.id === chosen) ? chosen : printers[0]?.id ?? '';
+    show(element('send'), printers.length > 0);
+  } else {
+    show(element('send'), element('send-printer').options.length > 0);
+  }
+}
+
+export function prepareSend() {
+  element('send').addEventListener('submit', (/** @type {Event} */ event) => {
+    event.preventDefault();
+    send();
+  });
+  new MutationObserver(offer).observe(element('download'), {attributes: true, attributeFilter: ['href', 'hidden']});
+  addEventListener('hashchange', () => {
+    asked = '';  // printers may have been added meanwhile
+    offer();
+  });
+  offer();
+}

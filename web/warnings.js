@@ -1,0 +1,30 @@
+// What is wrong with the computer, told without being asked for: supply, heat, disk, clock.
+
+import {element, list, part, setText, show} from './dom.js';
+import {sentence} from './format.js';
+import {lendClock, needsClock} from './power.js';
+
+/** @typedef {import('./api.js').Finding} Finding */
+
+const tones = /** @type {Record<string, string>} */ ({fault: 'bad', warning: 'warn'});
+
+/** What a warning says. Pure. @param {Finding} finding */
+export const textOf = ({name, measured, advice}) => ({title: `${name}: ${measured}.`, text: sentence(advice)});
+
+let isClockLent = false;
+
+/** @param {import('./api.js').Status} status */
+export function seeWarnings(status) {
+  const warnings = status.warnings ?? [];
+  show(element('warnings'), warnings.length > 0);
+  list(element('warnings'), warnings, ({check}) => check, 'machine-warning', (item, finding) => {
+    const {title, text} = textOf(finding);
+    item.dataset.tone = tones[finding.state] ?? '';
+    setText(part(item, 'strong'), title);
+    setText(part(item, 'span'), text);
+  });
+  if (!isClockLent && needsClock(status)) {
+    isClockLent = true;  // once for each visit: a clock that cannot be set is told of, not asked for again
+    lendClock().catch(() => {});
+  }
+}

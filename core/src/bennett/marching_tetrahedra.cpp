@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
-#include <numeric>
 #include <optional>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bennett/marching_tetrahedra_cases.hpp"
@@ -16,109 +15,23 @@
 namespace octurn {
 namespace {
 
-/// The 8 x 8 x 8 pseudo-voxels whose lowest corners are the leaves of one brick position, and the
-/// up to eight bricks that hold their corners: bit 0 of the index is one brick on in x, bit 1 in y,
-/// bit 2 in z.
-struct PseudoVoxelBrick {
-  Index3 position = {};
-  std::array<const Brick*, 8> bricks = {};
-};
-
-constexpr Brick no_leaves{};
-
-/// Bricks contributing corners to one layer's pseudo-voxels: those of the layer itself, and the
-/// bottom leaf layer of the bricks above, which is all that a slab keeps of them.
-class CornerBricks {
- public:
-  CornerBricks(const Octree& octree, int layer) : layer_(layer) {
-    for (int up = 0; up < 2; ++up) {
-      octree.for_each_brick(layer + up, [&](const Index3& position, const Brick& brick) {
-        if (up == 0 || brick.layers[0] != 0) {
-          bricks_.push_back({position, &brick});
-        }
-      });
-    }
-    by_row_ = bricks_;
-    std::ranges::sort(by_row_, {}, [](const Found& found) {
-      return std::tuple(found.position.y, found.position.z, found.position.x);
-    });
-    rows_.resize(by_row_.empty() ? 0 : row_index(by_row_.back().position) + 2);
-    for (const Found& found : by_row_) {
-      ++rows_[row_index(found.position) + 1];
-    }
-    std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
-  }
-
-  /// Calls `visit(brick, up)` for each, with its position, and 1 for those of the layer above,
-  /// which come last.
-  template <typename Visit>
-  void for_each(Visit visit) const {
-    for (const Found& found : bricks_) {
-      visit(found.position, found.position.z - layer_);
-    }
-  }
-
-  const Brick* find(const Index3& position) const {
-    if (position.y < 0 || row_index(position) + 1 >= rows_.size()) {
-      return nullptr;
-    }
-    const auto row = std::span(by_row_).subspan(
-        rows_[row_index(position)], rows_[row_index(position) + 1] - rows_[row_index(position)]);
-    const auto found = std::ranges::lower_bound(row, position.x, {},
-                                                [](const Found& one) { return one.position.x; });
-    return found != row.end() && found->position.x == position.x ? found->brick : nullptr;
-  }
-
- private:
-  struct Found {
-    Index3 position;
-    const Brick* brick;
-  };
-
-  /// Rows along x, of the layer and of the one above in turn.
-  std::size_t row_index(const Index3& position) const {
-    return 2 * static_cast<std::size_t>(position.y) + static_cast<std::size_t>(position.z - layer_);
-  }
-
-  int layer_;
-  std::vector<Found> bricks_ = {};
-  std::vector<Found> by_row_ = {};
-  std::vector<std::uint32_t> rows_ =
-      {};  // index in `by_row_` of each row's first; one more at the end
-};
-
-/// The pseudo-voxel bricks of one layer that have any leaf in them.
-class PseudoVoxelLayer {
- public:
-  PseudoVoxelLayer(const Octree& octree, int layer) {
-    const CornerBricks bricks(octree, layer);
-    bricks.for_each([&](const Index3& brick, int up) {
-      for (int corner = 0; corner < 4; ++corner) {
-        add(bricks, {brick.x - (corner & 1), brick.y - (corner >> 1), layer}, corner + 4 * up);
+/// The bricks of one layer of an octree, and those of the layer above that have leaves at their
+/// bottom, which is all that a slab keeps of them.
+std::vector<PlacedBrick> corner_bricks(const Octree& octree, int layer) {
+  std::vector<PlacedBrick> bricks;
+  for (int up = 0; up < 2; ++up) {
+    octree.for_each_brick(layer + up, [&](const Index3& position, const Brick& brick) {
+      if (up == 0 || brick.layers[0] != 0) {
+        bricks.push_back({position, &brick});
       }
     });
   }
+  return bricks;
+}
 
-  const std::vector<PseudoVoxelBrick>& bricks() const { return bricks_; }
-
- private:
-  /// Adds the pseudo-voxel brick at `position`, unless one of its bricks before `corner` did so
-  /// already.
-  void add(const CornerBricks& bricks, const Index3& position, int corner) {
-    PseudoVoxelBrick added{.position = position, .bricks = {}};
-    for (int i = 0; i < 8; ++i) {
-      const Brick* brick =
-          bricks.find({position.x + (i & 1), position.y + (i >> 1 & 1), position.z + (i >> 2)});
-      if (brick != nullptr && i < corner) {
-        return;
-      }
-      added.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
-    }
-    bricks_.push_back(added);
-  }
-
-  std::vector<PseudoVoxelBrick> bricks_ = {};
-};
+PseudoVoxelLayer pseudo_voxels(const Octree& octree, int layer) {
+  return {layer, corner_bricks(octree, layer)};
+}
 
 /// The corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1) of 8 x 8 pseudo-voxels on one layer of
 /// leaves.
@@ -175,11 +88,11 @@ struct HalfStepPositions {
   static constexpr std::size_t count = 2 * Brick::side + 1;
   std::array<std::array<float, count>, 3> mm = {};
 
-  HalfStepPositions(const Octree& octree, const Index3& brick) {
+  HalfStepPositions(const BrickFrame& frame, const Index3& brick) {
     const std::array<int, 3> first{brick.x, brick.y, brick.z};
-    const double half_leaf = octree.leaf_side() / 2;
+    const double half_leaf = frame.leaf_side / 2;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double corner = axis < 2 ? -octree.side() / 2 : 0.0;
+      const double corner = axis < 2 ? frame.low_xy : 0.0;
       for (std::size_t i = 0; i < count; ++i) {
         const double halves = 2.0 * Brick::side * first[axis] + 1 + static_cast<double>(i);
         mm[axis][i] = static_cast<float>(mm_from_metres(corner + halves * half_leaf));
@@ -188,9 +101,9 @@ struct HalfStepPositions {
   }
 };
 
-void append_facets(const Octree& octree, const PseudoVoxelBrick& brick,
+void append_facets(const BrickFrame& frame, const PseudoVoxelBrick& brick,
                    std::vector<Facet>& facets) {
-  const HalfStepPositions positions(octree, brick.position);
+  const HalfStepPositions positions(frame, brick.position);
   for_each_mixed(brick, [&](int x, int y, int z, std::size_t pattern) {
     const TetrahedraCase& surface = marching_tetrahedra_cases[pattern];
     const std::array<const float*, 3> mm{&positions.mm[0][static_cast<std::size_t>(2 * x)],
@@ -229,7 +142,7 @@ class PieceSource {
   std::optional<PseudoVoxelPiece> operator()() {
     constexpr std::size_t max_bricks = 8;
     while (rest_.empty() && next_ < end_) {
-      layer_ = std::make_shared<const PseudoVoxelLayer>(octree_, next_++);
+      layer_ = std::make_shared<const PseudoVoxelLayer>(pseudo_voxels(octree_, next_++));
       rest_ = layer_->bricks();
     }
     if (rest_.empty()) {
@@ -252,24 +165,43 @@ class PieceSource {
 
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink) {
+  const BrickFrame frame{.low_xy = -octree.side() / 2, .leaf_side = octree.leaf_side()};
   OrderedPipeline<PieceSource, std::vector<Facet>> pieces(PieceSource(octree, layers), 4 * threads);
   fork_join(threads, [&](int) {
     pieces.run(
         [&](const PseudoVoxelPiece& piece, std::vector<Facet>& facets) {
           facets.clear();
           for (const PseudoVoxelBrick& brick : piece.bricks) {
-            append_facets(octree, brick, facets);
+            append_facets(frame, brick, facets);
           }
         },
         [&](const std::vector<Facet>& facets) { sink(facets); });
   });
 }
 
+void draw_layer(const BrickFrame& frame, int layer, std::vector<PlacedBrick> bricks,
+                const FacetSink& sink) {
+  constexpr std::size_t enough_facets = 8192;
+  PseudoVoxelLayer pseudo_voxels(layer, std::move(bricks));
+  pseudo_voxels.sort_by_rows();
+  std::vector<Facet> facets;
+  for (const PseudoVoxelBrick& brick : pseudo_voxels.bricks()) {
+    append_facets(frame, brick, facets);
+    if (facets.size() >= enough_facets) {
+      sink(facets);
+      facets.clear();
+    }
+  }
+  if (!facets.empty()) {
+    sink(facets);
+  }
+}
+
 std::uint64_t count_facets(const Octree& octree, const BrickLayers& layers) {
   std::uint64_t count = 0;
   for (int layer = first_layer(layers); layer < layers.end; ++layer) {
-    const PseudoVoxelLayer pseudo_voxels(octree, layer);
-    for (const PseudoVoxelBrick& brick : pseudo_voxels.bricks()) {
+    const PseudoVoxelLayer bricks = pseudo_voxels(octree, layer);
+    for (const PseudoVoxelBrick& brick : bricks.bricks()) {
       for_each_mixed(brick, [&](int, int, int, std::size_t pattern) {
         count += marching_tetrahedra_cases[pattern].count;
       });

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "bennett/pseudo_voxels.hpp"
 #include "octurn/stl.hpp"
 #include "voxel/octree.hpp"
 
@@ -30,6 +32,18 @@ inline BrickLayers all_layers(const Octree& octree) {
 /// @param sink     called by one thread at a time; millimetres; what it throws ends the call
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink);
+
+/// Where bricks lie, metres.
+struct BrickFrame {
+  double low_xy = 0;  ///< where brick 0 begins along x and along y; along z it begins at 0
+  double leaf_side = 0;
+};
+
+/// Streams the surface of one layer of pseudo-voxels: facets as those of an octree, row by row.
+/// @param layer   of bricks
+/// @param bricks  with leaves: those of that layer, then those of the layer above
+void draw_layer(const BrickFrame& frame, int layer, std::vector<PlacedBrick> bricks,
+                const FacetSink& sink);
 
 /// Streams the surface of the finest level, that of the leaves included, that has no more than
 /// `max_facets`.

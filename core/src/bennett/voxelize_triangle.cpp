@@ -205,7 +205,11 @@ void voxelize_3d(Octree& octree, const Triangle& triangle, const LeafBox& box) {
 
 void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
                        const LeafLayers& layers) {
-  const int leaf_bits = SnapGrid::bits - octree.levels();
+  voxelize_triangle(octree, a, b, c, layers, SnapGrid::bits - octree.levels());
+}
+
+void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
+                       const LeafLayers& layers, int leaf_bits) {
   const int last = octree.leaves_per_side() - 1;
   LeafBox box;  // of the leaves in the root and the layers
   std::array<bool, 3> thick{};

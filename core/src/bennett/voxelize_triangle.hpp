@@ -63,4 +63,10 @@ struct LeafLayers {
 void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
                        const LeafLayers& layers = {});
 
+/// The same for corners whose half-units are of another size.
+/// @param leaf_bits  a leaf's side is 2^leaf_bits half-units; with the octree's levels at most
+///                   `SnapGrid::bits`
+void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
+                       const LeafLayers& layers, int leaf_bits);
+
 }  // namespace octurn

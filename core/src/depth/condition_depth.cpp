@@ -103,14 +103,20 @@ struct ClipVolume {
 /// inside that pose's own box.
 class ObjectVolume {
  public:
-  ObjectVolume(const Snapshot& snapshot, const Box& clip, const Placement* placement)
-      : clip_(clip, snapshot.object_from_sensor,
-              placement == nullptr ? platform_slack : std::numeric_limits<double>::lowest()) {
-    if (placement != nullptr) {
-      own_.emplace(placement->clip,
-                   placement->object_from_platform.inverse() * snapshot.object_from_sensor,
-                   foot_slack);
-    }
+  /// Of an object on the platform.
+  ObjectVolume(const Snapshot& snapshot, const Box& clip)
+      : clip_(clip, snapshot.object_from_sensor, platform_slack) {}
+
+  ObjectVolume(const Snapshot& snapshot, const Box& clip, const Placement& placement)
+      : ObjectVolume(without_platform(snapshot, clip)) {
+    own_.emplace(placement.clip,
+                 placement.object_from_platform.inverse() * snapshot.object_from_sensor,
+                 foot_slack);
+  }
+
+  static ObjectVolume without_platform(const Snapshot& snapshot, const Box& clip) {
+    return ObjectVolume(
+        ClipVolume(clip, snapshot.object_from_sensor, std::numeric_limits<double>::lowest()));
   }
 
   /// Sets the flags of a row's pixels: 1 where the reading lies inside, else 0.
@@ -138,6 +144,8 @@ class ObjectVolume {
 
  private:
   static constexpr auto lowest = static_cast<float>(foot_slack);
+
+  explicit ObjectVolume(const ClipVolume& clip) : clip_(clip) {}
 
   /// Height of a reading above its pose's platform, metres.
   float height(const Ray& ray, float z) const {
@@ -178,25 +186,19 @@ void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intri
 /// The depth at which a whole window weighs one, metres. It follows the depth of the platform's
 /// middle, which is the same at all stops of a turn: so weights do not depend on how near the
 /// sensor stands.
-/// @param placement  of one of several poses; null for one pose
-float reference_depth(const Snapshot& snapshot, const Placement* placement) {
-  const Eigen::Vector3d middle = placement == nullptr
-                                     ? Eigen::Vector3d::Zero()
-                                     : placement->object_from_platform.translation().eval();
+/// @param middle  of the platform, metres, object's frame
+double reference_depth_of(const Snapshot& snapshot, const Eigen::Vector3d& middle) {
   const double z = (snapshot.object_from_sensor.inverse() * middle).z();
-  return static_cast<float>(object_share * std::max(z, nearest_z));
+  return object_share * std::max(z, nearest_z);
 }
 
-/// @param placement  of one of several poses; null for one pose
-std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Box& clip,
-                                              const Placement* placement) {
+std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const ObjectVolume& volume,
+                                              double reference_depth) {
   const Intrinsics& intrinsics = snapshot.intrinsics;
   check_size(snapshot.frame, intrinsics, "ConditionedDepth");
   const DepthImage image = remove_speckle(to_metres(snapshot));
   const std::vector<float> inverse_depth = to_inverse_depth(image);
-  const ObjectVolume volume(snapshot, clip, placement);
-
-  const float reference = reference_depth(snapshot, placement);
+  const auto reference = static_cast<float>(reference_depth);
 
   const auto width = static_cast<std::size_t>(intrinsics.width);
   std::vector<float> ray_x(width);
@@ -235,18 +237,30 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Bo
 
 }  // namespace
 
-ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip)
+ConditionedDepth::ConditionedDepth(const Snapshot& snapshot,
+                                   std::vector<DepthObservation> observations)
     : intrinsics_(snapshot.intrinsics),
       sensor_from_object_(snapshot.object_from_sensor.inverse()),
-      observations_(condition_depth(snapshot, clip, nullptr)),
+      observations_(std::move(observations)),
       pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
+
+ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip)
+    : ConditionedDepth(snapshot,
+                       condition_depth(snapshot, ObjectVolume(snapshot, clip),
+                                       reference_depth_of(snapshot, Eigen::Vector3d::Zero()))) {}
 
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,
                                    const Placement& placement)
-    : intrinsics_(snapshot.intrinsics),
-      sensor_from_object_(snapshot.object_from_sensor.inverse()),
-      observations_(condition_depth(snapshot, clip, &placement)),
-      pyramid_(observations_, intrinsics_.width, intrinsics_.height) {}
+    : ConditionedDepth(
+          snapshot, condition_depth(snapshot, ObjectVolume(snapshot, clip, placement),
+                                    reference_depth_of(
+                                        snapshot, placement.object_from_platform.translation()))) {}
+
+ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,
+                                   double reference_depth)
+    : ConditionedDepth(snapshot,
+                       condition_depth(snapshot, ObjectVolume::without_platform(snapshot, clip),
+                                       reference_depth)) {}
 
 ConditionedDepth::ConditionedDepth(const Intrinsics& intrinsics,
                                    const Eigen::Isometry3d& sensor_from_object,

@@ -24,6 +24,10 @@ class ConditionedDepth {
   /// mix object and platform.
   ConditionedDepth(const Snapshot& snapshot, const Box& clip, const Placement& placement);
 
+  /// The same of a space without a platform.
+  /// @param reference_depth  metres, at which a whole window weighs one
+  ConditionedDepth(const Snapshot& snapshot, const Box& clip, double reference_depth);
+
   /// What was observed otherwise.
   /// @param observations  of the intrinsics' size, row by row
   ConditionedDepth(const Intrinsics& intrinsics, const Eigen::Isometry3d& sensor_from_object,
@@ -46,6 +50,8 @@ class ConditionedDepth {
   }
 
  private:
+  ConditionedDepth(const Snapshot& snapshot, std::vector<DepthObservation> observations);
+
   Intrinsics intrinsics_;
   Eigen::Isometry3d sensor_from_object_;
   std::vector<DepthObservation> observations_;

@@ -13,6 +13,7 @@
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -24,7 +25,7 @@ constexpr int max_poses = 1000;
 
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
-/// The root cube that models have by default: the clip box of a scan that tells none.
+/// The root cube that models have by default: the clip box of a scan by laser that tells none.
 const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
 
 Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCamera>& laser) {
@@ -77,7 +78,7 @@ void read_rig(JsonObject& root, int version, Scan& scan) {
     scan.platform_from_sensor = rig.platform_from_sensor;
     scan.solved = rig.solved;
   }
-  scan.clip = clip || !all_told ? box_from(root.at("clip_m")) : whole_root;
+  scan.clip = clip || !all_told ? box_from(root.at("clip_m")) : scan.laser ? whole_root : everywhere;
   if (const auto poses = version > 1 ? root.value("poses") : std::nullopt) {
     scan.poses = poses_from(*poses, scan);
   }
@@ -224,11 +225,15 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
                                     .serial = scan.sensor_serial,
                                     .intrinsics = scan.intrinsics,
                                     .laser = scan.laser})},
-      {"calibration",
-       to_json(RigPose{.platform_from_sensor = scan.platform_from_sensor, .solved = scan.solved})},
-      {"clip_m", to_json(scan.clip)},
       {"snapshots", shots},
   };
+  if (!has_free_poses(scan)) {
+    document["calibration"] =
+        to_json(RigPose{.platform_from_sensor = scan.platform_from_sensor, .solved = scan.solved});
+  }
+  if (scan.clip.min != everywhere.min || scan.clip.max != everywhere.max) {
+    document["clip_m"] = to_json(scan.clip);
+  }
   if (!scan.poses.empty()) {
     document["poses"] = to_json(scan.poses);
   }

@@ -5,6 +5,7 @@
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
+#include "octurn/tiles.hpp"
 
 namespace octurn {
 namespace {
@@ -76,6 +77,12 @@ Box model_clip(const Scan& scan) {
 
 bool is_one_turn(const Scan& scan) {
   return scan.poses.empty() && std::ranges::none_of(scan.shots, [](const Shot& shot) {
+           return shot.object_from_sensor.has_value();
+         });
+}
+
+bool has_free_poses(const Scan& scan) {
+  return !scan.laser && scan.poses.empty() && std::ranges::all_of(scan.shots, [](const Shot& shot) {
            return shot.object_from_sensor.has_value();
          });
 }

@@ -12,6 +12,7 @@ namespace octurn {
 struct MeshVertex {
   std::array<float, 3> position = {};  ///< millimetres
   bool observed = false;               ///< measured; otherwise filled in
+  bool fixed = false;                  ///< shared with a mesh beside this one: stays where it is
 };
 
 /// The facet of a triangle with its unit normal, which is 0 if the triangle has no area.

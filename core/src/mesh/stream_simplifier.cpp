@@ -38,7 +38,7 @@ void StreamSimplifier::add(const MeshPiece& piece) {
   window_.erase(window_.begin(), window_.begin() + (last_piece_ - first_piece_));
   first_piece_ = last_piece_;
   for (const std::uint32_t index : window_) {
-    locked_[index] = 0;
+    locked_[index] = mesh_.vertices[index].fixed ? 1 : 0;
   }
   last_piece_ = first_piece_ + static_cast<std::uint32_t>(window_.size());
   for (const MeshVertex& vertex : piece.vertices) {
@@ -56,7 +56,7 @@ void StreamSimplifier::add(const MeshPiece& piece) {
   add_plane_quadrics(mesh_, first);
   added_ += piece.triangles.size();
   if (added_ >= window_triangles) {
-    limits_.max_z = 0;
+    limits_.max_z = std::numeric_limits<float>::lowest();
     for (const std::uint32_t index : window_) {
       limits_.max_z = std::max(limits_.max_z, mesh_.vertices[index].position[2]);
     }
@@ -68,7 +68,7 @@ void StreamSimplifier::add(const MeshPiece& piece) {
 
 void StreamSimplifier::finish() {
   for (const std::uint32_t index : window_) {
-    locked_[index] = 0;
+    locked_[index] = mesh_.vertices[index].fixed ? 1 : 0;
   }
   window_.clear();
   limits_.max_z = std::numeric_limits<float>::max();

@@ -11,7 +11,8 @@
 
 namespace octurn {
 
-/// Simplifies a closed manifold mesh while it streams by from below, in bounded memory.
+/// Simplifies a manifold mesh while it streams by from below, in bounded memory. It is closed, or
+/// open where all vertices are `fixed`.
 ///
 /// A window moves up through the mesh. In each window edges are collapsed (`qem_simplify`), and
 /// what lies well below its upper end is emitted; the rest waits for the next window. Where a

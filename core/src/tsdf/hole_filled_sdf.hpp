@@ -34,6 +34,9 @@ class HoleFilledSdf {
 
   const VoxelGrid& grid() const { return known_.grid(); }
 
+  /// Whether the plane between the voxels -1 and 0 along z is the platform's.
+  static constexpr bool has_platform = true;
+
   /// The half-open box of voxels outside which nothing is inside: all bricks, and one around them.
   const Index3& low() const { return low_; }
   const Index3& end() const { return end_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct CubeLayer {
 /// The centres of a grid's voxels, all at one distance from the surface.
 class MidpointField {
  public:
+  static constexpr bool has_platform = true;
+
   MidpointField(double root_side, double voxel_side)
       : root_side_(root_side), voxel_side_(voxel_side) {}
 
@@ -51,14 +54,21 @@ class MidpointField {
   double voxel_side_;
 };
 
-/// @tparam Field  `HoleFilledSdf` or `MidpointField`
+constexpr CubeRange all_cubes{
+    .low = {-1, -1, -1},
+    .end = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
+            std::numeric_limits<int>::max()}};
+
+/// @tparam Field  `HoleFilledSdf`, `MidpointField` or `ShellField`
 template <typename Field>
 class MarchingCubes {
  public:
-  MarchingCubes(const VoxelMask& inside, const Field& field, const MeshSink& sink)
+  MarchingCubes(const VoxelMask& inside, const Field& field, const MeshSink& sink,
+                const CubeRange& range = all_cubes)
       : inside_(inside),
         field_(field),
         sink_(sink),
+        range_(range),
         width_(static_cast<std::size_t>(inside.size().x)),
         empty_row_(inside.words_per_row()) {
     const std::size_t layer = width_ * static_cast<std::size_t>(inside.size().y);
@@ -78,7 +88,9 @@ class MarchingCubes {
       vertices_.clear();
       triangles_.clear();
       for (const CubeLayer::Cube& cube : here.mixed) {
-        add_cube(cube, z, below, here, above);
+        if (is_drawn({cube.x, cube.y, z})) {
+          add_cube(cube, z, below, here, above);
+        }
       }
       if (!triangles_.empty()) {
         sink_({.vertices = vertices_, .triangles = triangles_});
@@ -97,6 +109,21 @@ class MarchingCubes {
  private:
   std::span<const std::uint64_t> row(int y, int z) const {
     return z >= 0 && z < inside_.size().z ? inside_.row(y, z) : std::span(empty_row_);
+  }
+
+  bool is_drawn(const Index3& cube) const {
+    return cube.x >= range_.low.x && cube.x < range_.end.x && cube.y >= range_.low.y &&
+           cube.y < range_.end.y && cube.z >= range_.low.z && cube.z < range_.end.z;
+  }
+
+  /// Whether cubes that are not drawn share the vertex on the edge from `voxel` along `axis`.
+  bool is_shared(const Index3& voxel, std::size_t axis) const {
+    const auto on_side = [&](std::size_t other, int at, int low, int end) {
+      return axis != other && (at == low || at == end);
+    };
+    return on_side(0, voxel.x, range_.low.x, range_.end.x) ||
+           on_side(1, voxel.y, range_.low.y, range_.end.y) ||
+           on_side(2, voxel.z, range_.low.z, range_.end.z);
   }
 
   CubeLayer cubes_at(int z) const {
@@ -193,12 +220,13 @@ class MarchingCubes {
     const float from_second = magnitude(b.distance, !first_inside);
     float fraction = from_first / (from_first + from_second);
     fraction = std::clamp(fraction, end_margin_, 1 - end_margin_);
-    if (axis == 2 && first.z == -1) {
+    if (Field::has_platform && axis == 2 && first.z == -1) {
       fraction = 0.5F;  // the platform's plane
     } else if (touches_ambiguous_case(voxel, axis, below, above)) {
       fraction = std::clamp(fraction, ambiguous_margin, 1 - ambiguous_margin);
     }
-    MeshVertex vertex{.position = {}, .observed = a.observed && b.observed};
+    MeshVertex vertex{
+        .position = {}, .observed = a.observed && b.observed, .fixed = is_shared(voxel, axis)};
     const std::array<int, 3> position{first.x, first.y, first.z};
     for (std::size_t i = 0; i < 3; ++i) {
       const double step = i == axis ? static_cast<double>(fraction) : 0.0;
@@ -230,6 +258,7 @@ class MarchingCubes {
   const VoxelMask& inside_;
   const Field& field_;
   const MeshSink& sink_;
+  CubeRange range_;
   std::size_t width_;
   std::vector<std::uint64_t> empty_row_;
   float end_margin_ = 0;
@@ -246,6 +275,11 @@ class MarchingCubes {
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop) {
   MarchingCubes(inside, sdf, sink).run(stop);
+}
+
+void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,
+                    const MeshSink& sink, const std::stop_token& stop) {
+  MarchingCubes(inside, shell, sink, range).run(stop);
 }
 
 void marching_cubes(const VoxelMask& inside, double root_side, double voxel_side,

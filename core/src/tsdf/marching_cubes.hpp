@@ -4,6 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
+#include "tsdf/shell_field.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {
@@ -19,7 +20,18 @@ namespace octurn {
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop = {});
 
-/// The same for a mask alone: vertices lie half way between voxels.
+/// Cubes between eight voxels each, by their lowest corner in a mask; half-open.
+struct CubeRange {
+  Index3 low = {};
+  Index3 end = {};
+};
+
+/// The surface of a shell in some of the cubes of its mask, open where others go on. Vertices there
+/// are `fixed`, and are those of the others if the mask holds two voxels more on each side.
+void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,
+                    const MeshSink& sink, const std::stop_token& stop = {});
+
+/// The whole surface of a mask alone: vertices lie half way between voxels.
 ///
 /// @param root_side   metres, of the root cube, whose lowest corner voxels are counted from
 /// @param voxel_side  metres

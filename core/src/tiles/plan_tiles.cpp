@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "bennett/triangulate.hpp"
+#include "depth/back_project.hpp"
+#include "octurn/error.hpp"
+#include "octurn/tiles.hpp"
+#include "parallel/fork_join.hpp"
+#include "tiles/plan_file.hpp"
+#include "tiles/tile_lattice.hpp"
+#include "tiles/tile_memory.hpp"
+#include "tsdf/integration_model.hpp"
+#include "tsdf/shell.hpp"
+#include "voxel/octree.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr int ray_spacing = 16;  // pixels between rays of which is looked what they pass through
+
+/// Which bricks of which tiles something is in. An octree of a tile whose leaves are its bricks.
+class SeenBricks {
+ public:
+  explicit SeenBricks(const TileLattice& lattice) : lattice_(lattice) {}
+
+  /// Adds the bricks of the leaves around points.
+  void add(const LatticePoint& low, const LatticePoint& high) {
+    std::array<std::int64_t, 3> first{};
+    std::array<std::int64_t, 3> last{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] = lattice_.leaf_at(low[axis]) >> Brick::levels;
+      last[axis] = lattice_.leaf_at(high[axis]) >> Brick::levels;
+    }
+    if (first == first_ && last == last_) {
+      return;  // neighbouring samples mostly lie in the same bricks
+    }
+    first_ = first;
+    last_ = last;
+    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
+      for (std::int64_t y = first[1]; y <= last[1]; ++y) {
+        for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+          add_brick(x, y, z);
+        }
+      }
+    }
+  }
+
+  void merge(const SeenBricks& other) {
+    for (const auto& [tile, bricks] : other.tiles_) {
+      octree_of(tile).merge(bricks);
+    }
+  }
+
+  const std::map<TileIndex, Octree>& tiles() const { return tiles_; }
+
+ private:
+  Octree& octree_of(const TileIndex& tile) {
+    const int levels = lattice_.levels() - Brick::levels;
+    return tiles_.try_emplace(tile, lattice_.root_side(), levels).first->second;
+  }
+
+  void add_brick(std::int64_t x, std::int64_t y, std::int64_t z) {
+    const int bits = lattice_.levels() - Brick::levels;
+    const auto tile = [&](std::int64_t at) { return static_cast<int>(at >> bits); };
+    const auto inside = [&](std::int64_t at) {
+      return static_cast<int>(at & ((std::int64_t{1} << bits) - 1));
+    };
+    octree_of({.x = tile(x), .y = tile(y), .z = tile(z)}).set({inside(x), inside(y), inside(z)});
+  }
+
+  const TileLattice& lattice_;
+  std::map<TileIndex, Octree> tiles_ = {};
+  std::array<std::int64_t, 3> first_ = {};
+  std::array<std::int64_t, 3> last_ = {-1, -1, -1};
+};
+
+/// The smallest and the largest of some points, on each axis.
+std::pair<LatticePoint, LatticePoint> bounds(std::initializer_list<LatticePoint> points) {
+  std::pair<LatticePoint, LatticePoint> box{*points.begin(), *points.begin()};
+  for (const LatticePoint& point : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.first[axis] = std::min(box.first[axis], point[axis]);
+      box.second[axis] = std::max(box.second[axis], point[axis]);
+    }
+  }
+  return box;
+}
+
+void add_triangles(const PointGrid& grid, double threshold, const TileLattice& lattice,
+                   SeenBricks& seen) {
+  triangulate(grid, static_cast<float>(threshold),
+              [&](const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+                const auto p = lattice.snap(a);
+                const auto q = lattice.snap(b);
+                const auto r = lattice.snap(c);
+                if (p && q && r) {
+                  const auto [low, high] = bounds({*p, *q, *r});
+                  seen.add(low, high);
+                }
+              });
+}
+
+/// Adds what integration may change around each reading: along its ray, from a truncation before it
+/// to as far behind as samples count.
+void add_readings(const PointGrid& grid, const Eigen::Vector3f& eye, const TileLattice& lattice,
+                  double truncation, SeenBricks& seen) {
+  for (const Eigen::Vector3f& point : grid.points) {
+    if (!is_point(point)) {
+      continue;
+    }
+    const Eigen::Vector3f step = static_cast<float>(truncation) * (point - eye).normalized();
+    const auto near = lattice.snap(point - step);
+    const auto far = lattice.snap(point + max_behind * step);
+    if (near && far) {
+      const auto [low, high] = bounds({*near, *far});
+      seen.add(low, high);
+    }
+  }
+}
+
+/// The tiles that rays pass through on their way to what they see.
+std::set<TileIndex> crossed_tiles(const PointGrid& grid, const Eigen::Vector3f& eye,
+                                  const TileLattice& lattice) {
+  std::set<TileIndex> tiles;
+  const auto step = static_cast<float>(lattice.root_side() / 4);
+  for (int v = 0; v < grid.height; v += ray_spacing) {
+    for (int u = 0; u < grid.width; u += ray_spacing) {
+      const Eigen::Vector3f& point = grid.points[static_cast<std::size_t>(v * grid.width + u)];
+      if (!is_point(point)) {
+        continue;
+      }
+      const auto steps = static_cast<int>((point - eye).norm() / step) + 1;
+      for (int i = 0; i <= steps; ++i) {
+        const float part = static_cast<float>(i) / static_cast<float>(steps);
+        if (const auto at = lattice.snap(eye + part * (point - eye))) {
+          const auto tile = [&](std::size_t axis) {
+            return lattice.tile_at(lattice.leaf_at((*at)[axis]));
+          };
+          tiles.insert({.x = tile(0), .y = tile(1), .z = tile(2)});
+        }
+      }
+    }
+  }
+  return tiles;
+}
+
+/// What one snapshot sees.
+struct Seen {
+  std::set<TileIndex> tiles = {};  // some of which may turn out to have nothing in them
+  std::uint64_t checksum = 0;
+};
+
+Seen look(const Snapshot& snapshot, const ReconstructOptions& options, const TileLattice& lattice,
+          SeenBricks& bricks) {
+  PointGrid grid = world_points(snapshot);
+  clip(grid, options.clip);
+  SeenBricks own(lattice);
+  Seen seen{.tiles = {}, .checksum = checksum_of(snapshot)};
+  if (options.method == Method::intersection) {
+    add_triangles(grid, options.threshold, lattice, own);
+  } else {
+    const Eigen::Vector3f eye = snapshot.object_from_sensor.translation().cast<float>();
+    add_readings(grid, eye, lattice, make_shell_grid(options).truncation(), own);
+    seen.tiles = crossed_tiles(grid, eye, lattice);
+  }
+  for (const auto& [tile, ignored] : own.tiles()) {
+    seen.tiles.insert(tile);
+  }
+  bricks.merge(own);
+  return seen;
+}
+
+TilePlan make_plan(const SeenBricks& bricks, const std::vector<Seen>& seen,
+                   const ReconstructOptions& options) {
+  TilePlan plan;
+  std::map<TileIndex, std::size_t> numbers;
+  for (const auto& [index, octree] : bricks.tiles()) {
+    numbers[index] = plan.tiles.size();
+    plan.tiles.push_back({.index = index, .bytes = tile_bytes(options, octree.leaf_count())});
+  }
+  for (std::size_t snapshot = 0; snapshot < seen.size(); ++snapshot) {
+    plan.snapshots.push_back(seen[snapshot].checksum);
+    for (const TileIndex& tile : seen[snapshot].tiles) {
+      if (const auto found = numbers.find(tile); found != numbers.end()) {
+        plan.tiles[found->second].snapshots.push_back(snapshot);
+      }
+    }
+  }
+  return plan;
+}
+
+}  // namespace
+
+TilePlan plan_tiles(const ReconstructOptions& options, const SnapshotSource& snapshots,
+                    const std::stop_token& stop) {
+  const TileLattice lattice(options);
+  const int threads =
+      std::max(1, std::min(plan_threads(options), static_cast<int>(snapshots.count)));
+  std::vector<SeenBricks> bricks;  // of each thread
+  bricks.reserve(static_cast<std::size_t>(threads));
+  for (int thread = 0; thread < threads; ++thread) {
+    bricks.emplace_back(lattice);
+  }
+  std::vector<Seen> seen(snapshots.count);
+  std::atomic<std::size_t> next = 0;
+  fork_join(threads, [&](int thread) {
+    for (std::size_t shot = next++; shot < snapshots.count; shot = next++) {
+      throw_if_stopped(stop);
+      seen[shot] =
+          look(snapshots.read(shot), options, lattice, bricks[static_cast<std::size_t>(thread)]);
+    }
+  });
+  for (std::size_t i = 1; i < bricks.size(); ++i) {
+    bricks.front().merge(bricks[i]);
+  }
+  return make_plan(bricks.front(), seen, options);
+}
+
+}  // namespace octurn

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "mesh/stream_simplifier.hpp"
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+#include "tiles/tile_lattice.hpp"
+#include "tiles/tile_surface.hpp"
+#include "tsdf/facet_stream.hpp"
+#include "tsdf/marching_cubes.hpp"
+#include "tsdf/shell.hpp"
+#include "tsdf/shell_field.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr double margin_voxels = 8;  // the simplifier's below the upper end of its window
+constexpr std::size_t run = 256;     // bricks that are read at once
+
+using TilesByIndex = std::map<TileIndex, const StoredTile*>;
+
+/// The bricks of a tile and those of the tiles around it that touch it.
+class TileField {
+ public:
+  TileField(const TileLattice& lattice, const TileIndex& tile)
+      : tile_(tile),
+        bricks_per_side_(lattice.bricks_per_side()),
+        field_(lattice.root_side(), lattice.leaf_side(),
+               {tile.x * bricks_per_side_ - 1, tile.y * bricks_per_side_ - 1,
+                tile.z * bricks_per_side_ - 1},
+               {bricks_per_side_ + 2, bricks_per_side_ + 2, bricks_per_side_ + 2}) {}
+
+  const ShellField& field() const { return field_; }
+
+  void add(const StoredTile& from) {
+    const std::vector<TileBrick> positions = from.positions();
+    for (std::size_t first = 0; first < positions.size();) {
+      std::size_t end = first;
+      while (end < positions.size() && end - first < run && is_near(positions[end], from)) {
+        ++end;
+      }
+      add_run(from, positions, first, end);
+      first = std::max(end, first + 1);
+    }
+  }
+
+ private:
+  Index3 placed(const TileBrick& at, const TileIndex& tile) const {
+    return {tile.x * bricks_per_side_ + at.x, tile.y * bricks_per_side_ + at.y,
+            tile.z * bricks_per_side_ + at.z};
+  }
+
+  bool is_near(const TileBrick& brick, const StoredTile& from) const {
+    const Index3 at = placed(brick, from.header().index);
+    const auto near = [&](int value, int tile) {
+      return value >= tile * bricks_per_side_ - 1 && value <= (tile + 1) * bricks_per_side_;
+    };
+    return near(at.x, tile_.x) && near(at.y, tile_.y) && near(at.z, tile_.z);
+  }
+
+  void add_run(const StoredTile& from, const std::vector<TileBrick>& positions, std::size_t first,
+               std::size_t end) {
+    const std::vector<std::byte> bytes = from.bricks(first, end - first);
+    for (std::size_t i = first; i < end; ++i) {
+      const TileBrick& at = positions[i];
+      if (at.x >= bricks_per_side_ || at.y >= bricks_per_side_ || at.z >= bricks_per_side_) {
+        throw Error(ErrorCode::scan_malformed, "tile " + std::to_string(from.header().number) +
+                                                   ": has a brick outside itself");
+      }
+      ShellBrick brick;
+      std::memcpy(&brick, &bytes[(i - first) * sizeof brick], sizeof brick);
+      field_.add(placed(at, from.header().index), brick);
+    }
+  }
+
+  TileIndex tile_;
+  int bricks_per_side_;
+  ShellField field_;
+};
+
+/// The field of a tile: its own bricks, and those around it.
+TileField field_of(const TileLattice& lattice, const TilesByIndex& tiles, const TileIndex& tile) {
+  TileField field(lattice, tile);
+  for (int z = tile.z - 1; z <= tile.z + 1; ++z) {
+    for (int y = tile.y - 1; y <= tile.y + 1; ++y) {
+      for (int x = tile.x - 1; x <= tile.x + 1; ++x) {
+        if (const auto found = tiles.find({.x = x, .y = y, .z = z}); found != tiles.end()) {
+          field.add(*found->second);
+        }
+      }
+    }
+  }
+  return field;
+}
+
+/// Voxels of a mask whose lowest corner is a cube's of the range.
+std::uint64_t voxels_of(const VoxelMask& mask, const CubeRange& range) {
+  std::uint64_t count = 0;
+  for (int z = range.low.z; z < range.end.z; ++z) {
+    for (int y = range.low.y; y < range.end.y; ++y) {
+      for (const std::uint64_t word : mask.row(y, z)) {
+        count += static_cast<std::uint64_t>(std::popcount(word));
+      }
+      for (int x = 0; x < mask.size().x; ++x) {
+        if (x == range.low.x) {
+          x = range.end.x;
+        }
+        count -= mask.contains(x, y, z) ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
+/// The tiles, and those in which nothing is seen but in which surfaces of tiles end: a cube lies in
+/// the tile of its lowest corner.
+std::set<TileIndex> drawn_tiles(const TilesByIndex& tiles) {
+  std::set<TileIndex> drawn;
+  for (const auto& [index, tile] : tiles) {
+    for (int corner = 0; corner < 8; ++corner) {
+      drawn.insert({.x = index.x - (corner & 1),
+                    .y = index.y - (corner >> 1 & 1),
+                    .z = index.z - (corner >> 2)});
+    }
+  }
+  return drawn;
+}
+
+/// Draws the cubes of a tile, and simplifies their mesh, which is open to the tiles beside it.
+void draw_tile(const VoxelMask& inside, const ShellField& field, const CubeRange& cubes,
+               double target_error, const FacetSink& sink, const std::stop_token& stop) {
+  if (target_error > 0) {
+    StreamSimplifier simplifier(mm_from_metres(target_error),
+                                mm_from_metres(margin_voxels * field.voxel_side()), sink, stop);
+    marching_cubes(
+        inside, field, cubes, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop);
+    simplifier.finish();
+  } else {
+    FacetStream facets(sink);
+    marching_cubes(
+        inside, field, cubes, [&](const MeshPiece& piece) { facets.add(piece); }, stop);
+  }
+}
+
+}  // namespace
+
+SurfaceCount shell_surface(std::span<const StoredTile> tiles, const FacetSink& sink,
+                           const std::stop_token& stop) {
+  const ReconstructOptions& options = tiles.front().header().options;
+  const TileLattice lattice(options);
+  TilesByIndex by_index;
+  for (const StoredTile& tile : tiles) {
+    by_index[tile.header().index] = &tile;
+  }
+  // Vertices depend on the cubes around theirs: so one voxel more is needed below, two above.
+  const int side = lattice.leaves_per_side();
+  const CubeRange cubes{.low = {1, 1, 1}, .end = {side + 1, side + 1, side + 1}};
+  SurfaceCount count;
+  for (const TileIndex& index : drawn_tiles(by_index)) {
+    throw_if_stopped(stop);
+    const TileField near = field_of(lattice, by_index, index);
+    const Index3 low{index.x * side - 1, index.y * side - 1, index.z * side - 1};
+    const VoxelMask inside =
+        near.field().inside(low, {low.x + side + 3, low.y + side + 3, low.z + side + 3});
+    if (inside.count() == 0) {
+      continue;
+    }
+    count.leaves += voxels_of(inside, cubes);
+    draw_tile(
+        inside, near.field(), cubes, options.target_error,
+        [&](std::span<const Facet> facets) {
+          throw_if_stopped(stop);
+          count.facets += facets.size();
+          sink(facets);
+        },
+        stop);
+  }
+  return count;
+}
+
+}  // namespace octurn

@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "depth/condition_depth.hpp"
+#include "depth/crop.hpp"
+#include "tiles/make_tiles.hpp"
+#include "tiles/tile_lattice.hpp"
+#include "tsdf/compact_tsdf.hpp"
+#include "tsdf/integrate_scan.hpp"
+#include "tsdf/integration_model.hpp"
+#include "tsdf/shell.hpp"
+#include "tsdf/tsdf_volume.hpp"
+
+namespace octurn {
+namespace {
+
+// With fewer snapshots each one's rays open space alone, as there is hardly another to agree with.
+constexpr std::size_t few_snapshots = 4;
+
+Box moved(const Box& box, const Eigen::Vector3d& by) {
+  return {.min = box.min + by, .max = box.max + by};
+}
+
+/// The snapshots in the frame of a tile, in which it is the root cube, conditioned.
+ConditionedSource conditioned(const SnapshotSource& snapshots, const Box& clip,
+                              const Eigen::Vector3d& origin, const VoxelGrid& grid) {
+  return {.count = snapshots.count, .make = [=, &snapshots](std::size_t index) {
+            Snapshot snapshot = snapshots.read(index);
+            snapshot.object_from_sensor.pretranslate(-origin);
+            std::vector<ConditionedDepth> depth;
+            depth.emplace_back(crop(snapshot, grid.box()), moved(clip, -origin),
+                               shell_reference_depth);
+            return depth;
+          }};
+}
+
+/// Adds the bricks of a TSDF that are the tile's own: all but the border.
+void add_own(const CompactTsdf& tsdf, const BrickLayers& layers, TileBricks& tile) {
+  const Index3& size = tsdf.grid().size();
+  for (int z = std::max(layers.low, 1); z < std::min(layers.end, size.z - 1); ++z) {
+    for (int y = 1; y < size.y - 1; ++y) {
+      for (int x = 1; x < size.x - 1; ++x) {
+        ShellBrick shell;
+        const CompactBrick* const brick = tsdf.find({x, y, z});
+        if (brick == nullptr || !make_shell(*brick, shell)) {
+          continue;
+        }
+        tile.positions.push_back({.x = static_cast<std::uint16_t>(x - 1),
+                                  .y = static_cast<std::uint16_t>(y - 1),
+                                  .z = static_cast<std::uint16_t>(z - 1)});
+        const std::size_t end = tile.bricks.size();
+        tile.bricks.resize(end + sizeof shell);
+        std::memcpy(&tile.bricks[end], &shell, sizeof shell);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void make_shell_tile(const ReconstructOptions& options, const Tile& tile,
+                     std::size_t scan_snapshots, const SnapshotSource& snapshots,
+                     const TileSink& sink, const std::stop_token& stop) {
+  const VoxelGrid grid = make_shell_grid(options);
+  const ConditionedSource source =
+      conditioned(snapshots, options.clip, TileLattice(options).origin(tile.index), grid);
+  // What the plan counted has room; the volume is told no limit, so that threads may share it.
+  TsdfVolume volume(grid);
+  integrate(volume, source, options.threads, stop);
+  CompactTsdf tsdf(grid, scan_snapshots < few_snapshots ? votes_of_any_ray : votes_of_surface_ray);
+  tsdf.add(volume, stop);
+  TileBricks bricks;
+  add_own(tsdf, volume.layers(), bricks);
+  sink(tile, bricks);
+}
+
+}  // namespace octurn

@@ -1,0 +1,83 @@
+#include "tiles/tile_memory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+
+#include "io/number_text.hpp"
+#include "octurn/error.hpp"
+#include "tsdf/shell.hpp"
+#include "tsdf/tsdf_volume.hpp"
+#include "voxel/block_pool.hpp"
+#include "voxel/memory_limit.hpp"
+#include "voxel/octree.hpp"
+
+namespace octurn {
+namespace {
+
+// Of each thread, measured with frames of 640 x 480 samples: its snapshot, its points, and what it
+// found; for `solid` its conditioned depth as well.
+constexpr std::size_t points_bytes = 8 * mebibyte;
+constexpr std::size_t conditioned_bytes = 16 * mebibyte;
+
+std::size_t thread_bytes(const ReconstructOptions& options) {
+  return options.method == Method::solid ? conditioned_bytes : points_bytes;
+}
+
+template <typename Item>
+std::size_t pool_bytes(std::uint64_t items) {
+  return (static_cast<std::size_t>(items) / BlockPool<Item>::block_items + 1) *
+         BlockPool<Item>::block_bytes;
+}
+
+}  // namespace
+
+std::size_t tile_bytes(const ReconstructOptions& options, std::uint64_t bricks) {
+  if (options.method == Method::intersection) {
+    using Node = std::array<std::uint32_t, 8>;
+    return pool_bytes<Brick>(bricks) + pool_bytes<Node>(bricks);  // a node has at least one child
+  }
+  const VoxelGrid grid = make_shell_grid(options);
+  const std::size_t tables = 2 * (grid.brick_count() * sizeof(std::uint32_t) + grid.block_count());
+  return pool_bytes<TsdfBrick>(bricks) + pool_bytes<CompactBrick>(bricks) +
+         static_cast<std::size_t>(bricks) * sizeof(ShellBrick) + tables;
+}
+
+int plan_threads(const ReconstructOptions& options) {
+  if (options.memory_limit == 0) {
+    return options.threads;
+  }
+  check_memory_limit(options.memory_limit,
+                     options.program_memory + thread_bytes(options) + mebibyte);
+  const std::size_t room = options.memory_limit - options.program_memory;
+  return std::min(options.threads, static_cast<int>(room / thread_bytes(options)));
+}
+
+TileRoom room_for(const ReconstructOptions& options, const Tile& tile) {
+  if (options.memory_limit == 0) {
+    return {.threads = options.threads, .bytes = std::numeric_limits<std::size_t>::max()};
+  }
+  // Each thread has octrees of its own, which are merged.
+  const bool has_copies = options.method == Method::intersection;
+  for (int threads = options.threads; threads > 0; --threads) {
+    const auto count = static_cast<std::size_t>(threads);
+    const std::size_t taken = options.program_memory + count * thread_bytes(options);
+    const std::size_t copies = has_copies ? count : 1;
+    if (taken + copies * tile.bytes <= options.memory_limit) {
+      return {.threads = threads, .bytes = (options.memory_limit - taken) / copies};
+    }
+  }
+  throw Error(ErrorCode::memory_limit,
+              "memory limit: tile (" + std::to_string(tile.index.x) + ", " +
+                  std::to_string(tile.index.y) + ", " + std::to_string(tile.index.z) +
+                  ") does not fit in " + mb_text(options.memory_limit),
+              "Allow " + mb_text(tile_memory(options, tile)) +
+                  ", or choose a smaller root size or a larger leaf size.");
+}
+
+std::size_t tile_memory(const ReconstructOptions& options, const Tile& tile) {
+  return options.program_memory + thread_bytes(options) + tile.bytes;
+}
+
+}  // namespace octurn

@@ -1,0 +1,164 @@
+#include "tiles/tiled_reconstructor.hpp"
+
+#include <string>
+#include <utility>
+
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "tiles/make_tiles.hpp"
+#include "tiles/plan_file.hpp"
+#include "tiles/tile_memory.hpp"
+#include "tiles/tile_surface.hpp"
+
+namespace octurn {
+namespace {
+
+/// @returns the options, if each is in its range
+const ReconstructOptions& checked(const ReconstructOptions& options) {
+  static_cast<void>(TileLattice(options));
+  static_cast<void>(plan_threads(options));
+  if (options.method == Method::solid &&
+      !(options.target_error >= 0 && options.target_error < options.root_size)) {
+    throw Error(ErrorCode::bad_settings, "max error: must be 0 or above");
+  }
+  if (options.method == Method::solid && options.level) {
+    throw Error(ErrorCode::bad_settings, "level: the method solid has none");
+  }
+  return options;
+}
+
+TileHeader header_of(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
+                     std::size_t bricks) {
+  ReconstructOptions told{.method = options.method,
+                          .leaf_size = TileLattice(options).leaf_side(),
+                          .root_size = options.root_size,
+                          .clip = options.clip};
+  if (options.method == Method::solid) {
+    told.target_error = options.target_error;
+  } else {
+    told.threshold = options.threshold;
+  }
+  return {.options = told,
+          .plan = checksum_of(plan),
+          .tiles = plan.tiles.size(),
+          .number = number,
+          .index = plan.tiles[number].index,
+          .bricks = bricks};
+}
+
+}  // namespace
+
+TiledReconstructor::TiledReconstructor(const ReconstructOptions& options,
+                                       std::filesystem::path spool)
+    : options_(checked(options)),
+      spool_folder_(spool.empty() ? std::filesystem::temp_directory_path() : std::move(spool)) {}
+
+std::unique_ptr<Reconstructor> make_tiled_reconstructor(const ReconstructOptions& options,
+                                                        const std::filesystem::path& spool) {
+  return std::make_unique<TiledReconstructor>(options, spool);
+}
+
+/// The tiles of one snapshot alone are of no use: they are found when all are known.
+void TiledReconstructor::add(const Snapshot& /*snapshot*/, const std::stop_token& stop) {
+  throw_if_stopped(stop);
+  ++added_;
+  plan_.reset();
+  made_.clear();
+}
+
+void TiledReconstructor::add(const SnapshotSource& snapshots, const std::stop_token& stop) {
+  const bool is_all = added_ == 0;
+  added_ += snapshots.count;
+  made_.clear();
+  plan_ = is_all ? std::optional(plan_tiles(options_, snapshots, stop)) : std::nullopt;
+}
+
+void TiledReconstructor::make_tiles_once(const SnapshotSource& snapshots,
+                                         const std::stop_token& stop) {
+  if (!plan_) {
+    plan_ = plan_tiles(options_, snapshots, stop);
+  }
+  if (!made_.empty()) {
+    return;
+  }
+  spool_ = std::make_shared<UnnamedFile>(spool_folder_);
+  std::vector<StoredTile> made;
+  make_tiles(
+      options_, plan_->tiles, snapshots,
+      [&](const Tile& /*tile*/, const TileBricks& bricks) {
+        const TileHeader header = header_of(options_, *plan_, made.size(), bricks.positions.size());
+        const std::uint64_t begin = spool_->size();
+        const std::uint64_t first = write_tile_bytes(
+            header, bricks, [&](std::span<const std::byte> bytes) { spool_->append(bytes); });
+        made.emplace_back(
+            header,
+            [spool = spool_](std::uint64_t offset, std::span<std::byte> bytes) {
+              spool->read(offset, bytes);
+            },
+            begin + first);
+      },
+      stop);
+  made_ = std::move(made);
+}
+
+SurfaceCount TiledReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                                         const std::stop_token& stop) {
+  make_tiles_once(snapshots, stop);
+  return tile_surface(made_, sink, stop);
+}
+
+SurfaceCount TiledReconstructor::count(const SnapshotSource& snapshots,
+                                       const std::stop_token& stop) {
+  return surface(
+      snapshots, [](std::span<const Facet>) {}, stop);
+}
+
+void TiledReconstructor::preview(double /*leaf_size*/, std::uint64_t /*max_facets*/,
+                                 const FacetSink& /*sink*/, const std::stop_token& stop) const {
+  throw_if_stopped(stop);
+}
+
+namespace {
+
+/// The snapshots, if they are those of a plan.
+SnapshotSource planned(const SnapshotSource& snapshots, const TilePlan& plan) {
+  return {.count = snapshots.count, .read = [&snapshots, &plan](std::size_t index) {
+            Snapshot snapshot = snapshots.read(index);
+            if (checksum_of(snapshot) != plan.snapshots[index]) {
+              throw Error(
+                  ErrorCode::scan_malformed,
+                  "snapshot " + std::to_string(index) + " has changed since the plan was made",
+                  "Make the plan again.");
+            }
+            return snapshot;
+          }};
+}
+
+}  // namespace
+
+void write_tile(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
+                const SnapshotSource& snapshots, const std::filesystem::path& file,
+                const std::stop_token& stop) {
+  if (number >= plan.tiles.size()) {
+    throw Error(
+        ErrorCode::bad_settings,
+        "tile " + std::to_string(number) + ": there are " + std::to_string(plan.tiles.size()),
+        "octurn reconstruct --plan lists them; 0 is the first.");
+  }
+  if (plan.snapshots.size() != snapshots.count) {
+    throw Error(ErrorCode::scan_malformed,
+                "the plan is of another scan: it has another number of snapshots",
+                "Make the plan again.");
+  }
+  AtomicFile output(file);
+  make_tiles(
+      checked(options), std::span(plan.tiles).subspan(number, 1), planned(snapshots, plan),
+      [&](const Tile& /*tile*/, const TileBricks& bricks) {
+        write_tile_bytes(header_of(options, plan, number, bricks.positions.size()), bricks,
+                         [&](std::span<const std::byte> bytes) { output.write(bytes); });
+      },
+      stop);
+  output.commit();
+}
+
+}  // namespace octurn

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <stop_token>
+
+#include "octurn/reconstruct.hpp"
+#include "tsdf/compact_tsdf.hpp"
+#include "tsdf/tsdf_volume.hpp"
+#include "tsdf/voxel_grid.hpp"
+
+namespace octurn {
+
+/// The shell that the method `solid` makes of a space: what was seen, from its surface to a
+/// thickness behind it. Nobody knows what lies behind a wall, so the shell ends there, and where
+/// nothing was observed there is none.
+
+/// 8 x 8 x 8 voxels in the order of `TsdfBrick`: distances to the shell's surface in ticks,
+/// negative inside; `not_observed` where nothing was.
+struct ShellBrick {
+  static constexpr std::int16_t not_observed = std::numeric_limits<std::int16_t>::max();
+  std::array<std::int16_t, TsdfBrick::samples> distance = {};
+};
+
+/// Ticks of a voxel's side. The truncation is four voxels, and the shell two voxels thick: behind a
+/// surface voxels have to be observed on both sides of the shell's back, and their weight falls to
+/// zero at the truncation.
+inline constexpr int shell_voxel_ticks = VoxelGrid::ticks / 4;
+inline constexpr int shell_thickness_voxels = 2;
+
+/// The grid of a tile, in the frame in which it is the root cube.
+VoxelGrid make_shell_grid(const ReconstructOptions& options);
+
+/// The shell in a brick of a TSDF. @return whether any voxel is inside, or next to one that may be
+bool make_shell(const CompactBrick& from, ShellBrick& shell);
+
+/// The depth at which a whole window of readings weighs one, metres: for what a hand-held sensor
+/// sees of a room. A surface needs a tenth of that.
+inline constexpr double shell_reference_depth = 3.0;
+
+}  // namespace octurn

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "commands/commands.hpp"
+#include "commands/model_commands.hpp"
 #include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "signal_stop.hpp"
@@ -123,32 +124,6 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   });
 }
 
-/// @return the option --sensor-map
-CLI::Option* add_sensor_map_option(CLI::App& command,
-                                   std::optional<std::filesystem::path>& sensor_map) {
-  return command
-      .add_option("--sensor-map", sensor_map,
-                  "map of the sensor's own error, as --wall of `octurn calibrate` makes it (the "
-                  "folder's sensor-map.png)")
-      ->type_name("MAP");
-}
-
-void add_reconstruct(CLI::App& program, ReconstructArguments& arguments) {
-  CLI::App& command = *program.add_subcommand("reconstruct", "a model from a scan folder");
-  command.add_option("SCAN_DIR", arguments.folder, "folder with a scan.json")->required();
-  command
-      .add_option("-o,--output", arguments.output,
-                  "the model, binary STL in millimetres; - is standard output")
-      ->type_name("FILE")
-      ->required();
-  ModelSettings defaults;
-  add_options(command, fields(defaults), arguments.settings);
-  add_sensor_map_option(command, arguments.sensor_map);
-  command.add_flag("--json", arguments.json,
-                   "print one line of JSON on standard output, or on standard error with -o -");
-  command.callback([&] { reconstruct(arguments); });
-}
-
 void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
                    CalibrateWallArguments& wall_arguments, int& status) {
   CLI::App& command = *program.add_subcommand(
@@ -265,7 +240,9 @@ int run(int argc, char** argv) {
   ScanArguments scan_arguments;
   RecordArguments record_arguments;
   DoctorArguments doctor_arguments;
-  ReconstructArguments reconstruct_arguments;
+  TileArguments reconstruct_arguments;
+  JoinArguments join_arguments;
+  ImportArguments import_arguments;
   CalibrateArguments calibrate_arguments;
   CalibrateWallArguments calibrate_wall_arguments;
   SetArguments set_arguments;
@@ -278,6 +255,8 @@ int run(int argc, char** argv) {
   add_record(program, record_arguments);
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
+  add_join(program, join_arguments);
+  add_import(program, import_arguments);
   add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
   add_set(program, set_arguments);
   add_merge(program, merge_arguments, status);

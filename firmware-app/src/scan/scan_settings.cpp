@@ -22,7 +22,7 @@ constexpr int max_snapshots = 200;  // the full steps of a turn of the coarsest 
 constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not lower the noise
 constexpr int max_threads = 256;
 constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther
-constexpr double max_root_mm = 5000;
+constexpr double max_root_mm = 10000;
 constexpr double min_leaf_mm = 0.1;   // 16 levels of the largest root are 0.08
 constexpr double min_memory_mb = 17;  // of the intersection of one thread
 

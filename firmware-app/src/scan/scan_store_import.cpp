@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/tiles.hpp"
 #include "one_line.hpp"
 #include "scan/job_file.hpp"
 #include "scan/scan_store.hpp"
@@ -68,6 +70,13 @@ fs::path ScanStore::begin_import() {
 
 Job ScanStore::adopt(const fs::path& beginning) {
   const Scan scan = read_scan(beginning);
+  if (has_free_poses(scan)) {
+    throw Error(
+        ErrorCode::bad_request,
+        "a scan with free poses: it has no platform, and may be larger than what is scanned "
+        "here",
+        "Build its model by octurn reconstruct.");
+  }
   Job job = to_waiting(read_adopted_job(beginning, scan), scan);
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();

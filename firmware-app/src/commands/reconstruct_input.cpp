@@ -1,0 +1,109 @@
+#include "commands/reconstruct_input.hpp"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "commands/options.hpp"
+#include "process_memory.hpp"
+#include "scan/last_look.hpp"
+#include "scan/solve_pose.hpp"
+#include "settings/field.hpp"
+
+namespace octurn {
+namespace {
+
+ModelSettings settings_from(const nlohmann::json& given, const Scan& scan) {
+  JsonObject keys(given, ErrorCode::bad_settings, "");
+  ModelSettings settings;
+  if (scan.laser) {
+    use_laser_defaults(settings.scan);
+  }
+  read_fields(keys, fields(settings));
+  expect_options_of_method(given, fields(settings), to_string(settings.scan.method));
+  check_leaf(keys, settings.scan);
+  if (keys.value("clip_mm")) {
+    check_clip(keys, settings.scan);
+  }
+  return settings;
+}
+
+ReconstructOptions options_from(const ModelSettings& settings, const Scan& scan) {
+  ReconstructOptions options = reconstruct_options(settings.scan, settings.limits);
+  options.level = settings.level;
+  options.placements = placements(scan);
+  fit_to_sensor(options, scan);
+  return options;
+}
+
+/// A scan with the pose that its model is made with, and what solving it and its last look found.
+struct PosedScan {
+  Scan scan = {};
+  std::vector<CalibrationFinding> findings = {};
+};
+
+void take_told_poses(Scan& scan) {
+  scan.solved.reset();
+  for (ScanPose& pose : scan.poses) {
+    pose.solved.reset();
+  }
+}
+
+/// A solved pose that merely confirms the told one does not replace it: the model keeps its bytes.
+PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
+                    const std::stop_token& stop) {
+  PosedScan posed{.scan = std::move(scan)};
+  if (settings.scan.pose == PoseSource::told) {
+    take_told_poses(posed.scan);
+  } else if (!posed.scan.solved && is_one_turn(posed.scan)) {
+    ScanSolution solution =
+        solve_scan(folder, posed.scan, stored_snapshots(folder, posed.scan, stop),
+                   settings.limits.threads, stop);
+    if (solution.replaces_told) {
+      posed.scan.solved = std::move(solution.solved);
+    }
+    posed.findings = std::move(solution.report.findings);
+  }
+  add_stored_move(folder, posed.findings);
+  return posed;
+}
+
+/// The scan, to be read with the sensor map that the arguments name, else with its own.
+Scan read_scan_of(const ReconstructArguments& arguments) {
+  Scan scan = read_scan(arguments.folder);
+  if (arguments.sensor_map) {
+    use_sensor_map(scan, *arguments.sensor_map);
+  }
+  return scan;
+}
+
+}  // namespace
+
+ReconstructInput read_input(const ReconstructArguments& arguments, const std::stop_token& stop) {
+  Scan told = read_scan_of(arguments);
+  ReconstructInput input{.settings = settings_from(arguments.settings, told)};
+  if (!arguments.output.empty()) {
+    expect_writable(arguments.output);
+  }
+  PosedScan posed = with_pose(std::move(told), arguments.folder, input.settings, stop);
+  input.scan = std::move(posed.scan);
+  input.findings = std::move(posed.findings);
+  if (!arguments.settings.contains("clip_mm")) {
+    input.settings.scan.clip = model_clip(input.scan);
+  }
+  input.options = options_from(input.settings, input.scan);
+  if (input.options.memory_limit != 0) {
+    return_freed_memory();
+  }
+  return input;
+}
+
+SnapshotSource shown_snapshots(const std::filesystem::path& folder, const Scan& scan,
+                               ProgressBar& bar, const std::stop_token& stop) {
+  return {.count = scan.shots.size(),
+          .read = [&bar, stored = stored_snapshots(folder, scan, stop)](std::size_t i) {
+            bar.show(static_cast<int>(i), static_cast<int>(stored.count), "snapshots");
+            return stored.read(i);
+          }};
+}
+
+}  // namespace octurn

@@ -1,0 +1,101 @@
+#include "octurn/tiles.hpp"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "commands/model_commands.hpp"
+#include "commands/reconstruct_input.hpp"
+#include "octurn/error.hpp"
+#include "octurn/mesh_report.hpp"
+#include "octurn/stl.hpp"
+#include "octurn/units.hpp"
+#include "progress_bar.hpp"
+#include "signal_stop.hpp"
+#include "standard_output.hpp"
+
+namespace octurn {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// @throws Error "bad-settings"  if the scan is one that is not tiled
+ReconstructInput read_tiled_input(const ReconstructArguments& arguments,
+                                  const std::stop_token& stop) {
+  ReconstructInput input = read_input(arguments, stop);
+  if (!has_free_poses(input.scan)) {
+    throw Error(ErrorCode::bad_settings,
+                arguments.folder.string() + ": has no tiles: it is a scan on the turntable",
+                "Make its model whole, by octurn reconstruct -o.");
+  }
+  return input;
+}
+
+Json to_json(const TilePlan& plan, const ReconstructOptions& options) {
+  Json tiles = Json::array();
+  for (const Tile& tile : plan.tiles) {
+    tiles.push_back(
+        {{"tile", tiles.size()},
+         {"index", {tile.index.x, tile.index.y, tile.index.z}},
+         {"snapshots", tile.snapshots.size()},
+         {"megabytes", mb_from_bytes(static_cast<double>(tile_memory(options, tile)))}});
+  }
+  return {{"tiles", std::move(tiles)}};
+}
+
+}  // namespace
+
+void plan_tiles(const TileArguments& arguments) try {
+  const SignalStop signal;
+  const ReconstructInput input = read_tiled_input(arguments.model, signal.token());
+  ProgressBar bar;
+  const TilePlan plan = plan_tiles(
+      input.options, shown_snapshots(arguments.model.folder, input.scan, bar, signal.token()),
+      signal.token());
+  if (!arguments.model.output.empty()) {
+    write_plan(plan, input.options, arguments.model.output);
+  }
+  write_standard_output(to_json(plan, input.options).dump() + "\n");
+} catch (const Stopped&) {
+  throw_stopped("nothing was planned");
+}
+
+void make_tile(const TileArguments& arguments) try {
+  const SignalStop signal;
+  const ReconstructInput input = read_tiled_input(arguments.model, signal.token());
+  ProgressBar bar;
+  const SnapshotSource snapshots =
+      shown_snapshots(arguments.model.folder, input.scan, bar, signal.token());
+  const TilePlan plan = arguments.plan_file ? read_plan(*arguments.plan_file, input.options)
+                                            : plan_tiles(input.options, snapshots, signal.token());
+  write_tile(input.options, plan, *arguments.tile, snapshots, arguments.model.output,
+             signal.token());
+} catch (const Stopped&) {
+  throw_stopped("no tile was written");
+}
+
+void join(const JoinArguments& arguments) try {
+  const SignalStop signal;
+  expect_writable(arguments.output);
+  StlFile stl(arguments.output);
+  MeshCheck check;
+  const SurfaceCount count = join_tiles(
+      arguments.tiles,
+      [&](std::span<const Facet> facets) {
+        check.add(facets);
+        stl.write(facets);
+      },
+      signal.token());
+  expect_facets(count);
+  stl.commit();
+  if (arguments.json) {
+    write_standard_output(
+        Json{{"leaves", count.leaves}, {"triangles", count.facets}, {"watertight", check.closed()}}
+            .dump() +
+        "\n");
+  }
+} catch (const Stopped&) {
+  throw_stopped("no model was written");
+}
+
+}  // namespace octurn

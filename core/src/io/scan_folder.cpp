@@ -78,7 +78,9 @@ void read_rig(JsonObject& root, int version, Scan& scan) {
     scan.platform_from_sensor = rig.platform_from_sensor;
     scan.solved = rig.solved;
   }
-  scan.clip = clip || !all_told ? box_from(root.at("clip_m")) : scan.laser ? whole_root : everywhere;
+  scan.clip = clip || !all_told ? box_from(root.at("clip_m"))
+              : scan.laser      ? whole_root
+                                : everywhere;
   if (const auto poses = version > 1 ? root.value("poses") : std::nullopt) {
     scan.poses = poses_from(*poses, scan);
   }

@@ -83,8 +83,8 @@ bool is_one_turn(const Scan& scan) {
 
 bool has_free_poses(const Scan& scan) {
   return !scan.laser && scan.poses.empty() && std::ranges::all_of(scan.shots, [](const Shot& shot) {
-           return shot.object_from_sensor.has_value();
-         });
+    return shot.object_from_sensor.has_value();
+  });
 }
 
 }  // namespace octurn

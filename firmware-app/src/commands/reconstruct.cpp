@@ -84,7 +84,8 @@ Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
             {"volume_cm3", cm3_from_m3(report.volume)},
             {"size_mm", mm(report.size)}};
   if (settings.scan.method == Method::solid && !quality) {
-    json["shell_thickness_mm"] = mm_from_metres(shell_thickness(reconstruct_options(settings.scan, settings.limits)));
+    json["shell_thickness_mm"] =
+        mm_from_metres(shell_thickness(reconstruct_options(settings.scan, settings.limits)));
   } else if (settings.scan.method == Method::solid) {
     json["parts"] = report.parts;
     json["dropped_parts"] = report.dropped.count;

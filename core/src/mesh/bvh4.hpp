@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "mesh/aabb.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -49,20 +51,53 @@ class Bvh4 {
   /// O(boxes).
   explicit Bvh4(std::span<const Aabb> boxes);
 
-  /// Calls `visit(i, j)` once for each pair of different boxes that overlap.
+  /// Calls `visit(thread, i, j)` once for each pair of different boxes that overlap.
   template <typename Visit>
-  void for_each_overlapping_pair(const Visit& visit) const {
-    if (!order_.empty()) {
-      traverse_pair(levels_.size() - 1, 0, 0, visit);
+  void for_each_overlapping_pair(ThreadTeam& team, const Visit& visit) const {
+    if (order_.empty()) {
+      return;
     }
+    const std::size_t top = levels_.size() - 1;
+    const std::size_t split = split_level(team.size());
+    NodePairs parts{{0, 0}};
+    if (split < top) {
+      parts.clear();
+      traverse_pair(top, {0, 0}, split + 1, [&](const NodePair& pair) { parts.push_back(pair); });
+    }
+    std::atomic<std::size_t> next = 0;
+    team.run([&](int thread) {
+      for (std::size_t part = next++; part < parts.size(); part = next++) {
+        traverse_pair(split, parts[part], 0, [&](const NodePair& pair) {
+          if (pair[0] != pair[1]) {
+            visit(thread, order_[pair[0]], order_[pair[1]]);
+          }
+        });
+      }
+    });
   }
 
  private:
-  /// Visits the pairs below two nodes of one level, or below one with itself.
+  using NodePair = std::array<std::size_t, 2>;
+  using NodePairs = std::vector<NodePair>;
+
+  /// The highest level with enough nodes for so many threads.
+  std::size_t split_level(int threads) const {
+    std::size_t level = levels_.size() - 1;
+    while (threads > 1 && level > 0 &&
+           levels_[level].size() < nodes_per_thread * static_cast<std::size_t>(threads)) {
+      --level;
+    }
+    return level;
+  }
+
+  /// Visits the pairs that overlap below two nodes of one level, or below one with itself: of the
+  /// children of nodes of level `end`.
   template <typename Visit>
-  void traverse_pair(std::size_t level, std::size_t a, std::size_t b, const Visit& visit) const {
+  void traverse_pair(std::size_t level, const NodePair& nodes, std::size_t end,
+                     const Visit& visit) const {
+    const auto [a, b] = nodes;
     // Whether boxes overlap follows no pattern, so that a branch on it would be mispredicted.
-    std::array<std::array<std::size_t, 2>, 16> pairs;
+    std::array<NodePair, 16> pairs;
     std::size_t count = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       const Eigen::Array4f gaps = levels_[level][b].separation(levels_[level][a], i);
@@ -71,14 +106,16 @@ class Bvh4 {
         count += gaps[static_cast<Eigen::Index>(j)] <= 0 && (a != b || i <= j) ? 1 : 0;
       }
     }
-    for (const auto& [one, other] : std::span(pairs).first(count)) {
-      if (level > 0) {
-        traverse_pair(level - 1, one, other, visit);
-      } else if (one != other) {
-        visit(order_[one], order_[other]);
+    for (const NodePair& pair : std::span(pairs).first(count)) {
+      if (level > end) {
+        traverse_pair(level - 1, pair, end, visit);
+      } else {
+        visit(pair);
       }
     }
   }
+
+  static constexpr std::size_t nodes_per_thread = 16;
 
   std::vector<std::uint32_t> order_;                // of the boxes along the curve
   std::vector<std::vector<Bvh4Node>> levels_ = {};  // the lowest, of the boxes, first

@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/vector3.hpp"
 
 namespace octurn {
+namespace {
 
-void add_plane_quadrics(IndexedMesh& mesh, std::size_t first) {
-  for (std::size_t i = first; i < mesh.triangles.size(); ++i) {
-    const MeshTriangle& triangle = mesh.triangles[i];
+/// Adds the planes of triangles to the quadrics of the vertices from `first` to `end`.
+void add_plane_quadrics_of(IndexedMesh& mesh, std::span<const MeshTriangle> triangles,
+                           std::size_t first, std::size_t end) {
+  const auto is_own = [&](std::uint32_t vertex) { return vertex - first < end - first; };
+  for (const MeshTriangle& triangle : triangles) {
+    if (std::ranges::none_of(triangle, is_own)) {
+      continue;
+    }
     const Vector3 a = to_vector3(mesh.vertices[triangle[0]].position);
     const Vector3 normal = area_normal(a, to_vector3(mesh.vertices[triangle[1]].position),
                                        to_vector3(mesh.vertices[triangle[2]].position));
@@ -20,9 +27,28 @@ void add_plane_quadrics(IndexedMesh& mesh, std::size_t first) {
     const Vector3 unit{normal[0] / twice_area, normal[1] / twice_area, normal[2] / twice_area};
     const Quadric quadric = plane_quadric(unit, -dot(unit, a), twice_area / 2);
     for (const std::uint32_t corner : triangle) {
-      mesh.quadrics[corner] += quadric;
+      if (is_own(corner)) {
+        mesh.quadrics[corner] += quadric;
+      }
     }
   }
+}
+
+}  // namespace
+
+void add_plane_quadrics(IndexedMesh& mesh, std::size_t first, ThreadTeam& team) {
+  const std::span<const MeshTriangle> triangles = std::span(mesh.triangles).subspan(first);
+  std::uint32_t low = std::numeric_limits<std::uint32_t>::max();  // of the vertices
+  for (const MeshTriangle& triangle : triangles) {
+    low = std::min({low, triangle[0], triangle[1], triangle[2]});
+  }
+  if (triangles.empty()) {
+    return;
+  }
+  team.run([&](int thread) {
+    const auto [from, to] = team.share(mesh.vertices.size() - low, thread);
+    add_plane_quadrics_of(mesh, triangles, low + from, low + to);
+  });
 }
 
 std::vector<std::uint32_t> compact(IndexedMesh& mesh, std::span<const std::uint32_t> also_used) {

@@ -7,6 +7,7 @@
 
 #include "mesh/mesh.hpp"
 #include "mesh/quadric.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -18,8 +19,10 @@ struct IndexedMesh {
   std::vector<MeshTriangle> triangles = {};
 };
 
-/// Adds to each vertex's quadric the planes of its triangles, from the triangle `first` on.
-void add_plane_quadrics(IndexedMesh& mesh, std::size_t first);
+/// Adds to each vertex's quadric the planes of its triangles, from the triangle `first` on, in
+/// their order.
+void add_plane_quadrics(IndexedMesh& mesh, std::size_t first,
+                        ThreadTeam& team = ThreadTeam::alone());
 
 constexpr std::uint32_t removed_vertex = std::numeric_limits<std::uint32_t>::max();
 

@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "mesh/indexed_mesh.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -27,7 +28,8 @@ struct CollapseLimits {
 /// triangle's normal by more than 60 degrees; or if it would leave a sliver. Vertices on the
 /// platform, z = 0, stay on it. Whether triangles far apart come to intersect is not looked at.
 ///
-/// Deterministic: the same mesh gives the same bits on every processor. O(n) a pass.
+/// Deterministic: the same mesh gives the same bits on every processor, for any number of threads.
+/// O(n) a pass.
 ///
 /// @param mesh    updated in place: triangles are removed, the others keep their order; vertices
 ///                keep their indices, and those of no triangle are left to `compact`
@@ -35,6 +37,6 @@ struct CollapseLimits {
 /// @param stop    looked at before each pass
 /// @throws Stopped
 void qem_simplify(IndexedMesh& mesh, std::span<const char> locked, const CollapseLimits& limits,
-                  const std::stop_token& stop = {});
+                  const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

@@ -1,6 +1,7 @@
 #include "mesh/self_intersections.hpp"
 
 #include <cstdint>
+#include <utility>
 
 #include "mesh/bvh4.hpp"
 #include "mesh/star_shaped_fans.hpp"
@@ -39,20 +40,23 @@ bool share_star_shaped_fan(const MeshTriangle& a, const MeshTriangle& b,
 
 std::vector<Aabb> self_intersections(std::span<const std::array<float, 3>> vertices,
                                      std::span<const MeshTriangle> triangles,
-                                     std::size_t already_checked) {
+                                     std::size_t already_checked, ThreadTeam& team) {
   const std::vector<Aabb> bounds = make_bounds(vertices, triangles);
   const Bvh4 bvh(bounds);
-  const std::vector<char> is_star_shaped = find_star_shaped_fans(vertices, triangles);
-  std::vector<Aabb> found;
-  bvh.for_each_overlapping_pair([&](std::uint32_t a, std::uint32_t b) {
+  const std::vector<char> is_star_shaped = find_star_shaped_fans(vertices, triangles, team);
+  std::vector<std::vector<Aabb>> found(static_cast<std::size_t>(team.size()));
+  bvh.for_each_overlapping_pair(team, [&](int thread, std::uint32_t a, std::uint32_t b) {
     if (!share_star_shaped_fan(triangles[a], triangles[b], is_star_shaped) &&
         (a >= already_checked || b >= already_checked) &&
         !are_disjoint(vertices, triangles[a], triangles[b])) {
-      found.push_back(bounds[a]);
-      found.push_back(bounds[b]);
+      found[static_cast<std::size_t>(thread)].insert(found[static_cast<std::size_t>(thread)].end(),
+                                                     {bounds[a], bounds[b]});
     }
   });
-  return found;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    found[0].insert(found[0].end(), found[i].begin(), found[i].end());
+  }
+  return std::move(found[0]);
 }
 
 }  // namespace octurn

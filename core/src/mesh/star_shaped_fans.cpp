@@ -39,37 +39,61 @@ int winding_number(std::span<const Sector> sectors, const Vector3& up) {
   return turns;
 }
 
-}  // namespace
+/// Looks at the fans of single vertices, one after the other.
+class FanCheck {
+ public:
+  FanCheck(std::span<const std::array<float, 3>> vertices, std::span<const MeshTriangle> triangles,
+           const TriangleAdjacency& adjacency)
+      : vertices_(vertices),
+        triangles_(triangles),
+        adjacency_(adjacency),
+        left_from_(vertices.size(), none) {}
 
-std::vector<char> find_star_shaped_fans(std::span<const std::array<float, 3>> vertices,
-                                        std::span<const MeshTriangle> triangles) {
-  const TriangleAdjacency adjacency(triangles, vertices.size());
-  std::vector<std::uint32_t> left_from(vertices.size(), none);  // by spoke's end: the centre
-  std::vector<Sector> sectors;
-  std::vector<char> is_star_shaped(vertices.size(), 0);
-  for (std::uint32_t vertex = 0; vertex < vertices.size(); ++vertex) {
-    const std::span<const std::uint32_t> fan = adjacency.triangles_at(vertex);
-    const Vector3 centre = to_vector3(vertices[vertex]);
+  bool is_star_shaped(std::uint32_t vertex) {
+    const std::span<const std::uint32_t> fan = adjacency_.triangles_at(vertex);
+    const Vector3 centre = to_vector3(vertices_[vertex]);
     bool is_closed = !fan.empty();
     Vector3 up{};
-    sectors.clear();
+    sectors_.clear();
     for (const std::uint32_t i : fan) {
-      const auto [first, second] = find_spokes(triangles[i], vertex);
-      is_closed = is_closed && left_from[first] != vertex;
-      left_from[first] = vertex;
-      sectors.push_back({.first = to_vector3(vertices[first]) - centre,
-                         .second = to_vector3(vertices[second]) - centre});
+      const auto [first, second] = find_spokes(triangles_[i], vertex);
+      is_closed = is_closed && left_from_[first] != vertex;
+      left_from_[first] = vertex;
+      sectors_.push_back({.first = to_vector3(vertices_[first]) - centre,
+                          .second = to_vector3(vertices_[second]) - centre});
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        up[axis] += sectors.back().normal[axis];
+        up[axis] += sectors_.back().normal[axis];
       }
     }
     for (const std::uint32_t i : fan) {
-      std::uint32_t& left = left_from[find_spokes(triangles[i], vertex).second];
+      std::uint32_t& left = left_from_[find_spokes(triangles_[i], vertex).second];
       is_closed = is_closed && left == vertex;
       left = none;
     }
-    is_star_shaped[vertex] = is_closed && winding_number(sectors, up) == 1 ? 1 : 0;
+    return is_closed && winding_number(sectors_, up) == 1;
   }
+
+ private:
+  std::span<const std::array<float, 3>> vertices_;
+  std::span<const MeshTriangle> triangles_;
+  const TriangleAdjacency& adjacency_;
+  std::vector<std::uint32_t> left_from_;  // by spoke's end: the centre
+  std::vector<Sector> sectors_ = {};
+};
+
+}  // namespace
+
+std::vector<char> find_star_shaped_fans(std::span<const std::array<float, 3>> vertices,
+                                        std::span<const MeshTriangle> triangles, ThreadTeam& team) {
+  const TriangleAdjacency adjacency(triangles, vertices.size(), team);
+  std::vector<char> is_star_shaped(vertices.size(), 0);
+  team.run([&](int thread) {
+    FanCheck check(vertices, triangles, adjacency);
+    const auto [first, end] = team.share(vertices.size(), thread);
+    for (std::size_t vertex = first; vertex < end; ++vertex) {
+      is_star_shaped[vertex] = check.is_star_shaped(static_cast<std::uint32_t>(vertex)) ? 1 : 0;
+    }
+  });
   return is_star_shaped;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -21,6 +22,7 @@ namespace octurn {
 /// @param vertices  positions, millimetres
 /// @returns one per vertex: 1 if its fan is star-shaped, otherwise 0
 std::vector<char> find_star_shaped_fans(std::span<const std::array<float, 3>> vertices,
-                                        std::span<const MeshTriangle> triangles);
+                                        std::span<const MeshTriangle> triangles,
+                                        ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

@@ -18,20 +18,22 @@ Aabb make_cube(const std::array<float, 3>& centre, float reach) {
           .max = {centre[0] + reach, centre[1] + reach, centre[2] + reach}};
 }
 
-std::vector<Aabb> find_self_intersections(const IndexedMesh& mesh, std::size_t already_checked) {
+std::vector<Aabb> find_self_intersections(const IndexedMesh& mesh, std::size_t already_checked,
+                                          ThreadTeam& team) {
   std::vector<std::array<float, 3>> positions(mesh.vertices.size());
   std::ranges::transform(mesh.vertices, positions.begin(), &MeshVertex::position);
-  return self_intersections(positions, mesh.triangles, already_checked);
+  return self_intersections(positions, mesh.triangles, already_checked, team);
 }
 
 }  // namespace
 
 StreamSimplifier::StreamSimplifier(double target_error, double margin, FacetSink sink,
-                                   std::stop_token stop)
+                                   std::stop_token stop, ThreadTeam& team)
     : limits_{.target_error = target_error},
       margin_(margin),
       sink_(std::move(sink)),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)),
+      team_(team) {}
 
 void StreamSimplifier::add(const MeshPiece& piece) {
   // The last piece becomes the last but one, whose surface this piece completes.
@@ -47,13 +49,11 @@ void StreamSimplifier::add(const MeshPiece& piece) {
   }
   locked_.resize(mesh_.vertices.size(), 1);
   mesh_.quadrics.resize(mesh_.vertices.size());
-  const std::size_t first = mesh_.triangles.size();
   for (const MeshTriangle& triangle : piece.triangles) {
     mesh_.triangles.push_back({window_[triangle[0] - first_piece_],
                                window_[triangle[1] - first_piece_],
                                window_[triangle[2] - first_piece_]});
   }
-  add_plane_quadrics(mesh_, first);
   added_ += piece.triangles.size();
   if (added_ >= window_triangles) {
     limits_.max_z = std::numeric_limits<float>::lowest();
@@ -79,10 +79,11 @@ void StreamSimplifier::finish() {
 /// Simplifies the window so that it does not intersect itself. What was added does not, so that
 /// locking ever more vertices ends.
 void StreamSimplifier::simplify() {
+  add_plane_quadrics(mesh_, mesh_.triangles.size() - added_, team_);
   for (float reach = first_reach_mm;;) {
     IndexedMesh simplified = mesh_;
-    qem_simplify(simplified, locked_, limits_, stop_);
-    const std::vector<Aabb> intersections = find_self_intersections(simplified, flushed_);
+    qem_simplify(simplified, locked_, limits_, stop_, team_);
+    const std::vector<Aabb> intersections = find_self_intersections(simplified, flushed_, team_);
     if (intersections.empty() || simplified.triangles.size() == mesh_.triangles.size()) {
       mesh_ = std::move(simplified);
       return;

@@ -8,6 +8,7 @@
 #include "mesh/indexed_mesh.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/qem_simplify.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -20,8 +21,9 @@ namespace octurn {
 /// around there locked. So the result is closed, manifold and of the same genus as what was added;
 /// and if that has no self-intersection, neither has the result.
 ///
-/// Deterministic. The result depends on the order of the pieces, and on their sizes only through
-/// where windows end: not at all for a mesh of one window. Not thread-safe.
+/// Deterministic, for any number of threads. The result depends on the order of the pieces, and on
+/// their sizes only through where windows end: not at all for a mesh of one window. Not
+/// thread-safe.
 class StreamSimplifier {
  public:
   /// @param target_error  millimetres, above 0: RMS distance of each vertex to the planes of the
@@ -31,7 +33,9 @@ class StreamSimplifier {
   /// @param sink          takes the facets, from below, in spans that are valid during the call
   /// @param stop          looked at in each pass over a window: then `add` and `finish` throw
   ///                      `Stopped`
-  StreamSimplifier(double target_error, double margin, FacetSink sink, std::stop_token stop = {});
+  /// @param team          the threads that share a window's work; must outlive this
+  StreamSimplifier(double target_error, double margin, FacetSink sink, std::stop_token stop = {},
+                   ThreadTeam& team = ThreadTeam::alone());
 
   /// Adds the next piece; z rises from piece to piece. Simplifies and emits when a window is full.
   void add(const MeshPiece& piece);
@@ -50,6 +54,7 @@ class StreamSimplifier {
   double margin_;
   FacetSink sink_;
   std::stop_token stop_;
+  ThreadTeam& team_;
   IndexedMesh mesh_ = {};
   std::vector<char> locked_ = {};  // vertices: emitted, on the open border, or near an intersection
   std::size_t flushed_ = 0;  // leading triangles already emitted; kept only as obstacles for the

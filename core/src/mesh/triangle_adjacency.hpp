@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "parallel/thread_team.hpp"
 
 namespace octurn {
 
@@ -18,20 +19,31 @@ inline std::size_t local_index(const MeshTriangle& triangle, std::uint32_t verte
 /// Triangles at each vertex of a mesh, as compressed rows (CSR).
 class TriangleAdjacency {
  public:
-  /// O(vertices + triangles).
-  TriangleAdjacency(std::span<const MeshTriangle> triangles, std::size_t vertex_count)
+  /// O(vertices + triangles); each thread looks through all triangles for those of its vertices.
+  TriangleAdjacency(std::span<const MeshTriangle> triangles, std::size_t vertex_count,
+                    ThreadTeam& team = ThreadTeam::alone())
       : first_(vertex_count + 1, 0), triangles_(3 * triangles.size()) {
-    for (const MeshTriangle& triangle : triangles) {
-      for (const std::uint32_t corner : triangle) {
-        ++first_[corner];
+    team.run([&](int thread) {
+      const auto [first, end] = team.share(vertex_count, thread);
+      for (const MeshTriangle& triangle : triangles) {
+        for (const std::uint32_t corner : triangle) {
+          if (corner - first < end - first) {
+            ++first_[corner];
+          }
+        }
       }
-    }
+    });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    for (std::size_t i = triangles.size(); i-- > 0;) {
-      for (const std::uint32_t corner : triangles[i]) {
-        triangles_[--first_[corner]] = static_cast<std::uint32_t>(i);
+    team.run([&](int thread) {
+      const auto [first, end] = team.share(vertex_count, thread);
+      for (std::size_t i = triangles.size(); i-- > 0;) {
+        for (const std::uint32_t corner : triangles[i]) {
+          if (corner - first < end - first) {
+            triangles_[--first_[corner]] = static_cast<std::uint32_t>(i);
+          }
+        }
       }
-    }
+    });
   }
 
   /// Indices of the triangles at a vertex, ascending.

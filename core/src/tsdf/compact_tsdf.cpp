@@ -64,32 +64,42 @@ CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Inde
 CompactTsdf::CompactTsdf(const VoxelGrid& grid, int min_votes)
     : grid_(grid), min_votes_(min_votes), bricks_(grid.brick_count()), free_(grid.block_count()) {}
 
-void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop) {
-  const auto& [low, end] = volume.layers();
-  const Index3& size = grid_.size();
-  for (int z = low; z < end; ++z) {
+void CompactTsdf::add(const TsdfVolume& volume, const std::stop_token& stop, ThreadTeam& team) {
+  const BrickLayers& layers = volume.layers();
+  std::mutex adding;
+  team.for_each(layers.end - layers.low, [&](int layer) {
     throw_if_stopped(stop);
-    for (int y = 0; y < size.y; ++y) {
-      for (int x = 0; x < size.x; ++x) {
-        if (const TsdfBrick* brick = volume.find({x, y, z});
-            brick != nullptr && has_surface(*brick)) {
-          bricks_.add(grid_.brick_index({x, y, z})) =
-              compact(volume, *brick, {x, y, z}, min_votes_);
-        }
+    add_layer(volume, layers.low + layer, adding);
+    add_free_blocks(volume, layers.low + layer);
+  });
+}
+
+/// @param z       of a layer of bricks
+/// @param adding  held while the table of bricks grows
+void CompactTsdf::add_layer(const TsdfVolume& volume, int z, std::mutex& adding) {
+  const auto make = [&](const Index3& brick) -> CompactBrick& {
+    const std::lock_guard lock(adding);
+    return bricks_.add(grid_.brick_index(brick));
+  };
+  for (int y = 0; y < grid_.size().y; ++y) {
+    for (int x = 0; x < grid_.size().x; ++x) {
+      if (const TsdfBrick* brick = volume.find({x, y, z});
+          brick != nullptr && has_surface(*brick)) {
+        make({x, y, z}) = compact(volume, *brick, {x, y, z}, min_votes_);
       }
     }
   }
-  add_free_blocks(volume);
 }
 
-void CompactTsdf::add_free_blocks(const TsdfVolume& volume) {
-  const auto& [low, end] = volume.layers();
+/// @param z  of a layer of bricks
+void CompactTsdf::add_free_blocks(const TsdfVolume& volume, int z) {
   const Index3& size = grid_.size();
   const int per_brick = grid_.blocks_per_brick();
-  for (int z = low * per_brick; z < end * per_brick; ++z) {
+  for (int block = z * per_brick; block < (z + 1) * per_brick; ++block) {
     for (int y = 0; y < size.y * per_brick; ++y) {
       for (int x = 0; x < size.x * per_brick; ++x) {
-        free_[grid_.block_index({x, y, z})] = volume.free_count({x, y, z}) >= min_votes_ ? 1 : 0;
+        free_[grid_.block_index({x, y, block})] =
+            volume.free_count({x, y, block}) >= min_votes_ ? 1 : 0;
       }
     }
   }

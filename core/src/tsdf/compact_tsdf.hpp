@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <stop_token>
 #include <vector>
 
+#include "parallel/thread_team.hpp"
 #include "tsdf/tsdf_volume.hpp"
 #include "voxel/brick_map.hpp"
 
@@ -46,7 +48,8 @@ class CompactTsdf {
   const VoxelGrid& grid() const { return grid_; }
 
   /// Copies the layers that `volume` holds. @throws Stopped
-  void add(const TsdfVolume& volume, const std::stop_token& stop = {});
+  void add(const TsdfVolume& volume, const std::stop_token& stop = {},
+           ThreadTeam& team = ThreadTeam::alone());
 
   /// The brick at an index, or null where there is none.
   const CompactBrick* find(const Index3& brick) const {
@@ -59,7 +62,8 @@ class CompactTsdf {
   std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }
 
  private:
-  void add_free_blocks(const TsdfVolume& volume);
+  void add_layer(const TsdfVolume& volume, int z, std::mutex& adding);
+  void add_free_blocks(const TsdfVolume& volume, int z);
 
   VoxelGrid grid_;
   int min_votes_;

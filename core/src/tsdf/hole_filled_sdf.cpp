@@ -50,21 +50,22 @@ void clear_border(VoxelMask& mask) {
 
 }  // namespace
 
-HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop)
+HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop,
+                             ThreadTeam& team)
     : known_(known), base_layer_(base_layer) {
-  fill(stop);
+  fill(stop, team);
 }
 
 HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
-                             const std::stop_token& stop)
+                             const std::stop_token& stop, ThreadTeam& team)
     : known_(known),
       base_layer_(known.grid().low().z * brick_side),
       platforms_(std::move(platforms)) {
-  fill(stop);
+  fill(stop, team);
 }
 
-void HoleFilledSdf::fill(const std::stop_token& stop) {
-  KnownBlocks blocks = known_blocks(known_, base_layer_, stop);
+void HoleFilledSdf::fill(const std::stop_token& stop, ThreadTeam& team) {
+  KnownBlocks blocks = known_blocks(known_, base_layer_, stop, team);
   if (blocks.distances.values.empty()) {
     return;
   }
@@ -275,17 +276,17 @@ void HoleFilledSdf::add_inside(const Index3& brick, VoxelMask& mask) const {
   }
 }
 
-VoxelMask HoleFilledSdf::inside(const std::stop_token& stop) const {
+VoxelMask HoleFilledSdf::inside(const std::stop_token& stop, ThreadTeam& team) const {
   VoxelMask mask(low_, end_);
   const Index3& size = mask.size();
-  for (int z = 0; z < size.z / brick_side; ++z) {
+  team.for_each(size.z / brick_side, [&](int z) {
     throw_if_stopped(stop);
     for (int y = 0; y < size.y / brick_side; ++y) {
       for (int x = 0; x < size.x / brick_side; ++x) {
         add_inside({x, y, z}, mask);
       }
     }
-  }
+  });
   clear_border(mask);
   if (!platforms_.empty() && size.z > 0) {  // a lowest layer is no foot
     for (int y = 0; y < size.y; ++y) {

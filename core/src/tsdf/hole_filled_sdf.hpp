@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "parallel/thread_team.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/laplace_fill.hpp"
 #include "tsdf/platform_cut.hpp"
@@ -24,13 +25,14 @@ class HoleFilledSdf {
   /// @param known       must outlive this
   /// @param base_layer  the lowest layer of voxels whose samples count
   /// @throws Stopped
-  HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {});
+  HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {},
+                ThreadTeam& team = ThreadTeam::alone());
 
   /// Of an object that was seen in several poses: all layers count, and the field is cut at each
   /// pose's platform where nothing saw the object's foot.
   /// @param platforms  of the poses, at least one
   HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
-                const std::stop_token& stop = {});
+                const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
   const VoxelGrid& grid() const { return known_.grid(); }
 
@@ -62,7 +64,7 @@ class HoleFilledSdf {
 
   /// The voxels of that box with a negative distance, but for those on its sides and top.
   /// @throws Stopped
-  VoxelMask inside(const std::stop_token& stop = {}) const;
+  VoxelMask inside(const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone()) const;
 
  private:
   /// Two neighbouring blocks on an axis, and the second one's weight.
@@ -72,7 +74,7 @@ class HoleFilledSdf {
   };
   enum class Side { inside, outside, both };
 
-  void fill(const std::stop_token& stop);
+  void fill(const std::stop_token& stop, ThreadTeam& team);
   std::vector<LerpWeight> lerp_weights(int voxels, int blocks) const;
   float trilinear(const LerpWeight& x, const LerpWeight& y, const LerpWeight& z) const;
   float filled_at(const Index3& voxel) const;

@@ -112,7 +112,8 @@ void classify_block(const CompactTsdf& known, int base_layer, const Index3& bloc
 
 }  // namespace
 
-KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::stop_token& stop) {
+KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::stop_token& stop,
+                         ThreadTeam& team) {
   KnownBlocks blocks;
   find_box(known, blocks);
   const int per_brick = known.grid().blocks_per_brick();
@@ -123,15 +124,15 @@ KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::st
   const auto count = distances.index(0, 0, distances.size.z);
   distances.values.resize(count);
   distances.known.resize(count);
-  std::size_t index = 0;
-  for (int z = 0; z < distances.size.z; ++z) {
+  team.for_each(distances.size.z, [&](int z) {
     throw_if_stopped(stop);
+    std::size_t index = distances.index(0, 0, z);
     for (int y = 0; y < distances.size.y; ++y) {
       for (int x = 0; x < distances.size.x; ++x, ++index) {
         classify_block(known, base_layer, {low.x + x, low.y + y, low.z + z}, index, distances);
       }
     }
-  }
+  });
   return blocks;
 }
 

@@ -2,6 +2,7 @@
 
 #include <stop_token>
 
+#include "parallel/thread_team.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/laplace_fill.hpp"
 
@@ -22,7 +23,7 @@ struct KnownBlocks {
 ///
 /// @param base_layer  the lowest layer of voxels that counts
 /// @throws Stopped
-KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
-                         const std::stop_token& stop = {});
+KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {},
+                         ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

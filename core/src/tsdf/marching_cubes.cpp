@@ -1,14 +1,14 @@
 #include "tsdf/marching_cubes.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "mesh/mesh_pieces.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
+#include "tsdf/cube_layer.hpp"
 #include "tsdf/marching_cubes_cases.hpp"
 
 namespace octurn {
@@ -21,56 +21,22 @@ constexpr double min_gap_mm = 0.036;
 /// from its ends.
 constexpr float ambiguous_margin = 0.3F;
 
-/// A layer of cubes between two layers of voxels.
-struct CubeLayer {
-  struct Cube {
-    int x = 0;
-    int y = 0;
-    std::uint8_t pattern = 0;
-  };
-  std::vector<Cube> mixed = {};
-  std::vector<std::uint8_t> ambiguous = {};  // 1 for each cube of such a case; empty: there is none
-};
-
-/// The centres of a grid's voxels, all at one distance from the surface.
-class MidpointField {
- public:
-  static constexpr bool has_platform = true;
-
-  MidpointField(double root_side, double voxel_side)
-      : root_side_(root_side), voxel_side_(voxel_side) {}
-
-  double voxel_side() const { return voxel_side_; }
-  double centre(int voxel, std::size_t axis) const {
-    return (voxel + 0.5) * voxel_side_ - (axis < 2 ? root_side_ / 2 : 0.0);
-  }
-  float half_voxel() const { return 1; }
-  HoleFilledSdf::Value at(const Index3& /*voxel*/) const {
-    return {.distance = 0, .observed = true};
-  }
-
- private:
-  double root_side_;
-  double voxel_side_;
-};
+constexpr int layers_at_once = 4;  // that a thread draws: it looks once more at the one below
 
 constexpr CubeRange all_cubes{
     .low = {-1, -1, -1},
     .end = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
             std::numeric_limits<int>::max()}};
 
-/// @tparam Field  `HoleFilledSdf`, `MidpointField` or `ShellField`
+/// @tparam Field  `HoleFilledSdf` or `ShellField`
 template <typename Field>
 class MarchingCubes {
  public:
-  MarchingCubes(const VoxelMask& inside, const Field& field, const MeshSink& sink,
-                const CubeRange& range = all_cubes)
+  MarchingCubes(const VoxelMask& inside, const Field& field, const CubeRange& range = all_cubes)
       : inside_(inside),
         field_(field),
-        sink_(sink),
         range_(range),
-        width_(static_cast<std::size_t>(inside.size().x)),
-        empty_row_(inside.words_per_row()) {
+        width_(static_cast<std::size_t>(inside.size().x)) {
     const std::size_t layer = width_ * static_cast<std::size_t>(inside.size().y);
     for (auto& indices : indices_) {
       indices.resize(layer);
@@ -79,12 +45,17 @@ class MarchingCubes {
         std::min(min_gap_mm / (std::numbers::sqrt2 * mm_from_metres(field.voxel_side())), 0.3));
   }
 
-  void run(const std::stop_token& stop) {
-    CubeLayer below;
-    CubeLayer here = cubes_at(-1);
-    for (int z = -1; z < inside_.size().z; ++z) {
+  /// Draws the layers of cubes from `first` to below `end`. Vertices are numbered on from those of
+  /// the layer below the first.
+  /// @returns how many that has
+  std::uint32_t run(int first, int end, const MeshSink& sink, const std::stop_token& stop) {
+    CubeLayer below = first > -1 ? mixed_cubes(inside_, first - 1) : CubeLayer{};
+    CubeLayer here = mixed_cubes(inside_, first);
+    number_vertices(below, first - 1);
+    const std::uint32_t before = vertex_count_;
+    for (int z = first; z < end; ++z) {
       throw_if_stopped(stop);
-      CubeLayer above = cubes_at(z + 1);
+      CubeLayer above = mixed_cubes(inside_, z + 1);
       vertices_.clear();
       triangles_.clear();
       for (const CubeLayer::Cube& cube : here.mixed) {
@@ -93,22 +64,23 @@ class MarchingCubes {
         }
       }
       if (!triangles_.empty()) {
-        sink_({.vertices = vertices_, .triangles = triangles_});
+        sink({.vertices = vertices_, .triangles = triangles_});
       }
-      // The edges along x and y above these cubes are those below the next.
-      std::swap(indices_[0], indices_[3]);
-      std::swap(indices_[1], indices_[4]);
-      for (const std::size_t used : {2U, 3U, 4U}) {
-        std::ranges::fill(indices_[used], 0U);
-      }
+      move_up();
       below = std::move(here);
       here = std::move(above);
     }
+    return before;
   }
 
  private:
-  std::span<const std::uint64_t> row(int y, int z) const {
-    return z >= 0 && z < inside_.size().z ? inside_.row(y, z) : std::span(empty_row_);
+  /// The edges along x and y above the cubes become those below the next.
+  void move_up() {
+    std::swap(indices_[0], indices_[3]);
+    std::swap(indices_[1], indices_[4]);
+    for (const std::size_t used : {2U, 3U, 4U}) {
+      std::ranges::fill(indices_[used], 0U);
+    }
   }
 
   bool is_drawn(const Index3& cube) const {
@@ -126,44 +98,22 @@ class MarchingCubes {
            on_side(2, voxel.z, range_.low.z, range_.end.z);
   }
 
-  CubeLayer cubes_at(int z) const {
-    CubeLayer layer;
-    for (int y = 0; y + 1 < inside_.size().y; ++y) {
-      const std::array rows{row(y, z), row(y + 1, z), row(y, z + 1), row(y + 1, z + 1)};
-      for (std::size_t word = 0; word < empty_row_.size(); ++word) {
-        add_mixed(rows, word, y, layer);
+  /// Begins with the vertices of a layer of cubes, of which those on its lower side are another's.
+  void number_vertices(const CubeLayer& layer, int z) {
+    vertex_count_ = 0;
+    for (const CubeLayer::Cube& cube : layer.mixed) {
+      const CubeSurface& surface = marching_cubes_cases[cube.pattern];
+      for (const auto& triangle : std::span(surface.triangles).first(surface.count)) {
+        for (const CubeEdge edge : triangle) {
+          const auto [voxel, axis, is_above] = find_place(edge, {cube.x, cube.y, z});
+          std::uint32_t& index = index_at(voxel, axis, is_above);
+          if ((axis == 2 || is_above) && index == 0) {
+            index = ++vertex_count_;
+          }
+        }
       }
     }
-    return layer;
-  }
-
-  /// Adds those of 64 cubes along x that the surface crosses.
-  /// @param rows  of voxels that they lie between
-  void add_mixed(const std::array<std::span<const std::uint64_t>, 4>& rows, std::size_t word, int y,
-                 CubeLayer& layer) const {
-    std::array<std::uint64_t, 8> corners{};
-    std::uint64_t any = 0;
-    std::uint64_t all = ~std::uint64_t{0};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::uint64_t next = word + 1 < rows[i].size() ? rows[i][word + 1] : 0;
-      corners[2 * i] = rows[i][word];
-      corners[2 * i + 1] = rows[i][word] >> 1 | next << 63;
-      any |= corners[2 * i] | corners[2 * i + 1];
-      all &= corners[2 * i] & corners[2 * i + 1];
-    }
-    for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
-      const int bit = std::countr_zero(mixed);
-      std::size_t pattern = 0;
-      for (std::size_t corner = 0; corner < 8; ++corner) {
-        pattern |= (corners[corner] >> bit & 1) << corner;
-      }
-      const int x = static_cast<int>(word) * 64 + bit;
-      layer.mixed.push_back({x, y, static_cast<std::uint8_t>(pattern)});
-      if (is_self_intersecting_case(pattern)) {
-        layer.ambiguous.resize(indices_[0].size());
-        layer.ambiguous[at(x, y)] = 1;
-      }
-    }
+    move_up();
   }
 
   std::size_t at(int x, int y) const {
@@ -176,11 +126,9 @@ class MarchingCubes {
     for (std::size_t i = 0; i < surface.count; ++i) {
       MeshTriangle triangle{};
       for (std::size_t corner = 0; corner < 3; ++corner) {
-        const CubeEdge edge = surface.triangles[i][corner];
-        const std::size_t axis = edge / 4U;
-        const Index3 voxel = find_start(edge, {cube.x, cube.y, z});
-        const bool is_above = axis < 2 && voxel.z > z;
-        std::uint32_t& index = indices_[axis + (is_above ? 3 : 0)][at(voxel.x, voxel.y)];
+        const auto [voxel, axis, is_above] =
+            find_place(surface.triangles[i][corner], {cube.x, cube.y, z});
+        std::uint32_t& index = index_at(voxel, axis, is_above);
         if (index == 0) {
           index = ++vertex_count_;
           vertices_.push_back(
@@ -192,18 +140,20 @@ class MarchingCubes {
     }
   }
 
-  /// The voxel that an edge of a cube begins at.
-  static Index3 find_start(CubeEdge edge, Index3 cube) {
-    const int u = edge % 2;
-    const int v = edge / 2 % 2;
-    switch (edge / 4) {
-      case 0:
-        return {cube.x, cube.y + u, cube.z + v};
-      case 1:
-        return {cube.x + v, cube.y, cube.z + u};
-      default:
-        return {cube.x + u, cube.y + v, cube.z};
-    }
+  struct EdgePlace {
+    Index3 voxel = {};  // that the edge begins at
+    std::size_t axis = 0;
+    bool is_above = false;  // on the upper side of its layer of cubes
+  };
+
+  static EdgePlace find_place(CubeEdge edge, const Index3& cube) {
+    const std::size_t axis = edge_axis(edge);
+    const Index3 voxel = find_start(edge, cube);
+    return {.voxel = voxel, .axis = axis, .is_above = axis < 2 && voxel.z > cube.z};
+  }
+
+  std::uint32_t& index_at(const Index3& voxel, std::size_t axis, bool is_above) {
+    return indices_[axis + (is_above ? 3 : 0)][at(voxel.x, voxel.y)];
   }
 
   /// @param below, above  the layers of cubes that meet in the edge from `voxel` along `axis`
@@ -257,10 +207,8 @@ class MarchingCubes {
 
   const VoxelMask& inside_;
   const Field& field_;
-  const MeshSink& sink_;
   CubeRange range_;
   std::size_t width_;
-  std::vector<std::uint64_t> empty_row_;
   float end_margin_ = 0;
   // Vertex indices plus 1 (0: none yet) by the voxel that an edge begins at: along x and y below
   // the cubes, along z, along x and y above.
@@ -270,22 +218,47 @@ class MarchingCubes {
   std::vector<MeshTriangle> triangles_ = {};
 };
 
+/// What one thread draws.
+struct Part {
+  MarchingCubes<HoleFilledSdf> cubes;
+  MeshPieces pieces = {};
+  std::uint32_t before = 0;  // vertices of the layer below
+};
+
 }  // namespace
 
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
-                    const std::stop_token& stop) {
-  MarchingCubes(inside, sdf, sink).run(stop);
+                    const std::stop_token& stop, ThreadTeam& team) {
+  const int layers = inside.size().z;
+  if (team.size() == 1) {
+    MarchingCubes(inside, sdf).run(-1, layers, sink, stop);
+    return;
+  }
+  // Each thread draws some layers at a time, from below; the pieces are handed on in their order.
+  std::vector<Part> parts(static_cast<std::size_t>(team.size()),
+                          {.cubes = MarchingCubes(inside, sdf)});
+  std::uint32_t vertices = 0;
+  for (int low = -1; low < layers; low += team.size() * layers_at_once) {
+    team.run([&](int thread) {
+      Part& part = parts[static_cast<std::size_t>(thread)];
+      part.pieces.clear();
+      const int first = low + thread * layers_at_once;
+      if (first < layers) {
+        part.before = part.cubes.run(
+            first, std::min(first + layers_at_once, layers),
+            [&](const MeshPiece& piece) { part.pieces.add(piece); }, stop);
+      }
+    });
+    for (Part& part : parts) {
+      part.pieces.stream(vertices - part.before, sink);
+      vertices += static_cast<std::uint32_t>(part.pieces.vertex_count());
+    }
+  }
 }
 
 void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,
                     const MeshSink& sink, const std::stop_token& stop) {
-  MarchingCubes(inside, shell, sink, range).run(stop);
-}
-
-void marching_cubes(const VoxelMask& inside, double root_side, double voxel_side,
-                    const MeshSink& sink, const std::stop_token& stop) {
-  const MidpointField midpoints(root_side, voxel_side);
-  MarchingCubes(inside, midpoints, sink).run(stop);
+  MarchingCubes(inside, shell, range).run(-1, inside.size().z, sink, stop);
 }
 
 }  // namespace octurn

@@ -3,6 +3,7 @@
 #include <stop_token>
 
 #include "mesh/mesh.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/shell_field.hpp"
 #include "voxel/voxel_mask.hpp"
@@ -18,7 +19,7 @@ namespace octurn {
 /// @param inside  empty on the sides of its box, but for its lowest layer
 /// @throws Stopped  between two layers
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
-                    const std::stop_token& stop = {});
+                    const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
 /// Cubes between eight voxels each, by their lowest corner in a mask; half-open.
 struct CubeRange {
@@ -29,13 +30,6 @@ struct CubeRange {
 /// The surface of a shell in some of the cubes of its mask, open where others go on. Vertices there
 /// are `fixed`, and are those of the others if the mask holds two voxels more on each side.
 void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,
-                    const MeshSink& sink, const std::stop_token& stop = {});
-
-/// The whole surface of a mask alone: vertices lie half way between voxels.
-///
-/// @param root_side   metres, of the root cube, whose lowest corner voxels are counted from
-/// @param voxel_side  metres
-void marching_cubes(const VoxelMask& inside, double root_side, double voxel_side,
                     const MeshSink& sink, const std::stop_token& stop = {});
 
 }  // namespace octurn

@@ -4,11 +4,36 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "voxel/index3.hpp"
+
 namespace octurn {
 
 /// An edge of a cube: axis * 4 + where it begins on the two axes that follow (0 or 1, and 2 times 0
 /// or 1).
 using CubeEdge = std::uint8_t;
+
+/// The axis, 0 to 2, that an edge lies along.
+constexpr std::size_t edge_axis(CubeEdge edge) { return edge / 4U; }
+
+/// The corner of a cube, told by its lowest one, that an edge begins at.
+constexpr Index3 find_start(CubeEdge edge, const Index3& cube) {
+  const int u = edge % 2;
+  const int v = edge / 2 % 2;
+  switch (edge_axis(edge)) {
+    case 0:
+      return {cube.x, cube.y + u, cube.z + v};
+    case 1:
+      return {cube.x + v, cube.y, cube.z + u};
+    default:
+      return {cube.x + u, cube.y + v, cube.z};
+  }
+}
+
+/// The corner x + 2y + 4z of a cube.
+constexpr Index3 cube_corner(const Index3& cube, std::size_t corner) {
+  const auto bit = [&](unsigned axis) { return static_cast<int>(corner >> axis & 1); };
+  return {cube.x + bit(0), cube.y + bit(1), cube.z + bit(2)};
+}
 
 /// The triangles of a cube by the pattern of its corners: bit x + 2y + 4z is set where the corner
 /// (x, y, z) is inside.

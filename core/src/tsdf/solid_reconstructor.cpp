@@ -12,6 +12,7 @@
 #include "mesh/stream_simplifier.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/facet_stream.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
@@ -19,6 +20,7 @@
 #include "tsdf/integration_model.hpp"
 #include "tsdf/marching_cubes.hpp"
 #include "tsdf/memory_plan.hpp"
+#include "tsdf/observed_surface.hpp"
 #include "tsdf/solid_grid.hpp"
 #include "voxel/out_of_budget.hpp"
 
@@ -112,28 +114,30 @@ SurfaceCount SolidReconstructor::surface(const SnapshotSource& snapshots, const 
     return counted_->count;
   }
   const CompactTsdf known = integrate_slabs(snapshots, stop);
-  const HoleFilledSdf sdf = fill_holes(known, stop);
-  return make_surface(known, sdf, sink, stop);
+  ThreadTeam team(options_.threads);
+  const HoleFilledSdf sdf = fill_holes(known, stop, team);
+  return make_surface(known, sdf, sink, stop, team);
 }
 
 SurfaceCount SolidReconstructor::count(const SnapshotSource& snapshots,
                                        const std::stop_token& stop) {
   if (!counted_) {
     const CompactTsdf known = integrate_slabs(snapshots, stop);
-    const HoleFilledSdf sdf = fill_holes(known, stop);
+    ThreadTeam team(options_.threads);
+    const HoleFilledSdf sdf = fill_holes(known, stop, team);
     KeptFacets kept(facets_budget(options_, known.bytes() + volume_.bytes() + mask_bytes(sdf)));
     const SurfaceCount count = make_surface(
-        known, sdf, [&](std::span<const Facet> facets) { kept.add(facets); }, stop);
+        known, sdf, [&](std::span<const Facet> facets) { kept.add(facets); }, stop, team);
     counted_ = Counted{.count = count, .facets = std::move(kept)};
   }
   return counted_->count;
 }
 
 SurfaceCount SolidReconstructor::make_surface(const CompactTsdf& known, const HoleFilledSdf& sdf,
-                                              const FacetSink& sink,
-                                              const std::stop_token& stop) const {
+                                              const FacetSink& sink, const std::stop_token& stop,
+                                              ThreadTeam& team) const {
   expect_room(options_, known.bytes() + mask_bytes(sdf));
-  const auto [parts, dropped] = keep_parts(sdf, stop);
+  const auto [parts, dropped] = keep_parts(sdf, stop, team);
   VoxelMask solid = parts.cropped();
   solid.remove_spurs(stop);
   solid.fill_cavities(stop);
@@ -149,7 +153,7 @@ SurfaceCount SolidReconstructor::make_surface(const CompactTsdf& known, const Ho
         count.facets += facets.size();
         sink(facets);
       },
-      stop);
+      stop, team);
   return count;
 }
 
@@ -170,7 +174,8 @@ CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
     if (low != volume_.layers().low) {
       fill_slab(known, low, snapshots, stop);
     }
-    known.add(volume_, stop);
+    ThreadTeam team(options_.threads);
+    known.add(volume_, stop, team);
     while (known.bytes() + volume_.bytes() > volume_budget(options_)) {
       if (options_.threads == 1) {
         throw_memory_limit(options_);
@@ -184,8 +189,11 @@ CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
   return known;
 }
 
-/// The lowest layer of voxels whose samples count.
+/// The lowest layer of voxels whose samples count: of several poses all do.
 int SolidReconstructor::base_layer() const {
+  if (!options_.placements.empty()) {
+    return volume_.grid().low().z * VoxelGrid::brick_side;
+  }
   const double bottom = std::max(options_.clip.min.z(), 0.0);
   return static_cast<int>(std::ceil((bottom + base_margin) / volume_.grid().voxel_side() - 0.5));
 }
@@ -207,42 +215,43 @@ std::vector<ConditionedDepth> SolidReconstructor::condition(const Snapshot& snap
   return depth;
 }
 
-HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known,
-                                             const std::stop_token& stop) const {
+HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known, const std::stop_token& stop,
+                                             ThreadTeam& team) const {
   if (options_.placements.empty()) {
-    return {known, base_layer(), stop};
+    return {known, base_layer(), stop, team};
   }
   std::vector<PlatformCut> platforms;
   for (const Placement& placement : options_.placements) {
     platforms.emplace_back(known.grid(), placement);
   }
-  return {known, std::move(platforms), stop};
+  return {known, std::move(platforms), stop, team};
 }
 
 /// What the model is made of. Of several poses nothing stands on the lowest layer.
-StandingParts SolidReconstructor::keep_parts(const HoleFilledSdf& sdf,
-                                             const std::stop_token& stop) const {
+StandingParts SolidReconstructor::keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop,
+                                             ThreadTeam& team) const {
   if (options_.placements.empty()) {
-    return standing_parts(sdf, options_.solid.parts, stop);
+    return standing_parts(sdf, options_.solid.parts, stop, team);
   }
-  StandingParts parts{.mask = sdf.inside(stop)};
+  StandingParts parts{.mask = sdf.inside(stop, team)};
   parts.dropped = keep_main_component(parts.mask, 0, stop);
   return parts;
 }
 
 /// Draws a mask by marching cubes, and simplifies the mesh on its way to the sink.
 void SolidReconstructor::draw(const VoxelMask& solid, const HoleFilledSdf& sdf,
-                              const FacetSink& sink, const std::stop_token& stop) const {
+                              const FacetSink& sink, const std::stop_token& stop,
+                              ThreadTeam& team) const {
   if (options_.target_error > 0) {
     StreamSimplifier simplifier(mm_from_metres(options_.target_error),
-                                mm_from_metres(margin_voxels * sdf.voxel_side()), sink, stop);
+                                mm_from_metres(margin_voxels * sdf.voxel_side()), sink, stop, team);
     marching_cubes(
-        solid, sdf, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop);
+        solid, sdf, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop, team);
     simplifier.finish();
   } else {
     FacetStream facets(sink);
     marching_cubes(
-        solid, sdf, [&](const MeshPiece& piece) { facets.add(piece); }, stop);
+        solid, sdf, [&](const MeshPiece& piece) { facets.add(piece); }, stop, team);
   }
 }
 
@@ -251,26 +260,13 @@ void SolidReconstructor::preview(double leaf_size, std::uint64_t max_facets, con
   const VoxelGrid& grid = volume_.grid();
   CompactTsdf known(grid, min_votes());
   known.add(volume_, stop);
-  VoxelMask mask = keep_parts(fill_holes(known, stop), stop).mask;
-  int halvings = 0;
-  for (; halvings < halvings_to(leaf_size, grid); ++halvings) {
-    mask = mask.halved(stop);
+  for (int halvings = halvings_to(leaf_size, grid); halvings <= grid.levels(); ++halvings) {
+    const std::vector<Facet> facets = observed_surface(known, base_layer(), 1 << halvings, stop);
+    if (facets.size() <= max_facets) {
+      sink(facets);
+      return;
+    }
   }
-  const auto draw_mask = [&](const FacetSink& to) {
-    FacetStream facets(to);
-    marching_cubes(
-        mask, grid.root_side(), grid.voxel_side() * (1 << halvings),
-        [&](const MeshPiece& piece) { facets.add(piece); }, stop);
-  };
-  const auto facet_count = [&] {
-    std::uint64_t count = 0;
-    draw_mask([&](std::span<const Facet> facets) { count += facets.size(); });
-    return count;
-  };
-  for (; halvings < grid.levels() && facet_count() > max_facets; ++halvings) {
-    mask = mask.halved(stop);
-  }
-  draw_mask(sink);
 }
 
 }  // namespace octurn

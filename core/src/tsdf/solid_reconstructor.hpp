@@ -6,6 +6,7 @@
 
 #include "depth/condition_depth.hpp"
 #include "octurn/reconstruct.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/kept_facets.hpp"
@@ -52,12 +53,15 @@ class SolidReconstructor final : public Reconstructor {
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
   int base_layer() const;
   std::vector<ConditionedDepth> condition(const Snapshot& snapshot) const;
-  HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop) const;
-  StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop) const;
+  HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop,
+                           ThreadTeam& team) const;
+  StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop,
+                           ThreadTeam& team) const;
   SurfaceCount make_surface(const CompactTsdf& known, const HoleFilledSdf& sdf,
-                            const FacetSink& sink, const std::stop_token& stop) const;
+                            const FacetSink& sink, const std::stop_token& stop,
+                            ThreadTeam& team) const;
   void draw(const VoxelMask& solid, const HoleFilledSdf& sdf, const FacetSink& sink,
-            const std::stop_token& stop) const;
+            const std::stop_token& stop, ThreadTeam& team) const;
 
   ReconstructOptions options_;
   TsdfVolume volume_;

@@ -135,15 +135,16 @@ void add_feet(VoxelMask& mask, const HoleFilledSdf& sdf, const std::stop_token& 
 
 }  // namespace
 
-StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts, const std::stop_token& stop) {
+StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts, const std::stop_token& stop,
+                             ThreadTeam& team) {
   const int layers = layers_in(max_gap, sdf);
-  StandingParts standing{.mask = sdf.inside(stop)};
+  StandingParts standing{.mask = sdf.inside(stop, team)};
   if (parts == Parts::main) {
     standing.dropped = keep_main_component(standing.mask, layers, stop);
     if (stands(standing.mask)) {
       return standing;
     }
-    standing.mask = sdf.inside(stop);  // anew, with the components that were dropped
+    standing.mask = sdf.inside(stop, team);  // anew, with the components that were dropped
   }
   add_feet(standing.mask, sdf, stop);
   standing.dropped = parts == Parts::main ? keep_main_component(standing.mask, layers, stop)

@@ -3,6 +3,7 @@
 #include <stop_token>
 
 #include "octurn/reconstruct.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "voxel/keep_components.hpp"
 #include "voxel/voxel_mask.hpp"
@@ -22,6 +23,7 @@ struct StandingParts {
 /// columns through which no ray passed.
 /// @throws Stopped
 StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts,
-                             const std::stop_token& stop = {});
+                             const std::stop_token& stop = {},
+                             ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

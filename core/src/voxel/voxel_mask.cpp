@@ -112,28 +112,6 @@ VoxelMask VoxelMask::cropped() const {
   return mask;
 }
 
-VoxelMask VoxelMask::halved(const std::stop_token& stop) const {
-  const auto above = [](int end) { return ((end + 1) >> 1) + 1; };
-  VoxelMask coarse({(low_.x >> 1) - 1, (low_.y >> 1) - 1, low_.z >> 1},
-                   {above(low_.x + size_.x), above(low_.y + size_.y), above(low_.z + size_.z)});
-  for (int z = 0; z < size_.z; ++z) {
-    throw_if_stopped(stop);
-    for (int y = 0; y < size_.y; ++y) {
-      const auto to =
-          coarse.row(((low_.y + y) >> 1) - coarse.low_.y, ((low_.z + z) >> 1) - coarse.low_.z);
-      const auto from = row(y, z);
-      for (std::size_t word = 0; word < words_; ++word) {
-        for (std::uint64_t rest = from[word]; rest != 0; rest &= rest - 1) {
-          const int x = low_.x + static_cast<int>(word) * 64 + std::countr_zero(rest);
-          const auto at = static_cast<std::size_t>((x >> 1) - coarse.low_.x);
-          to[at / 64] |= std::uint64_t{1} << (at % 64);
-        }
-      }
-    }
-  }
-  return coarse;
-}
-
 std::uint64_t VoxelMask::component_count(const std::stop_token& stop) const {
   ConnectedComponents components(*this, ConnectedComponents::Of::voxels, stop);
   std::uint64_t count = 0;

@@ -46,10 +46,6 @@ class VoxelMask {
   /// The same voxels in a smaller box, with a margin of at least one empty voxel in x and y.
   VoxelMask cropped() const;
 
-  /// The mask of voxels twice as wide: one is set if any of its eight is. Its box has a margin of
-  /// one empty voxel, but below.
-  VoxelMask halved(const std::stop_token& stop = {}) const;
-
   /// The number of connected components.
   std::uint64_t component_count(const std::stop_token& stop = {}) const;
 

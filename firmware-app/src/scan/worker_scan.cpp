@@ -23,7 +23,7 @@ constexpr auto attempts_time = 30s;
 constexpr auto attempt_interval = 2s;
 
 // A preview is sent after every snapshot: at most 3 MB, and of leaves as fine as a screen shows.
-constexpr double preview_leaf_size = 0.004;  // metres
+constexpr double preview_leaf_size = 0.002;  // metres
 constexpr std::uint64_t max_preview_facets = 60'000;
 
 std::string to_text(const CalibrationReport& report) {

@@ -54,13 +54,9 @@ inline LayeredMesh sphere(double radius, std::uint32_t rings) {
   return mesh;
 }
 
-/// Simplifies a mesh that is handed over in pieces of so many layers.
-inline std::vector<Facet> simplified(const LayeredMesh& mesh, double target_error,
-                                     std::size_t layers_per_piece) {
-  std::vector<Facet> facets;
-  StreamSimplifier simplifier(target_error, 4, [&](std::span<const Facet> some) {
-    facets.insert(facets.end(), some.begin(), some.end());
-  });
+/// Hands a mesh over to a simplifier in pieces of so many layers.
+inline void stream(const LayeredMesh& mesh, std::size_t layers_per_piece,
+                   StreamSimplifier& simplifier) {
   auto triangle = mesh.triangles.begin();
   for (std::size_t layer = 0; layer < mesh.layers.size(); layer += layers_per_piece) {
     const std::size_t next = layer + layers_per_piece;
@@ -74,6 +70,16 @@ inline std::vector<Facet> simplified(const LayeredMesh& mesh, double target_erro
     triangle = last;
   }
   simplifier.finish();
+}
+
+/// Simplifies a mesh that is handed over in pieces of so many layers.
+inline std::vector<Facet> simplified(const LayeredMesh& mesh, double target_error,
+                                     std::size_t layers_per_piece) {
+  std::vector<Facet> facets;
+  StreamSimplifier simplifier(target_error, 4, [&](std::span<const Facet> some) {
+    facets.insert(facets.end(), some.begin(), some.end());
+  });
+  stream(mesh, layers_per_piece, simplifier);
   return facets;
 }
 

@@ -227,7 +227,7 @@ TEST(Solid, GivesTheSameBytesOneByOne) {
   EXPECT_EQ(solid.count(snapshots).facets, facets.size());
 }
 
-TEST(Solid, ShowsAPreviewThatCoversTheModelOnCoarserVoxels) {
+TEST(Solid, ShowsAPreviewWithTheModelsSurfaceOpenAtItsFoot) {
   const SnapshotSource snapshots = rendered(block({0.06, 0.04, 0.07}), 8);
   SolidReconstructor solid(options());
   solid.add(snapshots);
@@ -237,20 +237,16 @@ TEST(Solid, ShowsAPreviewThatCoversTheModelOnCoarserVoxels) {
     return check;
   };
   const MeshCheck model = checked(part_of(options(), snapshots));
-  const MeshCheck coarse = preview(0.008, 1'000'000);
-  EXPECT_TRUE(coarse.closed());
-  EXPECT_EQ(coarse.bounds_mm().min.z(), 0.0);
-  // A coarse voxel is set if any in it is: its faces lie up to its side, 1000 / 128 mm, outside the
-  // model, and no further inside than half a fine voxel.
-  const Eigen::Array3d beyond = coarse.bounds_mm().max - model.bounds_mm().max;
-  EXPECT_TRUE((beyond > -500.0 / 512).all() && (beyond < 1000.0 / 128 + 500.0 / 512).all())
-      << beyond;
+  const MeshCheck fine = preview(0.002, 1'000'000);
+  EXPECT_FALSE(fine.closed());
+  const Eigen::Array3d beyond = fine.bounds_mm().max - model.bounds_mm().max;
+  EXPECT_TRUE((beyond.abs() < 0.5).all()) << beyond;
+  EXPECT_GT(fine.bounds_mm().min.z(), 1.0);
 
-  const MeshCheck coarser = preview(0.008, coarse.facets() - 1);
-  EXPECT_TRUE(coarser.closed());
-  EXPECT_LT(coarser.facets(), coarse.facets() / 2);  // a level coarser has about a quarter
-  EXPECT_GT(coarser.facets(), coarse.facets() / 8);
-  EXPECT_EQ(preview(0.0001, 1'000'000).facets(), preview(0.002, 1'000'000).facets());
+  const MeshCheck coarser = preview(0.002, fine.facets() - 1);
+  EXPECT_LT(coarser.facets(), fine.facets() / 2);  // a level coarser has about a quarter
+  EXPECT_GT(coarser.facets(), fine.facets() / 8);
+  EXPECT_EQ(preview(0.0001, 1'000'000).facets(), fine.facets());
 }
 
 TEST(Solid, HasNoSurfaceOnAnEmptyPlatform) {

@@ -247,28 +247,5 @@ TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestWithTheBaseWeighed) {
   }
 }
 
-TEST(VoxelMask, HalvesToTheVoxelsThatHoldAny) {
-  const VoxelMask fine = noise(3, 0.02);
-  const VoxelMask coarse = fine.halved();
-  std::set<std::tuple<int, int, int>> expected;
-  for_each_voxel(fine, [&](const Index3& p, std::size_t) {
-    if (fine.contains(p.x, p.y, p.z)) {
-      expected.insert({static_cast<int>(std::floor((fine.low().x + p.x) / 2.0)),
-                       static_cast<int>(std::floor((fine.low().y + p.y) / 2.0)),
-                       static_cast<int>(std::floor((fine.low().z + p.z) / 2.0))});
-    }
-  });
-  std::set<std::tuple<int, int, int>> found;
-  for_each_voxel(coarse, [&](const Index3& p, std::size_t) {
-    if (coarse.contains(p.x, p.y, p.z)) {
-      EXPECT_TRUE(p.x > 0 && p.y > 0 && p.x + 1 < coarse.size().x && p.y + 1 < coarse.size().y &&
-                  p.z + 1 < coarse.size().z);
-      found.insert({coarse.low().x + p.x, coarse.low().y + p.y, coarse.low().z + p.z});
-    }
-  });
-  EXPECT_EQ(found, expected);
-  EXPECT_EQ(coarse.count(), expected.size());
-}
-
 }  // namespace
 }  // namespace octurn

@@ -1,0 +1,46 @@
+#include "mesh/collapse.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+#include "parallel/radix_sort.hpp"
+
+namespace octurn {
+
+// By the upper half of the bits of their costs, which order as the costs do, as these are not
+// negative; then the few that have those bits in common by the whole key.
+void sort_by_cost(std::vector<Collapse>& collapses) {
+  std::vector<KeyIndex> keys;
+  keys.reserve(collapses.size());
+  for (const Collapse& collapse : collapses) {
+    keys.push_back(
+        {.key = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(collapse.cost) >> 32),
+         .index = static_cast<std::uint32_t>(keys.size())});
+  }
+  radix_sort(keys, 32);
+  const auto whole_key = [&](const KeyIndex& key) {
+    const Collapse& collapse = collapses[key.index];
+    return std::tuple(collapse.cost, collapse.kept, collapse.removed);
+  };
+  for (auto first = keys.begin(); first != keys.end();) {
+    const auto end =
+        std::find_if(first, keys.end(), [&](const KeyIndex& key) { return key.key != first->key; });
+    if (end - first > 1) {
+      std::ranges::sort(first, end, {}, whole_key);
+    }
+    first = end;
+  }
+  std::vector<Collapse> sorted;
+  sorted.reserve(keys.size());
+  for (const KeyIndex& key : keys) {
+    const Collapse& collapse = collapses[key.index];
+    if (sorted.empty() || sorted.back().kept != collapse.kept ||
+        sorted.back().removed != collapse.removed) {
+      sorted.push_back(collapse);
+    }
+  }
+  collapses.swap(sorted);
+}
+
+}  // namespace octurn

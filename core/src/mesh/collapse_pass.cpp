@@ -1,0 +1,295 @@
+#include "mesh/collapse_pass.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+namespace octurn {
+namespace {
+
+constexpr std::size_t prefetch_distance = 6;  // collapses
+constexpr double min_edge_mm = 0.036;         // slicers weld vertices that are closer
+constexpr double min_normal_cosine = 0.5;     // between a triangle's normals before and after
+constexpr double max_aspect = 20;             // longest side to smallest height
+
+/// Whether one of a triangle's edges was collapsed.
+bool is_degenerate(const MeshTriangle& triangle) {
+  return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+}
+
+}  // namespace
+
+/// What one thread does among others: the collapses between vertices of one strip.
+class CollapsePass::Strip {
+ public:
+  /// @param is_blocked  one per vertex, 0; those of this strip become 1 where a collapse was left
+  Strip(CollapsePass& pass, const VertexStrips& strips, int index, std::vector<char>& is_blocked)
+      : pass_(pass), strips_(strips), index_(index), is_blocked_(is_blocked) {}
+
+  /// Those of some lists that have an end in the strip.
+  Collapses gather(const std::vector<Collapses>& lists) const {
+    Collapses own;
+    for (const Collapses& list : lists) {
+      std::ranges::copy_if(list, std::back_inserter(own), [&](const Collapse& collapse) {
+        return has(collapse.kept) || has(collapse.removed);
+      });
+    }
+    sort_by_cost(own);
+    return own;
+  }
+
+  /// @param left  the collapses that were left, in their order
+  /// @returns how many edges were collapsed
+  std::size_t run(const Collapses& collapses, Collapses& left) {
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < collapses.size(); ++i) {
+      const Collapse& collapse = collapses[i];
+      pass_.prefetch(collapses[std::min(i + prefetch_distance, collapses.size() - 1)]);
+      if (is_stale(collapse.kept) || is_stale(collapse.removed)) {
+        continue;
+      }
+      if (!is_clear_around(collapse.kept) || !is_clear_around(collapse.removed)) {
+        block(collapse.kept);
+        block(collapse.removed);
+        left.push_back(collapse);
+      } else if (pass_.is_valid(collapse)) {
+        pass_.apply(collapse);
+        ++done;
+      }
+    }
+    return done;
+  }
+
+ private:
+  bool has(std::uint32_t vertex) const { return strips_[vertex] == index_; }
+  bool is_stale(std::uint32_t vertex) const { return has(vertex) && pass_.is_stale_[vertex] != 0; }
+
+  /// Whether a vertex and its neighbours lie in the strip, and no earlier collapse at one was left.
+  bool is_clear_around(std::uint32_t vertex) const {
+    return has(vertex) &&
+           std::ranges::all_of(pass_.adjacency_.triangles_at(vertex), [&](std::uint32_t i) {
+             return std::ranges::all_of(pass_.mesh_.triangles[i], [&](std::uint32_t corner) {
+               return has(corner) && is_blocked_[corner] == 0;
+             });
+           });
+  }
+
+  void block(std::uint32_t vertex) {
+    if (has(vertex)) {
+      is_blocked_[vertex] = 1;
+    }
+  }
+
+  CollapsePass& pass_;
+  const VertexStrips& strips_;
+  int index_;
+  std::vector<char>& is_blocked_;
+};
+
+std::size_t CollapsePass::run(double max_cost, double already_tried,
+                              std::span<const VertexStrips> tilings) {
+  std::vector<Collapses> lists(static_cast<std::size_t>(team_.size()));
+  team_.run([&](int thread) {
+    const auto [first, end] = team_.share(mesh_.triangles.size(), thread);
+    lists[static_cast<std::size_t>(thread)] = list_collapses(
+        std::span(mesh_.triangles).subspan(first, end - first), max_cost, already_tried);
+  });
+  std::size_t done = 0;
+  for (const VertexStrips& strips : tilings) {
+    done += collapse_in_strips(strips, lists);
+  }
+  Collapses left = std::move(lists.front());
+  for (std::size_t i = 1; i < lists.size(); ++i) {
+    left.insert(left.end(), lists[i].begin(), lists[i].end());
+  }
+  sort_by_cost(left);
+  done += collapse_all(left);
+  std::erase_if(mesh_.triangles, is_degenerate);
+  return done;
+}
+
+/// @param lists  of collapses; then those that were left
+std::size_t CollapsePass::collapse_in_strips(const VertexStrips& strips,
+                                             std::vector<Collapses>& lists) {
+  std::vector<char> is_blocked(mesh_.vertices.size(), 0);
+  std::vector<Collapses> left(lists.size());
+  std::vector<std::size_t> done(lists.size());
+  team_.run([&](int thread) {
+    Strip strip(*this, strips, thread, is_blocked);
+    const auto i = static_cast<std::size_t>(thread);
+    done[i] = strip.run(strip.gather(lists), left[i]);
+  });
+  lists = std::move(left);
+  return std::reduce(done.begin(), done.end());
+}
+
+std::size_t CollapsePass::collapse_all(const Collapses& collapses) {
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < collapses.size(); ++i) {
+    const Collapse& collapse = collapses[i];
+    prefetch(collapses[std::min(i + prefetch_distance, collapses.size() - 1)]);
+    if (is_stale_[collapse.kept] == 0 && is_stale_[collapse.removed] == 0 && is_valid(collapse)) {
+      apply(collapse);
+      ++done;
+    }
+  }
+  return done;
+}
+
+CollapsePass::Collapses CollapsePass::list_collapses(std::span<const MeshTriangle> triangles,
+                                                     double max_cost, double already_tried) const {
+  Collapses collapses;
+  for (const MeshTriangle& triangle : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = triangle[i];
+      const std::uint32_t b = triangle[(i + 1) % 3];
+      // A closed mesh has each edge once in either direction.
+      if (a < b && locked_[a] == 0 && locked_[b] == 0) {
+        const bool is_known = was_dirty_[a] == 0 && was_dirty_[b] == 0;
+        if (is_known && max_cost <= already_tried) {
+          continue;
+        }
+        const Collapse collapse = make_collapse(a, b);
+        if (collapse.cost <= max_cost && !(is_known && collapse.cost <= already_tried)) {
+          collapses.push_back(collapse);
+        }
+      }
+    }
+  }
+  return collapses;
+}
+
+Collapse CollapsePass::make_collapse(std::uint32_t a, std::uint32_t b) const {
+  Quadric sum = mesh_.quadrics[a];
+  sum += mesh_.quadrics[b];
+  const Vector3 from = position(a);
+  const Vector3 to = position(b);
+  const Vector3 middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
+  const bool is_on_platform = from[2] == 0 || to[2] == 0;
+  const Vector3 best = is_on_platform ? sum.optimum_on_platform(middle) : sum.optimum(middle);
+  Collapse collapse{.cost = 0,
+                    .kept = a,
+                    .removed = b,
+                    .position = {static_cast<float>(best[0]), static_cast<float>(best[1]),
+                                 static_cast<float>(best[2])}};
+  collapse.cost = sum.mean_square(to_vector3(collapse.position));
+  return collapse;
+}
+
+/// Collapses are spread over the mesh by their order, and the mesh does not fit in the cache.
+void CollapsePass::prefetch(const Collapse& collapse) const {
+  for (const std::uint32_t end : {collapse.kept, collapse.removed}) {
+    __builtin_prefetch(&mesh_.vertices[end]);
+    __builtin_prefetch(&mesh_.quadrics[end]);
+    __builtin_prefetch(&mesh_.triangles[adjacency_.triangles_at(end).front()]);
+    __builtin_prefetch(&mesh_.triangles[adjacency_.triangles_at(end).back()]);
+  }
+}
+
+bool CollapsePass::is_valid(const Collapse& collapse) const {
+  const auto& [cost, a, b, position] = collapse;
+  if (position[2] < limits_.min_z || position[2] > limits_.max_z) {
+    return false;
+  }
+  // In this order, as flips refuse half of all collapses and the link condition next to none.
+  return !flips_or_degenerates(collapse, a, b) && !flips_or_degenerates(collapse, b, a) &&
+         meets_link_condition(a, b);
+}
+
+/// Whether the ends have just the two neighbours in common that face the edge, and the vertex
+/// that is kept will have three triangles or more.
+bool CollapsePass::meets_link_condition(std::uint32_t a, std::uint32_t b) const {
+  int common = 0;
+  std::size_t triangles = 0;
+  for (const std::uint32_t i : adjacency_.triangles_at(a)) {
+    const MeshTriangle& triangle = mesh_.triangles[i];
+    if (is_degenerate(triangle)) {
+      continue;
+    }
+    ++triangles;
+    // Each neighbour follows `a` in one triangle.
+    const std::uint32_t neighbour = triangle[(local_index(triangle, a) + 1) % 3];
+    common += neighbour != b && are_neighbours(neighbour, b) ? 1 : 0;
+  }
+  for (const std::uint32_t i : adjacency_.triangles_at(b)) {
+    triangles += is_degenerate(mesh_.triangles[i]) ? 0 : 1;
+  }
+  // Both of the edge's triangles, counted at either end, will go.
+  return common == 2 && triangles >= 4 + 3;
+}
+
+bool CollapsePass::are_neighbours(std::uint32_t a, std::uint32_t b) const {
+  return std::ranges::any_of(adjacency_.triangles_at(b), [&](std::uint32_t i) {
+    const MeshTriangle& triangle = mesh_.triangles[i];
+    return !is_degenerate(triangle) && (triangle[0] == a || triangle[1] == a || triangle[2] == a);
+  });
+}
+
+/// Whether a triangle at `centre`, but not at the other end, would turn by more than the cosine
+/// allows or shrink to a sliver: a side or a height below `min_edge_mm`, or an aspect ratio above
+/// `max_aspect`. Evaluates the triangle before and after the collapse in one SIMD pass.
+bool CollapsePass::flips_or_degenerates(const Collapse& collapse, std::uint32_t centre,
+                                        std::uint32_t other_end) const {
+  constexpr double min_square = min_edge_mm * min_edge_mm;
+  using BeforeAndAfter = std::array<Eigen::Array2d, 3>;
+  const Vector3 before = position(centre);
+  const Vector3 after = to_vector3(collapse.position);
+  const BeforeAndAfter centres{Eigen::Array2d(before[0], after[0]),
+                               Eigen::Array2d(before[1], after[1]),
+                               Eigen::Array2d(before[2], after[2])};
+  const auto side_to = [&](const Vector3& p) {
+    return BeforeAndAfter{p[0] - centres[0], p[1] - centres[1], p[2] - centres[2]};
+  };
+  for (const std::uint32_t i : adjacency_.triangles_at(centre)) {
+    const MeshTriangle& triangle = mesh_.triangles[i];
+    const std::size_t at = local_index(triangle, centre);
+    const std::uint32_t next = triangle[(at + 1) % 3];
+    const std::uint32_t last = triangle[(at + 2) % 3];
+    if (is_degenerate(triangle) || next == other_end || last == other_end) {
+      continue;
+    }
+    const Vector3 p = position(next);
+    const Vector3 q = position(last);
+    const BeforeAndAfter to_p = side_to(p);
+    const BeforeAndAfter to_q = side_to(q);
+    const BeforeAndAfter normals = cross(to_p, to_q);
+    const double along = normals[0].prod() + normals[1].prod() + normals[2].prod();
+    const Eigen::Array2d squares = dot(normals, normals);
+    const std::array sides{dot(to_p, to_p)[1], dot(to_q, to_q)[1], dot(q - p, q - p)};
+    const double shortest = std::min({sides[0], sides[1], sides[2]});
+    const double longest = std::max({sides[0], sides[1], sides[2]});
+    if (along <= 0 || along * along < min_normal_cosine * min_normal_cosine * squares.prod() ||
+        shortest < min_square ||
+        squares[1] < longest * std::max(min_square, longest / (max_aspect * max_aspect))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void CollapsePass::apply(const Collapse& collapse) {
+  // The adjacency of other vertices still holds, but for triangles that have become degenerate.
+  const auto& [cost, kept, removed, position] = collapse;
+  is_stale_[kept] = 1;
+  is_stale_[removed] = 1;
+  for (const std::uint32_t i : adjacency_.triangles_at(removed)) {
+    std::ranges::replace(mesh_.triangles[i], removed, kept);
+  }
+  for (const std::uint32_t end : {kept, removed}) {
+    for (const std::uint32_t i : adjacency_.triangles_at(end)) {
+      for (const std::uint32_t corner : mesh_.triangles[i]) {
+        is_dirty_[corner] = 1;
+      }
+    }
+  }
+  const std::vector<Quadric>& quadrics = mesh_.quadrics;
+  mesh_.vertices[kept].position = position;
+  mesh_.vertices[kept].observed =
+      mesh_.vertices[quadrics[kept].area >= quadrics[removed].area ? kept : removed].observed;
+  mesh_.quadrics[kept] += mesh_.quadrics[removed];
+}
+
+}  // namespace octurn

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/collapse.hpp"
+#include "mesh/indexed_mesh.hpp"
+#include "mesh/qem_simplify.hpp"
+#include "mesh/triangle_adjacency.hpp"
+#include "mesh/vector3.hpp"
+#include "mesh/vertex_strips.hpp"
+#include "parallel/thread_team.hpp"
+
+namespace octurn {
+
+/// One pass of edge collapse over all edges up to one cost, the cheapest first. Refers to the mesh
+/// and changes it.
+///
+/// Several threads make the collapses that one would make. Two depend on each other's order only
+/// if an end of one is an end of the other, or its neighbour. Each thread takes those between
+/// vertices of its own strip, in their order, and leaves what has a neighbour in another strip, or
+/// beside what it left. Those that are left, few and along the borders, come next, in strips the
+/// other way; what is left then is for one thread. So each collapse finds its neighbourhood as in
+/// one sequence (the conflicts of Blelloch, Fineman, Gibbons and Shun 2012, by place).
+class CollapsePass {
+ public:
+  /// @param dirty  one per vertex: not 0 where a triangle around has changed since the last pass
+  CollapsePass(IndexedMesh& mesh, std::span<const char> locked, const CollapseLimits& limits,
+               std::vector<char> dirty, ThreadTeam& team)
+      : mesh_(mesh),
+        locked_(locked),
+        limits_(limits),
+        team_(team),
+        was_dirty_(std::move(dirty)),
+        adjacency_(mesh.triangles, mesh.vertices.size(), team),
+        is_dirty_(mesh.vertices.size(), 0),
+        is_stale_(mesh.vertices.size(), 0) {}
+
+  /// @param already_tried  cost up to which the last pass tried every edge: where nothing has
+  ///                       changed since, it would be refused again
+  /// @param tilings        each of as many strips as the team has threads, or fewer; none for one
+  /// @returns how many edges were collapsed
+  std::size_t run(double max_cost, double already_tried, std::span<const VertexStrips> tilings);
+
+  std::vector<char> take_dirty() { return std::move(is_dirty_); }
+
+ private:
+  using Collapses = std::vector<Collapse>;
+
+  Collapses list_collapses(std::span<const MeshTriangle> triangles, double max_cost,
+                           double already_tried) const;
+  Collapse make_collapse(std::uint32_t a, std::uint32_t b) const;
+  std::size_t collapse_in_strips(const VertexStrips& strips, std::vector<Collapses>& lists);
+  std::size_t collapse_all(const Collapses& collapses);
+  void prefetch(const Collapse& collapse) const;
+  bool is_valid(const Collapse& collapse) const;
+  bool meets_link_condition(std::uint32_t a, std::uint32_t b) const;
+  bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
+  bool flips_or_degenerates(const Collapse& collapse, std::uint32_t centre,
+                            std::uint32_t other_end) const;
+  void apply(const Collapse& collapse);
+
+  Vector3 position(std::uint32_t vertex) const {
+    return to_vector3(mesh_.vertices[vertex].position);
+  }
+
+  class Strip;
+
+  IndexedMesh& mesh_;
+  std::span<const char> locked_;
+  CollapseLimits limits_;
+  ThreadTeam& team_;
+  std::vector<char> was_dirty_;
+  TriangleAdjacency adjacency_;  // as the pass began
+  std::vector<char> is_dirty_;
+  std::vector<char> is_stale_;  // vertices whose adjacency a collapse has outdated
+};
+
+}  // namespace octurn

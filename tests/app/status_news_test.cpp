@@ -6,6 +6,8 @@
 #include "app/scanner_fixture.hpp"
 #include "http/handlers/events.hpp"
 #include "octurn/file.hpp"
+#include "outgoing/address_book.hpp"
+#include "outgoing/printer_uploads.hpp"
 
 namespace octurn {
 namespace {
@@ -35,6 +37,8 @@ class StatusNewsTest : public ScannerTest {
   ConfigStore settings_{ConfigLayers{.file = {.data = folder_.path()}}};
   TurntableRunner turntable_{scanner_, store_};
   AccessKeys keys_{folder_.path() / "keys.json"};
+  AddressBook addresses_{folder_.path() / "addresses.json"};
+  PrinterUploads uploads_;
   std::atomic<std::uint64_t> free_ = 5;
   MachineWatch machine_{{.free_bytes = [this] { return free_.load(); },
                          .warnings = [] { return std::vector<Finding>{}; }},
@@ -50,6 +54,8 @@ TEST_F(StatusNewsTest, MakesNoStatusWhileNothingChanges) {
                 .turntable = turntable_,
                 .keys = keys_,
                 .machine = machine_,
+                .addresses = addresses_,
+                .uploads = uploads_,
                 .rig = rig()};
   wait_until(scanner_, [](const Status& status) {  // the worker has nothing more to tell
     return is_ready(status) && status.turntable.state == DeviceStatus::State::ready;

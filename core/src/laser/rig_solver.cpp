@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "laser/surface_points.hpp"
+#include "laser/line_points.hpp"
 #include "parallel/fork_join.hpp"
 
 namespace octurn {
@@ -179,26 +179,26 @@ void RigSolver::add_platform(const LaserRig& rig, double scale, Sums& sums) cons
 }
 
 void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) const {
-  std::vector<SurfacePoints> surfaces;
+  std::vector<LinePoints> surfaces;
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
     surfaces.emplace_back(lines_, rig, laser, object_height);
   }
   const std::vector<Shot>& shots = lines_.scan().shots;
   VectorXd row(sums.right.size());
   for (std::size_t from = 0; from < surfaces.size(); ++from) {
-    const std::vector<SurfacePoint>& points = surfaces[from].all();
+    const std::vector<LinePoint>& points = surfaces[from].all();
     const std::size_t step = std::max<std::size_t>(1, points.size() / surface_wanted);
     for (std::size_t i = 0; i < points.size(); i += step) {
       for (std::size_t to = 0; to < surfaces.size(); ++to) {
-        const SurfacePoint& p = points[i];
-        const SurfacePoint* q = to == from ? nullptr : surfaces[to].nearest(p.point, p.normal);
+        const LinePoint& p = points[i];
+        const LinePoint* q = to == from ? nullptr : surfaces[to].nearest(p.point, p.normal);
         if (q == nullptr) {
           continue;
         }
         const Vector3d normal = q->normal.cast<double>();
         const double residual = normal.dot((p.point - q->point).cast<double>());
         row.setZero();
-        const auto add = [&](const SurfacePoint& point, std::size_t laser, double factor) {
+        const auto add = [&](const LinePoint& point, std::size_t laser, double factor) {
           const SeenPoint seen(rig, pivots_, laser, lines_.at(point.stop)[laser].rays[point.ray]);
           seen.add_row(turned_to_stop(normal, shots[point.stop].angle), factor, row);
         };

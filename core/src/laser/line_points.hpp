@@ -12,7 +12,7 @@
 namespace octurn {
 
 /// A ray of a line, and the surface that it met.
-struct SurfacePoint {
+struct LinePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres, object's frame
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of length one, towards the camera
   std::uint32_t stop = 0;
@@ -20,22 +20,22 @@ struct SurfacePoint {
 };
 
 /// What one laser shows of an object, to be looked up by place.
-class SurfacePoints {
+class LinePoints {
  public:
   /// @param lines  read for all stops
   /// @param min_height  metres above the platform, as the rig has it: what is lower is its own
-  SurfacePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser, double min_height);
+  LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser, double min_height);
 
-  const std::vector<SurfacePoint>& all() const { return points_; }
+  const std::vector<LinePoint>& all() const { return points_; }
 
   /// The nearest point within 2.5 mm whose normal agrees within 45 degrees; null if there is none.
-  const SurfacePoint* nearest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
+  const LinePoint* nearest(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const;
 
  private:
   void add_stop(const LineStrip& strip, std::size_t stop, double min_height,
                 const Eigen::Vector3f& camera);
 
-  std::vector<SurfacePoint> points_ = {};
+  std::vector<LinePoint> points_ = {};
   std::unordered_multimap<std::uint64_t, std::uint32_t> cells_ = {};
 };
 

@@ -1,4 +1,4 @@
-#include "laser/surface_points.hpp"
+#include "laser/line_points.hpp"
 
 #include <array>
 #include <cmath>
@@ -29,8 +29,8 @@ std::uint64_t key_of(const Cell& cell) {
 
 }  // namespace
 
-SurfacePoints::SurfacePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
-                             double min_height) {
+LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
+                       double min_height) {
   const std::vector<Shot>& shots = lines.scan().shots;
   const auto placed = [&](std::size_t stop) -> PlacedLine {
     return {.profile = lines.at(stop)[laser],
@@ -48,8 +48,8 @@ SurfacePoints::SurfacePoints(const LaserLines& lines, const LaserRig& rig, std::
   }
 }
 
-void SurfacePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_height,
-                             const Vector3f& camera) {
+void LinePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_height,
+                          const Vector3f& camera) {
   std::vector<Vector3f> normals(strip.own_points, Vector3f::Zero());
   for (const LineStrip::Triangle& triangle : strip.to_next) {
     const Vector3f& a = strip.points[triangle[0]];
@@ -74,7 +74,7 @@ void SurfacePoints::add_stop(const LineStrip& strip, std::size_t stop, double mi
   }
 }
 
-const SurfacePoint* SurfacePoints::nearest(const Vector3f& point, const Vector3f& normal) const {
+const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& normal) const {
   const Cell middle = cell_of(point);
   std::uint32_t best = 0;
   float best_square = max_distance * max_distance;
@@ -83,7 +83,7 @@ const SurfacePoint* SurfacePoints::nearest(const Vector3f& point, const Vector3f
     const Cell cell{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1};
     const auto [first, end] = cells_.equal_range(key_of(cell));
     for (auto at = first; at != end; ++at) {
-      const SurfacePoint& other = points_[at->second];
+      const LinePoint& other = points_[at->second];
       const float square = (other.point - point).squaredNorm();
       // Of two as near the first one, whatever the order of the table is.
       const bool nearer =

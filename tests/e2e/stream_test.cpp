@@ -33,11 +33,11 @@ TEST(Preview, ShowsWhatAScanHasSeenSoFar) {
   };
   const Reply first = preview_with(100);
   EXPECT_EQ(first.header("Content-Type"), "model/stl");
-  EXPECT_EQ(open_edges(first.body), 0);
+  EXPECT_GT(open_edges(first.body), 0);  // what has not been seen yet is open
   const Reply later = preview_with(triangles_of_whole_stl(first.body));
   EXPECT_GT(triangles_of_whole_stl(later.body), triangles_of_whole_stl(first.body));
   EXPECT_LE(triangles_of_whole_stl(later.body), 60'000);
-  EXPECT_EQ(open_edges(later.body), 0);
+  EXPECT_GT(open_edges(later.body), 0);
   EXPECT_NE(later.header("ETag"), first.header("ETag"));
 
   const json running = parsed(daemon.get(scan));

@@ -79,11 +79,11 @@ Scan read_scan_of(const ReconstructArguments& arguments) {
 }  // namespace
 
 ReconstructInput read_input(const ReconstructArguments& arguments, const std::stop_token& stop) {
-  Scan told = read_scan_of(arguments);
-  ReconstructInput input{.settings = settings_from(arguments.settings, told)};
   if (!arguments.output.empty()) {
     expect_writable(arguments.output);
   }
+  Scan told = read_scan_of(arguments);
+  ReconstructInput input{.settings = settings_from(arguments.settings, told)};
   PosedScan posed = with_pose(std::move(told), arguments.folder, input.settings, stop);
   input.scan = std::move(posed.scan);
   input.findings = std::move(posed.findings);

@@ -11,6 +11,9 @@ namespace {
 constexpr const char* simulation_hint =
     "Check the simulator's settings, and that its mesh is an STL file in millimetres.";
 
+/// OpenNI2 writes the address into its error text, and past the end of that text's 1,024 bytes.
+constexpr std::size_t max_uri_length = 512;
+
 /// The first sensor that was there when OpenNI2 started, or else any Kinect: it may have been
 /// plugged in since. Simulated sensors that were opened before stay on OpenNI2's list and are
 /// skipped.
@@ -46,6 +49,12 @@ void expect_ok(openni::Status status, const char* doing) {
 }
 
 void open_device(openni::Device& device, const std::string& uri) {
+  if (uri.size() > max_uri_length) {
+    throw Error(ErrorCode::sensor_missing,
+                "sensor: an address of more than " + std::to_string(max_uri_length) +
+                    " bytes: " + uri.substr(0, 40) + "...",
+                missing_sensor_hint);
+  }
   if (device.open((uri.empty() ? any_sensor() : uri).c_str()) == openni::STATUS_OK) {
     return;
   }

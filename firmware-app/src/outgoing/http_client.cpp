@@ -1,5 +1,3 @@
-#include "outgoing/http_client.hpp"
-
 #include <curl/curl.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+
+#include "outgoing/http_client_module.hpp"
 
 namespace octurn {
 namespace {
@@ -180,10 +180,8 @@ std::string part_of(CURLU* address, CURLUPart part) {
   return found;
 }
 
-}  // namespace
-
-OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
-                   const std::function<void(std::uint64_t)>& on_sent) {
+OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token& stop,
+                           const std::function<void(std::uint64_t)>& on_sent) {
   begin_with_curl();
   Transfer transfer(request);
   if (!transfer.trouble().empty()) {
@@ -207,7 +205,7 @@ OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
   return answer;
 }
 
-std::string origin_of(const std::string& url) {
+std::string find_origin(const std::string& url) {
   begin_with_curl();
   const Address address(curl_url());
   if (curl_url_set(address.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
@@ -225,7 +223,7 @@ std::string origin_of(const std::string& url) {
   return scheme + "://" + host + (port.empty() ? "" : ":" + port);
 }
 
-std::string to_path_part(const std::string& text) {
+std::string escape(const std::string& text) {
   begin_with_curl();
   char* const escaped = curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size()));
   std::string part = escaped != nullptr ? escaped : "";
@@ -233,4 +231,8 @@ std::string to_path_part(const std::string& text) {
   return part;
 }
 
+}  // namespace
 }  // namespace octurn
+
+extern "C" const octurn::HttpClientModule octurn_http_client{
+    .ask = octurn::ask_by_curl, .origin_of = octurn::find_origin, .to_path_part = octurn::escape};

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "outgoing/http_client.hpp"
+
+namespace octurn {
+
+/// What the module libOcturnHttpClient offers. It is loaded at the first use: libcurl and what it
+/// needs take 5 MB, which a program that asks nobody does not spend.
+struct HttpClientModule {
+  OutgoingAnswer (*ask)(const OutgoingRequest& request, const std::stop_token& stop,
+                        const std::function<void(std::uint64_t)>& on_sent) = nullptr;
+  std::string (*origin_of)(const std::string& url) = nullptr;
+  std::string (*to_path_part)(const std::string& text) = nullptr;
+};
+
+}  // namespace octurn
+
+extern "C" __attribute__((visibility("default"))) const octurn::HttpClientModule octurn_http_client;

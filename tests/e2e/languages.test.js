@@ -21,7 +21,7 @@ const strangeAnswer = (value) => Array.isArray(value) ? value.map(strangeAnswer)
   Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, said.has(key) && typeof inner === 'string' ? strange(inner) : strangeAnswer(inner)]));
 
 /** Names, units, formats and what is the same in every language. */
-const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|AM|PM|UTC|Home Assistant|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|https?:\S+/g;
+const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|AM|PM|UTC|Home Assistant|OctoPrint|Moonraker|PrusaLink|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|https?:\S+/g;
 
 /** Everything that is shown or spoken now and has a letter of English. */
 const lettersLeft = (page) => page.evaluate(() => {

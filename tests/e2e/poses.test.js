@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
+import {fileURLToPath} from 'node:url';
 
 import {complaints, overflow} from './access.js';
 import {chooseQuickScan, goTo, openBrowser, openPage, picture} from './browser.js';
@@ -128,6 +129,9 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await page.getByRole('button', {name: 'See the fit: side 2'}).click();
   await page.getByRole('button', {name: 'Set three pairs'}).click();
   await text.filter({hasText: /^Pair 1 of 3/}).waitFor();
+  // The page is served in bundles: its modules come from where they were built.
+  await page.route(/\/(three|fit_clouds)\.js$/, (route) => route.fulfill({
+    path: fileURLToPath(new URL(`../../web${new URL(route.request().url()).pathname}`, import.meta.url)), contentType: 'text/javascript'}));
   const {drag, pairs} = await page.evaluate(clicksOfPairs, {scan: first.id, object_from_platform});
   const turn = async (by) => {
     await page.mouse.move(canvas.x + canvas.width / 2 - by / 2, canvas.y + canvas.height - 10);

@@ -5,6 +5,7 @@
 import {mkdirSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
 import {connect} from 'node:net';
 import {join} from 'node:path';
+import {gunzipSync} from 'node:zlib';
 
 import {argument, Daemon, makeFolder, require} from './daemon.mjs';
 import {makeRandom} from './random.mjs';
@@ -64,7 +65,8 @@ function check(answer) {
   require(head.includes('Content-Security-Policy: default-src'), `without the policy: ${head}`);
   const length = Number(/^Content-Length: (\d+)/im.exec(head)?.[1] ?? 0);
   if (/^Content-Type: application\/(problem\+)?json/im.test(head) && answer.length - end - 4 === length && length > 0) {
-    JSON.parse(answer.toString('utf8', end + 4));
+    const body = answer.subarray(end + 4);
+    JSON.parse((/^Content-Encoding: gzip/im.test(head) ? gunzipSync(body) : body).toString());
   }
   return String(status);
 }

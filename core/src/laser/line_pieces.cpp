@@ -79,7 +79,7 @@ float fitted(std::span<const LineSample> piece, std::size_t at, std::size_t rows
   return static_cast<float>(static_cast<double>(piece[at].u) + change);
 }
 
-/// Marks the samples that are left of a piece, with their new columns.
+/// Marks which samples of a piece are kept, and gives them their new columns.
 /// @param chain  indices of its samples, in the order of rows
 void smooth_piece(std::vector<LineSample>& samples, const std::vector<std::size_t>& chain,
                   const LineScale& scale, std::vector<char>& kept) {

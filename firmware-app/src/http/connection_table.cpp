@@ -10,8 +10,10 @@ namespace {
 // A debt that a packet which is lost and sent again does not explain: such clients are cut first.
 constexpr double noticeable_debt = 1;  // seconds
 
-// Time from a whole head's arrival to the thread that parses it, at most.
-constexpr std::chrono::milliseconds reading_time(10);
+// Time from a whole head's arrival to the thread that parses it, at most: a thread of a busy
+// machine waits for its turn. With 10 ms a visitor was cut as the only one who could be, while
+// others filled the queue.
+constexpr std::chrono::milliseconds reading_time(100);
 
 /// What a slow reader has not taken would stay in the kernel's memory for minutes.
 Cut final_cut(Wait wait) { return wait == Wait::reader ? Cut::reset : Cut::finish; }

@@ -86,8 +86,10 @@ TEST(ObservedSurface, FacesOutwards) {
   const CompactTsdf known = ball_seen_in([](const Eigen::Vector3d&) { return true; });
   for (const Facet& facet : observed_surface(known, 0, 2)) {
     const auto normal = facet.normal;
-    const auto corners = facet.corners;  // a copy: in the facet they lie where STL has them, unaligned
-    const Eigen::Vector3d outwards = Eigen::Vector3f(corners[0].data()).cast<double>() / 1000 - middle;
+    const auto corners =
+        facet.corners;  // a copy: in the facet they lie where STL has them, unaligned
+    const Eigen::Vector3d outwards =
+        Eigen::Vector3f(corners[0].data()).cast<double>() / 1000 - middle;
     EXPECT_GT(Eigen::Vector3f(normal.data()).cast<double>().dot(outwards), 0);
   }
 }

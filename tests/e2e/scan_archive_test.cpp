@@ -1,11 +1,14 @@
 // Scans as files, from one Octurn to another.
 
+#include "scan/scan_archive.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "support/daemon.hpp"
 #include "support/http_client.hpp"
+#include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "zip_archive.hpp"
 
@@ -63,6 +66,21 @@ TEST(ScanArchive, IsRefusedWholeIfItIsNoScan) {
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "data" / "scans"));
   EXPECT_EQ(daemon.post("/api/v1/scans/import", "{}").status, 415);
+}
+
+TEST(ScanArchive, WithFreePosesIsRefusedAndSaysWhatToDo) {
+  const TemporaryFolder folder;
+  write_room_scan(folder.path() / "room", small_room(), 2);
+  write_scan_archive(folder.path() / "room", folder.path() / "scan.zip");
+  const Daemon daemon(folder.path());
+
+  const Reply reply = import(daemon, content_of(folder.path() / "scan.zip"));
+  EXPECT_EQ(reply.status, 400);
+  const json problem = parsed(reply);
+  EXPECT_NE(problem["detail"].get<std::string>().find("free poses"), std::string::npos) << problem;
+  EXPECT_NE(problem["hint"].get<std::string>().find("octurn reconstruct"), std::string::npos);
+  EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "data" / "scans"));
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ TEST_F(Spaces, ARecordingInTumsLayoutIsImportedAndBuilt) {
     EXPECT_TRUE(told["watertight"]) << line;
     EXPECT_GT(told["triangles"], 100) << line;
     EXPECT_EQ(told.contains("shell_thickness_mm"), method == std::string("solid"));
+    EXPECT_TRUE(told["settings"]["clip_mm"].is_null()) << "it has no clip box: " << line;
   }
 }
 

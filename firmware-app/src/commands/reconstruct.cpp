@@ -50,13 +50,18 @@ std::uint64_t peak_memory_bytes() {
   return 0;
 }
 
-/// The settings that the method uses.
+/// The settings that the method uses. A space that has no clip box has none here.
 Json to_json(ModelSettings settings) {
+  const Box& clip = settings.scan.clip;
+  const bool is_clipped = clip.min != everywhere.min || clip.max != everywhere.max;
   Json json;
   for (const Field& field : fields(settings)) {
     if (field.method.empty() || field.method == to_string(settings.scan.method)) {
       json[std::string(field.key)] = field.access.write();
     }
+  }
+  if (!is_clipped) {
+    json["clip_mm"] = nullptr;
   }
   return json;
 }

@@ -73,9 +73,8 @@ Job ScanStore::adopt(const fs::path& beginning) {
   if (has_free_poses(scan)) {
     throw Error(
         ErrorCode::bad_request,
-        "a scan with free poses: it has no platform, and may be larger than what is scanned "
-        "here",
-        "Build its model by octurn reconstruct.");
+        "this scan has free poses: it has no platform, and the page has no view of spaces",
+        "Unpack the archive, and make its model with: octurn reconstruct FOLDER -o Scan.stl");
   }
   Job job = to_waiting(read_adopted_job(beginning, scan), scan);
   const std::lock_guard writing(writing_);

@@ -68,6 +68,7 @@ import {text} from './texts.js';
  * @property {Finding[]} [warnings]  about the computer
  * @property {Scan | null} scan
  * @property {import('./api_builds.js').Build | null} [build]  that goes on, or the last one
+ * @property {import('./api_builds.js').Build[] | null} [cluster_builds]  those that Slurm has; null: builds are made here
  * @property {string | null} newest
  * @property {number} scans_revision  changes with every scan that comes, ends, is renamed or goes
  *

@@ -18,6 +18,7 @@ import {json, sending, withoutAnswer} from './api.js';
  * @property {import('./api.js').ScanCalibration | null} calibration
  * @property {import('./api.js').Model | null} model
  * @property {string[]} [poses]  scans of other poses that are in it
+ * @property {{id: string, detail: string} | null} [cluster_job]  of a build that is made elsewhere
  * @property {boolean} chosen  it is the scan's model
  */
 

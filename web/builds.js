@@ -2,7 +2,7 @@
 
 import * as format from './format.js';
 import {badgeOf} from './quality.js';
-import {text} from './texts.js';
+import {text, translated} from './texts.js';
 
 /** @typedef {import('./api_builds.js').Build} Build */
 /** @typedef {import('./api.js').Scan} Scan */
@@ -16,6 +16,24 @@ export const isGoing = ({state}) => state === 'waiting' || state === 'running';
 
 /** Tells one state of a build from another. @param {Build | null | undefined} build */
 export const markOf = (build) => build ? `${build.scan} ${build.build} ${build.state}` : '';
+
+/** Tells one state of all builds that go on from another. @param {import('./api.js').Status | null | undefined} status */
+export const markOfBuilds = (status) => [status?.build, ...status?.cluster_builds ?? []].map(markOf).join(' ');
+
+/**
+ * The build of a scan that goes on, here or on a cluster, or the last one that left no model.
+ * @param {State} state @param {string} scan @returns {Build | null}
+ */
+export function runOf({status}, scan) {
+  const runs = [status?.build, ...status?.cluster_builds ?? []].filter((run) => run?.scan === scan);
+  return runs.find((run) => run && isGoing(run)) ?? runs.at(-1) ?? null;
+}
+
+/** Whether no other build can begin now: a cluster takes any number. @param {State} state @param {string} scan */
+export function isBuildBusy(state, scan) {
+  const run = state.status?.cluster_builds ? runOf(state, scan) : state.status?.build;
+  return Boolean(run && isGoing(run)) || Boolean(state.status?.scan && !state.status.cluster_builds);
+}
 
 /** The builds of a scan that have a model, as far as they are known. @param {State} state @param {string} id */
 const modelsOf = ({builds}, id) => builds?.scan === id ? builds.list.filter(({model}) => model !== null) : [];
@@ -53,9 +71,13 @@ const nameOf = ({build, poses}) => build === 0 ? text('build.first') :
     poses && poses.length > 0 ? text('build.name-sides', {number: build, sides: poses.length + 1}) : text('build.name', {number: build});
 
 /** @param {Build} build */
-function phaseText({state, phase, snapshots_done, snapshots_total}) {
+function phaseText({state, phase, snapshots_done, snapshots_total, cluster_job}) {
+  const detail = translated(cluster_job?.detail ?? '');
   if (state === 'waiting') {
-    return text('build.waiting');
+    return detail ? text('build.queued', {detail}) : text('build.waiting');
+  }
+  if (detail) {
+    return detail;
   }
   switch (phase) {
     case 'calibrating': return text('build.calibrating');
@@ -98,15 +120,14 @@ const rowOf = ({build, model, settings, calibration, created, chosen, poses}, sh
  * @param {State} state @param {Scan} scan  that is looked at
  */
 export function buildsOf(state, scan) {
-  const last = state.status?.build;
-  const mine = last && last.scan === scan.id ? last : null;
+  const mine = runOf(state, scan.id);
   const shown = buildShown(state, scan)?.build;
   const models = modelsOf(state, scan.id);
   const hasEnded = scan.state === 'finished' || scan.state === 'cancelled' || scan.state === 'failed';
   return {
     scan: scan.id,
-    canBuild: hasEnded && scan.snapshots_done > 0,
-    isBusy: Boolean(last && isGoing(last)) || Boolean(state.status?.scan),
+    canBuild: (hasEnded || Boolean(mine)) && scan.snapshots_done > 0,
+    isBusy: isBuildBusy(state, scan.id),
     canStraighten: isCrooked(asShown(state, scan)),
     rows: models.length > 1 || (models.length === 1 && !scan.model) ? models.map((build) => rowOf(build, shown)) : [],
     going: mine && isGoing(mine) ? {number: mine.build, text: phaseText(mine), share: shareOf(mine)} : null,

@@ -1,6 +1,6 @@
 // What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
 
-import {asShown, buildShown, buildsOf, isGoing, pictureUrl} from './builds.js';
+import {asShown, buildShown, buildsOf, isBuildBusy, isGoing, pictureUrl, runOf} from './builds.js';
 import * as format from './format.js';
 import {found, pictureOf} from './library.js';
 import {isPartOfAnother, posesOf} from './poses.js';
@@ -98,12 +98,12 @@ function unbuiltOf(state, {id, state: condition, model, error, settings, snapsho
     return null;
   }
   const leaf_size_mm = error?.code === 'memory-limit' ? 2 * settings.leaf_size_mm : settings.leaf_size_mm;
-  const build = state.status?.build;
+  const build = runOf(state, id);
   return {
     settings: {leaf_size_mm, choose: true},
     about: text('scan.build-first-about', {snapshots: text('count.snapshots', {count: snapshots_done}), leaf: format.leaf(leaf_size_mm)}),
-    isBusy: running(state) !== null || Boolean(build && isGoing(build)),
-    isGoing: Boolean(build && isGoing(build) && build.scan === id),
+    isBusy: isBuildBusy(state, id),
+    isGoing: Boolean(build && isGoing(build)),
   };
 }
 

@@ -1,7 +1,7 @@
 // What the page knows, and how news change it. Pure: nothing here touches the network, the clock or the DOM.
 // screen.js tells what is shown of it.
 
-import {isGoing, markOf} from './builds.js';
+import {isGoing, markOfBuilds} from './builds.js';
 import {initial as library} from './library.js';
 
 /** @typedef {import('./api.js').Status} Status */
@@ -55,7 +55,7 @@ export const running = (state) => state.status?.scan ?? null;
 export const scanOf = (state, id) => state.scans.find((scan) => scan.id === id) ?? null;
 
 /** @param {Status} status */
-const mark = (status) => `${status.scan?.id} ${status.scans_revision} ${markOf(status.build)}`;
+const mark = (status) => `${status.scan?.id} ${status.scans_revision} ${markOfBuilds(status)}`;
 
 /** Whether scans came, ended or changed since the list was read, from here or from another browser. @param {State} state */
 export const isListStale = (state) => state.status !== null && state.listed !== mark(state.status);
@@ -120,13 +120,14 @@ export const withSelected = (state, selected) => ({
 /** @param {State} state @param {Build} build  just begun from here @returns {State} */
 export const withBuild = (state, build) => ({
   ...state,
-  status: state.status && {...state.status, build},
+  status: state.status && {...state.status, ...(build.cluster_job ?
+    {cluster_builds: [...state.status.cluster_builds ?? [], build]} : {build})},
   builds: state.builds?.scan === build.scan ? {...state.builds, list: [...state.builds.list.filter(({model}) => model), build]} : state.builds,
 });
 
 /** Whether builds of the scan that is looked at came or ended since they were read. @param {State} state */
 export const areBuildsStale = ({selected, builds, status}) =>
-  selected !== null && (builds?.scan !== selected || builds.mark !== markOf(status?.build));
+  selected !== null && (builds?.scan !== selected || builds.mark !== markOfBuilds(status));
 
 /**
  * A build that ends while its scan is looked at comes into view.
@@ -135,7 +136,7 @@ export const areBuildsStale = ({selected, builds, status}) =>
 export function withBuilds(state, scan, list) {
   const before = state.builds?.scan === scan ? state.builds.list : [];
   const ended = list.find(({build, model}) => model && before.some((other) => other.build === build && !other.model));
-  const news = {...state, builds: {scan, list, mark: markOf(state.status?.build)}};
+  const news = {...state, builds: {scan, list, mark: markOfBuilds(state.status)}};
   return ended ? withShownBuild(news, ended.build) : news;
 }
 

@@ -101,3 +101,27 @@ test('a reason that knows its places shows them, and hides them again', () => {
   assert.deepEqual(screenOf(states.withReason(shown, reasons[0].key)).stage.places, []);
   assert.deepEqual(screenOf(states.withSelected(shown, null)).stage.places, []);
 });
+
+test('builds on a cluster go on side by side, each told with its scan', () => {
+  const queued = {...going, state: 'waiting', cluster_job: {id: '12', detail: 'it waits for processors or memory'}};
+  const elsewhere = {...going, scan: 'other', cluster_job: {id: '13', detail: ''}};
+  const builds = (cluster_builds, more = {}) => screenOf(looking({...askew, ...more}, {cluster_builds})).builds;
+  assert.equal(builds([elsewhere, queued]).going.text, 'In the queue of Slurm: it waits for processors or memory');
+  assert.ok(builds([elsewhere, queued]).isBusy);
+  assert.ok(!builds([elsewhere]).isBusy, 'one of another scan is in nobody\'s way');
+  assert.equal(builds([elsewhere]).going, null);
+  const error = {code: 'interrupted', detail: 'its job was cancelled', hint: ''};
+  assert.equal(builds([{...queued, state: 'cancelled', error}]).trouble.text, 'Its job was cancelled. ');
+  assert.ok(builds([queued], {state: 'interrupted', model: null}).canBuild, 'a scan that came from a file shows its first build');
+});
+
+test('a build on a cluster that ends makes the list stale', () => {
+  const queued = {...going, cluster_job: {id: '12', detail: ''}};
+  const state = states.withBuild(withList([own], {cluster_builds: []}), queued);
+  assert.deepEqual(state.status.cluster_builds, [queued]);
+  const read = states.withBuilds(state, 'done', [own, queued]);
+  assert.ok(!states.areBuildsStale(read));
+  const ended = states.withStatus(read, {...status, cluster_builds: []});
+  assert.ok(states.areBuildsStale(ended));
+  assert.equal(states.withBuilds(ended, 'done', [own, straight]).shownBuild, 1);
+});

@@ -355,6 +355,7 @@ export const texts = {
   'build.name': 'Modell {number}',
   'build.name-sides': 'Modell {number}, aus {sides} Seiten',
   'build.waiting': 'Wartet, bis es an der Reihe ist',
+  'build.queued': 'In der Warteschlange von Slurm: {detail}',
   'build.calibrating': 'Herausfinden, wo der Sensor stand',
   'build.registering': 'Die Seiten werden aneinandergepasst',
   'build.rebuilding': 'Aufnahme {done} von {total} wird gelesen',

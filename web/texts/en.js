@@ -368,6 +368,7 @@ export const texts = {
   'build.name': 'Build {number}',
   'build.name-sides': 'Build {number}, of {sides} sides',
   'build.waiting': 'Waiting for its turn',
+  'build.queued': 'In the queue of Slurm: {detail}',
   'build.calibrating': 'Finding out where the sensor stood',
   'build.registering': 'Fitting the sides together',
   'build.rebuilding': 'Reading snapshot {done} of {total}',

@@ -355,6 +355,7 @@ export const texts = {
   'build.name': 'Modelo {number}',
   'build.name-sides': 'Modelo {number}, de {sides} lados',
   'build.waiting': 'Espera su turno',
+  'build.queued': 'En la cola de Slurm: {detail}',
   'build.calibrating': 'Averiguando dónde estaba el sensor',
   'build.registering': 'Encajando los lados',
   'build.rebuilding': 'Leyendo la toma {done} de {total}',

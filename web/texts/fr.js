@@ -355,6 +355,7 @@ export const texts = {
   'build.name': 'Modèle {number}',
   'build.name-sides': 'Modèle {number}, de {sides} faces',
   'build.waiting': 'Attend son tour',
+  'build.queued': 'Dans la file de Slurm : {detail}',
   'build.calibrating': 'Recherche de la place du capteur',
   'build.registering': 'Ajustement des faces entre elles',
   'build.rebuilding': 'Lecture de la prise {done} sur {total}',

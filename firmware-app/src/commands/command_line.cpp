@@ -37,6 +37,13 @@ void add_serve(CLI::App& program, ServeArguments& arguments) {
                   "this machine is Octurn's image: folder through which the page has updates and "
                   "WiFi done")
       ->type_name("DIR");
+  command
+      .add_option("--builds-by", arguments.builds_by,
+                  "who builds models of stored scans, also of those that are uploaded: slurm "
+                  "submits each as a job with sbatch, for which the folder of scans has to be on a "
+                  "disk that its machines share; here is this process (here)")
+      ->type_name("here|slurm")
+      ->check(CLI::IsMember({"here", "slurm"}));
   command.callback([&arguments, simulate] {
     arguments.rig.simulate = simulate->count() > 0;
     serve(arguments);
@@ -242,6 +249,7 @@ int run(int argc, char** argv) {
   DoctorArguments doctor_arguments;
   TileArguments reconstruct_arguments;
   JoinArguments join_arguments;
+  std::filesystem::path build_folder;
   ImportArguments import_arguments;
   CalibrateArguments calibrate_arguments;
   CalibrateWallArguments calibrate_wall_arguments;
@@ -256,6 +264,7 @@ int run(int argc, char** argv) {
   add_doctor(program, doctor_arguments, status);
   add_reconstruct(program, reconstruct_arguments);
   add_join(program, join_arguments);
+  add_build(program, build_folder);
   add_import(program, import_arguments);
   add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
   add_set(program, set_arguments);

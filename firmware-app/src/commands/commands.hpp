@@ -53,6 +53,7 @@ struct ServeArguments {
   ConfigArguments config = {};
   std::optional<std::filesystem::path> web = {};
   std::optional<std::filesystem::path> appliance = {};  ///< folder of an Appliance
+  std::string builds_by = "here";                       ///< or "slurm": who builds stored scans
 };
 
 /// `octurn serve`: the daemon. Returns after SIGTERM or SIGINT.

@@ -77,6 +77,13 @@ void add_join(CLI::App& program, JoinArguments& arguments) {
   command.callback([&arguments] { join(arguments); });
 }
 
+void add_build(CLI::App& program, std::filesystem::path& folder) {
+  CLI::App& command = *program.add_subcommand(
+      "build", "a model that octurn serve --builds-by slurm has ordered: what its jobs run");
+  command.add_option("DIR", folder, "folder with a task.json, which gets the model")->required();
+  command.callback([&folder] { build_ordered(folder); });
+}
+
 void add_import(CLI::App& program, ImportArguments& arguments) {
   CLI::App& import =
       *program.add_subcommand("import", "a scan folder from another program's files");

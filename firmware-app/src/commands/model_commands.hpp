@@ -41,6 +41,9 @@ struct JoinArguments {
 /// `octurn join`: a model from all tiles of a scan.
 void join(const JoinArguments& arguments);
 
+/// `octurn build`: the build that `octurn serve --builds-by slurm` has ordered in a folder.
+void build_ordered(const std::filesystem::path& folder);
+
 struct ImportArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};  ///< scan folder to write
@@ -54,6 +57,7 @@ void import_tum(const ImportArguments& arguments);
 /// Adds the commands. The arguments outlive the parsing.
 void add_reconstruct(CLI::App& program, TileArguments& arguments);
 void add_join(CLI::App& program, JoinArguments& arguments);
+void add_build(CLI::App& program, std::filesystem::path& folder);
 void add_import(CLI::App& program, ImportArguments& arguments);
 
 /// @return the option --sensor-map

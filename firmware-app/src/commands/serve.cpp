@@ -92,6 +92,15 @@ void announce(Machine& machine, const HttpOptions& options, int port) {
   notify_ready("serving the page at port " + std::to_string(port));
 }
 
+/// How Slurm builds models, if it does. The jobs run this program, which has the same path on all
+/// machines.
+std::optional<SlurmOptions> slurm_options(const ServeArguments& arguments) {
+  if (arguments.builds_by != "slurm") {
+    return std::nullopt;
+  }
+  return SlurmOptions{.octurn = std::filesystem::read_symlink("/proc/self/exe")};
+}
+
 /// Serves with the settings as they are now, until a signal or until they need a restart.
 Outcome serve_once(Machine& machine, ConfigStore& settings) {
   Config config = settings.config();
@@ -100,7 +109,7 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   }
   const RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
   ScanStore store(config.data);
-  Scanner scanner(rig, config.limits, store);
+  Scanner scanner(rig, config.limits, store, slurm_options(machine.arguments));
   TurntableRunner turntable(scanner, store);
   AccessKeys keys(config.data / "keys.json");
   const MachineWatch health({.free_bytes = [&] { return store.free_bytes(); },
@@ -165,6 +174,9 @@ Outcome serve_with_good_settings(Machine& machine) {
 void serve(const ServeArguments& arguments) {
   return_freed_memory();
   load_sensor_drivers();  // before the first thread, as it asks
+  if (const auto slurm = slurm_options(arguments)) {
+    slurm->slurm.expect_programs();
+  }
   const Page page(arguments.web ? *arguments.web : page_folder());
   std::optional<Appliance> appliance;
   if (arguments.appliance) {

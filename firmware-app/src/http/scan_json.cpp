@@ -1,5 +1,6 @@
 #include "http/scan_json.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -26,6 +27,8 @@ json with_url(const Model& model, std::string url) {
 json to_json(const std::optional<ScanCalibration>& calibration) {
   return calibration ? to_json(*calibration) : json();
 }
+
+json to_json(const ClusterJob& job) { return {{"id", job.id}, {"detail", job.detail}}; }
 
 }  // namespace
 
@@ -66,7 +69,8 @@ json to_json(const Job& job, const Build& build) {
           {"calibration", to_json(build.calibration)},
           {"model", with_url(build.model, path_to(job.id) + "/builds/" + number + "/Scan.stl")},
           {"chosen", is_chosen},
-          {"poses", build.poses}};
+          {"poses", build.poses},
+          {"cluster_job", nullptr}};
 }
 
 json to_json(const BuildRun& run) {
@@ -82,7 +86,8 @@ json to_json(const BuildRun& run) {
           {"calibration", nullptr},
           {"model", nullptr},
           {"chosen", false},
-          {"poses", json::array()}};
+          {"poses", json::array()},
+          {"cluster_job", run.cluster_job ? to_json(*run.cluster_job) : json()}};
 }
 
 json poses_json(const std::vector<Job>& poses) {
@@ -102,8 +107,7 @@ json pose_json(const Job& job, int number) {
   return pose;
 }
 
-json builds_json(const Job& job, const std::optional<BuildRun>& run) {
-  const bool is_mine = run && run->scan == job.id;
+json builds_json(const Job& job, const std::vector<BuildRun>& runs) {
   json builds = json::array();
   if (job.model) {
     builds.push_back(to_json(job, {.number = 0,
@@ -113,12 +117,17 @@ json builds_json(const Job& job, const std::optional<BuildRun>& run) {
                                    .model = *job.model}));
   }
   for (const Build& build : job.builds.all) {
-    if (!is_mine || run->has_ended() || run->number != build.number) {  // it is as its run tells
+    const bool goes_on = std::ranges::any_of(runs, [&](const BuildRun& run) {
+      return run.scan == job.id && run.number == build.number && !run.has_ended();
+    });
+    if (!goes_on) {  // else it is as its run tells
       builds.push_back(to_json(job, build));
     }
   }
-  if (is_mine && run->state != BuildRun::State::finished) {
-    builds.push_back(to_json(*run));
+  for (const BuildRun& run : runs) {
+    if (run.scan == job.id && run.state != BuildRun::State::finished) {
+      builds.push_back(to_json(run));
+    }
   }
   return builds;
 }

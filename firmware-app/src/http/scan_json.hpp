@@ -26,6 +26,6 @@ nlohmann::json to_json(const BuildRun& run);
 
 /// All builds of a scan, the one that it made itself first, and the one that goes on.
 /// @param run  the build that goes on, or the last one, of any scan
-nlohmann::json builds_json(const Job& job, const std::optional<BuildRun>& run);
+nlohmann::json builds_json(const Job& job, const std::vector<BuildRun>& runs);
 
 }  // namespace octurn

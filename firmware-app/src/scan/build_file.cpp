@@ -20,8 +20,9 @@ using nlohmann::json;
 
 constexpr std::size_t max_build_bytes = std::size_t{1} << 20U;  // a hundred times what is written
 
-/// The number that a folder is named after; 0 if it is none.
-int to_number(const std::string& name) {
+}  // namespace
+
+int to_build_number(const std::string& name) {
   int number = 0;
   const char* const end = name.data() + name.size();
   const auto read = std::from_chars(name.data(), end, number);
@@ -29,7 +30,6 @@ int to_number(const std::string& name) {
   return is_number && name == std::to_string(number) ? number : 0;
 }
 
-/// @throws Error "job-malformed", "read-failed"
 Build read_build(const fs::path& folder, int number) {
   const json document =
       parse_json(read_regular_file(folder / "build.json", max_build_bytes).value_or(""),
@@ -53,8 +53,6 @@ Build read_build(const fs::path& folder, int number) {
   return build;
 }
 
-}  // namespace
-
 void write_build(const fs::path& folder, const Build& build) {
   const json document{{"created", build.created},
                       {"settings", to_json(build.settings)},
@@ -69,13 +67,17 @@ void write_build(const fs::path& folder, const Build& build) {
 std::vector<Build> read_builds(const fs::path& scan) {
   std::vector<Build> builds;
   for (const std::string& name : names_in(scan / builds_folder)) {
-    if (const int number = to_number(name); number > 0) {
-      try {
-        builds.push_back(read_build(scan / builds_folder / name, number));
-      } catch (...) {
-        log::warning("store", (scan / builds_folder / name).string() +
-                                  ": build.json: " + current_failure().detail);
-      }
+    const fs::path folder = scan / builds_folder / name;
+    const int number = to_build_number(name);
+    std::error_code unknown;
+    if (number == 0 ||
+        (fs::exists(folder / task_file, unknown) && !fs::exists(folder / "build.json", unknown))) {
+      continue;
+    }
+    try {
+      builds.push_back(read_build(folder, number));
+    } catch (...) {
+      log::warning("store", folder.string() + ": build.json: " + current_failure().detail);
     }
   }
   std::ranges::sort(builds, {}, &Build::number);
@@ -85,7 +87,7 @@ std::vector<Build> read_builds(const fs::path& scan) {
 int next_build_number(const fs::path& scan) {
   int highest = 0;
   for (const std::string& name : names_in(scan / builds_folder)) {
-    highest = std::max(highest, to_number(name));
+    highest = std::max(highest, to_build_number(name));
   }
   return highest + 1;
 }

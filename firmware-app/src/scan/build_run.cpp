@@ -10,6 +10,10 @@ Failure displaced_by_scan() {
           .hint = "Build again when it has ended."};
 }
 
+std::string describe(const BuildRun& run) {
+  return "build " + std::to_string(run.number) + " of scan " + run.scan;
+}
+
 std::string_view to_string(BuildRun::State state) {
   constexpr std::array<std::string_view, 5> names{"waiting", "running", "finished", "failed",
                                                   "cancelled"};

@@ -25,14 +25,6 @@ json to_json(const CalibrationFinding& finding) {
   return object;
 }
 
-json to_json(const std::vector<CalibrationFinding>& findings) {
-  json list = json::array();
-  for (const CalibrationFinding& finding : findings) {
-    list.push_back(to_json(finding));
-  }
-  return list;
-}
-
 json to_json(const SolvedPose& solved) {
   return {{"platform_from_sensor", to_rows(solved.platform_from_sensor)},
           {"sigma_mm", mm_from_metres(solved.position_sigma)},
@@ -64,6 +56,22 @@ SolvedPose to_solved_pose(const JsonValue& object) {
 }
 
 }  // namespace
+
+json to_json(const std::vector<CalibrationFinding>& findings) {
+  json list = json::array();
+  for (const CalibrationFinding& finding : findings) {
+    list.push_back(to_json(finding));
+  }
+  return list;
+}
+
+std::vector<CalibrationFinding> to_findings(const JsonValue& list) {
+  std::vector<CalibrationFinding> findings;
+  for (const JsonValue& finding : list.elements()) {
+    findings.push_back(to_finding(finding));
+  }
+  return findings;
+}
 
 json to_json(const CalibrationReport& report, const std::vector<double>& angles) {
   json stops = json::array();
@@ -111,12 +119,10 @@ ScanCalibration to_scan_calibration(const JsonValue& object) {
   ScanCalibration calibration{.accepted = keys.at("accepted").flag(),
                               .confirms_told = keys.at("confirms_told").flag(),
                               .reason = keys.at("reason").text(),
+                              .findings = to_findings(keys.at("findings")),
                               .rebuilt = keys.at("rebuilt").whole_number(0, max_stop)};
   if (const JsonValue solved = keys.at("solved"); !solved.json().is_null()) {
     calibration.solved = to_solved_pose(solved);
-  }
-  for (const JsonValue& finding : keys.at("findings").elements()) {
-    calibration.findings.push_back(to_finding(finding));
   }
   return calibration;
 }

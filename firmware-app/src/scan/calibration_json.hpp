@@ -20,6 +20,12 @@ nlohmann::json to_json(const CalibrationReport& report, const std::vector<double
 /// A scan's calibration as the API and `job.json` have it.
 nlohmann::json to_json(const ScanCalibration& calibration);
 
+/// What was found, as the API and the files have it.
+nlohmann::json to_json(const std::vector<CalibrationFinding>& findings);
+
+/// The findings of such JSON. @throws Error  of the value's code
+std::vector<CalibrationFinding> to_findings(const JsonValue& list);
+
 /// The calibration of a `job.json`. @throws Error  of the value's code
 ScanCalibration to_scan_calibration(const JsonValue& object);
 

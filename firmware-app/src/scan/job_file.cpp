@@ -31,13 +31,7 @@ Value parse_name(const JsonValue& name, std::optional<Value> (*named)(std::strin
 }
 
 std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
-  if (!object || object->json().is_null()) {
-    return std::nullopt;
-  }
-  JsonObject keys(*object);
-  return Failure{.code = to_error_code(keys.at("code").text()).value_or(ErrorCode::unknown),
-                 .detail = keys.at("detail").text(),
-                 .hint = keys.at("hint").text()};
+  return !object || object->json().is_null() ? std::nullopt : std::optional(to_failure(*object));
 }
 
 std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& object) {

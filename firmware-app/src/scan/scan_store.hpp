@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "file_descriptor.hpp"
+#include "scan/build_run.hpp"
 #include "scan/data_folder.hpp"
 #include "scan/job.hpp"
 #include "scan/scan_bin.hpp"
@@ -106,6 +107,19 @@ class ScanStore {
   /// Keeps a build whose model is where `begin_build` has said. It appears whole or not at all.
   /// @throws Error "no-such-scan", "disk-full", "write-failed", "data-failed"
   void add_build(std::string_view id, const Build& build);
+
+  /// Makes the folder of a build that another process makes, with the number that this has.
+  /// @param run  whose number the build gets
+  /// @return the folder, which is a build as soon as its `build.json` is there
+  /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
+  std::filesystem::path reserve_build(BuildRun& run);
+
+  /// Takes in a build that another process has made in the folder that was reserved.
+  /// @throws Error "no-such-scan", "job-malformed", "read-failed"
+  void take_build(std::string_view id, int number);
+
+  /// Removes such a folder, whose build will not come.
+  void release_build(std::string_view id, int number);
 
   /// Removes what a build has begun and will not finish.
   void drop_build(std::string_view id, int number);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "log.hpp"
 #include "octurn/file.hpp"
@@ -63,6 +64,38 @@ void ScanStore::add_build(std::string_view id, const Build& build) {
   const std::lock_guard lock(mutex_);
   jobs_.find(id)->second.builds.all.push_back(build);
   ++revision_;
+}
+
+fs::path ScanStore::reserve_build(BuildRun& run) {
+  make_room(max_model_bytes(), "a model");
+  const std::lock_guard writing(writing_);
+  run.number = next_build(run.scan);
+  fs::path kept = model_file(run.scan, run.number).parent_path();
+  std::error_code error;
+  fs::create_directories(kept, error);
+  if (error) {
+    throw_data_error(kept, "make the folder", error);
+  }
+  return kept;
+}
+
+void ScanStore::take_build(std::string_view id, int number) {
+  const std::lock_guard writing(writing_);
+  const Job job = get(id);
+  if (find_build(job, number) != nullptr) {
+    return;  // it came while no daemon ran
+  }
+  Build build = read_build(model_file(id, number).parent_path(), number);
+  const std::lock_guard lock(mutex_);
+  jobs_.find(id)->second.builds.all.push_back(std::move(build));
+  ++revision_;
+}
+
+void ScanStore::release_build(std::string_view id, int number) {
+  const fs::path builds = folder(id) / builds_folder;
+  std::error_code ignored;  // the next start clears it away
+  fs::rename(builds / std::to_string(number), leaving_in(builds, number), ignored);
+  fs::remove_all(leaving_in(builds, number), ignored);
 }
 
 void ScanStore::drop_build(std::string_view id, int number) {

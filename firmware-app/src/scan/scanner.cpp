@@ -26,8 +26,12 @@ RigOptions at_angle(RigOptions rig, double angle_deg) {
 
 }  // namespace
 
-Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store)
+Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
+                 const std::optional<SlurmOptions>& slurm)
     : store_(store), calibration_(store.data()), board_(rig) {
+  if (slurm) {
+    slurm_.emplace(*slurm, store, limits);
+  }
   slot_.want_camera(Clock::now() + camera_interest);  // so that the status tells what is there
   worker_ =
       std::jthread([this, limits, rig = at_angle(std::move(rig), store.platform_angle_deg())] {
@@ -57,6 +61,9 @@ std::optional<Job> Scanner::resume(std::string_view id) {
     return std::nullopt;
   }
   Job job = store_.get(id);
+  if (slurm_ && slurm_->is_building(id)) {
+    expect_idle(id);
+  }
   if (!can_resume(job)) {
     throw Error(ErrorCode::not_paused,
                 "this scan is " + std::string(to_string(job.state)) +

@@ -16,6 +16,7 @@
 #include "scan/command_slot.hpp"
 #include "scan/heartbeat.hpp"
 #include "scan/scan_store.hpp"
+#include "scan/slurm_builds.hpp"
 #include "scan/status_board.hpp"
 
 namespace octurn {
@@ -41,7 +42,9 @@ namespace octurn {
 ///                       +-- ModelPipe: the bytes of a model <----------------------+  the scan
 class Scanner {
  public:
-  Scanner(RigOptions rig, const Limits& limits, ScanStore& store);
+  /// @param slurm  that builds the models of stored scans; nothing: they are built here
+  Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
+          const std::optional<SlurmOptions>& slurm = {});
   ~Scanner();
   Scanner(const Scanner&) = delete;
   Scanner& operator=(const Scanner&) = delete;
@@ -101,7 +104,8 @@ class Scanner {
   /// @throws Error "no-such-scan", "busy"
   void remove(std::string_view id);
 
-  /// Takes a scan in that another Octurn has taken, and builds its model unless a scan runs.
+  /// Takes a scan in that another Octurn has taken, and has its model built: here, unless a scan
+  /// runs.
   /// @param fill   fills the folder that it is given with a whole scan folder; what it throws comes
   ///               out here
   /// @param bytes  that this may take
@@ -172,8 +176,9 @@ class Scanner {
 
   std::shared_ptr<const MeshPreview> mesh_preview() const { return board_.mesh_preview().get(); }
 
-  /// Has the worker build a model from a stored scan and keep it. A scan that starts ends it.
-  /// @return nothing while a scan runs or another build goes on
+  /// Has the worker, or Slurm, build a model from a stored scan and keep it. A scan that starts
+  /// ends what the worker builds.
+  /// @return nothing while the worker has a scan or another build
   /// @throws Error "no-such-scan", "busy"  if the scan has not ended, "no-model"  if it has no
   /// snapshots, "disk-full"
   std::optional<BuildRun> build(std::string_view id, const BuildOrder& order);
@@ -181,10 +186,18 @@ class Scanner {
   /// Asks a build to stop. @return false if it has ended already
   bool cancel_build(std::string_view id, int number);
 
-  /// The build that waits or goes on, or the last one.
+  /// The build that the worker has, or had last.
   std::shared_ptr<const std::optional<BuildRun>> build_run() const {
     return board_.build_run().get();
   }
+
+  /// The builds that Slurm has, and those that it had of which no model came; null without Slurm.
+  std::shared_ptr<const std::vector<BuildRun>> slurm_runs() const {
+    return slurm_ ? slurm_->runs().get() : nullptr;
+  }
+
+  /// All of them.
+  std::vector<BuildRun> build_runs() const;
 
   /// Makes the model of a build the scan's. @throws  as `ScanStore::choose_build`
   void choose_build(std::string_view id, int number) { store_.choose_build(id, number); }
@@ -227,6 +240,7 @@ class Scanner {
   CommandSlot slot_;
   Heartbeat heartbeat_;
   std::stop_source ending_;
+  std::optional<SlurmBuilds> slurm_ = {};
   std::mutex scans_;     // held while it is decided what becomes of a scan
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };

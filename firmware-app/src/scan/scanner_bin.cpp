@@ -3,6 +3,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "log.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
@@ -50,7 +51,15 @@ Job Scanner::adopt(const std::function<void(const std::filesystem::path& folder)
     std::filesystem::remove_all(folder, ignored);
     throw;
   }
-  return resume(job.id).value_or(job);
+  if (!slurm_) {
+    return resume(job.id).value_or(job);
+  }
+  try {
+    build(job.id, {.settings = {.scan = job.settings}, .becomes_model = true});
+  } catch (const Error& error) {  // the scan is there all the same, and can be built later
+    log::warning("scanner", "scan " + job.id + " is not built: " + error.what());
+  }
+  return job;
 }
 
 }  // namespace octurn

@@ -1,25 +1,36 @@
 // How a scanner takes builds of stored scans.
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <utility>
 
 #include "scan/scanner.hpp"
 #include "utc.hpp"
 
 namespace octurn {
+namespace {
+
+/// Whether a scan has all its snapshots, but no model yet.
+bool waits_for_model(const Job& job) {
+  return job.state == JobState::interrupted && job.snapshots_done == job.settings.snapshots;
+}
+
+}  // namespace
 
 std::optional<BuildRun> Scanner::build(std::string_view id, const BuildOrder& order) {
   const std::lock_guard lock(scans_);
   const Job job = store_.get(id);
-  if (job.state == JobState::running || is_resumable(job.state)) {
+  if (job.state == JobState::running ||
+      (is_resumable(job.state) && !(slurm_ && waits_for_model(job)))) {
     throw Error(ErrorCode::busy, "this scan has not ended", "Wait for its end, or end it.");
   }
   if (job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
-  return offer_build(
-      {.run = {.scan = job.id, .snapshots = job.snapshots_done, .settings = order.settings},
-       .becomes_model = order.becomes_model});
+  BuildRun run{.scan = job.id, .snapshots = job.snapshots_done, .settings = order.settings};
+  return slurm_ ? slurm_->add(std::move(run), order.becomes_model)
+                : offer_build({.run = std::move(run), .becomes_model = order.becomes_model});
 }
 
 /// `scans_` is held.
@@ -41,9 +52,12 @@ std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
 }
 
 bool Scanner::cancel_build(std::string_view id, int number) {
+  if (slurm_ && slurm_->cancel(id, number)) {
+    return true;
+  }
   const std::lock_guard lock(scans_);
   const auto run = build_run();
-  if (!is_building(id) || (*run)->number != number) {
+  if (!*run || (*run)->has_ended() || (*run)->scan != id || (*run)->number != number) {
     return false;
   }
   if (slot_.stop_build()) {
@@ -53,8 +67,19 @@ bool Scanner::cancel_build(std::string_view id, int number) {
 }
 
 bool Scanner::is_building(std::string_view id) const {
-  const auto run = build_run();
-  return *run && !(*run)->has_ended() && (*run)->scan == id;
+  return std::ranges::any_of(
+      build_runs(), [&](const BuildRun& run) { return run.scan == id && !run.has_ended(); });
+}
+
+std::vector<BuildRun> Scanner::build_runs() const {
+  std::vector<BuildRun> runs;
+  if (const auto run = build_run(); *run) {
+    runs.push_back(**run);
+  }
+  if (const auto elsewhere = slurm_runs()) {
+    runs.insert(runs.end(), elsewhere->begin(), elsewhere->end());
+  }
+  return runs;
 }
 
 }  // namespace octurn

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "log.hpp"
-#include "scan/build_model.hpp"
+#include "scan/build_task.hpp"
 #include "scan/merged_model.hpp"
 #include "scan/worker.hpp"
 
@@ -24,25 +24,14 @@ bool build_and_keep(const BuildCommand& command, const Limits& limits, const Wor
   if (command.pose) {
     return refit_pose(ports.store, run, *command.pose, limits, stop, show);
   }
-  const Job job = ports.store.get(run.scan);
   const std::filesystem::path file = ports.store.begin_build(run.scan, run.number);
-  const Build* const chosen = find_build(job, job.builds.chosen);
-  const auto poses = chosen != nullptr ? chosen->poses : std::vector<std::string>{};
-  std::optional<Build> build = build_model({.job = job,
-                                            .folder = ports.store.merged_scan(run.scan, poses),
-                                            .settings = run.settings,
-                                            .findings = pose_findings(ports.store, job, poses)},
-                                           limits, file, stop, show);
+  const BuildTask task = make_task(ports.store, run, command.becomes_model);
+  const std::optional<Build> build = build_model(task, limits, file, stop, show);
   if (!build) {
     return false;
   }
-  build->poses = poses;
-  build->number = run.number;
-  build->created = run.created;
   ports.store.add_build(run.scan, *build);
-  if (command.becomes_model || !chosen_model(job)) {
-    ports.store.choose_build(run.scan, run.number);
-  }
+  choose_built(ports.store, task);
   return true;
 }
 
@@ -51,7 +40,7 @@ bool build_and_keep(const BuildCommand& command, const Limits& limits, const Wor
 void Worker::carry_out(BuildCommand& command, const std::stop_source& stop) {
   ports_.heartbeat.suspend();  // a model may take minutes
   BuildRun& run = command.run;
-  const std::string name = "build " + std::to_string(run.number) + " of scan " + run.scan;
+  const std::string name = describe(run);
   run.state = BuildRun::State::running;
   ports_.board.set_build_run(run);
   log::info("scanner", name + " started");

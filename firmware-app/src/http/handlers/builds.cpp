@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 json make_builds_json(const App& app, std::string_view id) {
-  return builds_json(find_scan(app, id), *app.scanner.build_run());
+  return builds_json(find_scan(app, id), app.scanner.build_runs());
 }
 
 /// The build of that number in a path. @throws Error "no-model"  if there is none

@@ -22,6 +22,7 @@ std::string to_line(const json& data) {
 std::vector<News> StatusNews::operator()() {
   Sources now{.status = app_.scanner.latest_status(),
               .build = app_.scanner.build_run(),
+              .cluster_builds = app_.scanner.slurm_runs(),
               .machine = app_.machine.health(),
               .scans_revision = app_.store.revision()};
   if (now == before_ && !now.status->is_scanning()) {  // the time of a scan runs on

@@ -25,6 +25,7 @@ class StatusNews {
   struct Sources {
     std::shared_ptr<const Status> status = {};
     std::shared_ptr<const std::optional<BuildRun>> build = {};
+    std::shared_ptr<const std::vector<BuildRun>> cluster_builds = {};
     std::shared_ptr<const MachineHealth> machine = {};
     std::uint64_t scans_revision = 0;
     friend bool operator==(const Sources&, const Sources&) = default;

@@ -33,6 +33,7 @@ json status_json(const App& app) {
             {"warnings", to_json(machine->warnings).at("findings")},
             {"scan", nullptr},
             {"build", nullptr},
+            {"cluster_builds", nullptr},
             {"newest", nullptr},
             {"scans_revision", app.store.revision()}};
   if (running) {
@@ -40,6 +41,12 @@ json status_json(const App& app) {
   }
   if (const auto build = app.scanner.build_run(); *build) {
     body["build"] = to_json(**build);
+  }
+  if (const auto elsewhere = app.scanner.slurm_runs()) {
+    body["cluster_builds"] = json::array();
+    for (const BuildRun& run : *elsewhere) {
+      body["cluster_builds"].push_back(to_json(run));
+    }
   }
   if (newest) {
     body["newest"] = newest->id;

@@ -1,0 +1,109 @@
+#include "run_program.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <system_error>
+#include <thread>
+
+#include "file_descriptor.hpp"
+#include "octurn/error.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+namespace {
+
+constexpr auto look_interval = std::chrono::milliseconds(5);
+constexpr std::size_t max_output = std::size_t{16} << 20U;
+
+/// A file in memory, into which a program may write more than a pipe holds.
+FileDescriptor make_output() {
+  FileDescriptor file(::memfd_create("output", MFD_CLOEXEC));
+  if (!file.is_open()) {
+    throw std::system_error(errno, std::generic_category(), "memfd_create");
+  }
+  return file;
+}
+
+std::string content_of(const FileDescriptor& file) {
+  const off_t end = ::lseek(file.number(), 0, SEEK_END);
+  std::string content(std::min(static_cast<std::size_t>(std::max<off_t>(end, 0)), max_output), 0);
+  const ssize_t got = ::pread(file.number(), content.data(), content.size(), 0);
+  content.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return content;
+}
+
+/// What a program starts with: its outputs, nothing to read, and no signal blocked or ignored.
+class SpawnSetup {
+ public:
+  SpawnSetup(const FileDescriptor& output, const FileDescriptor& errors) {
+    ::posix_spawn_file_actions_init(&files_);
+    ::posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    ::posix_spawn_file_actions_adddup2(&files_, output.number(), STDOUT_FILENO);
+    ::posix_spawn_file_actions_adddup2(&files_, errors.number(), STDERR_FILENO);
+    ::posix_spawnattr_init(&attributes_);
+    sigset_t signals;
+    sigemptyset(&signals);
+    ::posix_spawnattr_setsigmask(&attributes_, &signals);
+    sigaddset(&signals, SIGPIPE);
+    sigaddset(&signals, SIGXFSZ);
+    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~SpawnSetup() {
+    ::posix_spawn_file_actions_destroy(&files_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSetup(const SpawnSetup&) = delete;
+  SpawnSetup& operator=(const SpawnSetup&) = delete;
+
+  /// @throws Error "not-found"
+  pid_t start(std::vector<std::string> command) const {
+    std::vector<char*> words;
+    for (std::string& word : command) {
+      words.push_back(word.data());
+    }
+    words.push_back(nullptr);
+    pid_t process = 0;
+    if (const int error =
+            ::posix_spawnp(&process, words[0], &files_, &attributes_, words.data(), environ);
+        error != 0) {
+      throw Error(ErrorCode::not_found,
+                  command[0] + ": cannot be run: " + std::generic_category().message(error));
+    }
+    return process;
+  }
+
+ private:
+  posix_spawn_file_actions_t files_ = {};
+  posix_spawnattr_t attributes_ = {};
+};
+
+}  // namespace
+
+ProgramResult run_program(const std::vector<std::string>& command, const std::stop_token& stop) {
+  const FileDescriptor output = make_output();
+  const FileDescriptor errors = make_output();
+  const pid_t process = SpawnSetup(output, errors).start(command);
+  int status = 0;
+  while (::waitpid(process, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(look_interval);
+    if (stop.stop_requested()) {
+      ::kill(process, SIGKILL);
+      ::waitpid(process, &status, 0);
+      throw Stopped{};
+    }
+  }
+  return {.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+          .output = content_of(output),
+          .errors = content_of(errors)};
+}
+
+}  // namespace octurn

@@ -1,0 +1,189 @@
+// How the builds that Slurm makes come to their ends.
+
+#include <algorithm>
+#include <utility>
+
+#include "log.hpp"
+#include "octurn/file.hpp"
+#include "scan/built_elsewhere.hpp"
+#include "scan/slurm_builds.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a job runs. Program and folder are its arguments, so no letter in them means anything.
+constexpr std::string_view script = "#!/bin/sh\nexec \"$1\" build \"$2\"\n";
+
+/// The job of that number; without one, the job that goes on in that folder: after an earlier build
+/// there may be others, which have ended.
+const SlurmJob* find_job(const std::vector<SlurmJob>& jobs, const std::string& id,
+                         const fs::path& folder) {
+  const auto found = std::ranges::find_if(jobs, [&](const SlurmJob& job) {
+    return id.empty() ? job.folder == folder && !job.has_ended() : job.id == id;
+  });
+  return found == jobs.end() ? nullptr : &*found;
+}
+
+/// Without the number, its folder tells whose job it is.
+void keep_number(const fs::path& folder, const std::string& job) {
+  try {
+    write_file(folder / job_file, job);
+  } catch (const Error& error) {
+    log::warning("slurm", error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<SlurmBuilds::Entry> SlurmBuilds::entries() {
+  const std::lock_guard lock(mutex_);
+  return entries_;
+}
+
+void SlurmBuilds::look(const std::stop_token& stop) {
+  std::vector<Entry> now = entries();
+  if (now.empty()) {
+    return;
+  }
+  std::optional<std::vector<SlurmJob>> jobs;
+  std::string trouble;
+  try {
+    jobs = options_.slurm.list(stop);
+  } catch (const Error& error) {
+    trouble = error.what();
+    if (now.front().run().cluster_job->detail != trouble) {  // once, not at each look
+      log::warning("slurm", trouble);
+    }
+  }
+  for (Entry& entry : now) {
+    if (jobs) {
+      look_at(entry, *jobs, stop);
+    } else if (is_built(entry.folder)) {
+      keep(entry);
+    } else {
+      entry.run().cluster_job->detail = trouble;
+      publish(entry.run());
+    }
+    const std::lock_guard lock(mutex_);
+    const auto held = std::ranges::find(entries_, entry.folder, &Entry::folder);
+    if (entry.run().has_ended()) {
+      entries_.erase(held);
+    } else {
+      entry.is_unwanted = held->is_unwanted;  // which may have become so meanwhile
+      *held = entry;
+    }
+  }
+}
+
+void SlurmBuilds::look_at(Entry& entry, const std::vector<SlurmJob>& jobs,
+                          const std::stop_token& stop) {
+  const SlurmJob* const job = find_job(jobs, entry.job, entry.folder);
+  BuildRun& run = entry.run();
+  const auto cancelled = [&] { end(entry, BuildRun::State::cancelled, {}); };
+  if (is_built(entry.folder)) {
+    keep(entry);
+  } else if (job == nullptr && entry.job.empty()) {
+    entry.is_unwanted ? cancelled() : submit(entry, stop);
+  } else if (job != nullptr && !job->has_ended()) {
+    if (entry.is_unwanted) {
+      options_.slurm.cancel(job->id, stop);
+    }
+    entry.job = job->id;
+    run.state = job->has_begun() ? BuildRun::State::running : BuildRun::State::waiting;
+    run.cluster_job = ClusterJob{.id = job->id};
+    if (job->has_begun()) {
+      read_progress(entry.folder, run);
+    } else {
+      run.cluster_job->detail = describe_wait(*job);
+    }
+    publish(run);
+  } else if (entry.is_unwanted) {
+    cancelled();
+  } else if (const auto failure = read_failure(entry.folder)) {
+    end(entry, BuildRun::State::failed, *failure);
+  } else if (job != nullptr && job->state == "CANCELLED") {
+    end(entry, BuildRun::State::cancelled, describe_end(*job));
+  } else if (job != nullptr && job->state != "COMPLETED") {
+    end(entry, BuildRun::State::failed, describe_end(*job));
+  } else {
+    end_without_files(entry, job != nullptr ? *job : SlurmJob{.id = entry.job, .reason = "None"});
+  }
+}
+
+/// Gives up on a job that Slurm has ended well, or has forgotten, once its files do not come.
+void SlurmBuilds::end_without_files(Entry& entry, const SlurmJob& job) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!entry.gone) {
+    entry.gone = now;
+  }
+  if (now - *entry.gone >= options_.patience) {
+    end(entry, BuildRun::State::failed, describe_end(job));
+  }
+}
+
+void SlurmBuilds::submit(Entry& entry, const std::stop_token& stop) {
+  try {
+    write_file(entry.folder / script_file, script);
+    entry.job = options_.slurm.submit({.script = entry.folder / script_file,
+                                       .arguments = {options_.octurn, entry.folder},
+                                       .folder = entry.folder,
+                                       .processors = limits_.threads,
+                                       .memory_bytes = limits_.memory_bytes},
+                                      stop);
+    keep_number(entry.folder, entry.job);
+    entry.run().cluster_job->id = entry.job;
+    log::info("slurm", describe(entry.run()) + " is job " + entry.job);
+    publish(entry.run());
+  } catch (const Error& error) {
+    end(entry, BuildRun::State::failed, to_failure(error));
+  }
+}
+
+/// Makes a build of a folder in which one is.
+void SlurmBuilds::keep(Entry& entry) {
+  const BuildRun& run = entry.run();
+  try {
+    store_.take_build(run.scan, run.number);
+  } catch (...) {
+    end(entry, BuildRun::State::failed, current_failure());
+    return;
+  }
+  try {
+    choose(entry.task);
+  } catch (...) {  // the model is there all the same, and a person can choose it
+    log::error("slurm", describe(run) + ": " + current_failure().detail);
+  }
+  clear_work_files(entry.folder);
+  entry.run().state = BuildRun::State::finished;
+  entry.run().phase = Phase::done;
+  log::info("slurm", describe(run) + " finished");
+  publish(run);
+}
+
+void SlurmBuilds::choose(const BuildTask& task) {
+  Job scan = store_.get(task.run.scan);
+  if (scan.state != JobState::interrupted) {
+    choose_built(store_, task);
+    return;
+  }
+  scan.state = JobState::finished;  // it had all snapshots, and waited for its model
+  scan.failure.reset();
+  scan.builds.chosen = task.run.number;
+  store_.save(scan);
+}
+
+void SlurmBuilds::end(Entry& entry, BuildRun::State state, const std::optional<Failure>& failure) {
+  BuildRun& run = entry.run();
+  store_.release_build(run.scan, run.number);
+  run.state = state;
+  run.phase = Phase::done;
+  run.failure = failure;
+  run.cluster_job->detail.clear();
+  log::info("slurm", describe(run) + " " + std::string(to_string(state)) +
+                         (failure ? ": " + failure->detail : ""));
+  publish(run);
+}
+
+}  // namespace octurn

@@ -1,0 +1,299 @@
+// Builds that Slurm makes, with programs in its place that say what a test wants. A real one is in
+// tests/cluster.
+
+#include "scan/slurm_builds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "scan/built_elsewhere.hpp"
+#include "scan/scanner.hpp"
+#include "support/patience.hpp"
+#include "support/small_scan.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SlurmBuildsTest : public ::testing::Test {
+ protected:
+  SlurmBuildsTest() {
+    put(at("queue"), "");
+    program("sbatch", "echo \"$@\" >>'" + at("submitted") + "'; echo '12;cluster'");
+    program("squeue", "cat '" + at("queue") + "'");
+    program("scancel", "echo \"$@\" >>'" + at("cancelled") + "'");
+  }
+
+  std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// Makes one of Slurm's programs.
+  void program(const std::string& name, const std::string& does) const {
+    put(at(name + ".new"), "#!/bin/sh\n" + does + "\n");
+    fs::permissions(at(name + ".new"), fs::perms::owner_all);
+    fs::rename(at(name + ".new"), at(name));
+  }
+
+  SlurmOptions options() const {
+    return {.slurm = {.sbatch = at("sbatch"), .squeue = at("squeue"), .scancel = at("scancel")},
+            .octurn = "/opt/octurn",
+            .interval = std::chrono::milliseconds(1)};
+  }
+
+  SlurmBuilds start() { return {options(), store_, {.threads = 1, .memory_bytes = 64U << 20U}}; }
+
+  /// A stored scan, which waits for its model.
+  Job store_scan() {
+    const fs::path beginning = store_.begin_import();
+    write_small_scan(beginning, 2);
+    return store_.adopt(beginning);
+  }
+
+  static BuildRun run_of(const Job& scan) {
+    BuildRun run{.scan = scan.id, .snapshots = 2, .settings = {.scan = scan.settings}};
+    run.settings.scan.method = Method::intersection;
+    run.settings.scan.leaf_size = 0.004;
+    return run;
+  }
+
+  fs::path folder_of(const BuildRun& run) const {
+    return fs::canonical(store_.folder(run.scan)) / "builds" / std::to_string(run.number);
+  }
+
+  /// What squeue says of the job.
+  void say(const std::string& state, const std::string& reason, const BuildRun& run,
+           const std::string& job = "12") const {
+    put(at("queue.new"), job + "|" + state + "|" + reason + "|" + folder_of(run).string() + "\n");
+    fs::rename(at("queue.new"), at("queue"));
+  }
+
+  /// Waits until the run of a scan is as wanted; nothing if it is not there any more.
+  static std::optional<BuildRun> wait_until(const SlurmBuilds& builds,
+                                            const std::function<bool(const BuildRun&)>& wanted) {
+    const auto runs = builds.runs().wait({}, patience, [&](const std::vector<BuildRun>& all) {
+      return all.empty() || wanted(all.front());
+    });
+    return runs->empty() ? std::nullopt : std::optional(runs->front());
+  }
+
+  static std::optional<BuildRun> wait_for_end(const SlurmBuilds& builds) {
+    return wait_until(builds, [](const BuildRun& seen) { return seen.has_ended(); });
+  }
+
+  /// Begins a build, and waits until it is job 12.
+  static BuildRun begin(SlurmBuilds& builds, const Job& scan) {
+    const BuildRun run = builds.add(run_of(scan), true);
+    wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->id.empty(); });
+    return run;
+  }
+
+  std::string lines(const std::string& name) const {
+    return fs::exists(at(name)) ? content_of(at(name)) : "";
+  }
+
+  TemporaryFolder folder_ = {};
+  ScanStore store_{folder_.path() / "data"};
+};
+
+TEST_F(SlurmBuildsTest, ABuildIsAJobThatMakesTheModelOfTheScan) {
+  const Job scan = store_scan();
+  SlurmBuilds builds = start();
+  const BuildRun run = begin(builds, scan);
+  EXPECT_EQ(run.state, BuildRun::State::waiting);
+  EXPECT_TRUE(builds.is_building(scan.id));
+
+  say("PENDING", "Resources", run);
+  auto now =
+      wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->detail.empty(); });
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->state, BuildRun::State::waiting);
+  EXPECT_EQ(now->cluster_job->id, "12");
+  EXPECT_EQ(now->cluster_job->detail, "it waits for processors or memory");
+  const std::string submitted = lines("submitted");
+  EXPECT_NE(submitted.find("--cpus-per-task=1 --mem=64M "), std::string::npos) << submitted;
+  EXPECT_NE(submitted.find(" /opt/octurn " + folder_of(run).string() + "\n"), std::string::npos);
+
+  say("RUNNING", "None", run);
+  put(folder_of(run) / "progress.json", R"({"phase": "rebuilding", "snapshots_done": 1})");
+  now = wait_until(builds, [](const BuildRun& seen) { return seen.snapshots_done == 1; });
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->state, BuildRun::State::running);
+  EXPECT_EQ(now->phase, Phase::rebuilding);
+
+  ASSERT_TRUE(build_task_in(folder_of(run), {}));
+  EXPECT_FALSE(wait_for_end(builds)) << "a finished build is told by its model";
+
+  const Job built = store_.get(scan.id);
+  EXPECT_EQ(built.state, JobState::finished);
+  ASSERT_NE(chosen_model(built), nullptr);
+  EXPECT_GT(chosen_model(built)->report.triangles, 100U);
+  EXPECT_EQ(built.builds.all.front().settings.scan.leaf_size, 0.004);
+  EXPECT_FALSE(builds.is_building(scan.id));
+  const std::vector<std::string> left = names_in(folder_of(run));
+  EXPECT_EQ(left.size(), 2U);
+  EXPECT_EQ(std::ranges::count(left, "Scan.stl") + std::ranges::count(left, "build.json"), 2);
+}
+
+TEST_F(SlurmBuildsTest, WhatSlurmRefusesFailsInItsWords) {
+  const Job scan = store_scan();
+  program("sbatch", "echo 'sbatch: error: invalid partition specified: small' >&2; exit 1");
+  SlurmBuilds builds = start();
+  const BuildRun run = builds.add(run_of(scan), true);
+
+  const auto ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, BuildRun::State::failed);
+  EXPECT_EQ(ended->failure->detail, "Slurm: sbatch: error: invalid partition specified: small");
+  EXPECT_FALSE(ended->failure->hint.empty());
+  EXPECT_FALSE(fs::exists(folder_of(run)));
+  EXPECT_EQ(store_.get(scan.id).state, JobState::interrupted) << "the scan is as it was";
+}
+
+TEST_F(SlurmBuildsTest, WithoutSlurmsProgramsItSaysSo) {
+  SlurmOptions without = options();
+  without.slurm.sbatch = at("no-sbatch");
+  try {
+    without.slurm.expect_programs();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_settings);
+    EXPECT_NE(std::string(error.what()).find("no-sbatch: cannot be run: No such file"),
+              std::string::npos);
+  }
+  options().slurm.expect_programs();
+
+  SlurmBuilds builds(without, store_, {});
+  builds.add(run_of(store_scan()), true);
+  const auto ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, BuildRun::State::failed);
+  EXPECT_NE(ended->failure->detail.find("cannot be run"), std::string::npos);
+}
+
+TEST_F(SlurmBuildsTest, CancellingIsScancelAndTheFolderGoesWhenTheJobHas) {
+  const Job scan = store_scan();
+  SlurmBuilds builds = start();
+  const BuildRun run = begin(builds, scan);
+  say("RUNNING", "None", run);
+  wait_until(builds, [](const BuildRun& seen) { return seen.state == BuildRun::State::running; });
+
+  EXPECT_FALSE(builds.cancel(scan.id, run.number + 1));
+  program("scancel", "echo \"$@\" >>'" + at("cancelled") + "'; sed 's/RUNNING/CANCELLED/' '" +
+                         at("queue") + "' >'" + at("queue.next") + "'; mv '" + at("queue.next") +
+                         "' '" + at("queue") + "'");
+  EXPECT_TRUE(builds.cancel(scan.id, run.number));
+  const auto ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, BuildRun::State::cancelled);
+  EXPECT_FALSE(ended->failure);
+  EXPECT_EQ(lines("cancelled"), "12\n");
+  EXPECT_FALSE(fs::exists(folder_of(run)));
+  EXPECT_FALSE(builds.cancel(scan.id, run.number)) << "it has ended";
+}
+
+TEST_F(SlurmBuildsTest, AJobThatFailsTellsWhy) {
+  const Job scan = store_scan();
+  SlurmBuilds builds = start();
+  BuildRun run = builds.add(run_of(scan), true);
+  say("TIMEOUT", "TimeLimit", run);
+  auto ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->failure->detail, "its job took longer than Slurm lets it (Slurm's job 12)");
+
+  program("sbatch", "echo 13");
+  run = builds.add(run_of(scan), true);  // which takes the place of the one that failed
+  EXPECT_EQ(builds.runs().get()->size(), 1U);
+  fs::remove(store_.folder(scan.id) / "scan.json");
+  EXPECT_THROW(build_task_in(folder_of(run), {}), Error);
+  say("FAILED", "NonZeroExitCode", run, "13");
+  ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, BuildRun::State::failed);
+  EXPECT_NE(ended->failure->detail.find("scan.json"), std::string::npos) << ended->failure->detail;
+}
+
+TEST_F(SlurmBuildsTest, AJobThatSlurmHasForgottenHasFailed) {
+  SlurmOptions impatient = options();
+  impatient.patience = {};
+  SlurmBuilds builds(impatient, store_, {.threads = 1});
+  builds.add(run_of(store_scan()), true);
+  const auto ended = wait_for_end(builds);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->state, BuildRun::State::failed);
+  EXPECT_EQ(ended->failure->detail, "Slurm's job 12 has ended without a model");
+}
+
+TEST_F(SlurmBuildsTest, WhileSlurmDoesNotAnswerBuildsGoOn) {
+  program("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1");
+  const Job scan = store_scan();
+  SlurmBuilds builds = start();
+  const BuildRun run = builds.add(run_of(scan), true);
+  const auto now =
+      wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->detail.empty(); });
+  ASSERT_TRUE(now);
+  EXPECT_EQ(now->state, BuildRun::State::waiting);
+  EXPECT_NE(now->cluster_job->detail.find("Unable to contact"), std::string::npos);
+
+  ASSERT_TRUE(build_task_in(folder_of(run), {}));
+  EXPECT_FALSE(wait_for_end(builds)) << "its files tell that it has ended";
+  EXPECT_NE(chosen_model(store_.get(scan.id)), nullptr);
+}
+
+TEST_F(SlurmBuildsTest, AProcessThatStartsLaterFindsItsJobsAgain) {
+  const Job scan = store_scan();
+  BuildRun run;
+  {
+    SlurmBuilds builds = start();
+    run = begin(builds, scan);
+    say("PENDING", "Priority", run);
+    wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->detail.empty(); });
+  }
+  fs::remove(folder_of(run) / "job");  // as after a power cut before that was on the disk
+  {
+    SlurmBuilds builds = start();
+    EXPECT_TRUE(builds.is_building(scan.id));
+    const auto now =
+        wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->detail.empty(); });
+    ASSERT_TRUE(now);
+    EXPECT_EQ(now->number, run.number);
+    EXPECT_EQ(now->settings.scan.leaf_size, 0.004);
+  }
+  const std::string submitted = lines("submitted");
+  EXPECT_EQ(std::ranges::count(submitted, '\n'), 1) << submitted;
+
+  ASSERT_TRUE(build_task_in(folder_of(run), {}));  // while no daemon runs
+  put(at("queue"), "");
+  SlurmBuilds builds = start();
+  EXPECT_FALSE(wait_for_end(builds));
+  const Job built = store_.get(scan.id);
+  EXPECT_EQ(built.builds.chosen, run.number);
+  EXPECT_EQ(built.builds.all.size(), 1U);
+}
+
+TEST_F(SlurmBuildsTest, AScannerHasUploadedScansBuiltSo) {
+  Scanner scanner({.sensor_uri = "octurn-simulator://"}, {.threads = 1}, store_, options());
+  const Job scan = scanner.adopt([](const fs::path& folder) { write_small_scan(folder, 2); }, 1000);
+  ASSERT_EQ(scanner.build_runs().size(), 1U);
+  const BuildRun run = scanner.build_runs().front();
+  EXPECT_EQ(run.scan, scan.id);
+  EXPECT_THROW(scanner.remove(scan.id), Error) << "a model of it is being built";
+  EXPECT_THROW(scanner.resume(scan.id), Error);
+  EXPECT_FALSE(scanner.status().busy());
+
+  say("RUNNING", "None", run);
+  ASSERT_TRUE(build_task_in(folder_of(run), {}));
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!scanner.slurm_runs()->empty() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(scanner.find(scan.id).state, JobState::finished);
+  EXPECT_NE(chosen_model(scanner.find(scan.id)), nullptr);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,7 +1,6 @@
 // The first visit: check the scanner, calibrate, scan. It goes away once that is done, or is dismissed.
 
 import * as requests from './api_calibration.js';
-import {isCalibrated} from './calibration.js';
 import {element, part, show} from './dom.js';
 import {here} from './places.js';
 
@@ -75,9 +74,9 @@ export function seeReport({state}) {
 }
 
 function listen() {
-  part(element('first-steps'), '[data-step=check] button').addEventListener('click', () => {
+  part(element('first-steps'), '[data-step=check] button').addEventListener('click', async () => {
     location.hash = 'scanner';
-    element('examine').click();
+    (await import('./scanner_page.js')).check();
   });
   part(element('first-steps'), '[data-step=scan] button').addEventListener('click', () => element('start').focus());
   element('dismiss-steps').addEventListener('click', () => {
@@ -94,7 +93,7 @@ export async function watchSteps() {
   while (!known.isDismissed && !(known.isCalibrated && known.hasModel)) {
     if (here() === 'scan' && !document.hidden) {
       await requests.calibration().then((calibration) => {
-        known.isCalibrated = isCalibrated(calibration);
+        known.isCalibrated = requests.isCalibrated(calibration);
         render();
       }, () => {});
     }

@@ -111,7 +111,7 @@ test('brightness tells the distance, within what the picture can show', () => {
 });
 
 test('only what was found with this rig counts as calibrated', () => {
-  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => texts.isCalibrated({...calibration, source})),
+  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => isCalibrated({...calibration, source})),
       ['page', 'turn', 'scan']);
 });
 

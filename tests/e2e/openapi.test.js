@@ -52,6 +52,12 @@ test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) 
   const problem = await (await fetch(`${scanner.url}api/v1/scans/none`)).json();
   const isProblem = new Ajv({strict: false, validateFormats: false}).compile(description.components.schemas.Problem);
   assert.ok(isProblem(problem), JSON.stringify(problem));
+  for (const [method, path] of [['GET', 'api/none'], ['GET', 'api/v1/none'], ['POST', 'api/v1/none']]) {
+    const lost = await fetch(scanner.url + path, {method, headers: {'Content-Type': 'application/json'}});
+    const {code, hint} = await lost.json();
+    assert.deepEqual([lost.status, code], [404, 'not-found'], path);
+    assert.match(hint, /\/api\/v1\//, `${path}: a program is told where to look, and not of the page`);
+  }
 });
 
 test('what the disk has room for is counted in scans as they were, not as they could be', async (t) => {

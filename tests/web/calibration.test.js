@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
+import {isCalibrated} from '../../web/api_calibration.js';
 import * as texts from '../../web/calibration.js';
 import {distanceOf, distanceText} from '../../web/depth.js';
 import {errorColour} from '../../web/map_picture.js';

@@ -77,6 +77,9 @@ export const texts = {
   'first.calibrate-about': 'One turn of any object tells where the sensor stands.',
   'first.scan-about': 'Object on the middle of the platform, then Start.',
   'first.scan-do': 'To the start',
+  'first.demo-about': 'No sensor yet?',
+  'first.demo': 'Open a demo scan',
+  'first.demo-name': 'Demo, scanned by a simulated rig',
 
   // The large picture
   'stage': 'Picture',
@@ -104,6 +107,8 @@ export const texts = {
   'view.measured': '{distance}, along X, Y and Z {along}',
   'view.cut': 'Cut the model open',
   'view.cut-height': 'Height of the cut',
+  'view.lay': 'Lay it on another side',
+  'view.lay-which': 'Click the side that it shall lie on.',
   'view.reset': 'Reset the view',
   'view.loading': 'Loading the model',
   'view.lost': 'This device gave up drawing the model.',
@@ -291,6 +296,7 @@ export const texts = {
   'failure.start': 'The scan did not start',
   'failure.pause': 'The scan was not paused',
   'failure.import': 'The scan was not imported',
+  'failure.demo': 'The demo was not opened',
   'failure.end': 'The scan was not ended',
   'failure.resume': 'The scan was not resumed',
   'failure.rename': 'The scan was not renamed',

@@ -6,7 +6,7 @@ import * as format from './format.js';
 import {coarseUrl, hasCoarse, loadsUnasked} from './state.js';
 import {readStl} from './stl.js';
 import {text} from './texts.js';
-import {prepareTools, putToolsAway, useTool} from './view_tools.js';
+import {prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('./api.js').Model} Model */
@@ -58,6 +58,7 @@ function markPlaces() {
 function put(mesh, isFirst) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst});
+  standUp();
   if (isFirst) {
     viewer?.turn(!isStill);
   }

@@ -65,6 +65,12 @@ export function useTool(spot) {
   }
 }
 
+/** Another mesh of the same object stands as it is scanned. */
+export function standUp() {
+  lying = lying === 'laid' ? 'upright' : lying;
+  render();
+}
+
 /** Of another model: it is whole, and as it was scanned. */
 export function putToolsAway() {
   lying = 'upright';

@@ -2,10 +2,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scan/parameters_json.hpp"
+
 namespace octurn {
 
 nlohmann::json to_json(const Failure& failure) {
-  return {{"code", to_string(failure.code)}, {"detail", failure.detail}, {"hint", failure.hint}};
+  nlohmann::json object{
+      {"code", to_string(failure.code)}, {"detail", failure.detail}, {"hint", failure.hint}};
+  if (!failure.parameters.empty()) {
+    object["parameters"] = to_json(failure.parameters);
+  }
+  return object;
 }
 
 }  // namespace octurn

@@ -10,6 +10,7 @@
 #include "scan/failure_json.hpp"
 #include "scan/json_numbers.hpp"
 #include "scan/model_json.hpp"
+#include "scan/parameters_json.hpp"
 #include "scan/pose_of_json.hpp"
 
 namespace octurn {
@@ -37,7 +38,8 @@ std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
   JsonObject keys(*object);
   return Failure{.code = to_error_code(keys.at("code").text()).value_or(ErrorCode::unknown),
                  .detail = keys.at("detail").text(),
-                 .hint = keys.at("hint").text()};
+                 .hint = keys.at("hint").text(),
+                 .parameters = to_parameters(keys.value("parameters"))};
 }
 
 std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& object) {

@@ -1,6 +1,7 @@
 // Requests to the scanner. What it answers is described in API.md.
 
 import {text} from './texts.js';
+import {refusalText} from './wording.js';
 
 /**
  * @typedef {Object} Settings
@@ -13,7 +14,9 @@ import {text} from './texts.js';
  * @property {'auto' | 'told'} calibrate  whether a scan solves the sensor's pose itself
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
- * @typedef {{code: string, detail: string, hint: string, places_mm?: number[][]}} Reason  places_mm: where, in the model's frame
+ * @typedef {import('./wording.js').Parameters} Parameters
+ *
+ * @typedef {{code: string, detail: string, hint: string, parameters?: Parameters, places_mm?: number[][]}} Reason  places_mm: where, in the model's frame
  *
  * @typedef {Object} Model
  * @property {string} url
@@ -45,7 +48,7 @@ import {text} from './texts.js';
  * @property {boolean} [can_resume]
  * @property {Settings} settings
  * @property {number} late_pulses  of the motor
- * @property {{code: string, detail: string, hint: string} | null} error  of a running scan: what is being tried again
+ * @property {{code: string, detail: string, hint: string, parameters?: Parameters} | null} error  of a running scan: what is being tried again
  * @property {Model | null} model
  * @property {ScanCalibration | null} [calibration]  by the scan itself
  * @property {number} [build]  whose model it is; 0 is what the scan itself made
@@ -120,14 +123,16 @@ export class Problem extends Error {
    * @param {string} title
    * @param {string} [detail]
    * @param {string} [hint]
+   * @param {Parameters} [parameters]  the values in `detail`
    */
-  constructor(code, title, detail = '', hint = '') {
+  constructor(code, title, detail = '', hint = '', parameters = {}) {
     super(detail || title);
     this.name = 'Problem';
     this.code = code;
     this.title = title;
     this.detail = detail;
     this.hint = hint;
+    this.parameters = parameters;
   }
 }
 
@@ -138,7 +143,8 @@ const unreachable = () => new Problem('unreachable', text('problem.unreachable')
 async function problemOf(response) {
   const isProblem = response.headers.get('Content-Type')?.startsWith('application/problem+json');
   const body = isProblem ? await response.json().catch(() => ({})) : {};
-  return new Problem(body.code ?? 'http', body.title || text('problem.http', {status: String(response.status)}), body.detail, body.hint);
+  const code = body.code ?? 'http';
+  return new Problem(code, body.title || text('problem.http', {status: String(response.status)}), refusalText({...body, code}), body.hint, body.parameters);
 }
 
 /**

@@ -65,3 +65,6 @@ export const undo = () => json('calibration/undo', sending('POST'));
 
 /** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null}} wanted */
 export const change = (wanted) => json('calibration', sending('PATCH', wanted));
+
+/** Whether a pose was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */
+export const isCalibrated = ({source}) => source === 'turn' || source === 'scan' || source === 'page';

@@ -3,33 +3,43 @@
 import * as api from './api.js';
 import {element, setText, show} from './dom.js';
 import {awaitFragment} from './fragment.js';
+import {tabOf} from './places.js';
 import {text} from './texts.js';
-import {isUpdating, prepareUpdate, showScanning, showUpdate, showUpdateAway, updateAway} from './update.js';
-import {isJoining, prepareWifi, showWifi, wifiAway} from './wifi.js';
 
 const usual = {title: text('away.title'), text: text('away.text')};
 
 let isAppliance = false;
-let isPrepared = false;  // its part of the page is there
+let isScanning = false;
+let version = '';  // that the page is of
+/** @type {(typeof import('./update.js') & typeof import('./wifi.js')) | null} once its part of the page is there */
+let parts = null;
+let wake = () => {};
 
 /** @param {import('./api.js').Status} status */
 export function seeStatus({appliance, scan}) {
   isAppliance = appliance;
-  if (isPrepared) {
-    showScanning(scan !== null);
-  }
+  isScanning = scan !== null;
+  parts?.showScanning(isScanning);
 }
 
 async function prepare() {
-  await awaitFragment(element('appliance'), 'appliance.html');
-  prepareUpdate();
-  prepareWifi();
-  isPrepared = true;
+  const [update, wifi] = await Promise.all([import('./update.js'), import('./wifi.js'), awaitFragment(element('appliance'), 'appliance.html')]);
+  update.prepareUpdate();
+  wifi.prepareWifi();
+  parts = {...update, ...wifi};
+  parts.showScanning(isScanning);
 }
+
+/**
+ * Whether its part of the page is needed: it is looked at, or something goes on that the other places tell, too.
+ * @param {import('./api.js').Update} update @param {import('./api.js').Wifi} wifi
+ */
+const isNeeded = (update, wifi) => tabOf(location.hash.slice(1)) === 'scanner' || ['hotspot', 'joining'].includes(wifi.state) ||
+    ['receiving', 'installing', 'restarting', 'trial'].includes(update.state);
 
 /** What the banner says when the scanner does not answer: that may be as it should. */
 function explainAway() {
-  const {title, text: detail} = updateAway() ?? wifiAway() ?? usual;
+  const {title, text: detail} = parts?.updateAway() ?? parts?.wifiAway() ?? usual;
   setText(element('away-title'), title);
   setText(element('away-text'), detail);
 }
@@ -37,25 +47,33 @@ function explainAway() {
 async function look() {
   try {
     const [update, wifi] = await Promise.all([api.update(), api.wifi()]);
-    showUpdate(update);
-    showWifi(wifi);
-    show(element('wifi'), true);
-    show(element('appliance'), true);
+    if (version && version !== update.version) {
+      location.reload();  // the page is of the version before
+    }
+    version = update.version;
+    if (!parts && isNeeded(update, wifi)) {
+      await prepare();
+    }
+    parts?.showUpdate(update);
+    parts?.showWifi(wifi);
+    show(element('appliance'), parts !== null);
+    parts && show(element('wifi'), true);
   } catch {
-    showUpdateAway();
+    parts?.showUpdateAway();
   }
   explainAway();
 }
 
 /** Looks again and again, for as long as the page is open. */
 export async function watchAppliance() {
+  addEventListener('hashchange', () => parts || wake());
   for (;;) {
     if (isAppliance && !document.hidden) {
-      await (isPrepared || prepare());
       await look();
     }
-    const pause = isPrepared && !isUpdating() && !isJoining() ? 3000 : 1000;
-    await new Promise((done) => {
+    const pause = version && !parts?.isUpdating() && !parts?.isJoining() ? 3000 : 1000;
+    await new Promise((/** @type {(value?: undefined) => void} */ done) => {
+      wake = done;
       setTimeout(done, pause);
     });
   }

@@ -3,6 +3,7 @@
 import * as format from './format.js';
 import {badgeOf} from './quality.js';
 import {text, translated} from './texts.js';
+import {refusalText} from './wording.js';
 
 /** @typedef {import('./api_builds.js').Build} Build */
 /** @typedef {import('./api.js').Scan} Scan */
@@ -96,7 +97,7 @@ const shareOf = ({phase, snapshots_done, snapshots_total}) => phase === 'rebuild
 function troubleOf({state, error}) {
   const title = text(state === 'failed' ? 'build.failed' : 'build.cancelled');
   return error && (state === 'failed' || state === 'cancelled') ?
-    {title, text: [error.detail, error.hint].map(format.sentence).join(' ')} : null;
+    {title, text: [refusalText(error), error.hint].map(format.sentence).join(' ')} : null;
 }
 
 /** @param {Build} build @param {number | undefined} shown */

@@ -1,19 +1,37 @@
 // Makes the page as it is served of its modules: node bundle.js SOURCE TARGET FILE...
 //
 // The scripts and styles of each document that has some become a few files under assets/, whose names change with
-// their content, so that a browser may keep them for ever. Files that are neither are copied. Beside each
-// text lies the same, packed, as NAME.gz.
+// their content, so that a browser may keep them for ever. A document takes in the pieces that it includes. Files that
+// are neither are copied. Beside each text lies the same, packed, as NAME.gz.
 
 import {build} from 'esbuild';
 import {cp, mkdir, readFile, readdir, rm, writeFile} from 'node:fs/promises';
 import {basename, dirname, join, relative} from 'node:path';
+import {pathToFileURL} from 'node:url';
 import {gzipSync} from 'node:zlib';
 
 const [source, target, ...files] = process.argv.slice(2);
+const include = /^ *<!--#include file="([^"]+)" -->\n/gm;
 const stylesheet = /^ *<link rel="stylesheet" href="([^"]+)">\n/gm;
 const script = /<script type="module" src="([^"]+)"><\/script>/;
 const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
+const {isLater} = await import(pathToFileURL(join(source, 'text_parts.js')));
+
+/** Each language in two files: what the first sight of the page needs, and the rest. */
+const splitTexts = {name: 'texts', setup: ({onLoad, onResolve}) => {
+  onResolve({filter: /\?rest$/}, ({path}) => ({path, namespace: 'rest'}));
+  onLoad({filter: /\/texts\/\w+\.js$/}, async ({path}) => {
+    const {texts, said} = await import(pathToFileURL(path));
+    const first = Object.fromEntries(Object.entries(texts).filter(([key]) => !isLater(key)));
+    return {contents: `export const texts = ${JSON.stringify(first)}; export const said = ${JSON.stringify(said)};
+      export const rest = () => import(${JSON.stringify(`${path}?rest`)});`};
+  });
+  onLoad({filter: /./, namespace: 'rest'}, async ({path}) => {
+    const {texts} = await import(pathToFileURL(path.replace(/\?rest$/, '')));
+    return {contents: `export const texts = ${JSON.stringify(Object.fromEntries(Object.entries(texts).filter(([key]) => isLater(key))))};`};
+  });
+}};
 const common = {
   bundle: true, minify: true, format: 'esm', target: 'es2022', charset: 'utf8', legalComments: 'none', logLevel: 'warning',
   metafile: true, absWorkingDir: source, outdir: join(target, 'assets'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
@@ -52,30 +70,46 @@ async function filesBelow(folder) {
   return below.flat();
 }
 
+/** @type {Set<string>} files that are part of others */
+const included = new Set();
+
+/** @param {string} file @returns {Promise<string>} its text, with the pieces that it includes */
+async function textOf(file) {
+  const text = await readFile(join(source, file), 'utf8');
+  const pieces = new Map();
+  for (const [line, name] of text.matchAll(include)) {
+    const piece = join(dirname(file), name);
+    included.add(piece);
+    pieces.set(line, await textOf(piece));
+  }
+  return text.replace(include, (line) => pieces.get(line));
+}
+
 await rm(target, {recursive: true, force: true});
 await mkdir(target, {recursive: true});
 const documents = new Map();
 for (const file of files.filter((name) => !/\.(js|css)$/.test(name))) {
   await mkdir(join(target, dirname(file)), {recursive: true});
-  await cp(join(source, file), join(target, file));
-  const text = file.endsWith('.html') ? await readFile(join(source, file), 'utf8') : '';
-  if (text.search(stylesheet) >= 0) {
-    documents.set(file, text);
+  if (file.endsWith('.html')) {
+    documents.set(file, await textOf(file));
+  } else {
+    await cp(join(source, file), join(target, file));
   }
 }
+included.forEach((file) => documents.delete(file));
 
 const entries = [...documents.values()].flatMap((text) => script.exec(text)?.[1] ?? []);
-const {metafile: {outputs}} = await build({...common, entryPoints: entries, splitting: true});
+const {metafile: {outputs}} = await build({...common, entryPoints: entries, splitting: true, plugins: [splitTexts]});
 for (const [file, text] of documents) {
   const folder = dirname(file);
   const entry = script.exec(text)?.[1];
   const [main, ...others] = entry ? needed(outputs, madeOf(outputs, entry)).map(fromPage) : [];
   const styles = [...text.matchAll(stylesheet)].map(([, name]) => join(folder, name));
   const head = [
-    `  <link rel="stylesheet" href="${relative(folder, await bundleStyles(styles))}">`,
+    ...styles.length > 0 ? [`  <link rel="stylesheet" href="${relative(folder, await bundleStyles(styles))}">`] : [],
     ...others.map((other) => `  <link rel="modulepreload" href="${other}">`), ''].join('\n');
   const bare = text.replace(preload, '');
-  const first = bare.search(stylesheet);
+  const first = Math.max(bare.search(stylesheet), 0);
   const rest = bare.replace(stylesheet, '').replace(script, `<script type="module" src="${main}"></script>`);
   await writeFile(join(target, file), rest.slice(0, first) + head + rest.slice(first));
 }

@@ -1,5 +1,6 @@
 // Puts a calibration into the page Calibrate, except the picture and the five numbers.
 
+import {isCalibrated} from './api_calibration.js';
 import * as texts from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
 import {degrees, sentence} from './format.js';
@@ -98,7 +99,7 @@ function showHistory(calibration) {
   const poses = texts.historyOf(calibration);
   show(element('no-poses'), poses.length === 0);
   setText(element('no-poses'), texts.noPosesText(calibration));
-  show(element('undo'), poses.length > 0 || texts.isCalibrated(calibration));  // the settings' pose is below all
+  show(element('undo'), poses.length > 0 || isCalibrated(calibration));  // the settings' pose is below all
   list(element('poses'), poses, ({key}) => key, 'earlier-pose', (item, {title, text}) => {
     setText(part(item, '.pose-title'), title);
     setText(part(item, '.muted'), text);

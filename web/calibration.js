@@ -1,5 +1,6 @@
 // What the page Calibrate says of a calibration. Pure: the scanner's answer in, texts and choices out.
 
+import {isCalibrated} from './api_calibration.js';
 import {degrees, millimetres, percent, sentence, when} from './format.js';
 import {fixed, text} from './texts.js';
 
@@ -18,9 +19,6 @@ export const sourceOf = ({source, at}) => at ? text('pose.at', {source: text(`po
 
 /** Whether anybody told where this sensor stands. @param {PoseRecord} pose */
 const isTold = ({source}) => source !== 'default';
-
-/** Whether that was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */
-export const isCalibrated = ({source}) => source === 'turn' || source === 'scan' || source === 'page';
 
 /** @param {Calibration} calibration */
 export function summaryOf(calibration) {

@@ -1,12 +1,12 @@
 // The first visit: check the scanner, calibrate, scan. It goes away once that is done, or is dismissed.
 
 import * as requests from './api_calibration.js';
-import {isCalibrated} from './calibration.js';
 import {element, part, show} from './dom.js';
 import {here} from './places.js';
 
 const betweenLooks = 2000;  // milliseconds
 const checkedKey = 'octurn-checked';
+const demoKey = 'octurn-demo';  // the scan that is the demo, which is nobody's first model
 const dismissedKey = 'octurn-first-steps-dismissed';
 
 /** @typedef {{isChecked: boolean, isCalibrated: boolean | null, hasModel: boolean | null, isDismissed: boolean}} Known  null: not known yet */
@@ -27,25 +27,25 @@ export function stepsOf({isChecked, isCalibrated: hasPose, hasModel, isDismissed
 }
 
 /** What this browser remembers, as long as it may. @param {string} key */
-function isNoted(key) {
+function noted(key) {
   try {
-    return localStorage.getItem(key) !== null;
+    return localStorage.getItem(key);
   } catch {
-    return false;
+    return null;
   }
 }
 
-/** @param {string} key */
-function note(key) {
+/** @param {string} key @param {string} [value] */
+function note(key, value = 'yes') {
   try {
-    localStorage.setItem(key, 'yes');
+    localStorage.setItem(key, value);
   } catch {
     // a browser that keeps nothing shows the steps again
   }
 }
 
 /** @type {Known} */
-const known = {isChecked: isNoted(checkedKey), isCalibrated: null, hasModel: null, isDismissed: isNoted(dismissedKey)};
+const known = {isChecked: noted(checkedKey) !== null, isCalibrated: null, hasModel: null, isDismissed: noted(dismissedKey) !== null};
 
 function render() {
   const steps = stepsOf(known);
@@ -61,7 +61,7 @@ function render() {
 
 /** @param {import('./api.js').Status} status */
 export function seeNewest({newest}) {
-  known.hasModel = newest !== null;
+  known.hasModel = newest !== null && newest !== noted(demoKey);
   render();
 }
 
@@ -75,11 +75,12 @@ export function seeReport({state}) {
 }
 
 function listen() {
-  part(element('first-steps'), '[data-step=check] button').addEventListener('click', () => {
+  part(element('first-steps'), '[data-step=check] button').addEventListener('click', async () => {
     location.hash = 'scanner';
-    element('examine').click();
+    (await import('./scanner_page.js')).check();
   });
   part(element('first-steps'), '[data-step=scan] button').addEventListener('click', () => element('start').focus());
+  element('demo').addEventListener('click', async () => (await import('./demo.js')).openDemo((id) => note(demoKey, id)));
   element('dismiss-steps').addEventListener('click', () => {
     known.isDismissed = true;
     note(dismissedKey);
@@ -94,7 +95,7 @@ export async function watchSteps() {
   while (!known.isDismissed && !(known.isCalibrated && known.hasModel)) {
     if (here() === 'scan' && !document.hidden) {
       await requests.calibration().then((calibration) => {
-        known.isCalibrated = isCalibrated(calibration);
+        known.isCalibrated = requests.isCalibrated(calibration);
         render();
       }, () => {});
     }

@@ -27,7 +27,7 @@ export function clayMaterial({edges, filled, top}) {
     shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\nvarying float vHeight;\n${shader.vertexShader}`
         .replace('void main() {', `void main() {
       vFilled = filled;
-      vHeight = position.z;
+      vHeight = (modelMatrix * vec4(position, 1.0)).z;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
     shader.fragmentShader = `varying vec3 vCorner;

@@ -4,7 +4,6 @@ import * as api from './api.js';
 import {measure} from './api_calibration.js';
 import {turnStops} from './calibration.js';
 import {element, list, part, setText, show} from './dom.js';
-import {awaitFragment} from './fragment.js';
 import {capital, sentence} from './format.js';
 import {text, translated} from './texts.js';
 
@@ -111,7 +110,7 @@ async function carryOut({target}) {
 }
 
 /** @param {(report: import('./api.js').Report) => void} onReport */
-async function examine(onReport) {
+export async function examine(onReport) {
   if (element('examine').getAttribute('aria-disabled') === 'true') {
     return;
   }
@@ -132,8 +131,7 @@ async function examine(onReport) {
 }
 
 /** @param {(report: import('./api.js').Report) => void} onReport  told of each check */
-export async function prepareDoctor(onReport) {
-  await awaitFragment(element('doctor'), 'doctor.html');
+export function prepareDoctor(onReport) {
   element('examine').addEventListener('click', () => examine(onReport));
   element('findings').addEventListener('click', carryOut);
 }

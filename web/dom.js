@@ -22,6 +22,11 @@ export function show(target, isShown) {
   target.toggleAttribute('hidden', !isShown);
 }
 
+/** @param {string} id  of a button that stays pressed @param {boolean} isPressed */
+export function pressed(id, isPressed) {
+  element(id).setAttribute('aria-pressed', String(isPressed));
+}
+
 /** @param {string} id  of a template with one element @returns {any} a copy of it */
 export const copyOf = (id) => element(id).content.firstElementChild.cloneNode(true);
 

@@ -4,20 +4,14 @@ import * as api from './api.js';
 import * as requests from './api_builds.js';
 import {seeStatus, watchAppliance} from './appliance.js';
 import * as bin from './bin.js';
-import {prepareBuilds} from './builds_view.js';
 import {watchCamera} from './camera.js';
-import {seeNewest, seeReport, watchSteps} from './checklist.js';
-import {prepareDoctor} from './doctor.js';
+import {seeNewest, watchSteps} from './checklist.js';
 import {element} from './dom.js';
 import * as events from './events.js';
 import {prepareForm} from './form.js';
-import {build, buildActions, poseActions} from './model_actions.js';
 import {asked, change, state} from './page.js';
 import {here, preparePlaces, showPlace} from './places.js';
-import {preparePoses} from './poses_view.js';
 import {cancel, end, pause, rename, resume, start} from './scan_actions.js';
-import {screenOf} from './screen.js';
-import {prepareSend} from './send.js';
 import {prepareStage} from './stage.js';
 import * as states from './state.js';
 import {fillTexts, language} from './texts.js';
@@ -28,8 +22,7 @@ async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  prepareBuilds(buildActions);
-  preparePoses(poseActions);
+  (await import('./scan_page.js')).prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};
 }
@@ -104,11 +97,6 @@ function listen() {
   click('show-model', () => change(states.withStage(state, 'model')));
   click('show-camera', () => change(states.withStage(state, 'camera')));
   click('details-rename', () => rename(state.selected));
-  click('straighten', () => element('straighten').getAttribute('aria-disabled') !== 'true' && build({calibrate: 'auto', choose: true}));
-  click('build-first', () => {
-    const unbuilt = element('build-first').getAttribute('aria-disabled') !== 'true' && screenOf(state).details?.unbuilt;
-    unbuilt && build(unbuilt.settings);
-  });
   element('reasons').addEventListener('click', (/** @type {any} */ event) => {
     const reason = event.target.closest('.reason-places')?.closest('li').dataset.key;
     if (reason) {
@@ -125,9 +113,8 @@ follow();
 listen();
 preparePlaces();
 prepareStage();
-prepareSend();
 watch();
 events.listenForNews(() => wake());
 watchCamera();
 watchAppliance();
-prepareDoctor(seeReport).then(watchSteps);  // the first step is a check
+watchSteps();

@@ -1,44 +1,57 @@
-// Which place of a model is under a pixel. The model's points are in the GPU's memory alone, so the GPU is asked: it draws that one
-// pixel, with the place in the model's frame for a colour.
+// What of a model is under a pixel. The model's points are in the GPU's memory alone, so the GPU is asked: it draws that one
+// pixel, with the place for a colour, and again with the facet's normal, both as the model lies there.
 
 import {DoubleSide, FloatType, ShaderMaterial, WebGLRenderTarget} from './three.js';
 
+/** @typedef {{place: number[], normal: number[]}} Spot  millimetres; of length 1, towards the eye */
+
 const pixel = new WebGLRenderTarget(1, 1, {type: FloatType});
-const asPlaces = new ShaderMaterial({
+const asNumbers = new ShaderMaterial({
   side: DoubleSide,
-  uniforms: {top: {value: 0}},
+  uniforms: {top: {value: 0}, isNormal: {value: false}},
   vertexShader: `varying vec3 vPlace;
 void main() {
-  vPlace = position;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  vec4 place = modelMatrix * vec4(position, 1.0);
+  vPlace = place.xyz;
+  gl_Position = projectionMatrix * viewMatrix * place;
 }`,
   fragmentShader: `varying vec3 vPlace;
 uniform float top;
+uniform bool isNormal;
 void main() {
   if (vPlace.z > top) discard;
-  gl_FragColor = vec4(vPlace, 1.0);
+  vec3 normal = normalize(cross(dFdx(vPlace), dFdy(vPlace)));
+  gl_FragColor = vec4(isNormal ? normal : vPlace, 1.0);
 }`,
 });
+
+/** @param {import('three').WebGLRenderer} renderer @param {any} model @param {import('three').PerspectiveCamera} camera @param {boolean} isNormal */
+function read(renderer, model, camera, isNormal) {
+  asNumbers.uniforms.isNormal.value = isNormal;
+  renderer.clear();
+  renderer.render(model, camera);
+  const numbers = new Float32Array(4);
+  renderer.readRenderTargetPixels(pixel, 0, 0, 1, 1, numbers);
+  return numbers[3] === 1 ? [...numbers.slice(0, 3)] : null;
+}
 
 /**
  * @param {import('three').WebGLRenderer} renderer @param {import('three').PerspectiveCamera} camera @param {any} model
  * @param {number} top  millimetres: what is higher is not there
  * @param {number} x @param {number} y  of the canvas, CSS pixels
- * @returns {number[] | null} millimetres; null beside the model
+ * @returns {Spot | null} null beside the model
  */
-export function placeAt(renderer, camera, model, top, x, y) {
+export function spotAt(renderer, camera, model, top, x, y) {
   const {clientWidth, clientHeight} = renderer.domElement;
   const clay = model.material;
-  asPlaces.uniforms.top.value = top;
+  asNumbers.uniforms.top.value = top;
   camera.setViewOffset(clientWidth, clientHeight, Math.floor(x), Math.floor(y), 1, 1);
-  model.material = asPlaces;
+  model.material = asNumbers;
   renderer.setRenderTarget(pixel);
-  renderer.clear();
-  renderer.render(model, camera);
+  const place = read(renderer, model, camera, false);
+  const normal = place && read(renderer, model, camera, true);
   renderer.setRenderTarget(null);
   model.material = clay;
   camera.clearViewOffset();
-  const place = new Float32Array(4);
-  renderer.readRenderTargetPixels(pixel, 0, 0, 1, 1, place);
-  return place[3] === 1 ? [...place.slice(0, 3)] : null;
+  return place && normal && {place, normal};
 }

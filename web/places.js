@@ -1,5 +1,5 @@
 // The places of the page: Scan, Library and Scanner, of which Calibrate and Settings are parts. Each but the first has an
-// address, '#' and its name. Those with a module have a file NAME.html, too; both are fetched when somebody first goes there.
+// address, '#' and its name, and a module and a piece of HTML, which are fetched when somebody first goes there.
 
 import {element, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
@@ -7,10 +7,11 @@ import {text} from './texts.js';
 
 const first = 'scan';
 
-/** @type {Record<string, {title: string, load?: () => Promise<{prepare: () => void}>}>} */
+/** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>, piece?: string}>} piece: the id of what it is put
+ * into, and its file's name; without it, the whole place's */
 const others = {
   library: {title: 'places.library', load: () => import('./library_page.js')},
-  scanner: {title: 'places.scanner'},
+  scanner: {title: 'places.scanner', load: () => import('./scanner_page.js'), piece: 'doctor'},
   calibrate: {title: 'places.calibrate', load: () => import('./calibrate.js')},
   settings: {title: 'places.settings', load: () => import('./settings_page.js')},
 };
@@ -33,17 +34,18 @@ const begun = new Set();
 
 /** @param {string} place */
 async function arrive(place) {
-  const {load} = others[place] ?? {};
-  if (!load || begun.has(place)) {
+  if (!Object.hasOwn(others, place) || begun.has(place)) {
     return;
   }
   begun.add(place);
+  const {load, piece} = others[place];
+  const parent = piece ? element(piece) : mainOf(place);
   try {
-    const [module] = await Promise.all([load(), fetchFragment(mainOf(place), `${place}.html`)]);
+    const [module] = await Promise.all([load(), fetchFragment(parent, `${piece ?? place}.html`)]);
     module.prepare();
   } catch {
     begun.delete(place);
-    setText(mainOf(place), text('places.late'));
+    setText(parent, text('places.late'));
     setTimeout(() => here() === place && arrive(place), betweenAttempts);
   }
 }

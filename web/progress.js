@@ -2,6 +2,7 @@
 
 import * as format from './format.js';
 import {text} from './texts.js';
+import {refusalText} from './wording.js';
 
 /** @typedef {import('./api.js').Scan} Scan */
 
@@ -47,7 +48,7 @@ export const progressOf = (scan) => ({
   id: scan.id,
   phase: scan.phase,
   text: phaseText(scan),
-  trouble: format.sentence(scan.error?.detail ?? ''),
+  trouble: scan.error ? format.sentence(refusalText(scan.error)) : '',
   percent: percent(scan),
   done: scan.snapshots_done,
   total: scan.snapshots_total,

@@ -2,6 +2,7 @@
 
 import {sentence} from './format.js';
 import {text} from './texts.js';
+import {reasonText} from './wording.js';
 
 /** @typedef {import('./api.js').Model} Model */
 
@@ -58,7 +59,8 @@ export function verdictOf({quality, watertight}, findings = []) {
     title: text(`verdict.${quality.verdict}`),
     text: quality.verdict !== 'good' ? '' :
       text(watertight ? 'verdict.good-about' : 'verdict.open'),
-    reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map(({code, detail, hint, places_mm}) => (
-      {key: `${code} ${detail}`, detail: sentence(detail), hint: sentence(hint), action: actionOf(code), places: places_mm ?? []})),
+    reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map((reason) => ({
+      key: `${reason.code} ${reason.detail}`, detail: sentence(reasonText(reason)), hint: sentence(reason.hint), action: actionOf(reason.code),
+      places: reason.places_mm ?? []})),
   };
 }

@@ -8,6 +8,7 @@ import {isBuilding, phaseText, progressOf} from './progress.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
 import {isAway, running, scanOf} from './state.js';
 import {text, translated} from './texts.js';
+import {refusalText} from './wording.js';
 
 /** @typedef {import('./state.js').State} State */
 /** @typedef {import('./api.js').Scan} Scan */
@@ -27,7 +28,7 @@ const taken = (scan) => text('count.of', {done: scan.snapshots_done, total: scan
 /** Why a scan has no model. @param {Scan} scan */
 function troubleOf(scan) {
   const said = {
-    detail: format.sentence(scan.error?.detail ?? ''),
+    detail: scan.error ? format.sentence(refusalText(scan.error)) : '',
     hint: format.sentence(scan.error?.hint ?? ''),
     action: actionOf(scan.error?.code),
   };

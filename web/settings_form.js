@@ -4,6 +4,7 @@ import {degrees as angle, millimetres, sentence} from './format.js';
 import {isText, text} from './texts.js';
 
 /** @typedef {import('./api_settings.js').SettingSchema} SettingSchema */
+/** @typedef {{detail: string, parameters?: Record<string, any>}} Refusal */
 
 /** @param {string} key @returns {string} for people */
 export const nameOf = (key) => isText(`setting.${key}`) ? text(`setting.${key}`) : key;
@@ -68,11 +69,15 @@ export function complaintOf(schema, value) {
   return schema.minimum === undefined ? '' : numberComplaint(schema, value);
 }
 
-/** The setting that a problem's detail is about: `"turntable.gear_ratio" is 0: ...`. @param {string} detail */
-export const keyOf = (detail) => /^"([a-z0-9_.]+)"/.exec(detail)?.[1] ?? null;
+/** The setting that a problem is about: of `"ports": unknown key` as of a value out of its range. @param {Refusal} problem */
+export const keyOf = ({detail, parameters = {}}) => parameters.key ?? /^"([a-z0-9_.]+)"/.exec(detail)?.[1] ?? null;
 
-/** What is wrong, without the setting's key. @param {string} detail */
-export function reasonOf(detail) {
+/** What is wrong, without the setting's key. @param {Refusal} problem */
+export function reasonOf({detail, parameters = {}}) {
+  const {minimum, maximum} = parameters;
+  if (minimum !== undefined) {
+    return text('settings.range', {minimum, maximum});
+  }
   const reason = /: (must be .*)$/s.exec(detail)?.[1];
   return reason ? sentence(`it ${reason}`) : detail;
 }

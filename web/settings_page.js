@@ -126,10 +126,10 @@ function take(news) {
 
 /** @param {Card} card @param {Problem} problem */
 function showProblem({fields, saved}, problem) {
-  const key = keyOf(problem.detail);
+  const key = keyOf(problem);
   const field = fields.find((one) => one.key === key);
   if (field) {
-    field.complain(reasonOf(problem.detail));
+    field.complain(reasonOf(problem));
     field.focus();
   } else {
     setText(saved, wordsOf(problem));

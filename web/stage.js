@@ -1,12 +1,12 @@
 // The large picture: the camera, or the model of the scan that is looked at.
 
 import * as api from './api.js';
-import {element, setText, show} from './dom.js';
+import {element, pressed, setText, show} from './dom.js';
 import * as format from './format.js';
-import {measureText, withPoint} from './measure.js';
-import {loadsUnasked} from './state.js';
+import {coarseUrl, hasCoarse, loadsUnasked} from './state.js';
 import {readStl} from './stl.js';
 import {text} from './texts.js';
+import {prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('./api.js').Model} Model */
@@ -25,9 +25,10 @@ let marked = null;
 let due = null;
 let loading = new AbortController();
 
-/** @param {string} words @param {{button?: string, progress?: number}} [more] */
-function note(words, {button, progress} = {}) {
+/** @param {string} words @param {{button?: string, progress?: number, isOver?: boolean}} [more]  isOver: a model that is shown */
+function note(words, {button, progress, isOver = false} = {}) {
   show(element('model-note'), words !== '');
+  element('model-note').classList.toggle('over', isOver);
   show(element('tools'), words === '');
   setText(element('model-text'), words);
   show(element('model-progress'), progress !== undefined);
@@ -36,16 +37,12 @@ function note(words, {button, progress} = {}) {
   setText(element('load-model'), button ?? '');
 }
 
-function pressed(/** @type {string} */ id, /** @type {boolean} */ isPressed) {
-  element(id).setAttribute('aria-pressed', String(isPressed));
-}
-
 async function openViewer() {
   const {Viewer} = await import('./viewer.js');
   return new Viewer(element('view'), {
     onTurning: (isTurning) => pressed('turn', isTurning),
     onLost: () => note(text('view.lost'), {button: text('view.again')}),
-    onPlace: (point) => measuring && setMeasure(withPoint(measuring, point)),
+    onSpot: useTool,
   });
 }
 
@@ -57,8 +54,35 @@ function markPlaces() {
   }
 }
 
-/** @param {Model} model @param {{isFirst?: boolean}} [growth]  another model of the same object is seen from where the eye is */
-async function load(model, {isFirst = true} = {}) {
+/** @param {import('./stl.js').Mesh} mesh @param {boolean} isFirst  of its object */
+function put(mesh, isFirst) {
+  show(element('filled'), mesh.filled !== null);
+  viewer?.show(mesh, {isFirst});
+  standUp();
+  if (isFirst) {
+    viewer?.turn(!isStill);
+  }
+}
+
+/**
+ * Shows a few triangles of a model while the rest is on its way, or is not asked for yet.
+ * @param {Model} model @param {AbortSignal} signal
+ * @returns {Promise<boolean>} whether it is shown
+ */
+async function putCoarse(model, signal) {
+  try {
+    const mesh = await readStl(await api.model(coarseUrl(model), signal));
+    if (!signal.aborted) {
+      put(mesh, true);
+    }
+    return !signal.aborted;
+  } catch {
+    return false;  // the model itself tells what is wrong
+  }
+}
+
+/** Makes ready for a model. @param {boolean} isFirst @returns {Promise<AbortSignal | null>} null where nothing can be drawn */
+async function begin(isFirst) {
   loading.abort();
   loading = new AbortController();
   const {signal} = loading;
@@ -69,21 +93,26 @@ async function load(model, {isFirst = true} = {}) {
   note(text('view.loading'), {progress: 0});
   try {
     viewer ??= await openViewer();
+    return signal;
   } catch {
     note(text('view.no-webgl'));
+    return null;
+  }
+}
+
+/** @param {Model} model @param {{isFirst?: boolean}} [growth]  another model of the same object is seen from where the eye is */
+async function load(model, {isFirst = true} = {}) {
+  const signal = await begin(isFirst);
+  if (!signal) {
     return;
   }
+  const isCoarse = isFirst && hasCoarse(model.bytes) && await putCoarse(model, signal);
   try {
-    const mesh = await readStl(await api.model(model.url, signal), (progress) => note(text('view.loading'), {progress}));
+    const mesh = await readStl(await api.model(model.url, signal), (progress) => note(text('view.loading'), {progress, isOver: isCoarse}));
     if (!signal.aborted) {
-      show(element('filled'), mesh.filled !== null);
-      viewer.show(mesh, {isFirst});
-      if (isFirst) {
-        viewer.turn(!isStill);
-      }
+      put(mesh, isFirst && !isCoarse);
       note('');
-      setMeasure(null);
-      setCut(false);
+      putToolsAway();
       marked = [];
       markPlaces();
     }
@@ -91,6 +120,15 @@ async function load(model, {isFirst = true} = {}) {
     if (!signal.aborted) {
       note(format.sentence(error instanceof Error ? error.message : String(error)), {button: text('view.retry')});
     }
+  }
+}
+
+/** Shows what a large model looks like, and offers the rest of it. @param {Model} model */
+async function offer(model) {
+  const signal = await begin(true);
+  const isOver = signal !== null && await putCoarse(model, signal);
+  if (signal && !signal.aborted) {
+    note(text('view.large'), {button: text('view.load', {bytes: format.bytes(model.bytes)}), isOver});
   }
 }
 
@@ -115,11 +153,9 @@ async function grow(growing) {
     viewer ??= await openViewer();
     const mesh = await readStl(await api.growing(growing.url, signal));
     if (!signal.aborted) {
-      show(element('filled'), mesh.filled !== null);
-      viewer.show(mesh, {isFirst});
+      put(mesh, isFirst);
       if (isFirst) {
         note('');
-        viewer.turn(!isStill);
       }
     }
   } catch {
@@ -159,8 +195,7 @@ function setModel({model, object: id}) {
   } else if (loadsUnasked(model.bytes, isHandheld)) {
     load(model, {isFirst});
   } else {
-    viewer?.clear();
-    note(text('view.large'), {button: text('view.load', {bytes: format.bytes(model.bytes)})});
+    offer(model);
   }
 }
 
@@ -187,34 +222,9 @@ export function renderStage(stage) {
   markPlaces();
 }
 
-/** @type {number[][] | null} places that are measured between; null: nothing is */
-let measuring = null;
-
-/** @param {number[][] | null} points_mm */
-function setMeasure(points_mm) {
-  measuring = points_mm;
-  pressed('measure', points_mm !== null);
-  element('view').dataset.measuring = points_mm ? 'yes' : 'no';
-  show(element('measured'), points_mm !== null);
-  setText(element('measured'), points_mm ? measureText(points_mm) : '');
-  viewer?.showMeasure(points_mm ?? []);
-}
-
-/** @param {boolean} isCut */
-function setCut(isCut) {
-  pressed('cut', isCut);
-  show(element('cut-height'), isCut);
-  cutAt(isCut ? element('cut-share').valueAsNumber : 1);
-}
-
-/** @param {number} share  of the model's height */
-function cutAt(share) {
-  const height = viewer?.cut(share) ?? 0;
-  setText(element('cut-at'), format.millimetres(height, 1));
-}
-
 /** Makes the buttons on the picture work. */
 export function prepareStage() {
+  prepareTools(() => viewer);
   element('load-model').addEventListener('click', () => wanted && load(wanted));
   element('reset-view').addEventListener('click', () => viewer?.reset());
   element('turn').addEventListener('click', () => viewer?.turn(element('turn').getAttribute('aria-pressed') !== 'true'));
@@ -223,12 +233,6 @@ export function prepareStage() {
     pressed('filled', isShown);
     viewer?.showFilled(isShown);
   });
-  element('measure').addEventListener('click', () => setMeasure(measuring ? null : []));
-  element('cut').addEventListener('click', () => {
-    element('cut-share').value = 0.5;
-    setCut(element('cut').getAttribute('aria-pressed') !== 'true');
-  });
-  element('cut-share').addEventListener('input', () => cutAt(element('cut-share').valueAsNumber));
   element('edges').addEventListener('click', () => {
     const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
     pressed('edges', areShown);

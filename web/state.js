@@ -183,3 +183,9 @@ export function pause(state) {
  * @param {boolean} isHandheld
  */
 export const loadsUnasked = (bytes, isHandheld) => bytes <= (isHandheld ? 20e6 : 160e6);
+
+/** Whether a coarse mesh of a model is there much sooner than the model. @param {number} bytes  of the file */
+export const hasCoarse = (bytes) => bytes > 250e3;
+
+/** Where that mesh is. @param {import('./api.js').Model} model */
+export const coarseUrl = ({url}) => url.replace(/Scan\.stl$/, 'coarse.stl');

@@ -48,11 +48,16 @@ const preferred = isInBrowser ? navigator.languages : ['en-US'];
 export const language = languageOf(isInBrowser ? chosenLanguage() : null, preferred);
 export const locale = localeOf(language, preferred);
 
-/** @type {{texts: Texts, said: Record<string, string>}} */
-const {texts, said} = await files[language]();
+/** @type {{texts: Texts, said: Record<string, string>, rest?: () => Promise<{texts: Texts}>}} rest: what a packed language leaves for later */
+const {texts, said, rest} = await files[language]();
 const plurals = new Intl.PluralRules(locale);
 const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
 const exact = new Intl.NumberFormat(locale, {maximumFractionDigits: 6, useGrouping: false});
+
+/** Fetches the texts that the first sight of the page does without. */
+export async function awaitTexts() {
+  Object.assign(texts, (await rest?.())?.texts);
+}
 
 /** @param {number} value */
 export const number = (value) => plain.format(value);

@@ -146,9 +146,6 @@ function change(news) {
 
 /** @param {Update} update */
 export function showUpdate(update) {
-  if (state.update.version && state.update.version !== update.version) {
-    location.reload();  // the page is of the version before
-  }
   if (update.state === 'kept') {
     sessionStorage.removeItem(mark);
   }

@@ -1,10 +1,8 @@
 // Puts a screen (screen.js) into the DOM, except the large picture (stage.js) and the form's fields (form.js).
 
-import {renderBuilds} from './builds_view.js';
 import {tickWidth, ticks} from './dial.js';
 import {element, list, part, setBadge, setText, show} from './dom.js';
 import {renderLibrary} from './library_view.js';
-import {renderPoses} from './poses_view.js';
 import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
@@ -147,6 +145,14 @@ function showNotices({isAway, isScanElsewhere, problem, faults}) {
   }
 }
 
+/** @type {(screen: Screen) => void} */
+let renderScanPage = () => {};
+
+/** Shows what belongs to a scan that is looked at (scan_page.js), which comes with the first one. @param {(screen: Screen) => void} render */
+export function showScanPage(render) {
+  renderScanPage = render;
+}
+
 /** @param {Screen} screen */
 export function render(screen) {
   document.title = screen.title;
@@ -159,8 +165,7 @@ export function render(screen) {
   if (screen.details) {
     showDetails(screen.details);
   }
-  renderPoses(screen.panel === 'details' ? screen.poses : null);
-  renderBuilds(screen.panel === 'details' ? screen.builds : null);
+  renderScanPage(screen);
   showPanel(screen.panel);
   renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {

@@ -7,13 +7,16 @@ import {
 import {fitToCanvas, onClick} from './canvas.js';
 import {clayMaterial, platform, ringStep} from './clay.js';
 import {measureMark} from './measure_mark.js';
-import {placeAt} from './pick.js';
+import {spotAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
+/** @typedef {import('./pick.js').Spot} Spot */
 
 const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
+const down = new Vector3(0, 0, -1);
+const samplesKept = 5000;  // points of a model that tell how low and how high it reaches when it is laid on another side
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
 
 export class Viewer {
@@ -25,7 +28,10 @@ export class Viewer {
   #edges = {value: 0};
   #filled = {value: 0};
   #top = {value: uncut};
-  #heights = [0, 0];  // of the model, millimetres
+  #heights = [0, 0];  // of the model as it lies, millimetres
+  #uprightHeights = [0, 0];
+  /** @type {Vector3[]} */
+  #samples = [];
   #controls;
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
@@ -40,11 +46,11 @@ export class Viewer {
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (point_mm: number[]) => void}} events  onPlace: of a
-   *     click on the model
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onSpot: (spot: Spot) => void}} events  onSpot: of a click on the
+   *     model
    * @throws {Error} where there is no WebGL
    */
-  constructor(canvas, {onTurning, onLost, onPlace}) {
+  constructor(canvas, {onTurning, onLost, onSpot}) {
     this.#canvas = canvas;
     this.#onTurning = onTurning;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
@@ -64,8 +70,8 @@ export class Viewer {
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
     onClick(canvas, (x, y) => {
-      const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
-      place && onPlace(place);
+      const spot = this.#model && spotAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
+      spot && onSpot(spot);
     });
   }
 
@@ -100,7 +106,10 @@ export class Viewer {
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
     this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, top: this.#top}));
-    this.#heights = [min[2], max[2]];
+    this.#uprightHeights = this.#heights = [min[2], max[2]];
+    const corners = positions.length / 3;
+    this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
+      new Vector3().fromArray(positions, 3 * Math.floor(i * corners / Math.min(corners, samplesKept))));
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
     this.#resize();
@@ -135,6 +144,25 @@ export class Viewer {
     }
   }
 
+  /** Turns the model so that it lies on the facet of a spot. @param {Spot | null} spot  null: as it was scanned */
+  lay(spot) {
+    const {quaternion, position} = this.#model;
+    if (spot) {
+      quaternion.premultiply(quaternion.clone().setFromUnitVectors(new Vector3(...spot.normal), down));
+      const {x, y} = this.#model.geometry.boundingSphere.center.clone().applyQuaternion(quaternion);
+      const heights = this.#samples.map((sample) => sample.clone().applyQuaternion(quaternion).z);
+      this.#heights = [0, Math.max(...heights) - Math.min(...heights)];
+      position.set(-x, -y, -Math.min(...heights));
+    } else {
+      quaternion.identity();
+      position.setScalar(0);
+      this.#heights = this.#uprightHeights;
+    }
+    this.#model.updateMatrixWorld();
+    this.showPlaces([]);
+    this.reset();
+  }
+
   /** Marks places of the model, and looks at them. @param {number[][]} points_mm  none: marks nothing */
   showPlaces(points_mm) {
     this.#places?.geometry.dispose();
@@ -144,8 +172,9 @@ export class Viewer {
     if (this.#model && points_mm.length > 0) {
       this.#places = placesMark(points_mm);
       this.#subject.add(this.#places);
-      const {center, radius} = this.#model.geometry.boundingSphere;
-      const ball = ballOf(points_mm);
+      this.#places.applyMatrix4(this.#model.matrixWorld);
+      const {center, radius} = this.#ball();
+      const ball = ballOf(points_mm).applyMatrix4(this.#model.matrixWorld);
       const outwards = ball.center.clone().sub(center);
       const sight = outwards.length() > radius / 20 ? outwards.normalize().setZ(Math.max(outwards.z, 0.25)).normalize() : firstSight;
       this.#isAimed = true;
@@ -179,8 +208,13 @@ export class Viewer {
     return height;
   }
 
+  /** Around the model as it lies. */
+  #ball() {
+    return this.#model.geometry.boundingSphere.clone().applyMatrix4(this.#model.matrixWorld);
+  }
+
   /** Looks at the whole model, or at a ball. @param {Vector3} sight  from it to the eye, of length 1 */
-  #aim(sight, {center, radius} = this.#model.geometry.boundingSphere) {
+  #aim(sight, {center, radius} = this.#ball()) {
     const narrow = Math.min(1, this.#camera.aspect);
     const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
     this.#camera.position.copy(center).addScaledVector(sight, distance);

@@ -3,13 +3,14 @@
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
 import {lendClock, needsClock} from './power.js';
+import {translated} from './texts.js';
 
 /** @typedef {import('./api.js').Finding} Finding */
 
 const tones = /** @type {Record<string, string>} */ ({fault: 'bad', warning: 'warn'});
 
 /** What a warning says. Pure. @param {Finding} finding */
-export const textOf = ({name, measured, advice}) => ({title: `${name}: ${measured}.`, text: sentence(advice)});
+export const textOf = ({name, measured, advice}) => ({title: `${translated(name)}: ${translated(measured)}.`, text: sentence(advice)});
 
 let isClockLent = false;
 

@@ -57,6 +57,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
                    .detail = "two stops disagree about the object by " +
                              mm_text(scan.disagreement, text_digits),
                    .hint = "Calibrate the rig; look that object and sensor stand firm.",
+                   .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
                    .places = scan.disagreeing_places});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
@@ -67,6 +68,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
          .detail = "at stop " + std::to_string(odd - scan.contradicted.begin()) + " " +
                    percent_text(*odd) + " of what was seen is empty space as other stops saw it",
          .hint = "Keep hands out of the picture, and look that nothing moves.",
+         .parameters = {{"stop", static_cast<double>(odd - scan.contradicted.begin())},
+                        {"empty_share", *odd}},
          .places = scan.contradicted_places});
   }
 }
@@ -90,19 +93,22 @@ void judge_height(Judgement& judgement, const ScanFigures& scan, const ModelRepo
                   {.code = "floats",
                    .detail = "the platform is seen " + mm_text(platform, text_digits) +
                              " above where it should be, and becomes a part of the model",
-                   .hint = "Calibrate the rig."});
+                   .hint = "Calibrate the rig.",
+                   .parameters = {{"platform_above_mm", mm_from_metres(platform)}}});
   } else if (-platform > look_height) {
     judgement.add(-platform > bad_height ? Verdict::bad : Verdict::look,
                   {.code = "sunk",
                    .detail = "the platform is seen " + mm_text(-platform, text_digits) +
                              " below where it should be, and as much of the object is missing",
-                   .hint = "Calibrate the rig."});
+                   .hint = "Calibrate the rig.",
+                   .parameters = {{"platform_below_mm", mm_from_metres(-platform)}}});
   } else if (model.parts > 0 && model.bottom > bad_height) {  // a shell ends where nobody saw
     judgement.add(
         Verdict::look,
         {.code = "floats",
          .detail = "the model begins " + mm_text(model.bottom, text_digits) + " above the platform",
-         .hint = "Look whether the box reaches down to the platform."});
+         .hint = "Look whether the box reaches down to the platform.",
+         .parameters = {{"bottom_mm", mm_from_metres(model.bottom)}}});
   }
 }
 
@@ -114,6 +120,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
          .detail = "the platform turned by " + degrees_text(scan.widest_gap, 0) +
                    " without a stop: nobody saw that side of the object",
          .hint = "Scan a whole turn.",
+         .parameters = {{"gap_deg", degrees_from_radians(scan.widest_gap)}},
          .places = model.places.unseen});
   } else if (model.unseen_share > look_unseen) {
     judgement.add(model.unseen_share > bad_unseen ? Verdict::bad : Verdict::look,
@@ -122,21 +129,30 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                              " of the surface above the base was not seen, and is filled in",
                    .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
                            "object another way, and scan it again.",
+                   .parameters = {{"unseen_share", model.unseen_share}},
                    .places = model.places.unseen});
   }
 }
 
 void judge_box(Judgement& judgement, const ScanFigures& scan) {
-  constexpr std::array sides = {"the side towards -X", "the side towards +X",
-                                "the side towards the sensor", "the far side", "the top"};
+  struct Side {
+    const char* name;
+    const char* words;
+  };
+  constexpr std::array sides = {Side{"left", "the side towards -X"},
+                                Side{"right", "the side towards +X"},
+                                Side{"near", "the side towards the sensor"},
+                                Side{"far", "the far side"}, Side{"top", "the top"}};
   const auto worst = std::ranges::max_element(scan.cut_pixels);
   if (*worst > max_cut_pixels) {
     const auto side = static_cast<std::size_t>(worst - scan.cut_pixels.begin());
-    judgement.add(Verdict::look, {.code = "cut-by-box",
-                                  .detail = "the object reaches through " +
-                                            std::string(sides[side]) + " of the scanned space",
-                                  .hint = "Make the scanned space larger, or move the object.",
-                                  .places = scan.cut_places[side]});
+    judgement.add(Verdict::look,
+                  {.code = "cut-by-box",
+                   .detail = "the object reaches through " + std::string(sides[side].words) +
+                             " of the scanned space",
+                   .hint = "Make the scanned space larger, or move the object.",
+                   .parameters = {{"side", sides[side].name}},
+                   .places = scan.cut_places[side]});
   }
 }
 
@@ -147,6 +163,7 @@ void add_missing(Judgement& judgement, MissingPart missing) {
        .detail = "a part of the object, " + mm_text(missing.length, text_digits) +
                  " long, was seen by several stops and is not in the model",
        .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
+       .parameters = {{"length_mm", mm_from_metres(missing.length)}},
        .places = std::move(missing.places)});
 }
 
@@ -160,6 +177,8 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
                    number_text("%.1f cm3 in all", cm3_from_m3(model.dropped.volume)) +
                    ", were not joined to the model, and were dropped",
          .hint = "Scan one object at a time, or build the model of all parts.",
+         .parameters = {{"parts", static_cast<double>(model.dropped.count)},
+                        {"volume_cm3", cm3_from_m3(model.dropped.volume)}},
          .places = missing ? std::move(missing->places) : std::vector<Eigen::Vector3d>()});
   } else if (missing) {
     add_missing(judgement, *std::move(missing));
@@ -180,12 +199,13 @@ Quality judge_side(const ScanFigures& scan, const ModelReport& model) {
   return judgement.take();
 }
 
-/// Adds the reasons of another side: each code once.
-void add_reasons(Quality& quality, Quality other, const std::string& side) {
+/// Adds the reasons of another side, counted from 1: each code once.
+void add_reasons(Quality& quality, Quality other, std::size_t side) {
   quality.verdict = std::max(quality.verdict, other.verdict);
   for (QualityReason& reason : other.reasons) {
     if (!std::ranges::count(quality.reasons, reason.code, &QualityReason::code)) {
-      reason.detail.insert(0, side);
+      reason.detail.insert(0, "side " + std::to_string(side) + ": ");
+      reason.parameters.emplace("object_side", static_cast<double>(side));
       quality.reasons.push_back(std::move(reason));
     }
   }
@@ -225,7 +245,7 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
   first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
   Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    add_reasons(quality, judge_side(poses[i], model), "side " + std::to_string(i + 1) + ": ");
+    add_reasons(quality, judge_side(poses[i], model), i + 1);
   }
   return quality;
 }

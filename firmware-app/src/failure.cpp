@@ -39,7 +39,10 @@ Device Failure::device() const { return find(code).device; }
 bool Failure::is_absence() const { return find(code).is_absence; }
 
 Failure to_failure(const Error& error) {
-  return {.code = error.code(), .detail = error.what(), .hint = error.hint()};
+  return {.code = error.code(),
+          .detail = error.what(),
+          .hint = error.hint(),
+          .parameters = error.parameters()};
 }
 
 Failure current_failure() {
@@ -55,6 +58,8 @@ Failure current_failure() {
   }
 }
 
-Error to_error(const Failure& failure) { return Error(failure.code, failure.detail, failure.hint); }
+Error to_error(const Failure& failure) {
+  return Error(failure.code, failure.detail, failure.hint, failure.parameters);
+}
 
 }  // namespace octurn

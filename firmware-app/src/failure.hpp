@@ -14,6 +14,7 @@ struct Failure {
   ErrorCode code = ErrorCode::internal;
   std::string detail = {};
   std::string hint = {};
+  Parameters parameters = {};  ///< the values in `detail`
 
   /// The device that failed. A scan waits while a person mends it.
   Device device() const;
@@ -28,7 +29,7 @@ Failure to_failure(const Error& error);
 /// `catch`.
 Failure current_failure();
 
-/// The Error with a failure's code, detail and hint.
+/// The Error with what a failure has.
 Error to_error(const Failure& failure);
 
 }  // namespace octurn

@@ -6,6 +6,7 @@
 #include <minizip/unzip.h>
 #include <spng.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include <regex>
 #include <sstream>
 
+#include "mesh/coarse_mesh.hpp"
 #include "mesh/thumbnail.hpp"
 #include "mesh/vertex_table.hpp"
 #include "support/temporary_folder.hpp"
@@ -231,6 +233,34 @@ TEST_F(MeshFormats, DrawABallAsADiscThatIsBrighterWhereTheLightIs) {
   const auto red = [&](std::size_t x, std::size_t y) { return pixels[(y * 256 + x) * 4]; };
   EXPECT_EQ(pixels[3], 0) << "nothing is in the corner";
   EXPECT_GT(red(110, 60), red(150, 220)) << "the light comes from above";
+}
+
+/// From the middle of the ball, which stands on the platform. @param corner  millimetres
+double distance_to_middle(const Vertex& corner) {
+  return std::hypot(corner[0], corner[1], corner[2] - 10);
+}
+
+TEST_F(MeshFormats, MakeACoarseMeshOfABallThatIsSmallerByLittleAndFilledInBelowTheMiddleOnly) {
+  const std::vector<Facet> coarse = coarse_mesh(stl(), 500);
+  EXPECT_LE(coarse.size(), 500U);
+  EXPECT_GT(coarse.size(), 200U) << "no coarser than asked for";
+  const double cell = std::sqrt(3 * 4 * M_PI * 100 / 200.0);  // of 200 facets, millimetres
+  double six_volumes = 0;
+  for (const Facet& facet : coarse) {
+    const auto corners = facet.corners;
+    for (const Vertex& corner : corners) {
+      EXPECT_LE(distance_to_middle(corner), 10.001) << "a mean of points on the ball";
+      EXPECT_GT(distance_to_middle(corner), 10 - cell);
+      EXPECT_TRUE(facet.attributes != filled_in || double{corner[2]} < 10 + cell);
+    }
+    const auto point = [&](std::size_t i) {
+      return Eigen::Vector3d(corners[i][0], corners[i][1], corners[i][2]);
+    };
+    six_volumes += point(0).dot(point(1).cross(point(2)));
+  }
+  const double volume = 4.0 / 3 * M_PI * 1000;
+  EXPECT_GT(six_volumes / 6, 0.85 * volume) << "closed, and turned outwards";
+  EXPECT_LT(six_volumes / 6, volume);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ Quality quality_with_places() {
           .reasons = {{.code = "cut-by-box",
                        .detail = "the object reaches through the top",
                        .hint = "Make the scanned space larger.",
+                       .parameters = {{"side", "top"}, {"object_side", 2.0}},
                        .places = {{0.010, -0.020, 0.090}, {0.014, -0.020, 0.090}}},
                       {.code = "little-seen", .detail = "30 %", .hint = "Scan again."}}};
 }
@@ -24,6 +25,13 @@ TEST(QualityJson, GivesPlacesInMillimetresAndNoneWhereThereAreNone) {
   EXPECT_EQ(written["verdict"], "look");
   EXPECT_EQ(written["reasons"][0]["places_mm"], json::parse("[[10, -20, 90], [14, -20, 90]]"));
   EXPECT_FALSE(written["reasons"][1].contains("places_mm"));
+}
+
+TEST(QualityJson, GivesTheValuesOfAReasonByTheirNames) {
+  const json written = to_json(quality_with_places());
+  EXPECT_EQ(written["reasons"][0]["parameters"],
+            json::parse(R"({"object_side": 2, "side": "top"})"));
+  EXPECT_FALSE(written["reasons"][1].contains("parameters")) << "as version 0.1 wrote it";
 }
 
 TEST(QualityJson, ReadsBackWhatItWrote) {

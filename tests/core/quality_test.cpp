@@ -174,6 +174,17 @@ TEST(Judge, CallsASideUnseenOnlyIfNoPoseWasTurnedAllAround) {
   EXPECT_EQ(quality.verdict, Verdict::look);
 }
 
+TEST(Judge, TellsTheValuesOfAReasonAsItsDetailDoes) {
+  ScanFigures scan = right_scan();
+  scan.disagreement = 0.004;
+  scan.contradicted = {0, 0, 0.25};
+  const Quality quality = judge(scan, right_model());
+  ASSERT_EQ(codes(quality), (Codes{"stops-disagree", "moved"}));
+  EXPECT_EQ(quality.reasons[0].parameters, (Parameters{{"disagreement_mm", 4.0}}));
+  EXPECT_EQ(quality.reasons[1].parameters, (Parameters{{"stop", 2.0}, {"empty_share", 0.25}}));
+  EXPECT_NE(quality.reasons[0].detail.find(" 4.0 mm"), std::string::npos);
+}
+
 TEST(Judge, TakesOverWhatTheCalibrationFound) {
   const std::vector<CalibrationFinding> findings{
       {.code = "moved", .detail = "the object moved", .hint = "Fix it.", .stop = {}, .angle = {}},

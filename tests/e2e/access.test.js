@@ -34,6 +34,7 @@ const states = {
   finished: async (page, finished) => {
     await page.goto(`${new URL('/', page.url())}#${finished.id}`);
     await page.locator('#tools').waitFor();
+    assert.equal(await page.locator('#view').evaluate((view) => getComputedStyle(view).touchAction), 'pan-y', 'a finger on it can scroll');
   },
   renaming: (page) => page.getByRole('button', {name: 'Rename this scan'}).click(),
 };

@@ -101,5 +101,20 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const left = await modelShare(page);
   assert.ok(left < 0.9 * share, `less of the model is left than ${share}, not ${left} of the view`);
   await picture(page, 'measured');
+
+  await page.getByRole('button', {name: 'Lay it on another side'}).click();
+  await page.getByText('Click the side that it shall lie on.').waitFor();
+  await page.locator('#view').click({position: {x: 0.5 * width, y: 0.56 * height}});
+  await page.getByText('Click the side that it shall lie on.').waitFor({state: 'hidden'});
+  const halfHeight = async () => {
+    await page.getByRole('button', {name: 'Cut the model open'}).click();
+    return parseFloat(await page.locator('#cut-at').innerText());
+  };
+  const laid = await halfHeight();
+  await picture(page, 'laid');
+  await page.getByRole('button', {name: 'Lay it on another side'}).click();
+  const upright = await halfHeight();
+  assert.equal(upright.toFixed(1), ((mesh.min[2] + mesh.max[2]) / 2).toFixed(1), 'as it was scanned');
+  assert.ok(laid < 0.9 * upright, `on its front it is lower than on its feet: ${2 * laid} mm, not ${2 * upright}`);
   assert.deepEqual(faults, []);
 });

@@ -116,11 +116,22 @@ test('the page speaks the language of its reader', async (t) => {
     const {page} = await openPage(browser, scanner.url, {locale: 'de-DE'});
     await page.route('**/api/v1/scans', (route) => route.request().method() === 'POST' ? route.fulfill({
       status: 503, contentType: 'application/problem+json',
-      json: {code: 'sensor-silent', title: 'The sensor does not work', detail: 'sensor: no frame for 2500 ms', hint: 'Unplug the sensor, plug it in again, and retry.'},
+      json: {code: 'sensor-silent', title: 'The sensor does not work', detail: 'sensor: no frame for 2500 ms', parameters: {silent_ms: 2500}, hint: 'Unplug the sensor, plug it in again, and retry.'},
     }) : route.continue());
     await page.getByRole('button', {name: 'Scan starten'}).click();
     const alert = page.getByRole('alert').filter({hasText: 'Der Scan hat nicht begonnen'});
-    assert.match(await alert.innerText(), /Sensor: kein Bild seit 2500\sms\.[^]*Den Sensor abziehen, wieder einstecken/);
+    assert.match(await alert.innerText(), /Der Sensor hat seit 2\.500\sms kein Bild gesendet\.[^]*Den Sensor abziehen, wieder einstecken/);
+    await page.context().close();
+  });
+  await t.test('and so is what it warns of', async () => {
+    const {page} = await openPage(browser, 'about:blank', {locale: 'de-DE'});
+    const warnings = [{check: 'clock', name: 'Clock', state: 'warning', measured: '2026-11-25 06:22 UTC, not from a time server', action: '',
+      advice: 'Connect the scanner to a network with internet, or its scans have wrong dates.'}];
+    await page.route('**/api/v1/events', (route) => route.abort());
+    await page.route('**/api/v1/status', async (route) => route.fulfill({json: {...await (await route.fetch()).json(), warnings}}));
+    await page.goto(scanner.url);
+    assert.match(await page.locator('#warnings li').innerText(), /^Uhr: 2026-11-25 06:22 UTC, nicht von einem Zeitserver\. Den Scanner mit/);
+    await page.unrouteAll({behavior: 'ignoreErrors'});
     await page.context().close();
   });
   assert.equal((await ask(scanner, 'status')).scan, null);

@@ -6,8 +6,8 @@ import {test} from 'node:test';
 import {openBrowser} from './browser.js';
 import {scan, startScanner} from './scanner.js';
 
-const maxForm = 75e3;  // bytes, without the live picture, which goes on
-const maxViewer = 230e3;  // scripts, styles and one language, with those that draw models
+const maxForm = 60e3;  // bytes, without the live picture, which goes on
+const maxSight = 400e3;  // all that comes before a model is first seen in 3D, by who has nothing yet
 const maxRounds = 4;
 
 /**
@@ -44,7 +44,7 @@ function rounds(all, {after}) {
 const sum = (all) => all.reduce((bytes, request) => bytes + request.bytes, 0);
 const table = (all) => all.map((request) => `${rounds(all, request)} ${request.bytes} ${request.url}`).join('\n');
 
-test('the form comes in at most 75 kB and four round trips, what draws models in at most 230 kB, and only once', async (t) => {
+test('the form comes in at most 60 kB and four round trips, the first sight of a model in at most 400 kB, and what is kept only once', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t);
   const page = await (await browser.newContext()).newPage();
@@ -58,19 +58,21 @@ test('the form comes in at most 75 kB and four round trips, what draws models in
   assert.ok(sum(form) <= maxForm, `${sum(form)} bytes:\n${table(form)}`);
   assert.ok(form.every((request) => rounds(form, request) <= maxRounds), table(form));
 
-  const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
-  const isModel = ({url}) => url.endsWith('/Scan.stl');
-  const awaitModel = () => page.waitForFunction(() => performance.getEntriesByType('resource').some(({name, responseEnd}) => name.endsWith('/Scan.stl') && responseEnd > 0));
-  await page.goto(`${scanner.url}#${id}`);
-  await awaitModel();
-  const viewer = all.filter((request) => !isModel(request) && /assets/.test(request.url));
-  t.diagnostic(`with what draws models: ${sum(viewer)} bytes of scripts and styles; the model itself ${sum(all.filter(isModel))}`);
-  assert.ok(viewer.some(({bytes}) => bytes > 100e3), table(viewer));  // three.js
-  assert.ok(sum(viewer) <= maxViewer, `${sum(viewer)} bytes:\n${table(viewer)}`);
+  const {id, model} = await scan(scanner, {snapshots: 8, leaf_size_mm: 1});
+  assert.ok(model.bytes > maxSight, `a model that could not be seen so soon: ${model.bytes} bytes`);
+  const other = await (await browser.newContext()).newPage();
+  const {all: seen} = await count(other);
+  await other.goto(`${scanner.url}#${id}`);
+  await other.waitForFunction(() => performance.getEntriesByType('resource').some(({name, responseEnd}) => name.endsWith('/coarse.stl') && responseEnd > 0));
+  const sight = seen.filter(({url}) => !url.includes('/preview/') && !url.endsWith('/Scan.stl'));
+  t.diagnostic(`first 3D: ${sum(sight)} bytes, of a model of ${model.bytes}`);
+  assert.ok(sight.some(({url, bytes}) => url.endsWith('/coarse.stl') && bytes > 10e3), table(sight));
+  assert.ok(sum(sight) <= maxSight, `${sum(sight)} bytes:\n${table(sight)}`);
+  await other.locator('#tools').waitFor();
 
-  const before = all.length;
-  await page.reload();
-  await awaitModel();
-  const again = all.slice(before).filter(({url}) => url.includes('/assets/'));
+  const before = seen.length;
+  await other.reload();
+  await other.locator('#tools').waitFor();
+  const again = seen.slice(before).filter(({url}) => url.includes('/assets/'));
   assert.equal(sum(again), 0, `what is kept for ever came again:\n${table(again)}`);
 });

@@ -50,8 +50,17 @@ test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) 
   assert.throws(() => answers.check(`${v1}scans/{id}`, 'get', '200', {...job, state: 'asleep'}));
 
   const problem = await (await fetch(`${scanner.url}api/v1/scans/none`)).json();
-  const isProblem = new Ajv({strict: false, validateFormats: false}).compile(description.components.schemas.Problem);
+  const isProblem = new Ajv({strict: false, validateFormats: false}).compile({...description.components.schemas.Problem, components: description.components});
   assert.ok(isProblem(problem), JSON.stringify(problem));
+  const refused = await fetch(`${scanner.url}api/v1/scans`, {method: 'POST', headers: {'Content-Type': 'application/json'}, body: '{"snapshots": 0}'});
+  const {code: why, parameters} = await refused.json();
+  assert.deepEqual([why, parameters.key, parameters.minimum], ['bad-settings', 'snapshots', 1]);
+  for (const [method, path] of [['GET', 'api/none'], ['GET', 'api/v1/none'], ['POST', 'api/v1/none']]) {
+    const lost = await fetch(scanner.url + path, {method, headers: {'Content-Type': 'application/json'}});
+    const {code, hint} = await lost.json();
+    assert.deepEqual([lost.status, code], [404, 'not-found'], path);
+    assert.match(hint, /\/api\/v1\//, `${path}: a program is told where to look, and not of the page`);
+  }
 });
 
 test('what the disk has room for is counted in scans as they were, not as they could be', async (t) => {

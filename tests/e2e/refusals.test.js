@@ -17,6 +17,18 @@ test('without a sensor the page says so, and what to do', async (t) => {
   await picture(page, 'no-sensor');
   await alert.getByRole('button', {name: 'Dismiss'}).click();
   assert.ok(await alert.isHidden());
+
+  await page.getByRole('button', {name: 'Open a demo scan'}).click();
+  await page.getByText('A good model', {exact: true}).waitFor();
+  assert.equal(await page.getByRole('heading', {level: 1}).innerText(), 'Demo, scanned by a simulated rig');
+  const [demo] = (await ask(scanner, 'scans')).scans;
+  assert.deepEqual([demo.state, demo.snapshots_done, demo.model.quality.verdict], ['finished', 16, 'good']);
+  await picture(page, 'demo');
+  await page.goto(scanner.url);
+  const step = page.locator('[data-step=scan]');
+  await step.waitFor();
+  assert.equal(await step.getAttribute('data-state'), 'next', 'a demo is nobody\'s first model');
+  await ask(scanner, `scans/${demo.id}`, 'DELETE');
 });
 
 test('settings that make no sense are not sent', async (t) => {

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
+import {isCalibrated} from '../../web/api_calibration.js';
 import * as texts from '../../web/calibration.js';
 import {distanceOf, distanceText} from '../../web/depth.js';
 import {errorColour} from '../../web/map_picture.js';
@@ -111,7 +112,7 @@ test('brightness tells the distance, within what the picture can show', () => {
 });
 
 test('only what was found with this rig counts as calibrated', () => {
-  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => texts.isCalibrated({...calibration, source})),
+  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => isCalibrated({...calibration, source})),
       ['page', 'turn', 'scan']);
 });
 

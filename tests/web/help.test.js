@@ -41,3 +41,12 @@ test('the links of the page into the help are right', () => {
     }
   }
 });
+
+test('the wiring tells where the sensor stands, in the numbers of the settings: the check sends people there', () => {
+  const [told] = [...texts.get('settings.html').matchAll(/([\d.]+) m before the axis, ([\d.]+) m up, (\d+) degrees down/g)];
+  assert.ok(told, 'the settings tell it');
+  const [, before, up, down] = told;
+  for (const words of [`${before} m before`, `${up} m above`, `${down} degrees down`]) {
+    assert.ok(texts.get('wiring.html').includes(words), words);
+  }
+});

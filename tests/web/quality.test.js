@@ -38,3 +38,14 @@ test('a rig that could be better is told beside a good model', () => {
   assert.equal(tone, 'good');
   assert.deepEqual(reasons.map(({detail, action}) => [detail, action]), [['Wobble.', null], ['Focal-length.', null]]);
 });
+
+test('a reason with its values is worded by the page, one without them as the scanner says it', () => {
+  const detailOf = (reason) => verdictOf(judged('look', [{detail: 'as it is said', hint: '', ...reason}])).reasons[0].detail;
+  assert.equal(detailOf({code: 'floats', parameters: {platform_above_mm: 3.14}}), 'The platform is seen 3.1 mm above where it should be, and becomes a part of the model.');
+  assert.equal(detailOf({code: 'floats', parameters: {bottom_mm: 9}}), 'The model begins 9.0 mm above the platform.');
+  assert.equal(detailOf({code: 'moved', parameters: {stop: 5, empty_share: 0.123}}), 'At stop 5 12% of what was seen is empty space as other stops saw it.');
+  assert.equal(detailOf({code: 'cut-by-box', parameters: {side: 'top', object_side: 2}}), 'Side 2: The object reaches through the top of the scanned space.');
+  assert.equal(detailOf({code: 'parts-dropped', parameters: {parts: 3, volume_cm3: 1.26}}), '3 parts, 1.3 cm³ in all, were not joined to the model, and were dropped.');
+  assert.equal(detailOf({code: 'floats'}), 'As it is said.');
+  assert.equal(detailOf({code: 'floats', parameters: {depth_furlong: 1}}), 'As it is said.');
+});

@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
 import {formOf, leafChoices, settingsOf, stepText} from '../../web/settings.js';
@@ -25,4 +26,14 @@ test('a preset leaf size is among the choices, also one without a name, coarse t
 
 test('the angle between stops has one decimal at most', () => {
   assert.deepEqual([36, 7, 200].map(stepText), ['one each 10°', 'one each 51.4°', 'one each 1.8°']);
+});
+
+test('the slider of the snapshots goes as far as the field beside it', async () => {
+  const form = await readFile(new URL('../../web/form.html', import.meta.url), 'utf8');
+  const [slider, field] = ['snapshots-slider', 'snapshots'].map((id) => {
+    const [input] = new RegExp(`<input [^>]*id="${id}"[^>]*>`).exec(form);
+    return ['min', 'max', 'step'].map((name) => new RegExp(` ${name}="([^"]+)"`).exec(input)[1]);
+  });
+  assert.deepEqual(slider, field);
+  assert.deepEqual(field, ['1', '200', '1']);
 });

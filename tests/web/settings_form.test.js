@@ -33,11 +33,13 @@ test('a value that the scanner would refuse is refused before', () => {
 });
 
 test('a problem is told beside the setting that it is about', () => {
-  const detail = '"turntable.gear_ratio" is 0: must be a number from 0.001 to 1000';
-  assert.equal(keyOf(detail), 'turntable.gear_ratio');
-  assert.equal(reasonOf(detail), 'It must be a number from 0.001 to 1000.');
-  assert.equal(keyOf('the disk is full'), null);
-  assert.equal(reasonOf('"ports": unknown key'), '"ports": unknown key');
+  const outOfRange = {detail: '“turntable.gear_ratio” must be from 0.001 to 1000.', parameters: {key: 'turntable.gear_ratio', minimum: 0.001, maximum: 1000}};
+  assert.equal(keyOf(outOfRange), 'turntable.gear_ratio');
+  assert.equal(reasonOf(outOfRange), 'It must be from 0.001 to 1000.');
+  assert.equal(keyOf({detail: '"scan.method" is 3: must be text'}), 'scan.method');
+  assert.equal(reasonOf({detail: '"scan.method" is 3: must be text'}), 'It must be text.');
+  assert.equal(keyOf({detail: 'the disk is full'}), null);
+  assert.equal(reasonOf({detail: '"ports": unknown key'}), '"ports": unknown key');
 });
 
 test('values are told in words', () => {

@@ -92,3 +92,8 @@ test('what is asked for clears the problem of what was asked before', () => {
   assert.equal(asking.isPending, true);
   assert.equal(states.withProblem(states.withAnswer(asking), problem).isPending, false);
 });
+
+test('a model of more bytes than its coarse mesh has one, beside it', () => {
+  assert.deepEqual([states.hasCoarse(200e3), states.hasCoarse(1.4e6)], [false, true]);
+  assert.equal(states.coarseUrl({url: '/api/v1/scans/a/builds/2/Scan.stl'}), '/api/v1/scans/a/builds/2/coarse.stl');
+});

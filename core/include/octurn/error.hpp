@@ -1,10 +1,12 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 namespace octurn {
 
@@ -90,21 +92,31 @@ std::string_view to_string(ErrorCode code);
 /// The code of a word; nothing if there is none.
 std::optional<ErrorCode> to_error_code(std::string_view word);
 
+/// The values in a message for people, by name: with these a page says the same in any language.
+/// A name ends with its unit, "disagreement_mm"; a share is 0 to 1.
+using Parameters = std::map<std::string, std::variant<double, std::string>>;
+
 /// What went wrong outside this program: a file, a device, a disk, a setting.
 ///
 /// `what()` is one line with the values in it; `hint()` says what a person can do about it, or is
-/// empty.
+/// empty. `parameters()` has those values again, where somebody words them otherwise.
 class Error : public std::runtime_error {
  public:
-  explicit Error(ErrorCode code, const std::string& message, std::string hint = {})
-      : std::runtime_error(message), code_(code), hint_(std::move(hint)) {}
+  explicit Error(ErrorCode code, const std::string& message, std::string hint = {},
+                 Parameters parameters = {})
+      : std::runtime_error(message),
+        code_(code),
+        hint_(std::move(hint)),
+        parameters_(std::move(parameters)) {}
 
   ErrorCode code() const { return code_; }
   const std::string& hint() const { return hint_; }
+  const Parameters& parameters() const { return parameters_; }
 
  private:
   ErrorCode code_;
   std::string hint_;
+  Parameters parameters_;
 };
 
 }  // namespace octurn

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "octurn/calibrate.hpp"
+#include "octurn/error.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/snapshot.hpp"
 
@@ -31,8 +32,9 @@ struct QualityReason {
   /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "cut-by-box",
   /// "parts-dropped", "part-missing"
   std::string code = {};
-  std::string detail = {};  ///< what was found and its size, for people
-  std::string hint = {};    ///< what to do about it
+  std::string detail = {};     ///< what was found and its size, for people
+  std::string hint = {};       ///< what to do about it
+  Parameters parameters = {};  ///< the values in `detail`; their names tell what it says
   /// Metres, model's frame: where that is, at most `Places::max_count`; none if it is everywhere.
   std::vector<Eigen::Vector3d> places = {};
 

@@ -60,6 +60,16 @@ std::string shown(const json& value) {
 
 std::string quoted(const std::string& name) { return name.empty() ? "it" : ascii(name); }
 
+std::string refusal(const JsonValue& value, const std::string& must) {
+  return quoted(value.name()) + " is " + shown(value.json()) + ": must be " + must;
+}
+
+[[noreturn]] void refuse_range(const JsonValue& value, const std::string& must, double min,
+                               double max) {
+  throw Error(value.code(), refusal(value, must), "",
+              {{"key", value.name()}, {"minimum", min}, {"maximum", max}});
+}
+
 }  // namespace
 
 JsonValue::JsonValue(const nlohmann::json& value, std::string name, ErrorCode code)
@@ -75,14 +85,15 @@ double JsonValue::number() const {
 double JsonValue::number(double min, double max) const {
   // Written so that NaN is refused.
   if (!value_.is_number() || !(value_.get<double>() >= min && value_.get<double>() <= max)) {
-    refuse("a number from " + plain(min) + " to " + plain(max));
+    refuse_range(*this, "a number from " + plain(min) + " to " + plain(max), min, max);
   }
   return value_.get<double>();
 }
 
 int JsonValue::whole_number(int min, int max) const {
   if (!value_.is_number_integer() || value_.get<double>() < min || value_.get<double>() > max) {
-    refuse("a whole number from " + std::to_string(min) + " to " + std::to_string(max));
+    refuse_range(*this, "a whole number from " + std::to_string(min) + " to " + std::to_string(max),
+                 min, max);
   }
   return value_.get<int>();
 }
@@ -119,9 +130,7 @@ std::vector<JsonValue> JsonValue::elements(std::size_t count) const {
   return elements();
 }
 
-void JsonValue::refuse(const std::string& must) const {
-  throw Error(code_, quoted(name_) + " is " + shown(value_) + ": must be " + must);
-}
+void JsonValue::refuse(const std::string& must) const { throw Error(code_, refusal(*this, must)); }
 
 JsonObject::JsonObject(JsonValue object) : object_(std::move(object)) {
   if (!object_.json().is_object()) {

@@ -31,6 +31,7 @@ constexpr std::array content_types{
     ContentType{".ico", "image/x-icon"},
     ContentType{".woff2", "font/woff2"},
     ContentType{".txt", "text/plain; charset=utf-8"},
+    ContentType{".zip", "application/zip"},
 };
 
 constexpr std::string_view assets = "/assets/";

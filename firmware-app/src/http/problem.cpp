@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "scan/parameters_json.hpp"
+
 namespace octurn {
 namespace {
 
@@ -72,13 +74,18 @@ Response problem(const Failure& failure) {
                       .title = type.title,
                       .code = to_string(failure.code),
                       .detail = failure.detail,
-                      .hint = failure.hint});
+                      .hint = failure.hint,
+                      .parameters = failure.parameters});
 }
 
 Response to_response(const HttpProblem& problem) {
-  const nlohmann::json body{{"type", "about:blank"},    {"title", problem.title},
-                            {"status", problem.status}, {"code", problem.code},
-                            {"detail", problem.detail}, {"hint", problem.hint}};
+  const nlohmann::json body{{"type", "about:blank"},
+                            {"title", problem.title},
+                            {"status", problem.status},
+                            {"code", problem.code},
+                            {"detail", problem.detail},
+                            {"hint", problem.hint},
+                            {"parameters", to_json(problem.parameters)}};
   return {.status = problem.status,
           .headers = {{"Content-Type", "application/problem+json"}},
           .body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"};

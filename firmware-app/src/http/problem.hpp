@@ -14,6 +14,7 @@ struct HttpProblem {
   std::string_view code = {};
   std::string_view detail = {};
   std::string_view hint = {};
+  Parameters parameters = {};  ///< the values in `detail`
 };
 
 /// As application/problem+json (RFC 9457).

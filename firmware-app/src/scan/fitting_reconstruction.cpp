@@ -55,8 +55,9 @@ void FittingReconstruction::tell(Quality& quality) const {
     quality.reasons.push_back(
         {.code = std::string(coarser_code),
          .detail = detail(),
-         .hint =
-             "Allow more memory, or make the scanned space smaller, and build the model again."});
+         .hint = "Allow more memory, or make the scanned space smaller, and build the model again.",
+         .parameters = {{"asked_leaf_size_mm", mm_from_metres(asked_leaf_size_)},
+                        {"leaf_size_mm", mm_from_metres(options_.leaf_size)}}});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "octurn/units.hpp"
+#include "scan/parameters_json.hpp"
 
 namespace octurn {
 namespace {
@@ -52,6 +53,9 @@ json to_json(const Quality& quality) {
   json reasons = json::array();
   for (const QualityReason& reason : quality.reasons) {
     reasons.push_back({{"code", reason.code}, {"detail", reason.detail}, {"hint", reason.hint}});
+    if (!reason.parameters.empty()) {
+      reasons.back()["parameters"] = to_json(reason.parameters);
+    }
     if (!reason.places.empty()) {
       reasons.back()["places_mm"] = to_places_mm(reason.places);
     }
@@ -69,6 +73,7 @@ Quality to_quality(const JsonValue& object) {
         {.code = of_reason.at("code").text(),
          .detail = of_reason.at("detail").text(),
          .hint = of_reason.at("hint").text(),
+         .parameters = to_parameters(of_reason.value("parameters")),
          .places = places ? to_places(*places) : std::vector<Eigen::Vector3d>{}});
   }
   return quality;

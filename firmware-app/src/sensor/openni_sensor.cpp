@@ -244,8 +244,7 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
   const auto begin = sensor_time();
   openni::VideoStream* stream = &stream_;
   while (!stop.stop_requested()) {
-    // Taken before the wait: a frame that has come by now ends the wait, however late this thread
-    // runs.
+    // Taken before the wait: a frame that has come by now ends it, however late this thread runs.
     const auto silence = sensor_time() - begin;
     int ready = 0;
     if (openni::OpenNI::waitForAnyStream(
@@ -258,7 +257,8 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
     if (silence > longest) {
       throw Error(ErrorCode::sensor_silent,
                   "sensor: no frame for " + std::to_string(longest.count()) + " ms",
-                  "Unplug the sensor, plug it in again, and retry.");
+                  "Unplug the sensor, plug it in again, and retry.",
+                  {{"silent_ms", static_cast<double>(longest.count())}});
     }
   }
   return std::nullopt;

@@ -12,6 +12,7 @@
 #include "http/handlers/builds.hpp"
 #include "http/handlers/models.hpp"
 #include "http/scan_view.hpp"
+#include "mesh/coarse_mesh.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/thumbnail.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t max_coarse_facets = 3000;  // 150 kB: with three.js, a first sight of 400 kB
 constexpr std::size_t max_thumbnail_bytes = std::size_t{1} << 20U;
 
 // Memory is for one at a time. Held while a file is looked at and made.
@@ -49,6 +51,14 @@ fs::path fresh_thumbnail(const fs::path& model) {
     write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
   });
   return file;
+}
+
+/// A model for a first sight of it.
+Response send_coarse(const Request& request, const fs::path& model) {
+  const fs::path file = model.parent_path() / "coarse.stl";
+  keep_fresh(file, written(model),
+             [&] { write_file(file, stl_text(coarse_mesh(FacetFile(model), max_coarse_facets))); });
+  return file_response(request, file, "model/stl", "coarse.stl");
 }
 
 /// @param thumbnail  of the model, for a format that has one in it
@@ -111,6 +121,15 @@ Response send_build_mesh(App& app, const Request& request, std::string_view id,
 Response send_thumbnail(App& app, const Request& request, std::string_view id) {
   const fs::path model = find_model(app, find_scan(app, id));
   return file_response(request, fresh_thumbnail(model), "image/png", "thumbnail.png");
+}
+
+Response send_coarse_model(App& app, const Request& request, std::string_view id) {
+  return send_coarse(request, find_model(app, find_scan(app, id)));
+}
+
+Response send_coarse_build(App& app, const Request& request, std::string_view id,
+                           std::string_view build) {
+  return send_coarse(request, find_build_model(app, id, build));
 }
 
 }  // namespace octurn

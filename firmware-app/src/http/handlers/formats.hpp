@@ -25,4 +25,11 @@ Response send_build_mesh(App& app, const Request& request, std::string_view id,
 /// A picture of the model.
 Response send_thumbnail(App& app, const Request& request, std::string_view id);
 
+/// The model with 3,000 facets or less, for a first sight of it.
+Response send_coarse_model(App& app, const Request& request, std::string_view id);
+
+/// The same of a build.
+Response send_coarse_build(App& app, const Request& request, std::string_view id,
+                           std::string_view build);
+
 }  // namespace octurn

@@ -1,0 +1,23 @@
+// The demo, for who has no rig yet: a scan of the simulated rig, which comes with the page. It is imported as any other scan
+// file is, built here, and can be deleted. demo.zip has 16 stops of `octurn serve --simulate --simulate-perfect`; of their
+// depth images what lies within 10 cm of the axis was kept, so that it is small.
+
+import * as api from './api.js';
+import {act} from './page.js';
+import * as states from './state.js';
+import {text} from './texts.js';
+
+const file = 'demo.zip';
+
+/** @param {(id: string) => void} onScan  told which scan it is */
+export const openDemo = (onScan) => act('failure.demo', async () => {
+  const response = await fetch(file);
+  if (!response.ok) {
+    throw new api.Problem('http', text('problem.http', {status: String(response.status)}));
+  }
+  const {id} = await api.importScan(await response.blob());
+  onScan(id);
+  const scan = await api.rename(id, text('first.demo-name'));
+  location.hash = scan.state === 'running' ? '' : id;
+  return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), id);
+});

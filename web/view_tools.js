@@ -1,0 +1,91 @@
+// What can be done with the model in the large picture: measure between two places, cut it open, lay it on another side.
+
+import {element, pressed, setText, show} from './dom.js';
+import * as format from './format.js';
+import {measureText, withPoint} from './measure.js';
+import {text} from './texts.js';
+
+/** @typedef {import('./viewer.js').Viewer} Viewer */
+
+/** @type {() => Viewer | undefined} */
+let viewer = () => undefined;
+/** @type {number[][] | null} places that are measured between; null: nothing is */
+let measuring = null;
+/** @type {'upright' | 'waiting' | 'laid'} waiting: for the side to lay the model on */
+let lying = 'upright';
+
+function render() {
+  pressed('measure', measuring !== null);
+  pressed('lay', lying !== 'upright');
+  element('view').dataset.measuring = measuring || lying === 'waiting' ? 'yes' : 'no';
+  const words = measuring ? measureText(measuring) : lying === 'waiting' ? text('view.lay-which') : '';
+  show(element('measured'), words !== '');
+  setText(element('measured'), words);
+}
+
+/** @param {number[][] | null} points_mm */
+function setMeasure(points_mm) {
+  measuring = points_mm;
+  lying = lying === 'waiting' ? 'upright' : lying;
+  viewer()?.showMeasure(points_mm ?? []);
+  render();
+}
+
+/** @param {typeof lying} next @param {import('./pick.js').Spot} [spot]  that the model is laid on */
+function setLying(next, spot) {
+  const isMoved = next === 'laid' || lying === 'laid';
+  lying = next;
+  if (isMoved) {
+    viewer()?.lay(spot ?? null);
+    setCut(false);
+  }
+  measuring = null;
+  viewer()?.showMeasure([]);
+  render();
+}
+
+/** @param {number} share  of the model's height */
+function cutAt(share) {
+  setText(element('cut-at'), format.millimetres(viewer()?.cut(share) ?? 0, 1));
+}
+
+/** @param {boolean} isCut */
+function setCut(isCut) {
+  pressed('cut', isCut);
+  show(element('cut-height'), isCut);
+  cutAt(isCut ? element('cut-share').valueAsNumber : 1);
+}
+
+/** What a click on the model does. @param {import('./pick.js').Spot} spot */
+export function useTool(spot) {
+  if (measuring) {
+    setMeasure(withPoint(measuring, spot.place));
+  } else if (lying === 'waiting') {
+    setLying('laid', spot);
+  }
+}
+
+/** Another mesh of the same object stands as it is scanned. */
+export function standUp() {
+  lying = lying === 'laid' ? 'upright' : lying;
+  render();
+}
+
+/** Of another model: it is whole, and as it was scanned. */
+export function putToolsAway() {
+  lying = 'upright';
+  setMeasure(null);
+  setCut(false);
+}
+
+/** @param {() => Viewer | undefined} shown */
+export function prepareTools(shown) {
+  viewer = shown;
+  element('measure').addEventListener('click', () => setMeasure(measuring ? null : []));
+  element('lay').addEventListener('click', () => setLying(lying === 'upright' ? 'waiting' : 'upright'));
+  element('cut').addEventListener('click', () => {
+    element('cut-share').value = 0.5;
+    setCut(element('cut').getAttribute('aria-pressed') !== 'true');
+  });
+  element('cut-share').addEventListener('input', () => cutAt(element('cut-share').valueAsNumber));
+}

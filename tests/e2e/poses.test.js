@@ -133,16 +133,19 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await page.route(/\/(three|fit_clouds)\.js$/, (route) => route.fulfill({
     path: fileURLToPath(new URL(`../../web${new URL(route.request().url()).pathname}`, import.meta.url)), contentType: 'text/javascript'}));
   const {drag, pairs} = await page.evaluate(clicksOfPairs, {scan: first.id, object_from_platform});
+  const {x: left, y: top, width, height} = await page.locator('#fit-view').boundingBox();
   const turn = async (by) => {
-    await page.mouse.move(canvas.x + canvas.width / 2 - by / 2, canvas.y + canvas.height - 10);
+    await page.mouse.move(left + width / 2 - by / 2, top + height - 10);
     await page.mouse.down();
-    await page.mouse.move(canvas.x + canvas.width / 2 + by / 2, canvas.y + canvas.height - 10, {steps: 4});
+    await page.mouse.move(left + width / 2 + by / 2, top + height - 10, {steps: 4});
     await page.mouse.up();
   };
-  for (const [before, side] of pairs) {
-    await page.mouse.click(canvas.x + before[0], canvas.y + before[1]);
+  for (const [index, [before, side]] of pairs.entries()) {
+    await page.mouse.click(left + before[0], top + before[1]);
+    await text.filter({hasText: /the same point of side 2/}).waitFor();
     await turn(drag);
-    await page.mouse.click(canvas.x + side[0], canvas.y + side[1]);
+    await page.mouse.click(left + side[0], top + side[1]);
+    await text.filter({hasText: index < 2 ? `Pair ${index + 2} of 3` : 'Three pairs are set.'}).waitFor();
     await turn(-drag);
   }
   await text.filter({hasText: 'Three pairs are set.'}).waitFor();

@@ -14,6 +14,7 @@
 #include "calibrate/platform_wobble.hpp"
 #include "calibrate/read_turn.hpp"
 #include "calibrate/sensor_step.hpp"
+#include "calibrate/still_turn.hpp"
 #include "calibrate/stop_offsets.hpp"
 #include "calibrate/stop_planes.hpp"
 #include "calibrate/stop_residuals.hpp"
@@ -58,6 +59,10 @@ constexpr double min_wobble_deg = 0.3;
 constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
 constexpr double agreeing_sigmas = 3;
+
+constexpr const char* no_turn =
+    "every stop shows the same: the platform did not turn, or the object looks the same from all "
+    "sides. Look at the motor and its wiring, or stand another object on the platform";
 
 constexpr int text_digits = 2;  // of millimetres and degrees
 
@@ -282,6 +287,12 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   const std::string reason = surface.bump && surface.bump->size > max_after
                                  ? report.findings.front().detail
                                  : refuse_solution(report, solution->last_step);
+  if (looks_still(reader.samples(), levelled) &&
+      !(reason.empty() &&
+        looks_round(reader.samples(), turn.intrinsics, report.platform_from_sensor, turn.angles))) {
+    report.findings.clear();  // they are of a turn, and this was none
+    return refused(std::move(report), no_turn);
+  }
   report.accepted = reason.empty();
   return refused(std::move(report), reason);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "calibrate/platform_plane.hpp"
@@ -14,5 +16,11 @@ PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops)
 /// The depths of a frame at that grid's pixels, metres along z; 0 is no reading.
 /// @throws std::invalid_argument  if the frame has another size than the intrinsics say
 std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens);
+
+/// The place in `samples` of the pixel nearest to where a point is seen.
+/// @param point  metres, optical frame
+/// @return nothing if it lies outside of the image or behind it
+std::optional<std::size_t> sample_at(const PlatformSamples& samples, const Intrinsics& lens,
+                                     const Eigen::Vector3d& point);
 
 }  // namespace octurn

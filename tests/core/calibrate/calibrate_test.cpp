@@ -88,6 +88,38 @@ TEST(Calibrate, NamesTheStopAtWhichThePlatformSlipped) {
   EXPECT_NEAR(degrees_from_radians(report.findings[0].angle.value_or(0)), 1.8, 0.3);
 }
 
+/// Of a platform that stood still all the while.
+CalibrationTurn still_turn(const Shape& object, std::size_t stops) {
+  CalibrationTurn turn = rendered_turn(object, stops);
+  std::vector<DepthFrame> frames;
+  std::mt19937 random(3);
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    frames.push_back(rendered_frame(object, 0, random));
+  }
+  turn.read = [frames = std::move(frames)](std::size_t stop) { return frames[stop]; };
+  return turn;
+}
+
+TEST(Calibrate, RefusesAPlatformThatDidNotTurnAndBlamesNoLens) {
+  for (const Shape& object : {figure(), moved(block({0.12, 0.08, 0.012}), {0.02, 0, 0})}) {
+    for (const std::size_t stops : {8U, 12U}) {
+      const CalibrationReport report = calibrate(still_turn(object, stops));
+      EXPECT_FALSE(report.accepted);
+      EXPECT_TRUE(report.reason.starts_with("every stop shows the same")) << report.reason;
+      EXPECT_TRUE(report.findings.empty()) << report.findings.front().detail;
+    }
+  }
+}
+
+TEST(Calibrate, TakesAnObjectOfRevolutionThatTurnedForNoPlatformThatStoodStill) {
+  for (CalibrationTurn turn :
+       {rendered_turn(ball({0, 0, 0.05}, 0.05), 8), still_turn(ball({0, 0, 0.05}, 0.05), 8)}) {
+    turn.platform_from_sensor = wrong_pose({0.004, -0.003, 0.002}, {1, 0, 0}, 0.8);
+    const CalibrationReport report = calibrate(turn);
+    EXPECT_TRUE(report.accepted) << report.reason;
+  }
+}
+
 /// The shape from a stop on, where it stands elsewhere on the platform.
 CalibrationTurn turn_with_move(std::size_t stops, std::size_t from, const Eigen::Vector3d& by) {
   CalibrationTurn turn = rendered_turn(figure(), stops);

@@ -1,0 +1,102 @@
+#include "calibrate/still_turn.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "calibrate/platform_samples.hpp"
+#include "octurn/sensor_map.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double max_radius = 0.17;   // metres about the axis: what stands on the platform,
+constexpr double min_height = 0.006;  // metres above it: no noise of its surface,
+constexpr double max_height = 0.4;    // and no wall behind it
+constexpr double noise = 4 * disparity_unit;
+// Readings at an object's edges jump between it and what is behind.
+constexpr double edge_share = 0.1;
+
+/// A reading in the platform's frame, metres, if something on the platform was read.
+std::optional<Vector3d> object_point(const PlatformSamples& samples,
+                                     const std::vector<float>& depths, std::size_t pixel,
+                                     const Isometry3d& platform_from_sensor) {
+  if (!(depths[pixel] > 0)) {
+    return std::nullopt;
+  }
+  const Vector3d point =
+      platform_from_sensor * (samples.rays[pixel] * static_cast<double>(depths[pixel]));
+  const bool is_object = point.z() > min_height && point.z() < max_height &&
+                         point.head<2>().squaredNorm() < max_radius * max_radius;
+  return is_object ? std::optional(point) : std::nullopt;
+}
+
+/// How many of some readings there are, and of them how many are not as they should be.
+struct Count {
+  std::size_t all = 0;
+  std::size_t wrong = 0;
+
+  bool is_edges_alone() const {
+    return static_cast<double>(wrong) <= edge_share * static_cast<double>(all);
+  }
+};
+
+/// Compares what two stops read of an object.
+Count compare(const PlatformSamples& samples, const std::vector<float>& first,
+              const std::vector<float>& other, const Isometry3d& platform_from_sensor) {
+  Count count;
+  for (std::size_t pixel = 0; pixel < samples.rays.size(); ++pixel) {
+    const bool is_read_twice = first[pixel] > 0 && other[pixel] > 0;
+    if (is_read_twice && (object_point(samples, first, pixel, platform_from_sensor) ||
+                          object_point(samples, other, pixel, platform_from_sensor))) {
+      const double difference =
+          1 / static_cast<double>(first[pixel]) - 1 / static_cast<double>(other[pixel]);
+      ++count.all;
+      count.wrong += std::abs(difference) > noise ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+/// Turns what the first stop read of an object, and counts the readings that it sees past.
+Count compare_turned(const PlatformSamples& samples, const Intrinsics& lens,
+                     const Isometry3d& platform_from_sensor, double angle) {
+  const std::vector<float>& depths = samples.depths.front();
+  const Isometry3d sensor_from_turned =
+      platform_from_sensor.inverse() * Eigen::AngleAxisd(angle, Vector3d::UnitZ());
+  Count count;
+  for (std::size_t pixel = 0; pixel < samples.rays.size(); ++pixel) {
+    const auto point = object_point(samples, depths, pixel, platform_from_sensor);
+    if (!point) {
+      continue;
+    }
+    const Vector3d turned = sensor_from_turned * *point;
+    const auto at = sample_at(samples, lens, turned);
+    if (at && depths[*at] > 0) {
+      ++count.all;
+      count.wrong += 1 / turned.z() - 1 / static_cast<double>(depths[*at]) > noise ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+bool looks_still(const PlatformSamples& samples, const Isometry3d& platform_from_sensor) {
+  return std::ranges::all_of(samples.depths, [&](const std::vector<float>& depths) {
+    return compare(samples, samples.depths.front(), depths, platform_from_sensor).is_edges_alone();
+  });
+}
+
+bool looks_round(const PlatformSamples& samples, const Intrinsics& lens,
+                 const Isometry3d& platform_from_sensor, const std::vector<double>& angles) {
+  return std::ranges::all_of(angles, [&](double angle) {
+    return compare_turned(samples, lens, platform_from_sensor, angle).is_edges_alone();
+  });
+}
+
+}  // namespace octurn

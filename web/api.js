@@ -38,6 +38,7 @@ import {refusalText} from './wording.js';
  * @typedef {Object} Scan
  * @property {string} id
  * @property {string} name
+ * @property {string} notes
  * @property {'running' | 'paused' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
  * @property {'starting' | 'turning' | 'capturing' | 'calibrating' | 'rebuilding' | 'registering' | 'building' | 'done'} phase
  * @property {string} created
@@ -230,8 +231,8 @@ export const resume = (id) => json(`${scan(id)}/resume`, sending('POST'));
 export const importScan = (file) => json('scans/import',
     {method: 'POST', headers: {'Content-Type': 'application/octet-stream'}, body: file}, patienceWithFile);
 
-/** @param {string} id @param {string} name @returns {Promise<Scan>} */
-export const rename = (id, name) => json(scan(id), sending('PATCH', {name}));
+/** @param {string} id @param {{name?: string, notes?: string}} what @returns {Promise<Scan>} */
+export const label = (id, what) => json(scan(id), sending('PATCH', what));
 
 /** @param {string} id */
 export const remove = (id) => withoutAnswer(scan(id), 'DELETE');

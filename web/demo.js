@@ -17,7 +17,7 @@ export const openDemo = (onScan) => act('failure.demo', async () => {
   }
   const {id} = await api.importScan(await response.blob());
   onScan(id);
-  const scan = await api.rename(id, text('first.demo-name'));
+  const scan = await api.label(id, {name: text('first.demo-name')});
   location.hash = scan.state === 'running' ? '' : id;
   return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), id);
 });

@@ -54,7 +54,7 @@ export async function rename(id) {
   const name = scan && await askName(nameOf(scan));
   if (scan && name !== null) {
     await act('failure.rename', async () => {
-      const renamed = await api.rename(scan.id, name);
+      const renamed = await api.label(scan.id, {name});
       return (now) => states.withScan(now, renamed);
     });
   }

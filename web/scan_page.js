@@ -1,8 +1,9 @@
-// What belongs to a scan that is looked at, beside its numbers: its models, its other poses, and printers.
+// What belongs to a scan that is looked at, beside its numbers: notes, its models, its other poses, and printers.
 
 import {prepareBuilds, renderBuilds} from './builds_view.js';
 import {element} from './dom.js';
 import {build, buildActions, poseActions} from './model_actions.js';
+import {prepareNotes, showNotes} from './notes.js';
 import {state} from './page.js';
 import {preparePoses, renderPoses} from './poses_view.js';
 import {screenOf} from './screen.js';
@@ -13,6 +14,9 @@ import {showScanPage} from './view.js';
 
 /** @param {Screen} screen */
 function render({panel, poses, builds}) {
+  if (panel === 'details') {
+    showNotes();
+  }
   renderPoses(panel === 'details' ? poses : null);
   renderBuilds(panel === 'details' ? builds : null);
 }
@@ -34,6 +38,7 @@ export function prepare() {
   if (!isPrepared) {
     isPrepared = true;
     listen();
+    prepareNotes();
     prepareSend();
     showScanPage(render);
   }

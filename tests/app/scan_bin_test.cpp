@@ -39,12 +39,12 @@ class ScanBinTest : public ::testing::Test {
 TEST_F(ScanBinTest, KeepsADeletedScanAsItWasAndGivesItBack) {
   ScanStore store(folder_.path());
   const Job job = finished(store);
-  store.rename(job.id, "Hase");
+  store.label(job.id, {.name = "Hase"});
   store.discard(job.id);
   EXPECT_FALSE(store.find(job.id));
   EXPECT_FALSE(fs::exists(store.folder(job.id)));
   ASSERT_EQ(store.bin().list().size(), 1U);
-  EXPECT_EQ(store.bin().list().front().job.name, "Hase");
+  EXPECT_EQ(store.bin().list().front().job.label.name, "Hase");
 
   store.restore(job.id);
   EXPECT_TRUE(store.bin().is_empty());

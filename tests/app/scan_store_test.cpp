@@ -119,13 +119,36 @@ TEST(ScanStore, RemovesAScanWithEverythingInIt) {
   EXPECT_EQ(code_thrown_by([&] { store.remove(job.id); }), "no-such-scan");
 }
 
-TEST(ScanStore, NamesAScan) {
+TEST(ScanStore, KeepsTheNameAndTheNotesThatAPersonWroteOnAScan) {
   const TemporaryFolder folder;
-  ScanStore store(folder.path());
-  const Job job = store.create({});
-  store.rename(job.id, "Hase, groß");
-  store.save(job);  // the worker knows nothing of the name
-  EXPECT_EQ(store.find(job.id)->name, "Hase, groß");
+  std::string id;
+  {
+    ScanStore store(folder.path());
+    const Job job = store.create({});
+    id = job.id;
+    store.label(id, {.name = "Hase, groß"});
+    store.label(id, {.notes = "Plaster, 1920.\nThe left ear is glued."});
+    store.save(job);  // the worker knows of neither
+    EXPECT_EQ(store.find(id)->label.name, "Hase, groß");
+    EXPECT_EQ(store.find(id)->label.notes, "Plaster, 1920.\nThe left ear is glued.");
+  }
+  const ScanStore again(folder.path());
+  EXPECT_EQ(again.find(id)->label.name, "Hase, groß");
+  EXPECT_EQ(again.find(id)->label.notes, "Plaster, 1920.\nThe left ear is glued.");
+}
+
+TEST(ScanLabel, HasANameOfOneLineAndNotesOfSeveral) {
+  EXPECT_TRUE(is_name(""));
+  EXPECT_TRUE(is_notes("a\n\tb"));
+  EXPECT_FALSE(is_name("a\nb"));
+  EXPECT_FALSE(is_notes("a\x1b[31m"));
+  std::string umlauts;
+  for (int i = 0; i < 2000; ++i) {
+    EXPECT_EQ(is_name(umlauts), i <= 100) << i;
+    umlauts += "ä";
+  }
+  EXPECT_TRUE(is_notes(umlauts));
+  EXPECT_FALSE(is_notes(umlauts + "ä"));
 }
 
 TEST(ScanStore, HasAnotherRevisionAfterEveryChangeThatAListShows) {
@@ -144,8 +167,10 @@ TEST(ScanStore, HasAnotherRevisionAfterEveryChangeThatAListShows) {
   job.state = JobState::finished;
   store.save(job);
   expect_change("finished");
-  store.rename(job.id, "Hase");
-  expect_change("renamed");
+  store.label(job.id, {.name = "Hase"});
+  expect_change("named");
+  store.label(job.id, {.notes = "of clay"});
+  expect_change("noted");
   store.remove(job.id);
   expect_change("removed");
 }
@@ -157,7 +182,7 @@ TEST(ScanStore, TouchesNothingThatIsNoScan) {
   for (const char* const id : {"../secret", "..", "", "."}) {
     EXPECT_FALSE(store.find(id));
     EXPECT_EQ(code_thrown_by([&] { store.remove(id); }), "no-such-scan");
-    EXPECT_EQ(code_thrown_by([&] { store.rename(id, "x"); }), "no-such-scan");
+    EXPECT_EQ(code_thrown_by([&] { store.label(id, {.name = "x"}); }), "no-such-scan");
   }
   EXPECT_TRUE(fs::exists(folder.path() / "secret" / "job.json"));
 }
@@ -182,7 +207,7 @@ TEST(ScanStore, ReadsADataFolderOfVersion01) {
   EXPECT_EQ(paused.failure->code, ErrorCode::sensor_missing);
   const Job finished = store.get("20261122-215909-48de");
   EXPECT_EQ(finished.state, JobState::finished);
-  EXPECT_EQ(finished.name, "Hase, groß");
+  EXPECT_EQ(finished.label.name, "Hase, groß");
   EXPECT_EQ(finished.times.created, "2026-11-22T21:59:09Z");
   EXPECT_EQ(finished.settings.snapshots, 3);
   EXPECT_EQ(finished.settings.frames, 2);

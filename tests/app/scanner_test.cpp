@@ -124,12 +124,13 @@ TEST_F(ScannerTest, RemovesNoScanThatRuns) {
 TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
   Scanner scanner(rig(), {}, store_);
   const auto job = scanner.start(few_snapshots(200));
-  scanner.rename(job->id, "Hase");
-  EXPECT_EQ(scanner.status().job->name, "Hase");
+  scanner.label(job->id, {.name = "Hase", .notes = "of clay"});
+  EXPECT_EQ(scanner.status().job->label.name, "Hase");
   wait_for_snapshots(scanner, 2);
-  EXPECT_EQ(scanner.status().job->name, "Hase");
-  EXPECT_EQ(scanner.find(job->id).name, "Hase");
-  EXPECT_EQ(scanner.list().at(0).name, "Hase");
+  EXPECT_EQ(scanner.status().job->label.name, "Hase");
+  EXPECT_EQ(scanner.find(job->id).label.name, "Hase");
+  EXPECT_EQ(scanner.list().at(0).label.name, "Hase");
+  EXPECT_EQ(scanner.status().job->label.notes, "of clay");
 }
 
 /// Puts a folder where the file was, which no file can replace. The scan that runs may save the

@@ -33,8 +33,15 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
   assert.equal((await ask(scanner, `scans/${first.id}`)).name, 'Möwe <b>1</b>');
 
+  await page.getByLabel('Notes', {exact: true}).fill('Plaster, 1920.\nThe left wing is <i>glued</i>.');
+  await page.keyboard.press('Tab');
+  await page.getByText('Saved.', {exact: true}).waitFor();
+  assert.equal((await ask(scanner, `scans/${first.id}`)).notes, 'Plaster, 1920.\nThe left wing is <i>glued</i>.');
+  await picture(page, 'notes');
+
   await page.reload();  // the address holds
   await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
+  await page.waitForFunction(() => document.getElementById('notes')?.value.endsWith('<i>glued</i>.'));
   await goTo(page, 'Library');
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);

@@ -128,7 +128,7 @@ TEST(Serve, CancelsAScanWhileItBuilds) {
   EXPECT_EQ(std::distance(fs::directory_iterator(scan_folder), {}), 3);  // job, scan, snapshots
 }
 
-TEST(Serve, NamesAndDeletesAScan) {
+TEST(Serve, NamesNotesAndDeletesAScan) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
   const std::string scan = daemon.start(quick);
@@ -136,10 +136,14 @@ TEST(Serve, NamesAndDeletesAScan) {
   const Reply named = request(daemon.port(), "PATCH", scan, R"({"name": "Hase"})");
   EXPECT_EQ(named.status, 200);
   EXPECT_EQ(parsed(named)["name"], "Hase");
+  const Reply noted = request(daemon.port(), "PATCH", scan, R"({"notes": "of clay\n1920"})");
+  EXPECT_EQ(parsed(noted)["notes"], "of clay\n1920");
+  EXPECT_EQ(parsed(noted)["name"], "Hase");
   EXPECT_NE(daemon.get(scan + "/Scan.stl").header("Content-Disposition").find("Hase.stl"),
             std::string::npos);
-  for (const char* const body : {R"({"name": 5})", R"({"nom": "x"})", R"({"name": "a\nb"})", "",
-                                 "[]", "{", R"({"name": "\ud800"})"}) {
+  for (const char* const body :
+       {R"({"name": 5})", R"({"nom": "x"})", R"({"name": "a\nb"})", "", "[]", "{",
+        R"({"name": "\ud800"})", R"({"notes": 5})", R"({"notes": "a\u0007"})"}) {
     EXPECT_EQ(request(daemon.port(), "PATCH", scan, body).status, 400) << body;
   }
   EXPECT_EQ(parsed(daemon.get(scan))["name"], "Hase");
@@ -188,6 +192,37 @@ TEST(Serve, SaysThatItHasNoTurntableAndGoesOn) {
   EXPECT_FALSE(parsed(refused)["hint"].get<std::string>().empty());
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
   EXPECT_EQ(daemon.get("/api/v1/preview/depth.png").status, 200);
+}
+
+/// On a sensor that is none of the rig's own, as drivers of devices are.
+std::vector<std::string> command_with_devices(const fs::path& folder) {
+  std::vector<std::string> command = Daemon::command(folder);
+  command.erase(std::ranges::find(command, "--simulate"), std::ranges::find(command, "--listen"));
+  command.insert(command.end(), {"--sensor", "octurn-simulator://"});
+  return command;
+}
+
+TEST(Serve, KeepsItsDevicesClosedAfterItWasKilledThreeTimesSoonAfterItsStart) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "data");
+  const auto sees = [](const Daemon& daemon) {
+    return daemon.get("/api/v1/preview/depth.png").status == 200;
+  };
+  for (int i = 0; i < 3; ++i) {
+    Daemon daemon(command_with_devices(folder.path()));
+    EXPECT_TRUE(sees(daemon)) << "start " << i;
+    daemon.program().send_signal(SIGKILL);
+    EXPECT_EQ(daemon.program().wait(), -SIGKILL);
+  }
+  {
+    const Daemon daemon(command_with_devices(folder.path()));
+    EXPECT_FALSE(sees(daemon));
+    const json status = daemon.status();
+    EXPECT_EQ(status["sensor"]["state"], "missing");
+    EXPECT_NE(status["warnings"].dump().find("safe-mode"), std::string::npos);
+    EXPECT_EQ(daemon.get("/api/v1/scans").status, 200);
+  }  // which ends it as it should end
+  EXPECT_TRUE(sees(Daemon(command_with_devices(folder.path()))));
 }
 
 TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {

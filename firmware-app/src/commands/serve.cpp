@@ -4,6 +4,7 @@
 
 #include "appliance/appliance.hpp"
 #include "commands/commands.hpp"
+#include "commands/start_record.hpp"
 #include "http/api.hpp"
 #include "http/captive_portal.hpp"
 #include "http/http_server.hpp"
@@ -40,7 +41,8 @@ struct Machine {
   const ServeArguments& arguments;
   const Page& page;
   std::optional<Appliance>& appliance;
-  int port = 0;  ///< of the first start; 0: it has not come yet
+  StartRecord* start = nullptr;  ///< of real devices
+  int port = 0;                  ///< of the first start; 0: it has not come yet
 };
 
 /// What runs between two restarts.
@@ -65,6 +67,9 @@ Outcome wait(const Machine& machine, const Daemon& daemon) {
       watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, look_interval) : look_interval;
   bool was_due = false;
   while (!wait_for_signal(interval)) {
+    if (machine.start != nullptr) {
+      machine.start->look();
+    }
     const bool is_due = is_restart_due(machine, daemon);
     if (is_due && was_due) {
       return Outcome::restart;
@@ -101,13 +106,36 @@ std::optional<SlurmOptions> slurm_options(const ServeArguments& arguments) {
   return SlurmOptions{.octurn = std::filesystem::read_symlink("/proc/self/exe")};
 }
 
+constexpr Check safe_mode{.id = "safe-mode", .name = "Safe mode"};
+constexpr const char* why_safe =
+    "Octurn ended three times soon after its start, so sensor and turntable stay closed";
+constexpr const char* leave_safe_mode =
+    "Take the sensor's plugs out and put them in again, then restart Octurn. Scans and models are "
+    "there as ever.";
+
+/// Devices that stay closed, and say why.
+RigOptions closed(RigOptions rig) {
+  rig.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
+    throw Error(ErrorCode::sensor_missing, why_safe, leave_safe_mode);
+  };
+  rig.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
+    throw Error(ErrorCode::turntable_missing, why_safe, leave_safe_mode);
+  };
+  return rig;
+}
+
 /// Serves with the settings as they are now, until a signal or until they need a restart.
 Outcome serve_once(Machine& machine, ConfigStore& settings) {
   Config config = settings.config();
   if (config.http.port == 0) {
     config.http.port = machine.port;
   }
-  const RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
+  const bool is_safe = machine.start != nullptr && machine.start->is_safe_mode();
+  RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
+  if (is_safe) {
+    log::error("octurn", why_safe);
+    rig = closed(std::move(rig));
+  }
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store, slurm_options(machine.arguments));
   TurntableRunner turntable(scanner, store);
@@ -115,8 +143,12 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   const MachineWatch health({.free_bytes = [&] { return store.free_bytes(); },
                              .warnings =
                                  [&] {
-                                   return find_machine_warnings(
+                                   auto found = find_machine_warnings(
                                        doctor_input(rig, settings, scanner.calibration(), store));
+                                   if (is_safe) {
+                                     found.push_back(safe_mode.fault(why_safe, leave_safe_mode));
+                                   }
+                                   return found;
                                  }});
   AddressBook addresses(config.data / "addresses.json");
   PrinterUploads uploads;
@@ -173,7 +205,13 @@ Outcome serve_with_good_settings(Machine& machine) {
 
 void serve(const ServeArguments& arguments) {
   return_freed_memory();
-  load_sensor_drivers();  // before the first thread, as it asks
+  std::optional<StartRecord> start;
+  if (!arguments.rig.simulate) {
+    start.emplace(open_config(arguments.config).config().data);
+  }
+  if (!start || !start->is_safe_mode()) {
+    load_sensor_drivers();  // before the first thread, as it asks
+  }
   if (const auto slurm = slurm_options(arguments)) {
     slurm->slurm.expect_programs();
   }
@@ -182,7 +220,10 @@ void serve(const ServeArguments& arguments) {
   if (arguments.appliance) {
     appliance.emplace(*arguments.appliance);
   }
-  Machine machine{.arguments = arguments, .page = page, .appliance = appliance};
+  Machine machine{.arguments = arguments,
+                  .page = page,
+                  .appliance = appliance,
+                  .start = start ? &*start : nullptr};
   while (serve_with_good_settings(machine) == Outcome::restart) {
   }
 }

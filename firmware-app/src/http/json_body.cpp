@@ -5,23 +5,11 @@
 
 #include "http/entity_tags.hpp"
 #include "octurn/json_object.hpp"
-#include "one_line.hpp"
+#include "scan/scan_label.hpp"
 
 namespace octurn {
 
 using nlohmann::json;
-
-namespace {
-
-constexpr std::ptrdiff_t max_name = 100;  // characters
-
-/// Of UTF-8 text. Every byte of a character but its first has the bits 10 at its top.
-std::ptrdiff_t count_characters(std::string_view text) {
-  return std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-}
-
-}  // namespace
 
 Response json_response(const json& body, int status) {
   return {.status = status,
@@ -51,7 +39,7 @@ Response tagged(const Request& request, Response response) {
 
 std::string name_in(JsonObject& body) {
   const auto name = body.text("name");
-  if (!name || count_characters(*name) > max_name || !is_one_line(*name)) {
+  if (!name || !is_name(*name)) {
     throw Error(ErrorCode::bad_name, "\"name\" must be text of at most 100 characters on one line");
   }
   return *name;

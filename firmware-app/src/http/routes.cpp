@@ -27,7 +27,7 @@ std::span<const Route> scan_routes() {
       Route{"POST", "/api/v1/scans", start_scan, WaitsFor::start},
       Route{"POST", "/api/v1/scans/estimate", send_estimate},
       Route{"GET", "/api/v1/scans/{id}", send_scan},
-      Route{"PATCH", "/api/v1/scans/{id}", rename_scan},
+      Route{"PATCH", "/api/v1/scans/{id}", label_scan},
       Route{"DELETE", "/api/v1/scans/{id}", remove_scan},
       Route{"POST", "/api/v1/scans/{id}/cancel", cancel_scan},
       Route{"POST", "/api/v1/scans/{id}/end", cancel_scan},

@@ -35,7 +35,8 @@ json to_json(const ClusterJob& job) { return {{"id", job.id}, {"detail", job.det
 json to_json(const Job& job) {
   const Model* const model = chosen_model(job);
   return {{"id", job.id},
-          {"name", job.name},
+          {"name", job.label.name},
+          {"notes", job.label.notes},
           {"state", to_string(job.state)},
           {"phase", to_string(job.phase)},
           {"created", job.times.created},

@@ -112,10 +112,16 @@ struct JobBuilds {
   int chosen = 0;               ///< whose model is the scan's; 0: what the scan itself made
 };
 
+/// What a person wrote on a scan; empty if nobody did.
+struct ScanLabel {
+  std::string name = {};
+  std::string notes = {};
+};
+
 /// One scan: what was asked for, and what has become of it.
 struct Job {
   std::string id = {};
-  std::string name = {};  ///< given by a person, or empty
+  ScanLabel label = {};
   JobState state = JobState::running;
   Phase phase = Phase::starting;
   int snapshots_done = 0;

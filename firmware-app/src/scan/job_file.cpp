@@ -51,7 +51,7 @@ std::optional<Model> model_from(const std::optional<JsonValue>& object) {
 
 json to_job_json(const Job& job) {
   json object{{"id", job.id},
-              {"name", job.name},
+              {"name", job.label.name},
               {"state", to_string(job.state)},
               {"phase", to_string(job.phase)},
               {"created", job.times.created},
@@ -81,7 +81,7 @@ Job to_job(const json& object) {
   JsonObject keys(object, ErrorCode::job_malformed, "");
   constexpr int max_int = std::numeric_limits<int>::max();
   return {.id = keys.at("id").text(),
-          .name = keys.at("name").text(),
+          .label = {.name = keys.at("name").text()},
           .state = parse_name(keys.at("state"), job_state_named),
           .phase = parse_name(keys.at("phase"), phase_named),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, max_int)),

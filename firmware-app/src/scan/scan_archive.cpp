@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> single_files{"scan.json", "job.json", "name.txt",
-                                                       "sensor-map.png"};
+constexpr std::array<std::string_view, 5> single_files{"scan.json", "job.json", "name.txt",
+                                                       "notes.txt", "sensor-map.png"};
 constexpr std::string_view snapshots = "snapshots/";
 constexpr std::size_t max_file_bytes = std::size_t{32} << 20U;
 

@@ -6,7 +6,7 @@
 namespace octurn {
 
 /// Whether a scan's archive may have a file of that name: `scan.json`, `job.json`, `name.txt`,
-/// `sensor-map.png`, and PNGs in `snapshots/`.
+/// `notes.txt`, `sensor-map.png`, and PNGs in `snapshots/`.
 bool is_scan_file(std::string_view name);
 
 /// Writes what a scan was taken as, without what was made of it, to a zip archive: all that another

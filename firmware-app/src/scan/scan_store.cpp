@@ -26,8 +26,6 @@ using nlohmann::json;
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
-constexpr std::size_t max_name_bytes = 4096;
-
 int stored_snapshots(const fs::path& folder) {
   try {
     return static_cast<int>(read_scan(folder).shots.size());
@@ -47,15 +45,6 @@ Job read_job(const fs::path& folder) {
                            ErrorCode::job_malformed, "the file"));
 }
 
-/// What a person called a scan; empty if that cannot be read, as the scan itself can be.
-std::string read_name(const fs::path& folder) {
-  try {
-    return read_regular_file(folder / "name.txt", max_name_bytes).value_or("");
-  } catch (const Error&) {
-    return "";
-  }
-}
-
 /// The scan of a folder; one that cannot be read has failed.
 Job load(const fs::path& folder) {
   Job job;
@@ -72,7 +61,7 @@ Job load(const fs::path& folder) {
                 .hint = "Its snapshots may still be good; octurn reconstruct reads them."};
   }
   job.id = folder.filename().string();
-  job.name = read_name(folder);
+  job.label = read_label(folder);
   clear_unfinished(folder / builds_folder);
   job.builds.all = read_builds(folder);
   return job;
@@ -167,12 +156,12 @@ void ScanStore::save(const Job& job) {
   write_job(job);
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
-  const std::string name = held.name;  // given meanwhile
+  ScanLabel label = held.label;  // written meanwhile
   if (job.state != JobState::running || held.state != job.state) {
     ++revision_;
   }
   held = job;
-  held.name = name;
+  held.label = std::move(label);
 }
 
 /// `writing_` is held.
@@ -230,12 +219,13 @@ std::optional<Job> ScanStore::newest_finished() const {
   return found == jobs_.end() ? std::nullopt : std::optional(found->second);
 }
 
-void ScanStore::rename(std::string_view id, std::string_view name) {
+void ScanStore::label(std::string_view id, const LabelChange& change) {
   const std::lock_guard writing(writing_);
   get(id);  // or there is no such scan
-  write_file(folder(id) / "name.txt", name);
+  write_label(folder(id), change);
   const std::lock_guard lock(mutex_);
-  jobs_.find(id)->second.name = name;
+  ScanLabel& label = jobs_.find(id)->second.label;
+  label = changed(std::move(label), change);
   ++revision_;
 }
 

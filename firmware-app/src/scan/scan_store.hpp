@@ -16,13 +16,14 @@
 #include "scan/job.hpp"
 #include "scan/scan_bin.hpp"
 #include "scan/scan_id.hpp"
+#include "scan/scan_label.hpp"
 
 namespace octurn {
 
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
-/// asked for and what became of it), `name.txt` (what a person called it), and `builds/<number>/`
-/// with the models that were built from it later. And `DATA/platform.json`, which tells where the
-/// platform stands.
+/// asked for and what became of it), `name.txt` and `notes.txt` (what a person wrote on it), and
+/// `builds/<number>/` with the models that were built from it later. And `DATA/platform.json`,
+/// which tells where the platform stands.
 ///
 /// The files are read once, at the beginning, and then held: what is listed needs no disk. Each
 /// file appears whole or not at all. Any thread may call anything at any time.
@@ -64,7 +65,7 @@ class ScanStore {
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
-  void rename(std::string_view id, std::string_view name);
+  void label(std::string_view id, const LabelChange& change);
 
   /// Removes a scan for good.
   void remove(std::string_view id);
@@ -157,8 +158,8 @@ class ScanStore {
 
   std::uint64_t free_bytes() const;
 
-  /// Another number after every scan that came, ended, was renamed, built again or removed: who has
-  /// listed the scans at the same number need not do it again. Not the same in another process.
+  /// Another number after every scan that came, ended, was labelled, built again or removed: who
+  /// has listed the scans at the same number need not do it again. Not the same in another process.
   std::uint64_t revision() const;
 
  private:

@@ -9,8 +9,8 @@
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/tiles.hpp"
-#include "one_line.hpp"
 #include "scan/job_file.hpp"
+#include "scan/scan_label.hpp"
 #include "scan/scan_store.hpp"
 #include "utc.hpp"
 
@@ -20,7 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view unfinished = ".new-import-";
-constexpr std::size_t max_name = 400;  // bytes of 100 characters
 
 /// What the other Octurn tells of the scan; of a folder that only has the scan itself, the usual
 /// settings.
@@ -30,9 +29,12 @@ Job read_adopted_job(const fs::path& folder, const Scan& scan) {
   if (!text && scan.laser) {
     use_laser_defaults(job.settings);
   }
-  job.name = read_regular_file(folder / "name.txt", max_name).value_or("");
-  if (!is_one_line(job.name)) {
-    job.name.clear();
+  job.label = read_label(folder);
+  if (!is_name(job.label.name)) {
+    job.label.name.clear();
+  }
+  if (!is_notes(job.label.notes)) {
+    job.label.notes.clear();
   }
   return job;
 }

@@ -131,9 +131,9 @@ bool Scanner::cancel(std::string_view id) {
   return true;
 }
 
-void Scanner::rename(std::string_view id, std::string_view name) {
-  store_.rename(id, name);
-  board_.rename(id, name);
+void Scanner::label(std::string_view id, const LabelChange& change) {
+  store_.label(id, change);
+  board_.label(id, change);
 }
 
 Job Scanner::find(std::string_view id) const {

@@ -120,7 +120,7 @@ class Scanner {
   void empty_bin() { store_.empty_bin(); }
 
   /// @throws Error "no-such-scan"
-  void rename(std::string_view id, std::string_view name);
+  void label(std::string_view id, const LabelChange& change);
 
   /// The scan of that id as it is now. @throws Error "no-such-scan"
   Job find(std::string_view id) const;

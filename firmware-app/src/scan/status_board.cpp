@@ -64,18 +64,18 @@ void StatusBoard::begin_scan(const Job& job, Clock::time_point started) {
 void StatusBoard::set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end) {
   status_.update([&](Status& status) {
     if (status.job && status.job->id == job.id) {
-      std::string name = std::move(status.job->name);
+      ScanLabel label = std::move(status.job->label);
       status.job = job;
-      status.job->name = std::move(name);
+      status.job->label = std::move(label);
       status.job_end = expected_end;
     }
   });
 }
 
-void StatusBoard::rename(std::string_view id, std::string_view name) {
+void StatusBoard::label(std::string_view id, const LabelChange& change) {
   status_.update([&](Status& status) {
     if (status.job && status.job->id == id) {
-      status.job->name = name;
+      status.job->label = changed(status.job->label, change);
     }
   });
 }

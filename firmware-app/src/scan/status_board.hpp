@@ -12,6 +12,7 @@
 #include "scan/job.hpp"
 #include "scan/latest.hpp"
 #include "scan/rig.hpp"
+#include "scan/scan_label.hpp"
 #include "scan/sensor_map_files.hpp"
 #include "scan/time_left.hpp"
 
@@ -93,7 +94,7 @@ class StatusBoard {
   void set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end = {});
 
   /// What a person called a scan.
-  void rename(std::string_view id, std::string_view name);
+  void label(std::string_view id, const LabelChange& change);
 
   void set_sensor_ready(const std::string& name);
   void set_turntable_ready();

@@ -28,7 +28,7 @@ Response send_bin(App& app) {
     const Job& job = scan.job;
     if (!is_with_another(app.store.bin(), job)) {
       scans.push_back({{"id", job.id},
-                       {"name", job.name},
+                       {"name", job.label.name},
                        {"created", job.times.created},
                        {"state", to_string(job.state)},
                        {"snapshots_done", job.snapshots_done},

@@ -86,7 +86,7 @@ Response make_model(App& app, const Request& request, const Job& job) {
 }  // namespace
 
 std::string download_name(const Job& job, std::string_view ending) {
-  return std::string(job.name.empty() ? "Scan" : job.name).append(ending);
+  return std::string(job.label.name.empty() ? "Scan" : job.label.name).append(ending);
 }
 
 std::filesystem::path find_model(const App& app, const Job& job) {

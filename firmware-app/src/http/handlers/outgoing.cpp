@@ -144,7 +144,7 @@ Response send_to_printer(App& app, const Request& request, std::string_view id) 
   const std::filesystem::path file = model_in_format(app, job, extension);
   // A printer keeps one file of a name.
   const std::string name =
-      job.name.empty() ? "Scan-" + job.id + extension : download_name(job, extension);
+      job.label.name.empty() ? "Scan-" + job.id + extension : download_name(job, extension);
   const auto begun = app.uploads.start(job.id, *printer, file, name);
   if (!begun) {
     throw Error(ErrorCode::busy, "another model is being sent to a printer",

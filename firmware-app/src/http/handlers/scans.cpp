@@ -9,6 +9,7 @@
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
 #include "scan/earlier_scans.hpp"
+#include "scan/scan_label.hpp"
 #include "settings/field.hpp"
 
 namespace octurn {
@@ -60,12 +61,18 @@ Response send_scan(App& app, std::string_view id) {
   return json_response(to_json(app, find_scan(app, id)));
 }
 
-Response rename_scan(App& app, const Request& request, std::string_view id) {
+Response label_scan(App& app, const Request& request, std::string_view id) {
   const json body = parse_body(request);
   JsonObject keys(body, ErrorCode::bad_name, "");
-  const std::string name = name_in(keys);
+  LabelChange change{.notes = keys.text("notes")};
+  if (change.notes && !is_notes(*change.notes)) {
+    throw Error(ErrorCode::bad_name, "\"notes\" must be text of at most 2000 characters");
+  }
+  if (!change.notes || body.contains("name")) {
+    change.name = name_in(keys);
+  }
   keys.refuse_unread();
-  app.scanner.rename(id, name);
+  app.scanner.label(id, change);
   return send_scan(app, id);
 }
 

@@ -19,8 +19,8 @@ Response start_scan(App& app, const Request& request);
 
 Response send_scan(App& app, std::string_view id);
 
-/// Gives a scan the name of the body. @throws Error "bad-json", "bad-name"
-Response rename_scan(App& app, const Request& request, std::string_view id);
+/// Gives a scan the name and the notes of the body. @throws Error "bad-json", "bad-name"
+Response label_scan(App& app, const Request& request, std::string_view id);
 
 /// Moves a scan into the bin. @throws Error "busy"  if it runs
 Response remove_scan(App& app, std::string_view id);

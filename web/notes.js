@@ -1,0 +1,49 @@
+// "Notes" on a scan: kept when the field is left.
+
+import {Problem, label} from './api.js';
+import {element, setText} from './dom.js';
+import {sentence} from './format.js';
+import {change, state} from './page.js';
+import {scanOf, withScan} from './state.js';
+import {text} from './texts.js';
+
+/** The scan that the field is filled for. @type {string | null} */
+let shown = null;
+
+/** @param {string} words @param {'good' | 'bad' | ''} tone */
+function say(words, tone) {
+  setText(element('notes-said'), words);
+  element('notes-said').dataset.tone = tone;
+}
+
+/** Fills the field for the scan that is looked at; what somebody is writing there stays. */
+export function showNotes() {
+  const field = element('notes');
+  const scan = scanOf(state, state.selected);
+  if (scan && (scan.id !== shown || document.activeElement !== field)) {
+    if (scan.id !== shown) {
+      say('', '');
+    }
+    shown = scan.id;
+    field.value = scan.notes;
+  }
+}
+
+async function keep() {
+  const id = /** @type {string} */ (shown);
+  const notes = element('notes').value;
+  try {
+    const scan = await label(id, {notes});
+    change(withScan(state, scan));
+    if (shown === id) {
+      say(text('saved'), 'good');
+    }
+  } catch (error) {
+    const {detail, hint} = error instanceof Problem ? error : new Problem('page', String(error), String(error));
+    say([text('notes.failed'), detail, hint].filter(Boolean).map(sentence).join(' '), 'bad');
+  }
+}
+
+export function prepareNotes() {
+  element('notes').addEventListener('change', keep);
+}

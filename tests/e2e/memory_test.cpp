@@ -7,6 +7,7 @@
 #include "support/checksum.hpp"
 #include "support/daemon.hpp"
 #include "support/program.hpp"
+#include "support/room_scan.hpp"
 #include "support/small_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/upload.hpp"
@@ -133,6 +134,50 @@ TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
     EXPECT_EQ(allowed.status, 0) << allowed.errors;
     EXPECT_LT(allowed.peak_bytes, enough * mb);
   }
+}
+
+/// A chamber, seen by a Kinect, whose floor goes all through the tile in its middle, of 1 m.
+void write_chamber_scan(const fs::path& folder) {
+  constexpr int poses = 14;
+  const Room chamber{.walls = {.min = {-0.533, -0.527, 0.103}, .max = {0.527, 0.533, 0.903}},
+                     .lens = {.depth_unit = 0.0002}};
+  write_room_scan(folder, chamber, poses);
+}
+
+// A floor is one layer of a tile's voxels, which is drawn and simplified at once, with both sides.
+TEST(Memory, OfTheShellOfASpaceStaysBelowItsLimitWithTheSameBytes) {
+  const TemporaryFolder folder;
+  write_chamber_scan(folder.path());
+  const Outcome free = outcome_of(command(folder.path(), "5", {"--method", "solid"}));
+  ASSERT_EQ(free.status, 0) << free.errors;
+  for (const char* const threads : {"1", "2"}) {
+    const Outcome tight =
+        outcome_of(command(folder.path(), "5",
+                           {"--method", "solid", "--threads", threads, "--memory-limit-mb", "58"}));
+    EXPECT_EQ(tight.status, 0) << tight.errors;
+    EXPECT_LT(tight.peak_bytes, 58 * mb);
+    EXPECT_EQ(tight.model, free.model);
+  }
+}
+
+TEST(Memory, SaysHowMuchTheShellOfATileNeeds) {
+  const TemporaryFolder folder;
+  write_chamber_scan(folder.path());
+  const auto solid = [&](std::size_t limit_mb) {
+    return outcome_of(command(
+        folder.path(), "2.5",
+        {"--method", "solid", "--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}));
+  };
+  std::size_t limit_mb = 40;
+  Outcome outcome = solid(limit_mb);
+  EXPECT_EQ(outcome.status, 1);
+  while (outcome.status == 1) {
+    ASSERT_GT(allowed_mb(outcome.errors), limit_mb) << outcome.errors;
+    limit_mb = allowed_mb(outcome.errors);
+    outcome = solid(limit_mb);
+  }
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_LT(outcome.peak_bytes, limit_mb * mb);
 }
 
 /// How much more memory than for coarse models a daemon takes for those of 0.1 mm: one that is

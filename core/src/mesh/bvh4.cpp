@@ -19,11 +19,11 @@ std::uint32_t spread_bits(std::uint32_t bits) {
 }
 
 /// Order of the boxes' centres along a Morton curve, which keeps neighbours together.
-std::vector<std::uint32_t> morton_order(std::span<const Aabb> boxes) {
+std::vector<std::uint32_t> morton_order(std::uint32_t count, const Bvh4::BoxAt& box_at) {
   Aabb all{.min = {Bvh4Node::far, Bvh4Node::far, Bvh4Node::far},
            .max = {-Bvh4Node::far, -Bvh4Node::far, -Bvh4Node::far}};
-  for (const Aabb& box : boxes) {
-    all.extend(box);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    all.extend(box_at(i));
   }
   float side = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -31,14 +31,15 @@ std::vector<std::uint32_t> morton_order(std::span<const Aabb> boxes) {
   }
   const float scale = side > 0 ? ((1 << axis_bits) - 1) / side : 0.0F;
   std::vector<KeyIndex> keys;
-  keys.reserve(boxes.size());
-  for (const Aabb& box : boxes) {
+  keys.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Aabb box = box_at(i);
     std::uint32_t key = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float centre = (box.min[axis] + box.max[axis]) / 2;
       key |= spread_bits(static_cast<std::uint32_t>((centre - all.min[axis]) * scale)) << axis;
     }
-    keys.push_back({.key = key, .index = static_cast<std::uint32_t>(keys.size())});
+    keys.push_back({.key = key, .index = i});
   }
   radix_sort(keys, 3 * axis_bits);
   std::vector<std::uint32_t> order;
@@ -51,10 +52,11 @@ std::vector<std::uint32_t> morton_order(std::span<const Aabb> boxes) {
 
 }  // namespace
 
-Bvh4::Bvh4(std::span<const Aabb> boxes) : order_(morton_order(boxes)) {
+Bvh4::Bvh4(std::size_t count, const BoxAt& box)
+    : order_(morton_order(static_cast<std::uint32_t>(count), box)) {
   levels_.emplace_back((order_.size() + 3) / 4);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    levels_[0][i / 4].set(i % 4, boxes[order_[i]]);
+    levels_[0][i / 4].set(i % 4, box(order_[i]));
   }
   while (levels_.back().size() > 1) {
     const std::vector<Bvh4Node>& below = levels_.back();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -48,8 +49,11 @@ struct Bvh4Node {
 /// Bounding volume hierarchy of four children per node, over boxes sorted along a Morton curve.
 class Bvh4 {
  public:
-  /// O(boxes).
-  explicit Bvh4(std::span<const Aabb> boxes);
+  using BoxAt = std::function<Aabb(std::uint32_t)>;
+
+  /// O(boxes). @param box  asked for each several times: to keep them would take more than this
+  /// does
+  Bvh4(std::size_t count, const BoxAt& box);
 
   /// Calls `visit(thread, i, j)` once for each pair of different boxes that overlap.
   template <typename Visit>

@@ -7,6 +7,25 @@
 #include "parallel/radix_sort.hpp"
 
 namespace octurn {
+namespace {
+
+/// Moves each collapse to where its index is in the order, along one cycle after the other: a
+/// second list would be as long again.
+void reorder(std::vector<Collapse>& collapses, std::vector<KeyIndex>& order) {
+  for (std::uint32_t start = 0; start < order.size(); ++start) {
+    const Collapse first = collapses[start];
+    std::uint32_t to = start;
+    for (std::uint32_t from = order[to].index; from != start; from = order[to].index) {
+      collapses[to] = collapses[from];
+      order[to].index = to;
+      to = from;
+    }
+    collapses[to] = first;
+    order[to].index = to;
+  }
+}
+
+}  // namespace
 
 // By the upper half of the bits of their costs, which order as the costs do, as these are not
 // negative; then the few that have those bits in common by the whole key.
@@ -31,16 +50,11 @@ void sort_by_cost(std::vector<Collapse>& collapses) {
     }
     first = end;
   }
-  std::vector<Collapse> sorted;
-  sorted.reserve(keys.size());
-  for (const KeyIndex& key : keys) {
-    const Collapse& collapse = collapses[key.index];
-    if (sorted.empty() || sorted.back().kept != collapse.kept ||
-        sorted.back().removed != collapse.removed) {
-      sorted.push_back(collapse);
-    }
-  }
-  collapses.swap(sorted);
+  reorder(collapses, keys);
+  const auto copies = std::ranges::unique(collapses, [](const Collapse& a, const Collapse& b) {
+    return a.kept == b.kept && a.removed == b.removed;
+  });
+  collapses.erase(copies.begin(), copies.end());
 }
 
 }  // namespace octurn

@@ -1,17 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace octurn {
 
-/// An edge collapse that could be made.
+/// An edge collapse that could be made. Where to is found anew from the quadrics of both ends, when
+/// it is made: a list of a window's collapses is long.
 struct Collapse {
   double cost = 0;  ///< mean square distance, mm^2
   std::uint32_t kept = 0;
   std::uint32_t removed = 0;
-  std::array<float, 3> position = {};  ///< of the vertex that is kept
 };
 
 /// The cheapest first, without those that come twice. Of equal cost that of the lower vertices:

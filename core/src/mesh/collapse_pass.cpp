@@ -55,8 +55,7 @@ class CollapsePass::Strip {
         block(collapse.kept);
         block(collapse.removed);
         left.push_back(collapse);
-      } else if (pass_.is_valid(collapse)) {
-        pass_.apply(collapse);
+      } else if (pass_.make_if_valid(collapse)) {
         ++done;
       }
     }
@@ -131,8 +130,8 @@ std::size_t CollapsePass::collapse_all(const Collapses& collapses) {
   for (std::size_t i = 0; i < collapses.size(); ++i) {
     const Collapse& collapse = collapses[i];
     prefetch(collapses[std::min(i + prefetch_distance, collapses.size() - 1)]);
-    if (is_stale_[collapse.kept] == 0 && is_stale_[collapse.removed] == 0 && is_valid(collapse)) {
-      apply(collapse);
+    if (is_stale_[collapse.kept] == 0 && is_stale_[collapse.removed] == 0 &&
+        make_if_valid(collapse)) {
       ++done;
     }
   }
@@ -152,9 +151,11 @@ CollapsePass::Collapses CollapsePass::list_collapses(std::span<const MeshTriangl
         if (is_known && max_cost <= already_tried) {
           continue;
         }
-        const Collapse collapse = make_collapse(a, b);
-        if (collapse.cost <= max_cost && !(is_known && collapse.cost <= already_tried)) {
-          collapses.push_back(collapse);
+        Quadric sum = mesh_.quadrics[a];
+        sum += mesh_.quadrics[b];
+        const double cost = sum.mean_square(to_vector3(optimum(a, b, sum)));
+        if (cost <= max_cost && !(is_known && cost <= already_tried)) {
+          collapses.push_back({.cost = cost, .kept = a, .removed = b});
         }
       }
     }
@@ -162,21 +163,15 @@ CollapsePass::Collapses CollapsePass::list_collapses(std::span<const MeshTriangl
   return collapses;
 }
 
-Collapse CollapsePass::make_collapse(std::uint32_t a, std::uint32_t b) const {
-  Quadric sum = mesh_.quadrics[a];
-  sum += mesh_.quadrics[b];
+/// Where the vertex goes that two become. @param sum  of their quadrics
+CollapsePass::Position CollapsePass::optimum(std::uint32_t a, std::uint32_t b,
+                                             const Quadric& sum) const {
   const Vector3 from = position(a);
   const Vector3 to = position(b);
   const Vector3 middle{(from[0] + to[0]) / 2, (from[1] + to[1]) / 2, (from[2] + to[2]) / 2};
   const bool is_on_platform = from[2] == 0 || to[2] == 0;
   const Vector3 best = is_on_platform ? sum.optimum_on_platform(middle) : sum.optimum(middle);
-  Collapse collapse{.cost = 0,
-                    .kept = a,
-                    .removed = b,
-                    .position = {static_cast<float>(best[0]), static_cast<float>(best[1]),
-                                 static_cast<float>(best[2])}};
-  collapse.cost = sum.mean_square(to_vector3(collapse.position));
-  return collapse;
+  return {static_cast<float>(best[0]), static_cast<float>(best[1]), static_cast<float>(best[2])};
 }
 
 /// Collapses are spread over the mesh by their order, and the mesh does not fit in the cache.
@@ -189,14 +184,20 @@ void CollapsePass::prefetch(const Collapse& collapse) const {
   }
 }
 
-bool CollapsePass::is_valid(const Collapse& collapse) const {
-  const auto& [cost, a, b, position] = collapse;
-  if (position[2] < limits_.min_z || position[2] > limits_.max_z) {
+/// @param collapse  of ends that are as they were when it was listed
+/// @returns whether it was valid, and was made
+bool CollapsePass::make_if_valid(const Collapse& collapse) {
+  const auto& [cost, a, b] = collapse;
+  Quadric sum = mesh_.quadrics[a];
+  sum += mesh_.quadrics[b];
+  const Position to = optimum(a, b, sum);
+  // In this order, as flips refuse half of all collapses and the link condition next to none.
+  if (to[2] < limits_.min_z || to[2] > limits_.max_z || flips_or_degenerates(to, a, b) ||
+      flips_or_degenerates(to, b, a) || !meets_link_condition(a, b)) {
     return false;
   }
-  // In this order, as flips refuse half of all collapses and the link condition next to none.
-  return !flips_or_degenerates(collapse, a, b) && !flips_or_degenerates(collapse, b, a) &&
-         meets_link_condition(a, b);
+  apply(collapse, to, sum);
+  return true;
 }
 
 /// Whether the ends have just the two neighbours in common that face the edge, and the vertex
@@ -231,12 +232,12 @@ bool CollapsePass::are_neighbours(std::uint32_t a, std::uint32_t b) const {
 /// Whether a triangle at `centre`, but not at the other end, would turn by more than the cosine
 /// allows or shrink to a sliver: a side or a height below `min_edge_mm`, or an aspect ratio above
 /// `max_aspect`. Evaluates the triangle before and after the collapse in one SIMD pass.
-bool CollapsePass::flips_or_degenerates(const Collapse& collapse, std::uint32_t centre,
+bool CollapsePass::flips_or_degenerates(const Position& to, std::uint32_t centre,
                                         std::uint32_t other_end) const {
   constexpr double min_square = min_edge_mm * min_edge_mm;
   using BeforeAndAfter = std::array<Eigen::Array2d, 3>;
   const Vector3 before = position(centre);
-  const Vector3 after = to_vector3(collapse.position);
+  const Vector3 after = to_vector3(to);
   const BeforeAndAfter centres{Eigen::Array2d(before[0], after[0]),
                                Eigen::Array2d(before[1], after[1]),
                                Eigen::Array2d(before[2], after[2])};
@@ -270,9 +271,9 @@ bool CollapsePass::flips_or_degenerates(const Collapse& collapse, std::uint32_t 
   return false;
 }
 
-void CollapsePass::apply(const Collapse& collapse) {
+void CollapsePass::apply(const Collapse& collapse, const Position& position, const Quadric& sum) {
   // The adjacency of other vertices still holds, but for triangles that have become degenerate.
-  const auto& [cost, kept, removed, position] = collapse;
+  const auto& [cost, kept, removed] = collapse;
   is_stale_[kept] = 1;
   is_stale_[removed] = 1;
   for (const std::uint32_t i : adjacency_.triangles_at(removed)) {
@@ -289,7 +290,7 @@ void CollapsePass::apply(const Collapse& collapse) {
   mesh_.vertices[kept].position = position;
   mesh_.vertices[kept].observed =
       mesh_.vertices[quadrics[kept].area >= quadrics[removed].area ? kept : removed].observed;
-  mesh_.quadrics[kept] += mesh_.quadrics[removed];
+  mesh_.quadrics[kept] = sum;
 }
 
 }  // namespace octurn

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,7 +34,7 @@ class CollapsePass {
         limits_(limits),
         team_(team),
         was_dirty_(std::move(dirty)),
-        adjacency_(mesh.triangles, mesh.vertices.size(), team),
+        adjacency_(mesh.triangles, mesh.vertices.size(), team, locked),
         is_dirty_(mesh.vertices.size(), 0),
         is_stale_(mesh.vertices.size(), 0) {}
 
@@ -47,19 +48,20 @@ class CollapsePass {
 
  private:
   using Collapses = std::vector<Collapse>;
+  using Position = std::array<float, 3>;
 
   Collapses list_collapses(std::span<const MeshTriangle> triangles, double max_cost,
                            double already_tried) const;
-  Collapse make_collapse(std::uint32_t a, std::uint32_t b) const;
+  Position optimum(std::uint32_t a, std::uint32_t b, const Quadric& sum) const;
   std::size_t collapse_in_strips(const VertexStrips& strips, std::vector<Collapses>& lists);
   std::size_t collapse_all(const Collapses& collapses);
   void prefetch(const Collapse& collapse) const;
-  bool is_valid(const Collapse& collapse) const;
+  bool make_if_valid(const Collapse& collapse);
   bool meets_link_condition(std::uint32_t a, std::uint32_t b) const;
   bool are_neighbours(std::uint32_t a, std::uint32_t b) const;
-  bool flips_or_degenerates(const Collapse& collapse, std::uint32_t centre,
+  bool flips_or_degenerates(const Position& to, std::uint32_t centre,
                             std::uint32_t other_end) const;
-  void apply(const Collapse& collapse);
+  void apply(const Collapse& collapse, const Position& position, const Quadric& sum);
 
   Vector3 position(std::uint32_t vertex) const {
     return to_vector3(mesh_.vertices[vertex].position);
@@ -72,7 +74,7 @@ class CollapsePass {
   CollapseLimits limits_;
   ThreadTeam& team_;
   std::vector<char> was_dirty_;
-  TriangleAdjacency adjacency_;  // as the pass began
+  TriangleAdjacency adjacency_;  // as the pass began, of vertices that are not locked
   std::vector<char> is_dirty_;
   std::vector<char> is_stale_;  // vertices whose adjacency a collapse has outdated
 };

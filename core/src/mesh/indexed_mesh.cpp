@@ -37,6 +37,7 @@ void add_plane_quadrics_of(IndexedMesh& mesh, std::span<const MeshTriangle> tria
 }  // namespace
 
 void add_plane_quadrics(IndexedMesh& mesh, std::size_t first, ThreadTeam& team) {
+  mesh.quadrics.resize(mesh.vertices.size());
   const std::span<const MeshTriangle> triangles = std::span(mesh.triangles).subspan(first);
   std::uint32_t low = std::numeric_limits<std::uint32_t>::max();  // of the vertices
   for (const MeshTriangle& triangle : triangles) {

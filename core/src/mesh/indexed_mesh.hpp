@@ -20,7 +20,7 @@ struct IndexedMesh {
 };
 
 /// Adds to each vertex's quadric the planes of its triangles, from the triangle `first` on, in
-/// their order.
+/// their order. The last vertices may be without a quadric yet.
 void add_plane_quadrics(IndexedMesh& mesh, std::size_t first,
                         ThreadTeam& team = ThreadTeam::alone());
 

@@ -10,17 +10,12 @@
 namespace octurn {
 namespace {
 
-std::vector<Aabb> make_bounds(std::span<const std::array<float, 3>> vertices,
-                              std::span<const MeshTriangle> triangles) {
-  std::vector<Aabb> bounds;
-  bounds.reserve(triangles.size());
-  for (const auto& [a, b, c] : triangles) {
-    Aabb box{.min = vertices[a], .max = vertices[a]};
-    box.extend({vertices[b], vertices[b]});
-    box.extend({vertices[c], vertices[c]});
-    bounds.push_back(box);
-  }
-  return bounds;
+Aabb bounds_of(const MeshTriangle& triangle, std::span<const std::array<float, 3>> vertices) {
+  const auto& [a, b, c] = triangle;
+  Aabb box{.min = vertices[a], .max = vertices[a]};
+  box.extend({vertices[b], vertices[b]});
+  box.extend({vertices[c], vertices[c]});
+  return box;
 }
 
 /// Whether two triangles lie in the star-shaped fan of a vertex that they share. Without branches,
@@ -41,16 +36,16 @@ bool share_star_shaped_fan(const MeshTriangle& a, const MeshTriangle& b,
 std::vector<Aabb> self_intersections(std::span<const std::array<float, 3>> vertices,
                                      std::span<const MeshTriangle> triangles,
                                      std::size_t already_checked, ThreadTeam& team) {
-  const std::vector<Aabb> bounds = make_bounds(vertices, triangles);
-  const Bvh4 bvh(bounds);
   const std::vector<char> is_star_shaped = find_star_shaped_fans(vertices, triangles, team);
+  const auto bounds = [&](std::uint32_t i) { return bounds_of(triangles[i], vertices); };
+  const Bvh4 bvh(triangles.size(), bounds);
   std::vector<std::vector<Aabb>> found(static_cast<std::size_t>(team.size()));
   bvh.for_each_overlapping_pair(team, [&](int thread, std::uint32_t a, std::uint32_t b) {
     if (!share_star_shaped_fan(triangles[a], triangles[b], is_star_shaped) &&
         (a >= already_checked || b >= already_checked) &&
         !are_disjoint(vertices, triangles[a], triangles[b])) {
       found[static_cast<std::size_t>(thread)].insert(found[static_cast<std::size_t>(thread)].end(),
-                                                     {bounds[a], bounds[b]});
+                                                     {bounds(a), bounds(b)});
     }
   });
   for (std::size_t i = 1; i < found.size(); ++i) {

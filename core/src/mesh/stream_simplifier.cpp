@@ -48,7 +48,6 @@ void StreamSimplifier::add(const MeshPiece& piece) {
     mesh_.vertices.push_back(vertex);
   }
   locked_.resize(mesh_.vertices.size(), 1);
-  mesh_.quadrics.resize(mesh_.vertices.size());
   for (const MeshTriangle& triangle : piece.triangles) {
     mesh_.triangles.push_back({window_[triangle[0] - first_piece_],
                                window_[triangle[1] - first_piece_],
@@ -76,12 +75,21 @@ void StreamSimplifier::finish() {
   flush_below(std::numeric_limits<float>::max());
 }
 
+/// A copy of the window, in which the vertices that were added have their quadrics. The window
+/// itself does without, as they are most of its memory.
+IndexedMesh StreamSimplifier::with_all_quadrics() const {
+  IndexedMesh copy{.vertices = mesh_.vertices, .quadrics = {}, .triangles = mesh_.triangles};
+  copy.quadrics.reserve(copy.vertices.size());
+  copy.quadrics = mesh_.quadrics;
+  add_plane_quadrics(copy, copy.triangles.size() - added_, team_);
+  return copy;
+}
+
 /// Simplifies the window so that it does not intersect itself. What was added does not, so that
 /// locking ever more vertices ends.
 void StreamSimplifier::simplify() {
-  add_plane_quadrics(mesh_, mesh_.triangles.size() - added_, team_);
   for (float reach = first_reach_mm;;) {
-    IndexedMesh simplified = mesh_;
+    IndexedMesh simplified = with_all_quadrics();
     qem_simplify(simplified, locked_, limits_, stop_, team_);
     const std::vector<Aabb> intersections = find_self_intersections(simplified, flushed_, team_);
     if (intersections.empty() || simplified.triangles.size() == mesh_.triangles.size()) {

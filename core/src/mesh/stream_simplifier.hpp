@@ -44,6 +44,7 @@ class StreamSimplifier {
   void finish();
 
  private:
+  IndexedMesh with_all_quadrics() const;
   void simplify();
   bool lock_near(const std::vector<Aabb>& boxes, float reach);
   void flush_below(float end);
@@ -55,7 +56,7 @@ class StreamSimplifier {
   FacetSink sink_;
   std::stop_token stop_;
   ThreadTeam& team_;
-  IndexedMesh mesh_ = {};
+  IndexedMesh mesh_ = {};          // with quadrics of the vertices that were in the last window
   std::vector<char> locked_ = {};  // vertices: emitted, on the open border, or near an intersection
   std::size_t flushed_ = 0;  // leading triangles already emitted; kept only as obstacles for the
                              // self-intersection test

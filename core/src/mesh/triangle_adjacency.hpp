@@ -20,25 +20,30 @@ inline std::size_t local_index(const MeshTriangle& triangle, std::uint32_t verte
 class TriangleAdjacency {
  public:
   /// O(vertices + triangles); each thread looks through all triangles for those of its vertices.
+  /// @param left_out  one per vertex: not 0 where nobody will ask; empty: nowhere
   TriangleAdjacency(std::span<const MeshTriangle> triangles, std::size_t vertex_count,
-                    ThreadTeam& team = ThreadTeam::alone())
-      : first_(vertex_count + 1, 0), triangles_(3 * triangles.size()) {
+                    ThreadTeam& team = ThreadTeam::alone(), std::span<const char> left_out = {})
+      : first_(vertex_count + 1, 0) {
+    const auto is_left_out = [&](std::uint32_t vertex) {
+      return !left_out.empty() && left_out[vertex] != 0;
+    };
     team.run([&](int thread) {
       const auto [first, end] = team.share(vertex_count, thread);
       for (const MeshTriangle& triangle : triangles) {
         for (const std::uint32_t corner : triangle) {
-          if (corner - first < end - first) {
+          if (corner - first < end - first && !is_left_out(corner)) {
             ++first_[corner];
           }
         }
       }
     });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    triangles_.resize(first_.back());
     team.run([&](int thread) {
       const auto [first, end] = team.share(vertex_count, thread);
       for (std::size_t i = triangles.size(); i-- > 0;) {
         for (const std::uint32_t corner : triangles[i]) {
-          if (corner - first < end - first) {
+          if (corner - first < end - first && !is_left_out(corner)) {
             triangles_[--first_[corner]] = static_cast<std::uint32_t>(i);
           }
         }
@@ -53,7 +58,7 @@ class TriangleAdjacency {
 
  private:
   std::vector<std::uint32_t> first_;
-  std::vector<std::uint32_t> triangles_;
+  std::vector<std::uint32_t> triangles_ = {};
 };
 
 }  // namespace octurn

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -35,10 +34,11 @@ ConditionedSource conditioned(const SnapshotSource& snapshots, const Box& clip,
           }};
 }
 
-/// Adds the bricks of a TSDF that are the tile's own: all but the border.
-void add_own(const CompactTsdf& tsdf, const BrickLayers& layers, TileBricks& tile) {
+/// The bricks of a TSDF that are the tile's own: all but the border.
+TileBricks own_bricks(const CompactTsdf& tsdf) {
+  TileBricks tile;
   const Index3& size = tsdf.grid().size();
-  for (int z = std::max(layers.low, 1); z < std::min(layers.end, size.z - 1); ++z) {
+  for (int z = 1; z < size.z - 1; ++z) {
     for (int y = 1; y < size.y - 1; ++y) {
       for (int x = 1; x < size.x - 1; ++x) {
         ShellBrick shell;
@@ -55,6 +55,7 @@ void add_own(const CompactTsdf& tsdf, const BrickLayers& layers, TileBricks& til
       }
     }
   }
+  return tile;
 }
 
 }  // namespace
@@ -65,14 +66,14 @@ void make_shell_tile(const ReconstructOptions& options, const Tile& tile,
   const VoxelGrid grid = make_shell_grid(options);
   const ConditionedSource source =
       conditioned(snapshots, options.clip, TileLattice(options).origin(tile.index), grid);
-  // What the plan counted has room; the volume is told no limit, so that threads may share it.
-  TsdfVolume volume(grid);
-  integrate(volume, source, options.threads, stop);
   CompactTsdf tsdf(grid, scan_snapshots < few_snapshots ? votes_of_any_ray : votes_of_surface_ray);
-  tsdf.add(volume, stop);
-  TileBricks bricks;
-  add_own(tsdf, volume.layers(), bricks);
-  sink(tile, bricks);
+  {  // The volume goes before the tile's bricks come.
+    // What the plan counted has room; the volume is told no limit, so that threads may share it.
+    TsdfVolume volume(grid);
+    integrate(volume, source, options.threads, stop);
+    tsdf.add(volume, stop);
+  }
+  sink(tile, own_bricks(tsdf));
 }
 
 }  // namespace octurn

@@ -19,7 +19,11 @@ namespace {
 // Of each thread, measured with frames of 640 x 480 samples: its snapshot, its points, and what it
 // found; for `solid` its conditioned depth as well.
 constexpr std::size_t points_bytes = 8 * mebibyte;
-constexpr std::size_t conditioned_bytes = 16 * mebibyte;
+constexpr std::size_t conditioned_bytes = 17 * mebibyte;
+
+// Of each brick of the shell in a layer, where its surface is drawn and simplified: a wall that
+// fills the layer has both its sides, and 128 triangles each, in one window of the simplifier.
+constexpr std::size_t layer_brick_bytes = 256 * std::size_t{170};
 
 std::size_t thread_bytes(const ReconstructOptions& options) {
   return options.method == Method::solid ? conditioned_bytes : points_bytes;
@@ -29,6 +33,16 @@ template <typename Item>
 std::size_t pool_bytes(std::uint64_t items) {
   return (static_cast<std::size_t>(items) / BlockPool<Item>::block_items + 1) *
          BlockPool<Item>::block_bytes;
+}
+
+/// @param needed  bytes that would be enough
+[[noreturn]] void refuse(const ReconstructOptions& options, const TileIndex& tile,
+                         std::size_t needed) {
+  throw Error(
+      ErrorCode::memory_limit,
+      "memory limit: tile (" + std::to_string(tile.x) + ", " + std::to_string(tile.y) + ", " +
+          std::to_string(tile.z) + ") does not fit in " + mb_text(options.memory_limit),
+      "Allow " + mb_text(needed) + ", or choose a smaller root size or a larger leaf size.");
 }
 
 }  // namespace
@@ -68,12 +82,29 @@ TileRoom room_for(const ReconstructOptions& options, const Tile& tile) {
       return {.threads = threads, .bytes = (options.memory_limit - taken) / copies};
     }
   }
-  throw Error(ErrorCode::memory_limit,
-              "memory limit: tile (" + std::to_string(tile.index.x) + ", " +
-                  std::to_string(tile.index.y) + ", " + std::to_string(tile.index.z) +
-                  ") does not fit in " + mb_text(options.memory_limit),
-              "Allow " + mb_text(tile_memory(options, tile)) +
-                  ", or choose a smaller root size or a larger leaf size.");
+  refuse(options, tile.index, tile_memory(options, tile));
+}
+
+std::size_t shell_surface_bytes(const ReconstructOptions& options,
+                                std::span<const TileBrick> bricks) {
+  std::size_t largest = 0;  // of the layers of bricks
+  for (auto first = bricks.begin(); first != bricks.end();) {
+    const auto end =
+        std::find_if(first, bricks.end(), [&](const TileBrick& at) { return at.z != first->z; });
+    largest = std::max(largest, static_cast<std::size_t>(end - first));
+    first = end;
+  }
+  const VoxelGrid grid = make_shell_grid(options);
+  const auto side = static_cast<std::size_t>(grid.size().x) * VoxelGrid::brick_side;
+  return bricks.size() * sizeof(ShellBrick) + side * side * side / 8 + largest * layer_brick_bytes;
+}
+
+void expect_surface_room(const ReconstructOptions& options, const TileIndex& tile,
+                         std::span<const TileBrick> bricks) {
+  const std::size_t surface = shell_surface_bytes(options, bricks);
+  if (options.memory_limit != 0 && options.program_memory + surface > options.memory_limit) {
+    refuse(options, tile, options.program_memory + surface + surface / 4);  // as walls are bumpy
+  }
 }
 
 std::size_t tile_memory(const ReconstructOptions& options, const Tile& tile) {

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "octurn/tiles.hpp"
+#include "tiles/tile_file.hpp"
 
 namespace octurn {
 
@@ -24,5 +26,14 @@ struct TileRoom {
 
 /// @param tile  that must fit. @throws Error "memory-limit"
 TileRoom room_for(const ReconstructOptions& options, const Tile& tile);
+
+/// Bytes that drawing and simplifying the surface of a tile takes, by the method `solid`.
+/// @param bricks  of the tile, as in `TileBricks`
+std::size_t shell_surface_bytes(const ReconstructOptions& options,
+                                std::span<const TileBrick> bricks);
+
+/// @throws Error "memory-limit"  if the limit has no room for the surface of a tile
+void expect_surface_room(const ReconstructOptions& options, const TileIndex& tile,
+                         std::span<const TileBrick> bricks);
 
 }  // namespace octurn

@@ -85,7 +85,10 @@ void TiledReconstructor::make_tiles_once(const SnapshotSource& snapshots,
   std::vector<StoredTile> made;
   make_tiles(
       options_, plan_->tiles, snapshots,
-      [&](const Tile& /*tile*/, const TileBricks& bricks) {
+      [&](const Tile& tile, const TileBricks& bricks) {
+        if (options_.method == Method::solid) {
+          expect_surface_room(options_, tile.index, bricks.positions);
+        }
         const TileHeader header = header_of(options_, *plan_, made.size(), bricks.positions.size());
         const std::uint64_t begin = spool_->size();
         const std::uint64_t first = write_tile_bytes(

@@ -10,6 +10,7 @@
 #include "octurn/mesh_report.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
+#include "process_memory.hpp"
 #include "progress_bar.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
@@ -75,6 +76,7 @@ void make_tile(const TileArguments& arguments) try {
 }
 
 void join(const JoinArguments& arguments) try {
+  return_freed_memory();
   const SignalStop signal;
   expect_writable(arguments.output);
   StlFile stl(arguments.output);

@@ -1,5 +1,6 @@
 #include "config.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -22,10 +23,31 @@ Config defaults() {
   return config;
 }
 
-Config config_from(const json& object) {
+/// Refuses lines of lasers that the turntable has.
+void expect_own_lines(const JsonObject& keys, const Config& config) {
+  const std::vector<NamedLine> turntable = lines_of(config.turntable);
+  for (const std::string& line : gpio_lines_of(config.laser)) {
+    if (std::ranges::find(turntable, line, &NamedLine::name) != turntable.end()) {
+      keys.refuse("laser", line, "on lines that the turntable has not");
+    }
+  }
+}
+
+/// The sensor's settings come first: what a scan has by default depends on it.
+Config config_from(const json& object, const std::optional<SensorKind>& sensor) {
   JsonObject keys(object, ErrorCode::bad_config, "");
   Config config = defaults();
+  read_fields(keys, sensor_fields(config));
+  config.sensor = sensor.value_or(config.sensor);
+  if (config.sensor == SensorKind::laser_line) {
+    use_laser_capture_defaults(config.scan);
+  }
+  const SensorKind chosen = config.sensor;
   read_fields(keys, fields(config));
+  config.sensor = chosen;
+  if (config.sensor == SensorKind::laser_line) {
+    expect_own_lines(keys, config);
+  }
   keys.refuse_unread();
   return config;
 }
@@ -77,16 +99,31 @@ std::vector<Field> data_fields(Config& config) {
            .default_text = "`\"/var/lib/octurn\"`"}};
 }
 
+std::vector<Field> sensor_fields(Config& config) {
+  return {
+      {.key = "sensor",
+       .help = "what the rig looks with: depth is a depth sensor, laser-line a camera with line "
+               "lasers",
+       .access = choice(config.sensor, {SensorKind::depth, SensorKind::laser_line})},
+      {.key = "laser",
+       .help = "the camera and its lasers, below",
+       .access = object(fields(config.laser),
+                        [&](JsonObject& keys) { check_laser_settings(keys, config.laser); })},
+  };
+}
+
 std::vector<Field> fields(Config& config) {
   std::vector<Field> all = network_fields(config);
   for (const std::vector<Field>& more :
-       {access_fields(config), data_fields(config), fields(config.limits), nested_fields(config)}) {
+       {access_fields(config), data_fields(config), fields(config.limits), nested_fields(config),
+        sensor_fields(config)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
 }
 
-Config read_config(const std::filesystem::path& file) {
+Config read_config(const std::filesystem::path& file,
+                   const std::optional<SensorKind>& sensor) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) {
@@ -94,7 +131,7 @@ Config read_config(const std::filesystem::path& file) {
                 "Check that it exists and that this program may read it.");
   }
   try {
-    return config_from(parse_json(text, ErrorCode::bad_config, "it"));
+    return config_from(parse_json(text, ErrorCode::bad_config, "it"), sensor);
   } catch (const Error& error) {
     throw Error(ErrorCode::bad_config, file.string() + ": " + error.what(), error.hint());
   }
@@ -105,12 +142,13 @@ json to_json(const Config& config) {
   return to_json(fields(copy));
 }
 
-Config chosen_config(const std::optional<std::filesystem::path>& file) {
+Config chosen_config(const std::optional<std::filesystem::path>& file,
+                     const std::optional<SensorKind>& sensor) {
   if (file) {
-    return read_config(*file);
+    return read_config(*file, sensor);
   }
-  return std::filesystem::exists(default_config_file) ? read_config(default_config_file)
-                                                      : defaults();
+  return std::filesystem::exists(default_config_file) ? read_config(default_config_file, sensor)
+                                                      : config_from(json::object(), sensor);
 }
 
 }  // namespace octurn

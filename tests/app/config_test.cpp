@@ -55,7 +55,14 @@ TEST(Config, IsWrittenAsItIsRead) {
                     "full_steps": 400, "gear_ratio": 2.5, "reversed": true,
                     "speed_steps_per_s": 900.0, "start_speed_steps_per_s": 100.0,
                     "ramp_steps_per_s2": 3000.0, "settle_ms": 20, "idle_release_s": 30,
-                    "take_up_steps": 5}})");
+                    "take_up_steps": 5},
+      "sensor": "depth",
+      "laser": {"width": 640, "height": 480, "fx": 500.5, "fy": 501.0, "cx": 319.5, "cy": 239.5,
+                "k1": -0.05, "k2": 0.25,
+                "platform_from_sensor": [[1, 0, 0, 0.5], [0, 0, 1, -0.25], [0, -1, 0, 0.125],
+                                         [0, 0, 0, 1]],
+                "left": {"line": "GPIO12", "plane_m": [1, 0, 0, 0.25], "source_m": [0.25, 0, 0.5]},
+                "right": {"line": "", "plane_m": [0, 0, 1, 0.5], "source_m": [0, 1, 0.5]}}})");
   json written = to_json(config_of(every.dump().c_str()));
   EXPECT_EQ(written["scan"], to_json(ScanSettings{}));
   written["scan"] = json::object();
@@ -67,6 +74,8 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
   json expected = json::parse(content_of(golden / "settings.json"));
   expected["scan"].update(
       {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // which that had not
+  expected["sensor"] = "depth";
+  expected["laser"] = to_json(Config())["laser"];
   EXPECT_EQ(to_json(read_config(golden / "octurn.json")), expected);
 }
 

@@ -150,7 +150,9 @@ TEST(SettingsDocument, HasTheTablesOfTheProgram) {
       {"octurn.json", fields(config)},
       {"scan", fields(config.scan)},
       {"reconstruct", of_model},
-      {"turntable", fields(config.turntable)}};
+      {"turntable", fields(config.turntable)},
+      {"laser", fields(config.laser)},
+      {"laser line", fields(config.laser.left)}};
   for (const auto& [name, fields] : tables) {
     const std::string table = to_markdown(fields);
     EXPECT_EQ(generated_part(document, name), table)

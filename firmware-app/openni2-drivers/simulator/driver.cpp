@@ -4,15 +4,13 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "depth_driver.hpp"
 #include "property.hpp"
 #include "rig/misaligned_pose.hpp"
 #include "rig/simulation.hpp"
-#include "simulator/mesh_file.hpp"
+#include "simulator/placed_object.hpp"
 #include "simulator/simulated_kinect.hpp"
-#include "simulator/simulator_object.hpp"
 #include "simulator/simulator_stream.hpp"
 
 namespace octurn {
@@ -23,12 +21,7 @@ Scene make_scene(const Simulation& simulation) {
     return Scene::of_wall(*simulation.wall);
   }
   const Eigen::Isometry3d pose = misaligned_platform_from_sensor(simulation.misalignment);
-  if (simulation.mesh_file.empty()) {
-    return Scene(simulator_object(), pose);
-  }
-  Mesh mesh = read_mesh(simulation.mesh_file);
-  stand_on_platform(mesh);
-  return Scene(std::move(mesh), pose);
+  return Scene(told_object(simulation.mesh_file), pose);
 }
 
 /// A sensor with another pattern is another sensor.

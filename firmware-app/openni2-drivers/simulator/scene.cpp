@@ -1,12 +1,10 @@
 #include "simulator/scene.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
-#include "octurn/units.hpp"
 #include "simulator/camera.hpp"
-#include "simulator/object_pose.hpp"
+#include "simulator/surroundings.hpp"
 
 namespace octurn {
 namespace {
@@ -17,49 +15,6 @@ constexpr double baseline = 0.075;  // metres from the camera to the projector, 
 /// the camera sees beyond 0.37 m.
 constexpr int wider = 116;  // pixels; f b / 0.37 m
 constexpr Intrinsics projector = {.width = camera.width + wider, .cx = camera.cx + wider};
-
-void add_rectangle(Mesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vector3f& side,
-                   const Eigen::Vector3f& other_side) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex :
-       {corner, Eigen::Vector3f(corner + side), Eigen::Vector3f(corner + side + other_side),
-        Eigen::Vector3f(corner + other_side)}) {
-    mesh.vertices.push_back(vertex);
-  }
-  mesh.triangles.push_back({first, first + 1, first + 2});
-  mesh.triangles.push_back({first, first + 2, first + 3});
-}
-
-void add_platform(Mesh& mesh) {
-  constexpr double radius = 0.150;
-  constexpr float thickness = 0.0127F;
-  constexpr std::uint32_t corners = 128;  // the polygon is within 0.05 mm of the circle
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    const double angle = 2 * std::numbers::pi * i / corners;
-    const auto x = static_cast<float>(radius * std::cos(angle));
-    const auto y = static_cast<float>(radius * std::sin(angle));
-    mesh.vertices.emplace_back(x, y, 0.0F);
-    mesh.vertices.emplace_back(x, y, -thickness);
-  }
-  mesh.vertices.emplace_back(0.0F, 0.0F, 0.0F);
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    const std::uint32_t top = first + 2 * i;
-    const std::uint32_t next_top = first + 2 * ((i + 1) % corners);
-    mesh.triangles.push_back({first + 2 * corners, top, next_top});
-    mesh.triangles.push_back({top, top + 1, next_top + 1});
-    mesh.triangles.push_back({top, next_top + 1, next_top});
-  }
-}
-
-/// The platform and what stands behind it, in the platform's frame, metres.
-Mesh surroundings() {
-  Mesh mesh;
-  add_platform(mesh);
-  add_rectangle(mesh, {-1.0F, -0.45F, -0.08F}, {2.0F, 0, 0}, {0, 1.2F, 0});  // table
-  add_rectangle(mesh, {-1.5F, 0.95F, -0.8F}, {3.0F, 0, 0}, {0, 0, 2.0F});    // wall
-  return mesh;
-}
 
 /// True where the projector's light falls. Its picture holds the surface that the light meets
 /// first.
@@ -97,22 +52,12 @@ Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_
   rasterise(around, projector_from_platform_, projector, projector_background_);
 }
 
-bool Scene::lay_object(int pose) {
-  if (pose == pose_) {
-    return false;
-  }
-  pose_ = pose;
-  platform_from_object_ = platform_from_object(object_, pose);
-  return true;
-}
-
 InverseDepth Scene::lit_at(double angle) const {
-  const Eigen::Isometry3d turn =
-      Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * platform_from_object_;
+  const Eigen::Isometry3d turn = object_.platform_from_mesh(angle);
   InverseDepth seen = camera_background_;
   InverseDepth reached = projector_background_;
-  rasterise(object_, camera_from_platform_ * turn, camera, seen);
-  rasterise(object_, projector_from_platform_ * turn, projector, reached);
+  rasterise(object_.mesh(), camera_from_platform_ * turn, camera, seen);
+  rasterise(object_.mesh(), projector_from_platform_ * turn, projector, reached);
   for (int v = 0; v < camera.height; ++v) {
     float* row = seen.data() + static_cast<std::ptrdiff_t>(v) * camera.width;
     const float* projector_row = reached.data() + static_cast<std::ptrdiff_t>(v) * projector.width;

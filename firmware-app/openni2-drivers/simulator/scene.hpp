@@ -5,6 +5,7 @@
 #include "octurn/snapshot.hpp"
 #include "rig/nominal_pose.hpp"
 #include "simulator/mesh.hpp"
+#include "simulator/placed_object.hpp"
 #include "simulator/rasterise.hpp"
 
 namespace octurn {
@@ -25,7 +26,7 @@ class Scene {
 
   /// Turns the object over. @param pose  as of `platform_from_object`
   /// @return false if it lies so already
-  bool lay_object(int pose);
+  bool lay_object(int pose) { return object_.lay(pose); }
 
   /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
@@ -35,9 +36,7 @@ class Scene {
   /// @param around  what does not turn, in the platform's frame
   Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor);
 
-  Mesh object_;
-  int pose_ = 0;  // in which the object lies
-  Eigen::Isometry3d platform_from_object_ = Eigen::Isometry3d::Identity();
+  PlacedObject object_;
   Eigen::Isometry3d camera_from_platform_;
   Eigen::Isometry3d projector_from_platform_;
   InverseDepth camera_background_;

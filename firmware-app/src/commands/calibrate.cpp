@@ -120,7 +120,7 @@ CalibrationRun follow(Scanner& scanner, const std::stop_token& stop) {
 
 bool calibrate_rig(const CalibrateArguments& arguments) {
   const Config config = make_config(arguments.config);
-  const RigOptions rig = rig_options(arguments.rig, config.turntable);
+  const RigOptions rig = rig_options(arguments.rig, config);
   load_sensor_drivers();  // before the first thread, as it asks
   const SignalStop signal;
   ScanStore store(config.data);

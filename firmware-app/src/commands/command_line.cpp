@@ -26,7 +26,7 @@ void add_config_options(CLI::App& command, ConfigArguments& config) {
 
 void add_serve(CLI::App& program, ServeArguments& arguments) {
   CLI::App& command = *program.add_subcommand("serve", "the daemon: page, API, scans");
-  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_rig_options(command, arguments.rig, arguments.config);
   add_config_options(command, arguments.config);
   Config defaults;
   add_options(command, network_fields(defaults), arguments.config.given);
@@ -44,15 +44,12 @@ void add_serve(CLI::App& program, ServeArguments& arguments) {
                   "disk that its machines share; here is this process (here)")
       ->type_name("here|slurm")
       ->check(CLI::IsMember({"here", "slurm"}));
-  command.callback([&arguments, simulate] {
-    arguments.rig.simulate = simulate->count() > 0;
-    serve(arguments);
-  });
+  command.callback([&arguments] { serve(arguments); });
 }
 
 void add_scan(CLI::App& program, ScanArguments& arguments) {
   CLI::App& command = *program.add_subcommand("scan", "one scan from the shell");
-  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_rig_options(command, arguments.rig, arguments.config);
   add_config_options(command, arguments.config);
   command.add_option("-o,--output", arguments.output, "the model (Scan.stl); - is standard output")
       ->type_name("FILE");
@@ -71,16 +68,13 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
                   "scan folder elsewhere is left as it is: scan, then octurn merge both")
       ->type_name("ID|DIR")
       ->excludes(resume);
-  command.callback([&arguments, simulate] {
-    arguments.rig.simulate = simulate->count() > 0;
-    scan(arguments);
-  });
+  command.callback([&arguments] { scan(arguments); });
 }
 
 void add_record(CLI::App& program, RecordArguments& arguments) {
   CLI::App& command = *program.add_subcommand(
       "record", "what the sensor sees in a turn, to be replayed by --sensor");
-  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_rig_options(command, arguments.rig, arguments.config);
   add_config_option(command, arguments.config);
   CLI::Option* output = command
                             .add_option("-o,--output", arguments.output,
@@ -100,11 +94,10 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
   command.add_option("--frames", arguments.frames, "frames at each stop (10), or of a wall (25)")
       ->type_name("N")
       ->check(CLI::Range(1, 100'000));
-  command.callback([&arguments, simulate, output, wall] {
+  command.callback([&arguments, output, wall] {
     if (output->count() + wall->count() == 0) {
       throw CLI::RequiredError("--output or --wall");
     }
-    arguments.rig.simulate = simulate->count() > 0;
     record(arguments);
   });
 }
@@ -112,7 +105,7 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
 void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   CLI::App& command =
       *program.add_subcommand("doctor", "checks the scanner, and says what to do about each fault");
-  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_rig_options(command, arguments.rig, arguments.config);
   add_config_options(command, arguments.config);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of the table");
   command.add_flag("--turn", arguments.turn,
@@ -125,8 +118,7 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   command.footer(
       "Without --turn it never moves the motor. It ends with 0 if there is no fault, with 1 if one "
       "is.");
-  command.callback([&arguments, &status, simulate] {
-    arguments.rig.simulate = simulate->count() > 0;
+  command.callback([&arguments, &status] {
     status = doctor(arguments) ? 0 : 1;
   });
 }
@@ -142,7 +134,7 @@ void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
       "--apply", arguments.apply, "write what is accepted into scan.json, for models to come");
   apply->needs(folder);
   CLI::Option* map = add_sensor_map_option(command, arguments.sensor_map)->needs(folder);
-  const CLI::Option* simulate = add_rig_options(command, arguments.rig);
+  add_rig_options(command, arguments.rig, arguments.config);
   add_config_options(command, arguments.config);
   CLI::Option* stops = command.add_option("--stops", arguments.stops, "stops of the turn (24)")
                            ->type_name("N")
@@ -166,8 +158,7 @@ void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
   wall->needs(output);
   command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
   command.footer("It ends with 0 if what it found is accepted, with 1 if it is not.");
-  command.callback([&, simulate, wall] {
-    arguments.rig.simulate = simulate->count() > 0;
+  command.callback([&, wall] {
     if (wall->count() > 0) {
       wall_arguments.json = arguments.json;
       status = calibrate_wall(wall_arguments) ? 0 : 1;

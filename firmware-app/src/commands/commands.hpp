@@ -16,6 +16,7 @@ namespace octurn {
 /// Options of the sensor and the turntable.
 struct RigArguments {
   bool simulate = false;
+  bool laser = false;  ///< what is simulated is a camera with line lasers
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
   std::optional<double> wall = {};        ///< metres: the simulated sensor looks at a wall
@@ -27,13 +28,15 @@ struct RigArguments {
 };
 
 /// The rig that the options select.
-/// @param stepper  settings of the turntable. A simulated one obeys gear_ratio and reversed
-RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper);
+/// @param config  what it is told of itself. A simulated turntable obeys gear_ratio and reversed
+/// @throws Error "bad-simulation"  if the simulator has no lens as the settings have it
+RigOptions rig_options(const RigArguments& arguments, const Config& config);
 
 /// Options of the configuration.
 struct ConfigArguments {
   std::optional<std::filesystem::path> file = {};
   nlohmann::json given = nlohmann::json::object();  ///< by their keys in octurn.json
+  std::optional<SensorKind> sensor = {};            ///< in place of the file's
 };
 
 /// The configuration file, the page's settings over it, and the options of the command line over

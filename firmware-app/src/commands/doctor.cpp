@@ -111,7 +111,7 @@ bool doctor(const DoctorArguments& arguments) {
   Config config = settings.config();
   config.scan = CalibrationStore(config.data).in_force(config.scan);
   const DoctorInput input{
-      .rig = rig_options(arguments.rig, config.turntable),
+      .rig = rig_options(arguments.rig, config),
       .config = config,
       .settings_trouble = settings.trouble(),
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};

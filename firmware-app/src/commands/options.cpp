@@ -60,6 +60,56 @@ CLI::Option* add_option_of_type(CLI::App& command, const Field& field, json& giv
   return add_option<std::string>(command, field, given);
 }
 
+/// An option that has something simulated, with the object for it. Its value is optional.
+const CLI::Option* add_mesh_option(CLI::App& command, const std::string& name, RigArguments& rig,
+                                   const std::string& help) {
+  return command.add_option(name, rig.mesh_file, help)->type_name("[=MESH]")->expected(0, 1);
+}
+
+/// Options of every simulated rig.
+std::vector<const CLI::Option*> add_simulation_options(CLI::App& command, RigArguments& rig) {
+  return {command
+              .add_option("--simulate-speed", rig.speed,
+                          "how much faster than life the simulated rig is")
+              ->type_name("FACTOR")
+              ->check(CLI::Range(0.1, 1000.0)),
+          command.add_flag("--simulate-perfect", rig.perfect,
+                           "the simulated rig stands where it is told to, and its sensor has no "
+                           "error of its own but noise")};
+}
+
+/// Options of a simulated rig with a depth sensor.
+std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command,
+                                                             RigArguments& rig) {
+  return {command
+              .add_option("--simulate-wall", rig.wall,
+                          "the simulated sensor looks squarely at a wall so far away, as for a map "
+                          "of its own error")
+              ->type_name("METRES")
+              ->check(CLI::Range(0.3, 6.0)),
+          command
+              .add_option("--simulate-gear", rig.gear_ratio,
+                          "gear ratio of the simulated turntable, where it is not what is set")
+              ->type_name("RATIO")
+              ->check(CLI::Range(0.001, 1000.0)),
+          command.add_flag("--simulate-reversed", rig.reversed,
+                           "the simulated motor is wired the other way"),
+          command
+              .add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
+              ->type_name("DEGREES")
+              ->check(CLI::Range(0.0, 10.0))};
+}
+
+/// Refuses options that are given without what they belong to.
+void expect_partner(const std::vector<const CLI::Option*>& options, bool has_partner,
+                    const std::string& partner) {
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0 && !has_partner) {
+      throw CLI::RequiresError(option->get_name(), partner);
+    }
+  }
+}
+
 }  // namespace
 
 std::string option_name(std::string_view key) {
@@ -74,55 +124,39 @@ void add_options(CLI::App& command, const std::vector<Field>& fields, json& give
   }
 }
 
-CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig) {
-  CLI::Option* simulate =
-      command
-          .add_option("--simulate", rig.mesh_file,
-                      "scan with a simulated rig; MESH (STL, millimetres) stands on it")
-          ->type_name("[=MESH]")
-          ->expected(0, 1);
-  command
-      .add_option("--simulate-speed", rig.speed, "how much faster than life the simulated rig is")
-      ->type_name("FACTOR")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->needs(simulate);
-  command
-      .add_flag("--simulate-perfect", rig.perfect,
-                "the simulated rig stands where it is told to, and its sensor has no error of its "
-                "own but noise")
-      ->needs(simulate);
-  command
-      .add_option("--simulate-wall", rig.wall,
-                  "the simulated sensor looks squarely at a wall so far away, as for a map of its "
-                  "own error")
-      ->type_name("METRES")
-      ->check(CLI::Range(0.3, 6.0))
-      ->needs(simulate);
-  command
-      .add_option("--simulate-gear", rig.gear_ratio,
-                  "gear ratio of the simulated turntable, where it is not what is set")
-      ->type_name("RATIO")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->needs(simulate);
-  command
-      .add_flag("--simulate-reversed", rig.reversed, "the simulated motor is wired the other way")
-      ->needs(simulate);
-  command.add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
-      ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 10.0))
-      ->needs(simulate);
+void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& config) {
+  const CLI::Option* simulate =
+      add_mesh_option(command, "--simulate", rig,
+                      "scan with a simulated rig; MESH (STL, millimetres) stands on it");
+  const CLI::Option* laser =
+      add_mesh_option(command, "--simulate-laser", rig,
+                      "the same with a camera and line lasers, as the settings have them");
+  std::vector<const CLI::Option*> of_any = add_simulation_options(command, rig);
+  std::vector<const CLI::Option*> of_depth = add_depth_simulation_options(command, rig);
   command
       .add_option("--sensor", rig.sensor_uri,
                   "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
                   "folder of `octurn record`")
       ->type_name("URI");
-  return simulate;
+  command.parse_complete_callback([=, &rig, &config] {
+    rig.laser = laser->count() > 0;
+    rig.simulate = rig.laser || simulate->count() > 0;
+    if (rig.laser && simulate->count() > 0) {
+      throw CLI::ExcludesError("--simulate", "--simulate-laser");
+    }
+    expect_partner(of_any, rig.simulate, "--simulate or --simulate-laser");
+    expect_partner(of_depth, rig.simulate && !rig.laser, "--simulate");
+    if (rig.simulate) {
+      config.sensor = rig.laser ? SensorKind::laser_line : SensorKind::depth;
+    }
+  });
 }
 
 Config make_config(const ConfigArguments& arguments) { return open_config(arguments).config(); }
 
 ConfigStore open_config(const ConfigArguments& arguments) {
-  return ConfigStore({.file = chosen_config(arguments.file), .given = arguments.given});
+  return ConfigStore(
+      {.file = chosen_config(arguments.file, arguments.sensor), .given = arguments.given});
 }
 
 void expect_writable(const std::filesystem::path& output) {

@@ -21,10 +21,12 @@ std::string option_name(std::string_view key);
 void add_options(CLI::App& command, const std::vector<Field>& fields, nlohmann::json& given);
 
 struct RigArguments;
+struct ConfigArguments;
 
-/// Adds the options of sensor and turntable. @param rig  outlives the parsing
-/// @return the option --simulate, whose value is optional
-CLI::Option* add_rig_options(CLI::App& command, RigArguments& rig);
+/// Adds the options of sensor and turntable.
+/// @param rig     outlives the parsing
+/// @param config  the same; gets the kind of a simulated sensor
+void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& config);
 
 /// Refuses options of the other method. @throws Error "bad-settings"  that names the option
 void expect_options_of_method(const nlohmann::json& given, const std::vector<Field>& fields,

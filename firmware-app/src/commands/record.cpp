@@ -37,7 +37,7 @@ void record(const RecordArguments& arguments) {
     return;
   }
   const Config config = make_config(arguments.config);
-  const RigOptions options = rig_options(arguments.rig, config.turntable);
+  const RigOptions options = rig_options(arguments.rig, config);
   load_sensor_drivers();  // before the first thread, as it asks
   const SignalStop signal;
   const std::stop_token stop = signal.token();

@@ -14,7 +14,7 @@ constexpr int usual_frames = 25;  // more does not lower the noise that a wall's
 
 void record_wall(const RecordArguments& arguments) {
   const Config config = make_config(arguments.config);
-  const RigOptions options = rig_options(arguments.rig, config.turntable);
+  const RigOptions options = rig_options(arguments.rig, config);
   load_sensor_drivers();  // before the first thread, as it asks
   const SignalStop signal;
   Rig rig(options);

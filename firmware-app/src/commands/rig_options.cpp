@@ -1,13 +1,15 @@
 #include <functional>
 #include <memory>
 
+#include "camera/simulated_camera.hpp"
 #include "commands/commands.hpp"
+#include "octurn/error.hpp"
 #include "octurn/units.hpp"
+#include "rig/nominal_laser_rig.hpp"
 #include "rig/simulation.hpp"
 #include "sensor/simulated_mechanism.hpp"
 
 namespace octurn {
-
 namespace {
 
 /// The simulated platform's motion: a gear or a wire that differs from the settings shows.
@@ -26,11 +28,49 @@ std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> sensor_opene
   return [mechanism](const std::string& uri) { return on_mechanism(open_sensor(uri), mechanism); };
 }
 
+// How far the lasers of a simulated rig were turned in their holders since they were measured.
+constexpr double left_turn_deg = 0.06;  // 0.35 mm at the platform's axis
+constexpr double right_turn_deg = -0.04;
+
+/// The rig as it stands in truth.
+LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings& told) {
+  if (told.k1 != 0 || told.k2 != 0) {
+    throw Error(ErrorCode::bad_simulation, "the simulated camera's lens has no distortion",
+                "Set laser.k1 and laser.k2 to 0, or leave them out.");
+  }
+  LaserSimulation simulation{.mesh_file = arguments.mesh_file,
+                             .lens = told.lens,
+                             .platform_from_sensor = told.platform_from_sensor,
+                             .lasers = laser_camera(told).lasers};
+  const Eigen::Vector3d up =
+      told.platform_from_sensor.linear().transpose() * Eigen::Vector3d::UnitZ();
+  for (Laser& laser : simulation.lasers) {
+    const double turn_deg = laser.name == told.left.laser.name ? left_turn_deg : right_turn_deg;
+    laser = turned_in_holder(laser, up, arguments.perfect ? 0 : radians_from_degrees(turn_deg));
+  }
+  return simulation;
+}
+
+RigOptions laser_rig_options(const RigArguments& arguments, const Config& config) {
+  if (!arguments.simulate) {
+    return {.stepper = config.turntable, .laser = config.laser};
+  }
+  return {.speed = arguments.speed,
+          .laser = config.laser,
+          .open_camera = [simulation = to_simulation(arguments, config.laser),
+                          speed = arguments.speed](const LaserSettings&) {
+            return simulate_laser_rig(simulation, speed);
+          }};
+}
+
 }  // namespace
 
-RigOptions rig_options(const RigArguments& arguments, const StepperSettings& stepper) {
+RigOptions rig_options(const RigArguments& arguments, const Config& config) {
+  if (config.sensor == SensorKind::laser_line) {
+    return laser_rig_options(arguments, config);
+  }
   if (!arguments.simulate) {
-    return {.sensor_uri = arguments.sensor_uri, .stepper = stepper};
+    return {.sensor_uri = arguments.sensor_uri, .stepper = config.turntable};
   }
   const double real_life = arguments.perfect ? 0 : 1;
   const std::string simulated = simulation_uri({.mesh_file = arguments.mesh_file,
@@ -40,7 +80,7 @@ RigOptions rig_options(const RigArguments& arguments, const StepperSettings& ste
                                                 .speed = arguments.speed});
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,
           .speed = arguments.speed,
-          .open_sensor = sensor_opener(to_mechanism(arguments, stepper))};
+          .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
 }
 
 }  // namespace octurn

@@ -140,7 +140,7 @@ void scan(const ScanArguments& arguments) {
   ScanSettings settings = settings_from(arguments.settings, config.scan);
   expect_options_of_method(arguments.settings, fields(settings), to_string(settings.method));
   expect_writable(arguments.output);  // before minutes of scanning
-  const RigOptions rig = rig_options(arguments.rig, config.turntable);
+  const RigOptions rig = rig_options(arguments.rig, config);
   load_sensor_drivers();  // before the first thread, as it asks
 
   const SignalStop signal;

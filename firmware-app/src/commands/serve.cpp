@@ -121,6 +121,9 @@ RigOptions closed(RigOptions rig) {
   rig.open_lines = [](const StepperSettings&) -> Stepper::SetLine {
     throw Error(ErrorCode::turntable_missing, why_safe, leave_safe_mode);
   };
+  rig.open_camera = [](const LaserSettings&) -> CameraAndLasers {
+    throw Error(ErrorCode::sensor_missing, why_safe, leave_safe_mode);
+  };
   return rig;
 }
 
@@ -131,7 +134,7 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
     config.http.port = machine.port;
   }
   const bool is_safe = machine.start != nullptr && machine.start->is_safe_mode();
-  RigOptions rig = rig_options(machine.arguments.rig, config.turntable);
+  RigOptions rig = rig_options(machine.arguments.rig, config);
   if (is_safe) {
     log::error("octurn", why_safe);
     rig = closed(std::move(rig));

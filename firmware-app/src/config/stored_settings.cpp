@@ -19,8 +19,9 @@ constexpr const char* settings_file = "settings.json";
 constexpr const char* last_good_file = "settings.last.json";
 constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a body has 64 KiB at most
 
-// Where settings are kept, and who may change them, is not for those who may change them.
-constexpr std::array<std::string_view, 2> fixed_keys{"data", "password_file"};
+// Where settings are kept, and who may change them, is not for those who may change them. What the
+// rig is built of is measured beside it.
+constexpr std::array<std::string_view, 4> fixed_keys{"data", "password_file", "sensor", "laser"};
 
 void refuse_fixed(const json& values) {
   for (const std::string_view key : fixed_keys) {

@@ -28,20 +28,32 @@ std::uint8_t to_brightness(double depth) {
       std::lround(min_brightness + (255 - min_brightness) * std::clamp(share, 0.0, 1.0)));
 }
 
-}  // namespace
-
-std::string preview_png(const DepthFrame& frame, double depth_unit) {
+/// @param brightness  of a sample by its index
+template <typename Brightness>
+std::string sampled_png(int from_width, int from_height, Brightness brightness) {
   std::vector<std::uint8_t> picture;
   picture.reserve(static_cast<std::size_t>(width) * height);
   for (int y = 0; y < height; ++y) {
-    const int row = y * frame.height / height * frame.width;
+    const int row = y * from_height / height * from_width;
     for (int x = 0; x < width; ++x) {
-      const auto sample = static_cast<std::size_t>(row + x * frame.width / width);
-      picture.push_back(to_brightness(frame.depth[sample] * depth_unit));
+      picture.push_back(brightness(static_cast<std::size_t>(row + x * from_width / width)));
     }
   }
   const std::vector<std::byte> png = encode_grey_png(width, height, picture);
   return {reinterpret_cast<const char*>(png.data()), png.size()};
+}
+
+}  // namespace
+
+std::string preview_png(const DepthFrame& frame, double depth_unit) {
+  return sampled_png(frame.width, frame.height, [&](std::size_t sample) {
+    return to_brightness(frame.depth[sample] * depth_unit);
+  });
+}
+
+std::string preview_png(const Picture& picture) {
+  return sampled_png(picture.width, picture.height,
+                     [&](std::size_t sample) { return picture.samples[sample]; });
 }
 
 }  // namespace octurn

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -9,5 +10,8 @@ namespace octurn {
 /// A depth frame as a picture for people: PNG, 8-bit grey, 320 x 240, near bright, far dark, black
 /// where there is no reading.
 std::string preview_png(const DepthFrame& frame, double depth_unit);
+
+/// The same of a camera's picture, as bright as that is.
+std::string preview_png(const Picture& picture);
 
 }  // namespace octurn

@@ -1,26 +1,13 @@
-#include <dlfcn.h>
-
-#include "octurn/error.hpp"
+#include "module.hpp"
 #include "outgoing/http_client_module.hpp"
 
 namespace octurn {
 namespace {
 
-/// The module, which stays loaded. It lies in the folder that this program finds OpenNI2 in.
 const HttpClientModule& loaded_module() {
-  static const HttpClientModule& module = []() -> const HttpClientModule& {
-    void* const library = ::dlopen("libOcturnHttpClient.so", RTLD_NOW | RTLD_LOCAL);
-    const void* const symbol =
-        library == nullptr ? nullptr : ::dlsym(library, "octurn_http_client");
-    if (symbol == nullptr) {
-      const char* const trouble = ::dlerror();
-      throw Error(ErrorCode::internal,
-                  std::string("the HTTP client cannot be loaded: ") +
-                      (trouble == nullptr ? "it has no entry" : trouble),
-                  "Install Octurn again, and libcurl.");
-    }
-    return *static_cast<const HttpClientModule*>(symbol);
-  }();
+  static const auto& module = *static_cast<const HttpClientModule*>(
+      load_module("libOcturnHttpClient.so", "octurn_http_client", "the HTTP client",
+                  "Install Octurn again, and libcurl."));
   return module;
 }
 

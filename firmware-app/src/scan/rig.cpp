@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "scan/plan.hpp"
 #include "turntable/simulated_turntable.hpp"
@@ -14,6 +15,10 @@ Rig::Rig(RigOptions options)
 Rig::~Rig() = default;
 
 DepthSensor& Rig::sensor() {
+  if (options_.laser) {
+    throw Error(ErrorCode::sensor_other, "this rig has a camera with lasers, and no depth sensor",
+                "Scan with it; nothing else can be done with such a rig yet.");
+  }
   if (!sensor_) {
     sensor_ = options_.open_sensor(options_.sensor_uri);
     sensor_since_ = std::chrono::steady_clock::now();
@@ -23,8 +28,34 @@ DepthSensor& Rig::sensor() {
   return *sensor_;
 }
 
+Camera& Rig::camera() {
+  if (!camera_) {
+    CameraAndLasers opened = options_.open_camera(*options_.laser);
+    lasers_.emplace(lines_of(*options_.laser).size(), std::move(opened.set_line));
+    camera_ = std::move(opened.camera);
+    sensor_since_ = std::chrono::steady_clock::now();
+    camera_->show_angle(radians_from_degrees(platform_angle_deg()));
+    camera_->lay_object(object_pose_);
+  }
+  return *camera_;
+}
+
+Lasers& Rig::lasers() {
+  camera();
+  return *lasers_;
+}
+
+void Rig::close_sensor() {
+  lasers_.reset();
+  camera_.reset();
+  sensor_.reset();
+}
+
 void Rig::lay_object(int pose) {
   object_pose_ = pose;
+  if (camera_) {
+    camera_->lay_object(pose);
+  }
   if (sensor_) {
     sensor_->lay_object(pose);
   }
@@ -43,6 +74,9 @@ Turntable& Rig::turntable() {
     const auto show = [this](double angle) {
       if (sensor_) {
         sensor_->show_angle(angle);
+      }
+      if (camera_) {
+        camera_->show_angle(angle);
       }
     };
     const Motion motion;
@@ -71,6 +105,11 @@ double Rig::platform_angle_deg() const {
 
 int Rig::late_pulses() const {
   return closed_late_pulses_ + (turntable_ ? turntable_->late_pulses() : 0);
+}
+
+CameraAndLasers open_camera_and_lasers(const LaserSettings& settings) {
+  Lasers::SetLine lines = open_laser_lines(gpio_lines_of(settings));
+  return {.camera = open_camera(), .set_line = std::move(lines)};
 }
 
 }  // namespace octurn

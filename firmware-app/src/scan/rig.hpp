@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "camera/lasers.hpp"
+#include "scan/laser_settings.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "turntable/stepper.hpp"
 #include "turntable/stepper_settings.hpp"
@@ -13,19 +15,27 @@
 
 namespace octurn {
 
+/// Opens a camera and the GPIO lines of its lasers, which are off.
+/// @throws Error "sensor-missing", "sensor-failed"
+CameraAndLasers open_camera_and_lasers(const LaserSettings& settings);
+
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< for OpenNI2
   double speed = 1.0;                           ///< of a simulated rig, relative to life
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; none: it is simulated
   double platform_angle_deg = 0;                ///< at the beginning
-  /// Open the two devices. Tests put devices of their own in their place.
+  /// Of a camera with line lasers, in place of a depth sensor.
+  std::optional<LaserSettings> laser = {};
+  /// Open the devices. Tests put devices of their own in their place.
   std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> open_sensor =
       octurn::open_sensor;
   std::function<Stepper::SetLine(const StepperSettings&)> open_lines = open_gpio_lines;
+  std::function<CameraAndLasers(const LaserSettings&)> open_camera = open_camera_and_lasers;
 };
 
-/// The sensor and the turntable under it. Used by one thread at a time.
+/// The sensor, or a camera with its lasers in place of it, and the turntable under it. Used by one
+/// thread at a time.
 class Rig {
  public:
   explicit Rig(RigOptions options);
@@ -33,18 +43,27 @@ class Rig {
   Rig(const Rig&) = delete;
   Rig& operator=(const Rig&) = delete;
 
-  /// Opens the sensor if it is closed. @throws Error "sensor-missing" or "sensor-failed"
+  /// Opens the sensor if it is closed. @throws Error "sensor-missing" or "sensor-failed";
+  /// "sensor-other" if the rig has a camera with lasers
   DepthSensor& sensor();
+
+  /// What the rig is told of its camera and lasers; null if it has a depth sensor.
+  const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
+
+  /// Opens the camera if it is closed, and with it the lines of its lasers.
+  /// @throws Error  as `open_camera_and_lasers`
+  Camera& camera();
+  Lasers& lasers();
 
   /// Has the object of a simulated rig lie so, as `DepthSensor::lay_object` says.
   void lay_object(int pose);
 
-  /// Closes the sensor, which switches its projector off; the next use opens it again.
-  void close_sensor() { sensor_.reset(); }
+  /// Closes the sensor, which switches its projector or its lasers off; the next use opens it again.
+  void close_sensor();
 
   /// Since when the sensor is open, and warms up; nothing while it is closed.
   std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
-    return sensor_ ? std::optional(sensor_since_) : std::nullopt;
+    return sensor_ || camera_ ? std::optional(sensor_since_) : std::nullopt;
   }
 
   /// Opens the turntable if it is closed.
@@ -71,6 +90,8 @@ class Rig {
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;
   std::unique_ptr<DepthSensor> sensor_;
+  std::unique_ptr<Camera> camera_;
+  std::optional<Lasers> lasers_;  // as long as the camera is open
   std::chrono::steady_clock::time_point sensor_since_ = {};
 };
 

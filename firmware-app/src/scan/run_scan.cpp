@@ -14,13 +14,14 @@
 #include "octurn/units.hpp"
 #include "scan/checked_snapshots.hpp"
 #include "scan/coverage.hpp"
-#include "scan/depth_scale.hpp"
 #include "scan/fitting_reconstruction.hpp"
 #include "scan/last_look.hpp"
 #include "scan/plan.hpp"
+#include "scan/scan_of_rig.hpp"
 #include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
 #include "scan/take_depth_image.hpp"
+#include "scan/take_pictures.hpp"
 
 namespace octurn {
 namespace {
@@ -33,16 +34,6 @@ constexpr auto wait_interval = std::chrono::milliseconds(500);
 /// has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
 
-ReconstructOptions options_for(const Scan& scan, const ScanSettings& settings,
-                               const Limits& limits) {
-  ReconstructOptions options =
-      checked_options(settings, limits, static_cast<std::size_t>(settings.snapshots));
-  if (!scan.shots.empty()) {
-    options.clip = scan.clip;  // which lost nothing by being written in millimetres
-  }
-  return options;
-}
-
 /// One scan on its way, or one more attempt at it.
 class Run {
  public:
@@ -53,8 +44,9 @@ class Run {
         rig_(rig),
         stop_(stop),
         observer_(observer),
-        scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder) : Scan{}),
-        reconstruction_(options_for(scan_, settings, limits)),
+        scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder)
+                                                            : scan_of_rig(rig, settings)),
+        reconstruction_(options_of_scan(scan_, settings, limits)),
         check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
@@ -68,7 +60,8 @@ class Run {
   int done() const { return static_cast<int>(scan_.shots.size()); }
   int threads() const { return reconstruction_.options().threads; }
   std::optional<ModelReport> write();
-  void begin();
+  bool take_depth(const Stop& at, double angle);
+  bool take_lines(const Stop& at, double angle);
   void resume();
   SnapshotSource checked();
   void add_stored();
@@ -94,57 +87,60 @@ class Run {
 bool Run::take_snapshots() {
   Turntable& turntable = rig_.turntable();
   if (done() == 0) {
-    begin();
+    begin_scan(scan_, settings_, folder_, rig_);
   } else {
     resume();
   }
   const int steps = turntable.steps_per_turn();
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
-    std::optional<DepthFrame> frame = take_depth_image(
-        rig_, {.index = done(), .position = position}, settings_, stop_, observer_);
-    if (!frame) {
+    const Stop at{.index = done(), .position = position};
+    const double angle = radians_from_degrees(angle_deg_at(position, steps));
+    if (!(scan_.laser ? take_lines(at, angle) : take_depth(at, angle))) {
       return false;
     }
-    const std::ptrdiff_t readings = readings_in(*frame);
-    first_readings_ = done() == 0 ? readings : first_readings_;
-    expect_coverage(readings, first_readings_, scan_.sensor_name);
-    const Shot shot{.file = shot_file(done()),
-                    .angle = radians_from_degrees(angle_deg_at(position, steps))};
-    store_snapshot(folder_, scan_, shot, *frame);
-    add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
-                          .intrinsics = scan_.intrinsics,
-                          .object_from_sensor =
-                              object_from_sensor(model_pose(scan_), stored_angle(shot.angle))},
-         index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
-      check_.add(index, added);
-      reconstruction.add(added, stop_);
-    });
   }
   return true;
 }
 
-/// What all snapshots of a new scan have in common.
-void Run::begin() {
-  scan_ = {.sensor_name = rig_.sensor().name(),
-           .sensor_serial = rig_.sensor().serial(),
-           .intrinsics = scaled(rig_.sensor().intrinsics(), settings_.depth_scale),
-           .platform_from_sensor = settings_.platform_from_sensor,
-           .clip = settings_.clip};
-  if (const auto map = folder_ / sensor_map_file; std::filesystem::exists(map)) {
-    use_sensor_map(scan_, map);
+/// @return false if stopped first
+bool Run::take_depth(const Stop& at, double angle) {
+  std::optional<DepthFrame> frame = take_depth_image(rig_, at, settings_, stop_, observer_);
+  if (!frame) {
+    return false;
   }
+  const std::ptrdiff_t readings = readings_in(*frame);
+  first_readings_ = done() == 0 ? readings : first_readings_;
+  expect_coverage(readings, first_readings_, scan_.sensor_name);
+  store_snapshot(folder_, scan_, {.file = shot_file(done()), .angle = angle}, *frame);
+  add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
+                        .intrinsics = scan_.intrinsics,
+                        .object_from_sensor =
+                            object_from_sensor(model_pose(scan_), stored_angle(angle))},
+       index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
+    check_.add(index, added);
+    reconstruction.add(added, stop_);
+  });
+  return true;
+}
+
+/// The surface at a stop's lines ends at those of the stops beside it, so that nothing is added to
+/// the reconstruction before the last stop. @return false if stopped first
+bool Run::take_lines(const Stop& at, double angle) {
+  const auto pictures = take_pictures(rig_, at, stop_, observer_);
+  if (pictures) {
+    store_pictures(folder_, scan_, angle, *pictures);
+  }
+  return pictures.has_value();
 }
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
 void Run::resume() {
-  if (scaled(rig_.sensor().intrinsics(), settings_.depth_scale) != scan_.intrinsics) {
-    throw Error(ErrorCode::sensor_other,
-                "this scan was begun with another sensor: " + scan_.sensor_name,
-                "Plug in the one that it was begun with.");
+  expect_same_rig(scan_, settings_, rig_);
+  if (!scan_.laser) {
+    first_readings_ = readings_in(checked().read(0).frame);
+    add_stored();
   }
-  first_readings_ = readings_in(checked().read(0).frame);
-  add_stored();
 }
 
 void Run::add_stored() {
@@ -160,18 +156,18 @@ std::vector<CalibrationFinding> Run::calibrate() {
     return {};
   }
   observer_.on_progress(Phase::calibrating, done());
-  const CalibrationReport report =
-      solve_pose(scan_, readable_snapshots(folder_, scan_, stop_), threads());
+  const ScanSolution solution =
+      solve_scan(folder_, scan_, readable_snapshots(folder_, scan_, stop_), threads(), stop_);
   throw_if_stopped(stop_);
-  observer_.on_calibrated(report);
-  if (report.accepted && !report.confirms_told()) {
+  observer_.on_calibrated(solution.report);
+  if (solution.replaces_told) {
     wait_for_added([] {});
-    scan_.solved = to_solved_pose(report);
+    scan_.solved = solution.solved;
     write_solved_pose(folder_, *scan_.solved);
     reconstruction_.start_again();
     added_ = 0;
   }
-  return report.findings;
+  return solution.report.findings;
 }
 
 SnapshotSource Run::checked() {
@@ -280,8 +276,9 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
   if (is_unfinished && !run.take_snapshots()) {
     return std::nullopt;
   }
+  const bool looks_again = is_unfinished && rig.laser() == nullptr;
   const auto again =
-      is_unfinished ? look_again(rig, settings, stop, observer) : std::optional<DepthFrame>();
+      looks_again ? look_again(rig, settings, stop, observer) : std::optional<DepthFrame>();
   const Clock::time_point captured = Clock::now();
   std::vector<CalibrationFinding> findings = run.calibrate();
   if (again) {

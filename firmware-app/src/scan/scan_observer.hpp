@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "octurn/calibrate.hpp"
+#include "octurn/depth_png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "scan/job.hpp"
 
@@ -15,6 +16,7 @@ struct ScanObserver {
   /// Before each move: where to, degrees.
   std::function<void(double angle_deg)> on_turn = [](double) {};
   std::function<void(const DepthFrame& frame)> on_frame = [](const DepthFrame&) {};
+  std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
   /// What the snapshots tell of the sensor's pose, before anything is done about it.

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "octurn/units.hpp"
-#include "scan/pose_json.hpp"
+#include "scan/pose_field.hpp"
 #include "settings/field.hpp"
 
 namespace octurn {
@@ -29,13 +29,6 @@ constexpr double min_memory_mb = 17;  // of the intersection of one thread
 // What the program and its libraries take beside a reconstruction, as measured on x86-64.
 const auto solid_program_bytes = static_cast<std::size_t>(bytes_from_mb(12));
 const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(10));
-
-Access pose(Eigen::Isometry3d& value) {
-  const json row{{"type", "array"}, {"items", {{"type", "number"}}}};
-  return {.read = [&value](const JsonValue& given) { value = to_pose(given); },
-          .write = [&value] { return to_rows(value); },
-          .schema = {{"type", "array"}, {"items", row}}};
-}
 
 /// @return nothing if they are no six numbers in their range, or hold nothing
 std::optional<Box> box_from(const json& mm) {

@@ -169,12 +169,12 @@ std::shared_ptr<const CameraFrame> Scanner::camera_frame() {
       ending_.get_token(), camera_patience, [&](const CameraFrame& latest) {
         const auto age = asked - latest.time;
         return rebuilding || (latest.failure ? age < failure_lasts
-                                             : age < fresh || (scanning && latest.frame.width > 0));
+                                             : age < fresh || (scanning && latest.has_image()));
       });
   if (frame->failure) {
     throw to_error(*frame->failure);
   }
-  if (rebuilding && frame->frame.width == 0) {
+  if (rebuilding && !frame->has_image()) {
     throw Error(ErrorCode::busy, "a model is being made", "Wait for its end.");
   }
   if (!scanning && !rebuilding && asked - frame->time >= fresh) {

@@ -34,7 +34,8 @@ nlohmann::json to_json(const DeviceStatus& device) {
 
 StatusBoard::StatusBoard(const RigOptions& rig) {
   status_.update([&](Status& status) {
-    status.sensor.simulated = is_simulated_sensor(rig.sensor_uri);
+    status.sensor.simulated =
+        rig.laser ? !rig.stepper : is_simulated_sensor(rig.sensor_uri);
     status.turntable.simulated = !rig.stepper;
     status.turntable.name = status.turntable.simulated ? "simulated turntable" : "stepper";
   });
@@ -117,6 +118,10 @@ void StatusBoard::set_turntable_failed(const Failure& failure) {
 
 void StatusBoard::set_camera_frame(const DepthFrame& frame, const Intrinsics& lens) {
   camera_frame_.set({.time = Clock::now(), .frame = frame, .lens = lens});
+}
+
+void StatusBoard::set_camera_picture(const Picture& picture) {
+  camera_frame_.set({.time = Clock::now(), .picture = picture});
 }
 
 void StatusBoard::set_sensor_closed() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/snapshot.hpp"
 #include "scan/build_run.hpp"
 #include "scan/calibration_turn.hpp"
@@ -47,12 +48,16 @@ struct Status {
   bool busy() const { return is_scanning() || is_measuring || is_building; }
 };
 
-/// The last depth image of the sensor, or why there is none.
+/// The last depth image of the sensor, or the last picture of a camera with lasers, or why there is
+/// none.
 struct CameraFrame {
   std::chrono::steady_clock::time_point time = {};
   DepthFrame frame = {};
   Intrinsics lens = {};  ///< of the sensor
+  Picture picture = {};  ///< in place of both
   std::optional<Failure> failure = {};
+
+  bool has_image() const { return frame.width > 0 || picture.width > 0; }
 };
 
 /// The sensor that is open, or was last.
@@ -104,6 +109,7 @@ class StatusBoard {
   void set_turntable_failed(const Failure& failure);
 
   void set_camera_frame(const DepthFrame& frame, const Intrinsics& lens);
+  void set_camera_picture(const Picture& picture);
   void set_calibration_run(CalibrationRun run);
   void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
   void set_sensor_closed();

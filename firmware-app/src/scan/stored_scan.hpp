@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <stop_token>
+#include <vector>
 
+#include "octurn/depth_png.hpp"
 #include "octurn/scan_folder.hpp"
 
 namespace octurn {
@@ -18,5 +20,10 @@ SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Sca
 /// @throws Error "disk-full", "write-failed"
 void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
                     const DepthFrame& frame);
+
+/// The same of a scan by laser line: its pictures, the dark one first, then one of each laser.
+/// @throws Error  as above
+void store_pictures(const std::filesystem::path& folder, Scan& scan, double angle,
+                    const std::vector<Picture>& pictures);
 
 }  // namespace octurn

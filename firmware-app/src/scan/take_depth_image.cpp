@@ -39,19 +39,26 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
 
 }  // namespace
 
+bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanObserver& observer) {
+  Turntable& turntable = rig.turntable();
+  observer.on_progress(Phase::turning, at.index);
+  observer.on_turn(angle_deg_at(at.position, turntable.steps_per_turn()));
+  if (!turntable.move_to(at.position, stop)) {
+    return false;
+  }
+  observer.on_progress(Phase::capturing, at.index);
+  return true;
+}
+
 std::optional<DepthFrame> take_depth_image(Rig& rig, const Stop& at, const ScanSettings& settings,
                                            const std::stop_token& stop,
                                            const ScanObserver& observer) {
-  Turntable& turntable = rig.turntable();
+  rig.turntable();  // whose faults are told before the sensor's
   DepthSensor& sensor = rig.sensor();
-  const double angle_deg = angle_deg_at(at.position, turntable.steps_per_turn());
-  observer.on_progress(Phase::turning, at.index);
-  observer.on_turn(angle_deg);
-  if (!turntable.move_to(at.position, stop)) {
+  if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;
   }
-  observer.on_progress(Phase::capturing, at.index);
-  sensor.show_angle(radians_from_degrees(angle_deg));
+  sensor.show_angle(radians_from_degrees(rig.platform_angle_deg()));
   const int count = settings.filter == DepthFilter::basic ? 1 : settings.frames;
   const std::vector<DepthFrame> frames = read_frames(sensor, count, Clock::now(), stop, observer);
   return frames.empty() ? std::nullopt : std::optional(merge_frames(frames, settings.filter));

@@ -15,6 +15,11 @@ struct Stop {
   std::int64_t position = 0;  ///< of the turntable, microsteps
 };
 
+/// Turns to a stop, and tells it.
+/// @return false if stopped first
+/// @throws Error "turntable-..."
+bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanObserver& observer);
+
 /// Turns to a stop and takes its depth image: the filter's of the frames that the settings ask for,
 /// each exposed after the platform stood still.
 ///

@@ -52,10 +52,7 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
     look_for_turntable();  // whose lines may have become free since
   }
   try {
-    DepthSensor& sensor = rig_.sensor();
-    if (const std::optional<TimedFrame> timed = sensor.read(stop.get_token())) {
-      show_frame(timed->frame);
-    }
+    look(stop.get_token());
   } catch (...) {
     const Failure failure = current_failure();
     rig_.close_sensor();
@@ -65,12 +62,30 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
   }
 }
 
+/// Shows the sensor's next frame, or the camera's next picture with all lasers off.
+void Worker::look(const std::stop_token& stop) {
+  if (rig_.laser() != nullptr) {
+    if (const std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
+      show_picture(timed->picture);
+    }
+  } else if (const std::optional<TimedFrame> timed = rig_.sensor().read(stop)) {
+    show_frame(timed->frame);
+  }
+}
+
 void Worker::show_frame(const DepthFrame& frame) {
   DepthSensor& sensor = rig_.sensor();
   ports_.heartbeat.beat();
   ports_.board.set_sensor_ready(sensor.name());
   introduce_sensor();
   ports_.board.set_camera_frame(frame, sensor.intrinsics());
+}
+
+void Worker::show_picture(const Picture& picture) {
+  ports_.heartbeat.beat();
+  ports_.board.set_sensor_ready(rig_.camera().name());
+  introduce_sensor();
+  ports_.board.set_camera_picture(picture);
 }
 
 void Worker::carry_out(DeviceCheckCommand& command, const std::stop_source& stop) {

@@ -60,7 +60,9 @@ class Worker {
   void show_join(Phase phase);
   bool keep_merged(const Job& first, const MergedTurns& merged, const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
+  void look(const std::stop_token& stop);
   void show_frame(const DepthFrame& frame);
+  void show_picture(const Picture& picture);
   void show_progress(Phase phase, int snapshots_done);
   void begin(Phase phase);
   void save_progress();

@@ -150,7 +150,9 @@ void Worker::introduce_sensor() {
     return;
   }
   introduced_ = since;
-  KnownSensor known{.serial = rig_.sensor().serial(), .since = since};
+  const bool is_camera = rig_.laser() != nullptr;
+  KnownSensor known{.serial = is_camera ? rig_.camera().serial() : rig_.sensor().serial(),
+                    .since = since};
   try {
     known.map = find_map_summary(ports_.store.data(), known.serial);
   } catch (...) {

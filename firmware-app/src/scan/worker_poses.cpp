@@ -32,6 +32,10 @@ void Worker::expect_same_sensor() {
   if (!job_.pose_of) {
     return;
   }
+  if (rig_.laser() != nullptr) {
+    throw Error(ErrorCode::bad_settings, "turns by laser line are not made one model of yet",
+                "Scan the object as it lies now as a scan of its own.");
+  }
   const Scan first = read_scan(ports_.store.folder(job_.pose_of->scan));
   if (scaled(rig_.sensor().intrinsics(), job_.settings.depth_scale) != first.intrinsics) {
     throw Error(ErrorCode::sensor_other,

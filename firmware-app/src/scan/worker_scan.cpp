@@ -125,7 +125,9 @@ void Worker::attempt(const std::stop_token& stop) {
     rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
-      keep_sensor_map(ports_.store.data(), rig_.sensor().serial(), ports_.store.folder(job_.id));
+      if (rig_.laser() == nullptr) {
+        keep_sensor_map(ports_.store.data(), rig_.sensor().serial(), ports_.store.folder(job_.id));
+      }
     }
     job_.model =
         run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
@@ -142,6 +144,7 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
   return {.on_progress = [this](Phase phase, int done) { show_progress(phase, done); },
           .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
           .on_frame = [this](const DepthFrame& frame) { show_frame(frame); },
+          .on_picture = [this](const Picture& picture) { show_picture(picture); },
           .on_added =
               [this, stop, id = job_.id](const Reconstructor& reconstruction, int snapshots) {
                 if (MeshPreview preview = make_preview(id, reconstruction, snapshots, stop);
@@ -198,14 +201,14 @@ void Worker::begin(Phase phase) {
 }
 
 /// Saved at once, for a scan that is killed while its model is built again. The next scan is told
-/// the pose that this one has solved.
+/// the pose that this one has solved; not by a camera with lasers, whose planes go with it.
 void Worker::keep_calibration(const CalibrationReport& report) {
   job_.calibration = to_scan_calibration(report);
   log::info("scanner", "scan " + job_.id + ": " + to_text(report));
   ports_.board.set_job(job_, time_left_->expected());
   try {
     ports_.store.save(job_);
-    if (report.accepted && !report.confirms_told()) {
+    if (report.accepted && !report.confirms_told() && rig_.laser() == nullptr) {
       ports_.calibration.set(to_record(report, PoseOrigin::scan, job_.settings.depth_scale));
     }
   } catch (...) {

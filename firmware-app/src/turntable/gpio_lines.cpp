@@ -52,7 +52,7 @@ unsigned free_line(const GpioChip& chip, const std::string& name) {
   const std::optional<unsigned> offset = chip.offset_of(name);
   if (!offset) {
     throw Error(ErrorCode::turntable_failed, "the GPIO header has no line " + name,
-                "Correct the turntable's lines in octurn.json; they are called GPIO2 to GPIO27.");
+                "Correct the lines in octurn.json; they are called GPIO2 to GPIO27.");
   }
   if (const std::optional<std::string> other = chip.user_of(*offset)) {
     throw Error(ErrorCode::turntable_failed, "line " + name + " is in use by " + *other,

@@ -148,6 +148,10 @@ Response send_sensor_map(App& app) {
 
 Response send_points(App& app) {
   const auto camera = app.scanner.camera_frame();
+  if (camera->picture.width > 0) {
+    throw Error(ErrorCode::not_found, "a camera with lasers measures no depth",
+                "GET /api/v1/preview/depth.png shows what it sees.");
+  }
   const double scale = app.scanner.calibration().in_force({}).depth_scale;
   const Intrinsics lens = scaled(camera->lens, scale);
   json points = json::array();

@@ -1,0 +1,208 @@
+#include "simulator/laser_scene.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "simulator/camera.hpp"
+#include "simulator/noise_field.hpp"
+#include "simulator/surroundings.hpp"
+
+namespace octurn {
+namespace {
+
+// Grey levels.
+constexpr float read_noise = 0.4F;
+constexpr float shot_noise = 0.03F;  // squared, for each level of light
+constexpr float black_level = 1;     // what is cut off as black
+constexpr double room = 4;           // of a white surface that faces the camera
+constexpr double line = 210;         // of a laser's line on a white surface, head on
+
+constexpr double half_width = 0.0004;  // metres of a line, to 1/e^2
+constexpr double farthest = 2.6;       // half widths at which a line is still seen
+constexpr double bright_at = 0.33;     // metres from a laser at which its line has that brightness
+// Variance of a pixel's own area and of the lens's blur, square pixels.
+constexpr double blur = 1.0 / 12 + 0.6 * 0.6;
+constexpr float speckle = 0.25F;  // contrast
+constexpr float flicker = 0.02F;
+
+constexpr double check = 0.008;  // metres, of the object's pattern
+constexpr double light_check = 0.95;
+constexpr double dark_check = 0.61;
+constexpr double surroundings_albedo = 0.35;
+
+double check_albedo(const Eigen::Vector3d& point) {
+  const Eigen::Vector3d cells = (point / check).array().floor();
+  const auto sum = static_cast<long>(cells.sum());
+  return sum % 2 == 0 ? light_check : dark_check;
+}
+
+std::uint8_t to_grey(float light) {
+  return static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L));
+}
+
+}  // namespace
+
+LaserScene::LaserScene(const LaserSimulation& simulation)
+    : simulation_(simulation),
+      object_(told_object(simulation.mesh_file)),
+      noise_(simulation.seed),
+      background_(pixels(simulation.lens), 0.0F) {
+  const Eigen::Isometry3d sensor_from_platform = simulation_.platform_from_sensor.inverse();
+  const Mesh around = surroundings();
+  rasterise(around, sensor_from_platform, simulation_.lens, background_);
+  for (const Laser& laser : simulation_.lasers) {
+    LaserFan fan(laser, sensor_from_platform * Eigen::Vector3d::Zero());
+    fan.add(around, sensor_from_platform);
+    fans_at_rest_.push_back(std::move(fan));
+  }
+}
+
+void LaserScene::lay_object(int pose) {
+  if (object_.lay(pose)) {
+    seen_.clear();
+  }
+}
+
+/// What camera and lasers see while the platform stands.
+void LaserScene::look(double angle) {
+  angle_ = angle;
+  const Eigen::Isometry3d sensor_from_object =
+      simulation_.platform_from_sensor.inverse() * object_.platform_from_mesh(angle);
+  object_from_sensor_ = sensor_from_object.inverse();
+  seen_ = background_;
+  rasterise(object_.mesh(), sensor_from_object, simulation_.lens, seen_);
+  fans_ = fans_at_rest_;
+  for (LaserFan& fan : fans_) {
+    fan.add(object_.mesh(), sensor_from_object);
+  }
+  const int width = simulation_.lens.width;
+  room_light_.assign(seen_.size(), 0);
+  for (std::size_t pixel = 0; pixel < seen_.size(); ++pixel) {
+    const auto at = static_cast<int>(pixel);
+    if (const Patch seen = patch(at % width, at / width); seen.is_seen) {
+      const double facing = -seen.normal.dot(seen.point.normalized());
+      room_light_[pixel] = static_cast<float>(room * seen.albedo * (0.65 + 0.35 * facing));
+    }
+  }
+}
+
+/// How inverse depth grows from pixel to pixel, on the side where that is less: on the other there
+/// may be an edge.
+/// @param step  to the next pixel
+double LaserScene::slope(std::size_t pixel, std::ptrdiff_t step, bool is_first,
+                         bool is_last) const {
+  const float* const here = seen_.data() + pixel;
+  const float before = is_first ? here[step] - here[0] : here[0] - here[-step];
+  const float after = is_last ? before : here[step] - here[0];
+  return static_cast<double>(std::abs(before) < std::abs(after) ? before : after);
+}
+
+LaserScene::Patch LaserScene::patch(int u, int v) const {
+  const Intrinsics& lens = simulation_.lens;
+  const std::size_t pixel =
+      static_cast<std::size_t>(v) * static_cast<std::size_t>(lens.width) +
+      static_cast<std::size_t>(u);
+  if (seen_[pixel] <= 0) {
+    return {};
+  }
+  const auto inverse = static_cast<double>(seen_[pixel]);
+  const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+  // On a plane 1 / z = a u + b v + c; times z that is n . p = 1.
+  const double a = slope(pixel, 1, u == 0, u == lens.width - 1);
+  const double b = slope(pixel, lens.width, v == 0, v == lens.height - 1);
+  const Eigen::Vector3d normal(a * lens.fx, b * lens.fy,
+                               inverse + a * (lens.cx - u) + b * (lens.cy - v));
+  Patch seen{.point = ray / inverse, .normal = -normal.normalized(), .is_seen = true};
+  seen.albedo = seen_[pixel] > background_[pixel] ? check_albedo(object_from_sensor_ * seen.point)
+                                                  : surroundings_albedo;
+  return seen;
+}
+
+/// Grey levels of a laser's line at a pixel, without speckle.
+double LaserScene::line_light(std::size_t laser, const Patch& patch) const {
+  const Laser& of = simulation_.lasers[laser];
+  const double off = of.normal.dot(patch.point) - of.distance;
+  const Eigen::Vector3d to_source = *of.source - patch.point;
+  const double distance = to_source.norm();
+  const double lambert = patch.normal.dot(to_source) / distance;
+  if (lambert <= 0) {
+    return 0;
+  }
+  // A step of one pixel on the surface, across the line: the normal without its part along the
+  // surface's own normal and the ray. It spreads the line's Gaussian by what a pixel blurs.
+  const Intrinsics& lens = simulation_.lens;
+  const Eigen::Vector3d ray = patch.point / patch.point.z();
+  const auto step = [&](const Eigen::Vector3d& aside) {
+    const Eigen::Vector3d way = aside - ray * (patch.normal.dot(aside) / patch.normal.dot(ray));
+    return of.normal.dot(way) * patch.point.z();
+  };
+  const double across = std::hypot(step(Eigen::Vector3d::UnitX() / lens.fx),
+                                   step(Eigen::Vector3d::UnitY() / lens.fy));
+  const double variance = half_width * half_width / 4;
+  const double blurred = variance + blur * across * across;
+  if (off * off > farthest * farthest * 4 * blurred || !fans_[laser].reaches(patch.point)) {
+    return 0;
+  }
+  return line * lambert * patch.albedo * (bright_at / distance) * std::sqrt(variance / blurred) *
+         std::exp(-off * off / (2 * blurred));
+}
+
+void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
+  const Intrinsics& lens = simulation_.lens;
+  const Laser& of = simulation_.lasers[laser];
+  // Speckle is the surface's: it stays as long as the platform stands.
+  const std::uint32_t place =
+      mixed(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(angle_) >> 20U),
+            static_cast<std::uint32_t>(laser));
+  const double reach = farthest * 2 * half_width;  // metres; blur is less than half of it
+  std::size_t pixel = 0;
+  for (int v = 0; v < lens.height; ++v) {
+    const std::uint32_t sequence = mixed(place, static_cast<std::uint32_t>(v));
+    for (int u = 0; u < lens.width; ++u, ++pixel) {
+      const auto inverse = static_cast<double>(seen_[pixel]);
+      const double along = of.normal.x() * (u - lens.cx) / lens.fx +
+                           of.normal.y() * (v - lens.cy) / lens.fy + of.normal.z();
+      if (!(std::abs(along - of.distance * inverse) < reach * inverse)) {
+        continue;
+      }
+      if (const double lit = line_light(laser, patch(u, v)); lit > 0) {
+        const auto at = static_cast<std::size_t>(u);
+        const float grain = (noise_.at(sequence, at) + 2 * noise_.at(sequence, at + 1) +
+                             noise_.at(sequence, at + 2)) /
+                            std::sqrt(6.0F);
+        light[pixel] += static_cast<float>(lit) * std::max(0.0F, 1 + speckle * grain);
+      }
+    }
+  }
+}
+
+Picture LaserScene::expose(double angle, std::optional<std::size_t> lit) {
+  if (seen_.empty() || angle != angle_) {
+    look(angle);
+  }
+  const Intrinsics& lens = simulation_.lens;
+  const std::uint32_t number = mixed(simulation_.seed + 1, ++pictures_);
+  const float lamp = 1 + flicker * noise_.at(number, 0);
+  std::vector<float> light(room_light_);
+  for (float& level : light) {
+    level *= lamp;
+  }
+  if (lit) {
+    add_line(*lit, light);
+  }
+  Picture picture{.width = lens.width, .height = lens.height, .samples = {}};
+  picture.samples.reserve(light.size());
+  std::size_t pixel = 0;
+  for (int v = 0; v < lens.height; ++v) {
+    const std::uint32_t sequence = mixed(number, static_cast<std::uint32_t>(v));
+    for (std::size_t u = 0; u < static_cast<std::size_t>(lens.width); ++u, ++pixel) {
+      const float spread = std::sqrt(read_noise * read_noise + shot_noise * light[pixel]);
+      picture.samples.push_back(
+          to_grey(light[pixel] + spread * noise_.at(sequence, u) - black_level + 0.4F));
+    }
+  }
+  return picture;
+}
+
+}  // namespace octurn

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "simulator/mesh.hpp"
+
+namespace octurn {
+
+/// The object on a simulated platform.
+class PlacedObject {
+ public:
+  /// @param mesh  in the platform's frame at angle 0, metres
+  explicit PlacedObject(Mesh mesh);
+
+  const Mesh& mesh() const { return mesh_; }
+
+  /// Turns the object over. @param pose  as of `platform_from_object`
+  /// @return false if it lies so already
+  bool lay(int pose);
+
+  /// @param angle  of the platform, radians, counter-clockwise seen from above
+  Eigen::Isometry3d platform_from_mesh(double angle) const;
+
+ private:
+  Mesh mesh_;
+  int pose_ = 0;  // in which it lies
+  Eigen::Isometry3d platform_from_object_ = Eigen::Isometry3d::Identity();
+};
+
+/// The object that a simulated rig is told to show.
+/// @param mesh_file  STL in millimetres, Z up; empty: the simulator's own object
+/// @throws Error "mesh-malformed"
+Mesh told_object(const std::string& mesh_file);
+
+}  // namespace octurn

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "octurn/depth_png.hpp"
+#include "octurn/scan_folder.hpp"
+
+// The interface between the program and its simulator of a camera with line lasers, which is a
+// module: only a program that simulates such a rig loads it.
+
+namespace octurn {
+
+/// A camera with line lasers before a turning platform, as they stand in truth.
+struct LaserSimulation {
+  std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
+  std::uint32_t seed = 1;      ///< of noise and speckle: same seed, same pictures
+  Intrinsics lens = {};        ///< of the camera; it has no distortion
+  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
+  std::vector<Laser> lasers = {};                                          ///< with their sources
+};
+
+/// Takes the pictures of a simulated camera. Used by one thread at a time.
+class LaserSimulator {
+ public:
+  LaserSimulator() = default;
+  virtual ~LaserSimulator() = default;
+  LaserSimulator(const LaserSimulator&) = delete;
+  LaserSimulator& operator=(const LaserSimulator&) = delete;
+
+  /// Turns the object over. @param pose  which way it lies, 0: as it stood at first
+  virtual void lay_object(int pose) = 0;
+
+  /// Takes a picture of the lens's size.
+  /// @param angle  of the platform, radians, counter-clockwise seen from above
+  /// @param lit    index of the laser that is on; nothing: none is
+  virtual Picture expose(double angle, std::optional<std::size_t> lit) = 0;
+};
+
+/// What the module libOcturnLaserSimulator offers, as its symbol `octurn_laser_simulator`.
+struct LaserSimulatorModule {
+  /// @throws Error "mesh-malformed"
+  std::unique_ptr<LaserSimulator> (*make)(const LaserSimulation& simulation) = nullptr;
+};
+
+}  // namespace octurn

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera/camera.hpp"
+
+namespace octurn {
+
+/// The line lasers of a rig. They are off, but for one while a `Light` of it lives: at the start,
+/// between pictures, after whatever leaves a scan, and at the end of this object. At the end of the
+/// program, however it ends, the kernel releases their lines, and the resistors at them keep the
+/// lasers off.
+class Lasers {
+ public:
+  /// Sets the line of a laser. Its copies hold the lines: the end of the last one releases them.
+  using SetLine = std::function<void(std::size_t laser, bool on)>;
+
+  /// One laser that is on, until this ends.
+  class Light {
+   public:
+    Light(Lasers& lasers, std::size_t laser);
+    ~Light();
+    Light(const Light&) = delete;
+    Light& operator=(const Light&) = delete;
+
+   private:
+    Lasers& lasers_;
+    std::size_t laser_;
+  };
+
+  /// Switches all off.
+  /// @param set_line  called by one thread at a time
+  Lasers(std::size_t count, SetLine set_line);
+  ~Lasers();
+  Lasers(const Lasers&) = delete;
+  Lasers& operator=(const Lasers&) = delete;
+
+  std::size_t count() const { return count_; }
+
+  /// Switches a laser on. No other may be on.
+  /// @throws Error "sensor-failed"  if a line could not be set before: then all were released
+  [[nodiscard]] Light light(std::size_t laser) { return {*this, laser}; }
+
+ private:
+  void switch_off(std::size_t laser);
+
+  std::size_t count_;
+  SetLine set_line_;  // empty: the lines were released
+};
+
+/// A camera and the lasers whose lines it sees.
+struct CameraAndLasers {
+  std::unique_ptr<Camera> camera = {};
+  Lasers::SetLine set_line = {};
+};
+
+/// Drives lines of the GPIO header as long as the returned function or a copy of it lives, all low
+/// at first, which is off.
+/// @param lines  the kernel's names, "GPIO23"
+/// @throws Error "sensor-missing"  if this machine has no such header
+/// @throws Error "sensor-failed"   if a line does not exist, is in use, or may not be used
+Lasers::SetLine open_laser_lines(const std::vector<std::string>& lines);
+
+}  // namespace octurn

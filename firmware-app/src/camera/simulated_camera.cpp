@@ -1,0 +1,74 @@
+#include "camera/simulated_camera.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "module.hpp"
+#include "rig/interruptible_sleep.hpp"
+
+namespace octurn {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr double pictures_per_second = 15;
+
+/// Which laser is on; nothing: none is.
+using Lit = std::optional<std::size_t>;
+
+class SimulatedCamera final : public Camera {
+ public:
+  SimulatedCamera(std::unique_ptr<LaserSimulator> simulator, std::shared_ptr<const Lit> lit,
+                  double speed)
+      : simulator_(std::move(simulator)),
+        lit_(std::move(lit)),
+        period_(std::chrono::duration_cast<steady_clock::duration>(
+            std::chrono::duration<double>(1 / (pictures_per_second * speed)))) {}
+
+  const std::string& name() const override { return name_; }
+  std::string serial() const override { return "simulated-laser"; }
+
+  std::optional<TimedPicture> read(const std::stop_token& stop) override {
+    if (!sleep_until(stop, due_)) {
+      return std::nullopt;
+    }
+    const steady_clock::time_point begin = steady_clock::now();
+    due_ = std::max(due_ + period_, begin);
+    return TimedPicture{.picture = simulator_->expose(angle_, *lit_), .begin = begin};
+  }
+
+  void show_angle(double angle) override { angle_ = angle; }
+  void lay_object(int pose) override { simulator_->lay_object(pose); }
+
+ private:
+  std::string name_ = "Laser line (simulated)";
+  std::unique_ptr<LaserSimulator> simulator_;
+  std::shared_ptr<const Lit> lit_;
+  steady_clock::duration period_;
+  steady_clock::time_point due_ = {};  // the next picture
+  double angle_ = 0;                   // of the platform, radians
+};
+
+}  // namespace
+
+CameraAndLasers simulate_laser_rig(const LaserSimulation& simulation, double speed) {
+  const auto& module = *static_cast<const LaserSimulatorModule*>(
+      load_module("libOcturnLaserSimulator.so", "octurn_laser_simulator", "the laser simulator",
+                  "Install Octurn again."));
+  const auto lit = std::make_shared<Lit>();
+  return {.camera = std::make_unique<SimulatedCamera>(module.make(simulation), lit, speed),
+          .set_line = [lit](std::size_t laser, bool on) {
+            if (on) {
+              *lit = laser;
+            } else if (*lit == laser) {
+              lit->reset();
+            }
+          }};
+}
+
+}  // namespace octurn

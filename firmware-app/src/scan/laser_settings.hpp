@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "octurn/json_object.hpp"
+#include "octurn/scan_folder.hpp"
+#include "rig/nominal_laser_rig.hpp"
+#include "scan/scan_settings.hpp"
+
+namespace octurn {
+
+/// What a rig looks with.
+enum class SensorKind {
+  depth,       ///< a depth sensor
+  laser_line,  ///< a camera with line lasers
+};
+
+/// The kind's name in settings: "depth", "laser-line".
+std::string_view to_string(SensorKind kind);
+
+/// A line laser, and the line of the GPIO header that switches it.
+struct LaserLine {
+  std::string gpio_line = {};  ///< by the kernel's name; empty: there is no such laser
+  Laser laser = {};
+};
+
+/// A camera with line lasers, as the rig is told. The defaults are the drawing's.
+struct LaserSettings {
+  Intrinsics lens = {
+      .width = 820, .height = 616, .fx = 682.4, .fy = 682.4, .cx = 409.5, .cy = 307.5};
+  double k1 = 0;  ///< distortion, as of `LaserCamera`
+  double k2 = 0;
+  Eigen::Isometry3d platform_from_sensor = nominal_platform_from_camera();  ///< metres
+  LaserLine left = {.gpio_line = "GPIO23", .laser = nominal_laser("left", -std::numbers::pi / 6)};
+  LaserLine right = {.gpio_line = "GPIO24", .laser = nominal_laser("right", std::numbers::pi / 6)};
+};
+
+/// The lasers that the rig has. What follows is in their order.
+std::vector<LaserLine> lines_of(const LaserSettings& settings);
+LaserCamera laser_camera(const LaserSettings& settings);
+std::vector<std::string> gpio_lines_of(const LaserSettings& settings);
+
+struct Field;
+
+/// Every setting of the rig, with its key, unit and range.
+std::vector<Field> fields(LaserSettings& settings);
+/// Those of one of its lasers.
+std::vector<Field> fields(LaserLine& line);
+
+/// Refuses a rig without a laser, and lines that two signals share or that are high while a
+/// Raspberry Pi boots.
+/// @param keys  in which the settings were given
+void check_laser_settings(JsonObject& keys, const LaserSettings& settings);
+
+/// What a new scan by laser line is made with: lines 1.8 degrees apart, one picture each, and the
+/// space that camera and lasers of the drawing reach. The platform is seen finely enough to be cut
+/// off 2 mm above its surface.
+void use_laser_capture_defaults(ScanSettings& settings);
+
+}  // namespace octurn

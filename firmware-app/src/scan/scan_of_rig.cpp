@@ -1,0 +1,79 @@
+#include "scan/scan_of_rig.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "octurn/error.hpp"
+#include "scan/checked_snapshots.hpp"
+#include "scan/depth_scale.hpp"
+
+namespace octurn {
+namespace {
+
+/// Whether a rig has the scan's camera and lasers. Their planes may have been measured since: the
+/// scan has those that it was begun with.
+bool has_camera_of(const LaserSettings& rig, const Scan& scan) {
+  const LaserCamera camera = laser_camera(rig);
+  return scan.laser && rig.lens == scan.intrinsics && rig.k1 == scan.laser->k1 &&
+         rig.k2 == scan.laser->k2 &&
+         std::ranges::equal(camera.lasers, scan.laser->lasers, {}, &Laser::name, &Laser::name);
+}
+
+bool is_same(const Scan& scan, const ScanSettings& settings, Rig& rig) {
+  if (const LaserSettings* laser = rig.laser()) {
+    return has_camera_of(*laser, scan);
+  }
+  return !scan.laser &&
+         scaled(rig.sensor().intrinsics(), settings.depth_scale) == scan.intrinsics;
+}
+
+}  // namespace
+
+Scan scan_of_rig(const Rig& rig, const ScanSettings& settings) {
+  const LaserSettings* const told = rig.laser();
+  return told == nullptr ? Scan{}
+                         : Scan{.intrinsics = told->lens,
+                                .laser = laser_camera(*told),
+                                .platform_from_sensor = told->platform_from_sensor,
+                                .clip = settings.clip};
+}
+
+ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,
+                                   const Limits& limits) {
+  const auto snapshots = static_cast<std::size_t>(settings.snapshots);
+  ReconstructOptions options = checked_options(settings, limits, snapshots);
+  if (!scan.shots.empty()) {
+    options.clip = scan.clip;  // which lost nothing by being written in millimetres
+  }
+  Scan whole = scan;
+  whole.shots.resize(snapshots);
+  fit_to_sensor(options, whole);
+  return options;
+}
+
+void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
+                Rig& rig) {
+  if (scan.laser) {
+    scan.sensor_name = rig.camera().name();
+    scan.sensor_serial = rig.camera().serial();
+    return;
+  }
+  scan = {.sensor_name = rig.sensor().name(),
+          .sensor_serial = rig.sensor().serial(),
+          .intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
+          .platform_from_sensor = settings.platform_from_sensor,
+          .clip = settings.clip};
+  if (const auto map = folder / sensor_map_file; std::filesystem::exists(map)) {
+    use_sensor_map(scan, map);
+  }
+}
+
+void expect_same_rig(const Scan& scan, const ScanSettings& settings, Rig& rig) {
+  if (!is_same(scan, settings, rig)) {
+    throw Error(ErrorCode::sensor_other,
+                "this scan was begun with another sensor: " + scan.sensor_name,
+                "Plug in the one that it was begun with.");
+  }
+}
+
+}  // namespace octurn

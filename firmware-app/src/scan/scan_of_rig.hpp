@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+#include "octurn/scan_folder.hpp"
+#include "scan/rig.hpp"
+#include "scan/scan_settings.hpp"
+
+namespace octurn {
+
+/// What is known of a new scan before a device is opened: of a rig with lasers, all that its
+/// pictures are read with; of another one nothing.
+Scan scan_of_rig(const Rig& rig, const ScanSettings& settings);
+
+/// The options of a scan's model. @param scan  as above, or with the snapshots that it has so far
+ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,
+                                   const Limits& limits);
+
+/// Completes a new scan by what all its snapshots have in common.
+/// @param folder  of the scan, with a map of its sensor or without
+void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
+                Rig& rig);
+
+/// Whether a scan that was begun can go on with this rig.
+/// @throws Error "sensor-other"
+void expect_same_rig(const Scan& scan, const ScanSettings& settings, Rig& rig);
+
+}  // namespace octurn

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "octurn/depth_png.hpp"
+#include "scan/rig.hpp"
+#include "scan/scan_observer.hpp"
+#include "scan/take_depth_image.hpp"
+
+namespace octurn {
+
+/// Turns to a stop and takes its pictures: one without a laser, then one with each, in their order.
+/// Each is exposed as a whole after the platform stood still and the laser was switched.
+///
+/// @return nothing if stopped first: then, as after every error, all lasers are off
+/// @throws Error "sensor-blind"  if the room is too bright, or a laser's line is not seen; and
+///               "sensor-...", "turntable-..."
+std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
+                                                  const std::stop_token& stop,
+                                                  const ScanObserver& observer);
+
+/// A picture without a laser has to be dark enough to show lines.
+/// @throws Error "sensor-blind"
+void expect_dark_room(const Picture& dark, const std::string& camera);
+
+/// A laser that works shows on something in any picture: on the object, the platform, or what lies
+/// around them.
+/// @param laser  its name
+/// @throws Error "sensor-blind"
+void expect_line(const Picture& dark, const Picture& lit, const std::string& laser);
+
+}  // namespace octurn

@@ -1,0 +1,162 @@
+// Scans with a camera and lasers that fail on the way.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/scanner_fixture.hpp"
+#include "app/simulated_laser_rig.hpp"
+#include "octurn/scan_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr int stops = 6;
+constexpr double speed = 200;
+
+ScanSettings settings() {
+  ScanSettings few;
+  use_laser_capture_defaults(few);
+  few.snapshots = stops;
+  few.leaf_size = 0.004;
+  few.pose = PoseSource::told;
+  return few;
+}
+
+Job ended(Scanner& scanner) {
+  const Status status = scanner.wait_until_done(patience);
+  EXPECT_FALSE(status.busy());
+  return *status.job;
+}
+
+class LaserScan : public ::testing::Test {
+ protected:
+  /// Has something happen before the picture of that number, counted from the scan's start.
+  void before_picture(int number, const std::function<void()>& action) {
+    rig_.on_picture = [=, first = std::make_shared<std::optional<int>>()](SimulatedLaserRig& rig) {
+      *first = first->value_or(rig.pictures);
+      if (rig.pictures - **first == number) {
+        action();
+      }
+    };
+  }
+
+  TemporaryFolder folder_ = {};
+  ScanStore store_{folder_.path()};
+  SimulatedLaserRig rig_ = SimulatedLaserRig();
+};
+
+TEST_F(LaserScan, StoresAFolderThatTheReconstructionReads) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job job = ended(scanner);
+  ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
+  EXPECT_TRUE(job.model->report.watertight);
+  EXPECT_FALSE(rig_.is_lit());
+
+  const fs::path folder = store_.folder(job.id);
+  const Scan scan = read_scan(folder);
+  ASSERT_TRUE(scan.laser);
+  EXPECT_EQ(scan.sensor_name, "Laser line (simulated)");
+  ASSERT_EQ(scan.shots.size(), std::size_t{stops});
+  EXPECT_EQ(scan.shots[1].pictures,
+            (std::vector<std::string>{"snapshots/001-dark.png", "snapshots/001-left.png",
+                                      "snapshots/001-right.png"}));
+  EXPECT_NEAR(scan.shots[1].angle, 6.283185307179586 / stops, 0.01);  // a step of the motor
+  const Snapshot snapshot = stored_snapshots(folder, scan).read(0);
+  ASSERT_EQ(snapshot.strips.size(), 2U);
+  EXPECT_GT(snapshot.strips[0].points.size(), 100U);
+}
+
+TEST_F(LaserScan, HasALaserOnForItsOwnPictureAlone) {
+  {
+    Scanner scanner(rig_.options(speed), {}, store_);
+    scanner.start(settings());
+    ended(scanner);
+  }
+  const std::size_t begin = rig_.log.find('A');
+  std::string expected;
+  for (int stop = 0; stop < stops; ++stop) {
+    expected += std::string(stop == 0 ? "" : "p") + "ApaBpb";
+  }
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(rig_.log.substr(begin, expected.size()), expected);
+  EXPECT_EQ(rig_.log.find('A', begin + expected.size()), std::string::npos);
+}
+
+TEST_F(LaserScan, TakesAStopAgainWhosePictureIsLost) {
+  before_picture(7, [this, done = std::make_shared<bool>()] {
+    rig_.lost_pictures = *done ? 0 : 1;
+    *done = true;
+  });
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job job = ended(scanner);
+  ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
+  EXPECT_EQ(read_scan(store_.folder(job.id)).shots.size(), std::size_t{stops});
+}
+
+TEST_F(LaserScan, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
+  before_picture(10, [this] { rig_.is_unplugged = true; });
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job paused = ended(scanner);
+  ASSERT_EQ(paused.state, JobState::paused);
+  EXPECT_EQ(paused.failure->code, ErrorCode::sensor_missing);
+  EXPECT_FALSE(rig_.is_lit());
+  EXPECT_GT(paused.snapshots_done, 0);
+  EXPECT_LT(paused.snapshots_done, stops);
+  EXPECT_EQ(read_scan(store_.folder(paused.id)).shots.size(),
+            static_cast<std::size_t>(paused.snapshots_done));
+  rig_.on_picture = [](SimulatedLaserRig&) {};
+  rig_.is_unplugged = false;
+  ASSERT_TRUE(scanner.resume(paused.id));
+  EXPECT_EQ(ended(scanner).state, JobState::finished);
+}
+
+TEST_F(LaserScan, PausesWithTheNameOfALaserThatGivesNoLight) {
+  rig_.dark_laser = 0;
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job paused = ended(scanner);
+  ASSERT_EQ(paused.state, JobState::paused);
+  EXPECT_EQ(paused.failure->code, ErrorCode::sensor_blind);
+  EXPECT_NE(paused.failure->detail.find("laser left"), std::string::npos) << paused.failure->detail;
+  EXPECT_FALSE(rig_.is_lit());
+  EXPECT_EQ(paused.snapshots_done, 0);
+}
+
+TEST_F(LaserScan, EndsWithItsLasersOffWhenItIsCancelled) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  std::atomic<bool> is_there = false;
+  before_picture(5, [&] { is_there = true; });
+  const auto job = scanner.start(settings());
+  while (!is_there) {
+    std::this_thread::yield();
+  }
+  scanner.cancel(job->id);
+  EXPECT_EQ(ended(scanner).state, JobState::cancelled);
+  EXPECT_FALSE(rig_.is_lit());
+}
+
+TEST_F(LaserScan, IsNoTurnForACalibrationOfADepthSensor) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  ASSERT_TRUE(scanner.calibrate(settings()));
+  scanner.wait_until_done(patience);
+  const auto run = scanner.calibration_run();
+  ASSERT_TRUE(*run);
+  ASSERT_EQ((*run)->state, CalibrationRun::State::failed);
+  EXPECT_EQ((*run)->failure->code, ErrorCode::sensor_other);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,180 @@
+#include "simulator/laser_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "rig/nominal_laser_rig.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A box on the platform as a text STL: 30 mm to each side of the axis and so high.
+std::string box_stl(double height) {
+  const std::array<Vector3d, 8> corners{
+      Vector3d(-30, -30, 0), Vector3d(30, -30, 0), Vector3d(30, 30, 0), Vector3d(-30, 30, 0),
+      Vector3d(-30, -30, height), Vector3d(30, -30, height), Vector3d(30, 30, height),
+      Vector3d(-30, 30, height)};
+  constexpr std::array<std::array<std::size_t, 3>, 12> triangles{
+      {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+       {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  std::ostringstream text;
+  text << "solid box\n";
+  for (const auto& triangle : triangles) {
+    text << "facet normal 0 0 0\nouter loop\n";
+    for (const std::size_t corner : triangle) {
+      text << "vertex " << corners[corner].transpose() << "\n";
+    }
+    text << "endloop\nendfacet\n";
+  }
+  text << "endsolid box\n";
+  return text.str();
+}
+
+class LaserSceneTest : public ::testing::Test {
+ protected:
+  LaserSceneTest() { std::ofstream(file_) << box_stl(40); }
+
+  LaserSimulation simulation() const {
+    return {.mesh_file = file_,
+            .lens = {.width = 410, .height = 308, .fx = 341.2, .fy = 341.2, .cx = 204.5,
+                     .cy = 153.5},
+            .platform_from_sensor = nominal_platform_from_camera(),
+            .lasers = {nominal_laser("left", -0.5), nominal_laser("right", 0.5)}};
+  }
+
+  /// The brightest pixel of a row of the difference of two pictures; nothing if none is bright.
+  static std::optional<int> brightest(const Picture& dark, const Picture& lit, int row) {
+    int best = 8;  // grey levels, three times the noise
+    std::optional<int> found;
+    for (int u = 0; u < lit.width; ++u) {
+      const auto pixel = static_cast<std::size_t>(row * lit.width + u);
+      const int more = lit.samples[pixel] - dark.samples[pixel];
+      if (more > best) {
+        best = more;
+        found = u;
+      }
+    }
+    return found;
+  }
+
+  /// Where a pixel's ray meets a laser's plane, in the platform's frame, metres.
+  static Vector3d meet(const LaserSimulation& of, std::size_t laser, int u, int v) {
+    const Vector3d ray((u - of.lens.cx) / of.lens.fx, (v - of.lens.cy) / of.lens.fy, 1);
+    const Laser& plane = of.lasers[laser];
+    return of.platform_from_sensor * (ray * (plane.distance / plane.normal.dot(ray)));
+  }
+
+  TemporaryFolder folder_ = {};
+  std::string file_ = folder_.path() / "box.stl";
+};
+
+/// A pixel is 0.9 mm wide on the object, and the brightest is within one of the line.
+constexpr double pixel = 0.0012;  // metres
+
+TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
+  const LaserSimulation told = simulation();
+  LaserScene scene(told);
+  const Picture dark = scene.expose(0, {});
+  for (std::size_t laser = 0; laser < 2; ++laser) {
+    const Picture lit = scene.expose(0, laser);
+    int on_box = 0;
+    int on_platform = 0;
+    for (int v = 0; v < told.lens.height; ++v) {
+      const auto u = brightest(dark, lit, v);
+      if (!u) {
+        continue;
+      }
+      const Vector3d point = meet(told, laser, *u, v);
+      const double side =
+          std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // of the box
+      const bool is_top = side < pixel && std::abs(point.z() - 0.04) < 2 * pixel;
+      const bool is_side = std::abs(side) < 2 * pixel && point.z() > -pixel && point.z() < 0.042;
+      const bool is_platform = std::abs(point.z()) < 2 * pixel && side > -pixel;
+      const bool is_below = point.z() < -0.01;  // edge, table, wall
+      on_box += is_top || is_side ? 1 : 0;
+      on_platform += is_platform ? 1 : 0;
+      EXPECT_TRUE(is_top || is_side || is_platform || is_below)
+          << "row " << v << ": " << point.transpose();
+    }
+    EXPECT_GT(on_box, 40);
+    EXPECT_GT(on_platform, 10);
+  }
+}
+
+TEST_F(LaserSceneTest, ThrowsTheLasersShadow) {
+  LaserSimulation told = simulation();
+  told.lasers = {nominal_laser("aside", 1.2)};  // so that the camera sees where its shadow falls
+  const Vector3d source = told.platform_from_sensor * *told.lasers[0].source;
+  // Of the box's edge at x = -0.03: from there it is as long as the edge is far from the laser,
+  // times 4 cm by what the laser is higher.
+  const double shadow = (source.x() + 0.03) * 0.04 / (source.z() - 0.04);
+  const auto lit_points = [&](double from_x, double to_x) {
+    LaserScene scene(told);
+    const Picture dark = scene.expose(0, {});
+    const Picture lit = scene.expose(0, 0);
+    int points = 0;
+    for (int v = 0; v < told.lens.height; ++v) {
+      if (const auto u = brightest(dark, lit, v)) {
+        const Vector3d point = meet(told, 0, *u, v);
+        points += std::abs(point.z()) < 2 * pixel && point.x() > from_x && point.x() < to_x ? 1 : 0;
+      }
+    }
+    return points;
+  };
+  const double begin = -0.03 - 2 * pixel;
+  const double end = -0.03 - shadow;
+  EXPECT_EQ(lit_points(end + 3 * pixel, begin), 0);
+  EXPECT_GT(lit_points(-0.14, end - 3 * pixel), 2);
+  std::ofstream(file_) << box_stl(0.5);  // which throws next to none
+  EXPECT_GT(lit_points(end + 3 * pixel, begin), 4);
+}
+
+TEST_F(LaserSceneTest, TakesTheSamePicturesForTheSameSeed) {
+  LaserScene first(simulation());
+  LaserScene second(simulation());
+  for (const std::optional<std::size_t> lit : {std::optional<std::size_t>{}, {1}}) {
+    EXPECT_TRUE(first.expose(0.3, lit).samples == second.expose(0.3, lit).samples);
+  }
+  EXPECT_FALSE(first.expose(0.3, {}).samples == first.expose(0.3, {}).samples);  // noise
+}
+
+TEST_F(LaserSceneTest, TurnsWithThePlatform) {
+  LaserScene scene(simulation());
+  const auto columns = [&](double angle) {
+    const Picture unlit = scene.expose(angle, {});
+    const Picture lit = scene.expose(angle, 0);
+    std::vector<std::optional<int>> all;
+    for (int v = 0; v < lit.height; ++v) {
+      all.push_back(brightest(unlit, lit, v));
+    }
+    return all;
+  };
+  const auto ahead = columns(0);
+  const auto same = columns(std::acos(-1.0) / 2);  // a square, a quarter turn on
+  const auto other = columns(std::acos(-1.0) / 4);
+  int unlike = 0;
+  int moved = 0;
+  const auto differ = [](const std::optional<int>& a, const std::optional<int>& b) {
+    return a && b && std::abs(*a - *b) > 2;
+  };
+  for (std::size_t v = 0; v < ahead.size(); ++v) {
+    unlike += differ(ahead[v], same[v]) ? 1 : 0;
+    moved += differ(ahead[v], other[v]) ? 1 : 0;
+  }
+  EXPECT_LT(unlike, 5);
+  EXPECT_GT(moved, 30);
+}
+
+}  // namespace
+}  // namespace octurn

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "camera/simulated_camera.hpp"
+#include "octurn/error.hpp"
+#include "scan/rig.hpp"
+
+namespace octurn {
+
+/// A rig with a small camera, as it is told.
+inline LaserSettings small_laser_settings() {
+  LaserSettings settings;
+  settings.lens = {.width = 410, .height = 308, .fx = 341.2, .fy = 341.2, .cx = 204.5, .cy = 153.5};
+  return settings;
+}
+
+/// A simulated rig with a camera and lasers that fails as a test wants. It knows which lasers are
+/// on.
+class SimulatedLaserRig {
+ public:
+  explicit SimulatedLaserRig(LaserSettings settings = small_laser_settings())
+      : settings_(std::move(settings)) {}
+
+  RigOptions options(double speed) {
+    return {.speed = speed, .laser = settings_, .open_camera = [this, speed](const auto&) {
+              if (is_unplugged) {
+                throw Error(ErrorCode::sensor_missing, "no camera is plugged in", "Plug it in.");
+              }
+              const LaserCamera camera = laser_camera(settings_);
+              CameraAndLasers opened =
+                  simulate_laser_rig({.lens = settings_.lens,
+                                      .platform_from_sensor = settings_.platform_from_sensor,
+                                      .lasers = camera.lasers},
+                                     speed);
+              opened.camera = std::make_unique<FailingCamera>(*this, std::move(opened.camera));
+              opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser, bool on) {
+                set(laser, on && !(dark_laser == laser));
+                log += static_cast<char>((on ? 'A' : 'a') + static_cast<char>(laser));
+                is_on_[laser] = on;
+              };
+              return opened;
+            }};
+  }
+
+  bool is_lit() const { return is_on_[0] || is_on_[1]; }
+
+  std::atomic<bool> is_unplugged = false;
+  std::atomic<int> lost_pictures = 0;  ///< so many of the next are never handed out
+  std::atomic<int> pictures = 0;       ///< that were handed out
+  std::optional<std::size_t> dark_laser = {};  ///< that gives no light; set before a scan
+  std::string log = {};  ///< A and B for on, a and b for off, p for a picture; read after a scan
+  /// Called before each picture.
+  std::function<void(SimulatedLaserRig& rig)> on_picture = [](SimulatedLaserRig&) {};
+
+ private:
+  class FailingCamera final : public Camera {
+   public:
+    FailingCamera(SimulatedLaserRig& rig, std::unique_ptr<Camera> camera)
+        : rig_(rig), camera_(std::move(camera)) {}
+    const std::string& name() const override { return camera_->name(); }
+    std::string serial() const override { return camera_->serial(); }
+    void show_angle(double angle) override { camera_->show_angle(angle); }
+    std::optional<TimedPicture> read(const std::stop_token& stop) override {
+      rig_.on_picture(rig_);
+      if (rig_.is_unplugged) {
+        throw Error(ErrorCode::sensor_lost, "the camera is gone", "Plug it in.");
+      }
+      if (rig_.lost_pictures > 0) {
+        --rig_.lost_pictures;
+        throw Error(ErrorCode::sensor_silent, "no picture for 2000 ms", "Plug it in again.");
+      }
+      auto picture = camera_->read(stop);
+      rig_.pictures += picture ? 1 : 0;
+      rig_.log += picture ? "p" : "";
+      return picture;
+    }
+
+   private:
+    SimulatedLaserRig& rig_;
+    std::unique_ptr<Camera> camera_;
+  };
+
+  LaserSettings settings_;
+  std::array<std::atomic<bool>, 2> is_on_ = {};
+};
+
+}  // namespace octurn

@@ -1,0 +1,217 @@
+#include "scan/take_pictures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr int width = 60;
+constexpr int height = 90;
+
+Picture grey(std::uint8_t level) {
+  return {.width = width,
+          .height = height,
+          .samples = std::vector<std::uint8_t>(std::size_t{width} * height, level)};
+}
+
+/// With a line in so many rows.
+Picture with_line(std::uint8_t level, int rows, std::uint8_t brightness) {
+  Picture picture = grey(level);
+  for (int row = 0; row < rows; ++row) {
+    picture.samples[static_cast<std::size_t>(row * width + 20)] = brightness;
+  }
+  return picture;
+}
+
+TEST(DarkRoom, IsRefusedWhereAQuarterOfThePictureIsWhite) {
+  expect_dark_room(grey(200), "camera");
+  Picture lamp = grey(30);
+  std::fill_n(lamp.samples.begin(), lamp.samples.size() / 5, std::uint8_t{255});
+  expect_dark_room(lamp, "camera");
+  std::fill_n(lamp.samples.begin(), lamp.samples.size() / 3, std::uint8_t{255});
+  const Error error = error_thrown_by([&] { expect_dark_room(lamp, "camera"); });
+  EXPECT_EQ(error.code(), ErrorCode::sensor_blind);
+  EXPECT_NE(std::string(error.what()).find("camera: 33 %"), std::string::npos) << error.what();
+}
+
+TEST(Line, IsSeenInTheDifferenceAlone) {
+  const Picture dark = with_line(20, height, 200);  // a white edge that is no laser
+  expect_line(dark, with_line(20, height, 250), "left");
+  const Error error = error_thrown_by([&] { expect_line(dark, dark, "left"); });
+  EXPECT_EQ(error.code(), ErrorCode::sensor_blind);
+  EXPECT_NE(std::string(error.what()).find("laser left"), std::string::npos) << error.what();
+}
+
+TEST(Line, IsMoreThanNoiseInAFewRows) {
+  expect_line(grey(10), with_line(10, 3, 200), "left");
+  EXPECT_EQ(code_thrown_by([] { expect_line(grey(10), with_line(10, 2, 200), "left"); }),
+            "sensor-blind");
+  EXPECT_EQ(code_thrown_by([] { expect_line(grey(10), with_line(10, height, 30), "left"); }),
+            "sensor-blind");
+}
+
+/// A camera of a test, with two lasers. It knows which are on.
+struct Bench {
+  std::string log = {};  ///< A and B for on, a and b for off, p for a picture
+  std::array<bool, 2> is_on = {};
+  std::array<bool, 2> gives_light = {true, true};
+  int stale = 0;               ///< pictures begun long ago that are handed out first
+  int lost_after = 1000;       ///< pictures, then the camera is gone
+  int stop_after = 1000;       ///< pictures, then a stop is requested
+  std::uint8_t room = 20;      ///< grey levels
+  int columns = width;         ///< of its pictures
+  std::stop_source stop = {};
+
+  bool is_lit() const { return is_on[0] || is_on[1]; }
+
+  class BenchCamera final : public Camera {
+   public:
+    explicit BenchCamera(Bench& bench) : bench_(bench) {}
+    const std::string& name() const override { return name_; }
+    std::string serial() const override { return "7"; }
+    std::optional<TimedPicture> read(const std::stop_token& stop) override {
+      if (stop.stop_requested()) {
+        return std::nullopt;
+      }
+      if (bench_.lost_after-- == 0) {
+        throw Error(ErrorCode::sensor_lost, "the camera is gone");
+      }
+      if (bench_.stop_after-- == 0) {
+        bench_.stop.request_stop();
+        return std::nullopt;
+      }
+      if (bench_.stale > 0) {
+        --bench_.stale;
+        return TimedPicture{.picture = grey(255), .begin = Clock::now() - 1s};
+      }
+      bench_.log += "p";
+      bool is_line_seen = false;
+      for (std::size_t laser = 0; laser < 2; ++laser) {
+        is_line_seen = is_line_seen || (bench_.is_on[laser] && bench_.gives_light[laser]);
+      }
+      Picture seen = with_line(bench_.room, is_line_seen ? height : 0, 250);
+      seen.width = bench_.columns;
+      return TimedPicture{.picture = std::move(seen), .begin = Clock::now()};
+    }
+
+   private:
+    Bench& bench_;
+    std::string name_ = "camera of a test";
+  };
+
+  RigOptions options() {
+    LaserSettings told;
+    told.lens = {.width = width, .height = height};
+    return {.speed = 1000, .laser = told, .open_camera = [this](const LaserSettings&) {
+              return CameraAndLasers{.camera = std::make_unique<BenchCamera>(*this),
+                                     .set_line = [this](std::size_t laser, bool on) {
+                                       is_on[laser] = on;
+                                       log += static_cast<char>((on ? 'A' : 'a') +
+                                                                static_cast<char>(laser));
+                                     }};
+            }};
+  }
+};
+
+std::optional<std::vector<Picture>> take(Bench& bench) {
+  Rig rig(bench.options());
+  return take_pictures(rig, {.index = 0, .position = 3}, bench.stop.get_token(), {});
+}
+
+TEST(TakePictures, TakesADarkOneAndOneWithEachLaserAlone) {
+  Bench bench;
+  const auto pictures = take(bench);
+  EXPECT_EQ(bench.log, "abpApaBpbab");
+  ASSERT_TRUE(pictures);
+  ASSERT_EQ(pictures->size(), 3U);
+  EXPECT_EQ(pictures->at(0).samples, grey(20).samples);
+  EXPECT_EQ(pictures->at(1).samples, with_line(20, height, 250).samples);
+}
+
+TEST(TakePictures, LeavesOutPicturesThatBeganTooEarly) {
+  Bench bench;
+  bench.stale = 5;
+  const auto pictures = take(bench);
+  ASSERT_TRUE(pictures);
+  EXPECT_EQ(pictures->at(0).samples, grey(20).samples);
+}
+
+TEST(TakePictures, RefusesACameraWithOldPicturesAlone) {
+  Bench bench;
+  bench.stale = 1000;
+  EXPECT_EQ(code_thrown_by([&] { take(bench); }), "sensor-failed");
+}
+
+TEST(TakePictures, RefusesAnotherCamera) {
+  Bench bench;
+  bench.columns = width / 2;
+  EXPECT_EQ(code_thrown_by([&] { take(bench); }), "sensor-other");
+}
+
+TEST(TakePictures, NamesTheLaserThatGivesNoLight) {
+  Bench bench;
+  bench.gives_light[1] = false;
+  const Error error = error_thrown_by([&] { take(bench); });
+  EXPECT_EQ(error.code(), ErrorCode::sensor_blind);
+  EXPECT_NE(std::string(error.what()).find("laser right"), std::string::npos) << error.what();
+  EXPECT_FALSE(bench.is_lit());
+}
+
+TEST(TakePictures, SwitchesNoLaserOnInABrightRoom) {
+  Bench bench;
+  bench.room = 255;
+  EXPECT_EQ(code_thrown_by([&] { take(bench); }), "sensor-blind");
+  EXPECT_EQ(bench.log, "abpab");
+}
+
+TEST(TakePictures, HasAllLasersOffWhereverTheCameraIsLost) {
+  for (int pictures = 0; pictures < 3; ++pictures) {
+    SCOPED_TRACE(pictures);
+    Bench bench;
+    bench.lost_after = pictures;
+    Rig rig(bench.options());
+    EXPECT_EQ(code_thrown_by([&] { take_pictures(rig, {.position = 3}, {}, {}); }), "sensor-lost");
+    EXPECT_FALSE(bench.is_lit());  // while the rig still has their lines
+  }
+}
+
+TEST(TakePictures, HasAllLasersOffWhereverItIsStopped) {
+  for (int pictures = 0; pictures < 3; ++pictures) {
+    SCOPED_TRACE(pictures);
+    Bench bench;
+    bench.stop_after = pictures;
+    Rig rig(bench.options());
+    EXPECT_FALSE(take_pictures(rig, {.position = 3}, bench.stop.get_token(), {}));
+    EXPECT_FALSE(bench.is_lit());
+  }
+}
+
+TEST(TakePictures, HasAllLasersOffWhileThePlatformTurns) {
+  Bench bench;
+  Rig rig(bench.options());
+  std::string lit_while_turning;
+  const ScanObserver observer{.on_turn = [&](double) {
+    lit_while_turning += bench.is_lit() ? "lit" : "dark";
+  }};
+  ASSERT_TRUE(take_pictures(rig, {.position = 3}, {}, observer));
+  ASSERT_TRUE(take_pictures(rig, {.index = 1, .position = 6}, {}, observer));
+  EXPECT_EQ(lit_while_turning, "darkdark");
+}
+
+}  // namespace
+}  // namespace octurn

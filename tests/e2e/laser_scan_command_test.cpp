@@ -1,0 +1,153 @@
+// Scans by laser line from outside: `octurn scan --simulate-laser`.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/program.hpp"
+#include "support/stl.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double radius = 30;  // mm of a cylinder
+constexpr double height = 50;
+
+/// A cylinder as a text STL, millimetres.
+void write_cylinder(const fs::path& file) {
+  constexpr int corners = 96;
+  std::ostringstream text;
+  const auto facet = [&](const std::array<std::array<double, 3>, 3>& points) {
+    text << "facet normal 0 0 0\nouter loop\n";
+    for (const auto& [x, y, z] : points) {
+      text << "vertex " << x << ' ' << y << ' ' << z << '\n';
+    }
+    text << "endloop\nendfacet\n";
+  };
+  text << "solid cylinder\n";
+  for (int i = 0; i < corners; ++i) {
+    const auto at = [&](int corner, double z) {
+      const double angle = 2 * std::acos(-1.0) * corner / corners;
+      return std::array<double, 3>{radius * std::cos(angle), radius * std::sin(angle), z};
+    };
+    facet({at(i, 0), at(i + 1, 0), at(i + 1, height)});
+    facet({at(i, 0), at(i + 1, height), at(i, height)});
+    facet({{{0, 0, height}, at(i, height), at(i + 1, height)}});
+    facet({{{0, 0, 0}, at(i + 1, 0), at(i, 0)}});
+  }
+  text << "endsolid cylinder\n";
+  std::ofstream(file) << text.str();
+}
+
+/// Smallest and largest coordinates of a binary STL, mm.
+std::array<std::array<float, 2>, 3> extent_of(const std::string& stl) {
+  std::array<std::array<float, 2>, 3> extent{{{1e9F, -1e9F}, {1e9F, -1e9F}, {1e9F, -1e9F}}};
+  for (std::size_t facet = 84; facet + 50 <= stl.size(); facet += 50) {
+    for (std::size_t number = 0; number < 9; ++number) {
+      float value = 0;
+      std::memcpy(&value, stl.data() + facet + 12 + 4 * number, sizeof value);
+      auto& [low, high] = extent[number % 3];
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  return extent;
+}
+
+/// A camera of a quarter of the usual pixels, so that a scan takes seconds.
+std::vector<std::string> laser_scan(const fs::path& folder) {
+  std::ofstream(folder / "octurn.json")
+      << R"({"laser": {"width": 410, "height": 308, "fx": 341.2, "fy": 341.2, "cx": 204.5, "cy": 153.5}})";
+  write_cylinder(folder / "cylinder.stl");
+  return {octurn_program(),
+          "scan",
+          "--simulate-laser=" + (folder / "cylinder.stl").string(),
+          "--simulate-speed",
+          "100",
+          "--config",
+          folder / "octurn.json",
+          "--data",
+          folder / "data",
+          "-o",
+          folder / "Scan.stl"};
+}
+
+TEST(LaserScanCommand, MakesAClosedModelOfTheObjectsSize) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = laser_scan(folder.path());
+  words.insert(words.end(), {"--snapshots", "40", "--leaf-size-mm", "1"});
+  Program program(words);
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  const std::string stl = content_of(folder.path() / "Scan.stl");
+  EXPECT_GT(triangles_of_whole_stl(stl), 1000);
+  EXPECT_EQ(open_edges(stl), 0);
+  // Half a leaf, and what 40 chords of lines 9 degrees apart leave out of a circle: 0.1 mm.
+  constexpr double slack = 0.8;
+  const auto [x, y, z] = extent_of(stl);
+  EXPECT_NEAR(x[0], -radius, slack);
+  EXPECT_NEAR(x[1], radius, slack);
+  EXPECT_NEAR(y[0], -radius, slack);
+  EXPECT_NEAR(y[1], radius, slack);
+  EXPECT_NEAR(z[1], height, 1.5);  // a leaf and a half: the lasers graze the top
+  const fs::path stored = fs::directory_iterator(folder.path() / "data" / "scans")->path();
+  EXPECT_TRUE(fs::exists(stored / "snapshots" / "039-right.png"));
+  EXPECT_NE(content_of(stored / "scan.json").find("\"solved\""), std::string::npos);
+}
+
+TEST(LaserScanCommand, StopsWhenItIsInterruptedAndGoesOnWhereItWas) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = laser_scan(folder.path());
+  words.insert(words.end(), {"--snapshots", "12", "--leaf-size-mm", "4"});
+  fs::path stored;
+  {
+    Program program(words);
+    const fs::path scans = folder.path() / "data" / "scans";
+    while (!fs::exists(scans) || fs::is_empty(scans)) {
+      std::this_thread::yield();
+    }
+    stored = fs::directory_iterator(scans)->path();
+    while (!fs::exists(stored / "snapshots" / "002-right.png")) {
+      std::this_thread::yield();
+    }
+    program.send_signal(SIGKILL);
+    program.wait();
+  }
+  words.insert(words.end(), {"--resume", stored.filename()});
+  Program program(words);
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_EQ(open_edges(content_of(folder.path() / "Scan.stl")), 0);
+  EXPECT_TRUE(fs::exists(stored / "snapshots" / "011-right.png"));
+}
+
+TEST(LaserScanCommand, SaysWhatASimulatedRigHasNot) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = laser_scan(folder.path());
+  for (const std::vector<std::string>& wrong :
+       {std::vector<std::string>{"--simulate"}, {"--simulate-wall", "1"}}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), wrong.begin(), wrong.end());
+    Program program(all);
+    EXPECT_EQ(program.wait(), 2) << wrong.front();
+    EXPECT_NE(program.errors().find(wrong.front()), std::string::npos) << program.errors();
+  }
+  std::ofstream(folder.path() / "octurn.json") << R"({"laser": {"k1": -0.1}})";
+  Program program(words);
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(program.errors().find("distortion"), std::string::npos) << program.errors();
+}
+
+}  // namespace
+}  // namespace octurn

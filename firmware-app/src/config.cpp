@@ -122,8 +122,7 @@ std::vector<Field> fields(Config& config) {
   return all;
 }
 
-Config read_config(const std::filesystem::path& file,
-                   const std::optional<SensorKind>& sensor) {
+Config read_config(const std::filesystem::path& file, const std::optional<SensorKind>& sensor) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (!stream) {

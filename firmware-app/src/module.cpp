@@ -12,9 +12,9 @@ const void* load_module(const char* library, const char* symbol, const std::stri
   const void* const found = loaded == nullptr ? nullptr : ::dlsym(loaded, symbol);
   if (found == nullptr) {
     const char* const trouble = ::dlerror();
-    throw Error(
-        ErrorCode::internal,
-        what + " cannot be loaded: " + (trouble == nullptr ? "it has no entry" : trouble), hint);
+    throw Error(ErrorCode::internal,
+                what + " cannot be loaded: " + (trouble == nullptr ? "it has no entry" : trouble),
+                hint);
   }
   return found;
 }

@@ -147,12 +147,9 @@ TEST(SettingsDocument, HasTheTablesOfTheProgram) {
   });
   const std::string document = content_of(OCTURN_SOURCE "/docs/settings.md");
   const std::vector<std::pair<std::string, std::vector<Field>>> tables{
-      {"octurn.json", fields(config)},
-      {"scan", fields(config.scan)},
-      {"reconstruct", of_model},
-      {"turntable", fields(config.turntable)},
-      {"laser", fields(config.laser)},
-      {"laser line", fields(config.laser.left)}};
+      {"octurn.json", fields(config)}, {"scan", fields(config.scan)},
+      {"reconstruct", of_model},       {"turntable", fields(config.turntable)},
+      {"laser", fields(config.laser)}, {"laser line", fields(config.laser.left)}};
   for (const auto& [name, fields] : tables) {
     const std::string table = to_markdown(fields);
     EXPECT_EQ(generated_part(document, name), table)

@@ -21,13 +21,22 @@ using Eigen::Vector3d;
 
 /// A box on the platform as a text STL: 30 mm to each side of the axis and so high.
 std::string box_stl(double height) {
-  const std::array<Vector3d, 8> corners{
-      Vector3d(-30, -30, 0), Vector3d(30, -30, 0), Vector3d(30, 30, 0), Vector3d(-30, 30, 0),
-      Vector3d(-30, -30, height), Vector3d(30, -30, height), Vector3d(30, 30, height),
-      Vector3d(-30, 30, height)};
-  constexpr std::array<std::array<std::size_t, 3>, 12> triangles{
-      {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
-       {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+  const std::array<Vector3d, 8> corners{Vector3d(-30, -30, 0),      Vector3d(30, -30, 0),
+                                        Vector3d(30, 30, 0),        Vector3d(-30, 30, 0),
+                                        Vector3d(-30, -30, height), Vector3d(30, -30, height),
+                                        Vector3d(30, 30, height),   Vector3d(-30, 30, height)};
+  constexpr std::array<std::array<std::size_t, 3>, 12> triangles{{{0, 2, 1},
+                                                                  {0, 3, 2},
+                                                                  {4, 5, 6},
+                                                                  {4, 6, 7},
+                                                                  {0, 1, 5},
+                                                                  {0, 5, 4},
+                                                                  {1, 2, 6},
+                                                                  {1, 6, 5},
+                                                                  {2, 3, 7},
+                                                                  {2, 7, 6},
+                                                                  {3, 0, 4},
+                                                                  {3, 4, 7}}};
   std::ostringstream text;
   text << "solid box\n";
   for (const auto& triangle : triangles) {
@@ -46,11 +55,11 @@ class LaserSceneTest : public ::testing::Test {
   LaserSceneTest() { std::ofstream(file_) << box_stl(40); }
 
   LaserSimulation simulation() const {
-    return {.mesh_file = file_,
-            .lens = {.width = 410, .height = 308, .fx = 341.2, .fy = 341.2, .cx = 204.5,
-                     .cy = 153.5},
-            .platform_from_sensor = nominal_platform_from_camera(),
-            .lasers = {nominal_laser("left", -0.5), nominal_laser("right", 0.5)}};
+    return {
+        .mesh_file = file_,
+        .lens = {.width = 410, .height = 308, .fx = 341.2, .fy = 341.2, .cx = 204.5, .cy = 153.5},
+        .platform_from_sensor = nominal_platform_from_camera(),
+        .lasers = {nominal_laser("left", -0.5), nominal_laser("right", 0.5)}};
   }
 
   /// The brightest pixel of a row of the difference of two pictures; nothing if none is bright.
@@ -96,8 +105,7 @@ TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
         continue;
       }
       const Vector3d point = meet(told, laser, *u, v);
-      const double side =
-          std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // of the box
+      const double side = std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // of the box
       const bool is_top = side < pixel && std::abs(point.z() - 0.04) < 2 * pixel;
       const bool is_side = std::abs(side) < 2 * pixel && point.z() > -pixel && point.z() < 0.042;
       const bool is_platform = std::abs(point.z()) < 2 * pixel && side > -pixel;

@@ -78,8 +78,8 @@ TEST(LaserSettings, RefuseALineThatIsHighWhileThePiBoots) {
 TEST(LaserSettings, RefuseLinesThatTwoSignalsShare) {
   const std::string twice = refusal_of({{"laser", {{"right", {{"line", "GPIO23"}}}}}});
   EXPECT_NE(twice.find("laser.right"), std::string::npos) << twice;
-  const std::string motor = refusal_of(
-      {{"sensor", "laser-line"}, {"laser", {{"left", {{"line", "GPIO17"}}}}}});
+  const std::string motor =
+      refusal_of({{"sensor", "laser-line"}, {"laser", {{"left", {{"line", "GPIO17"}}}}}});
   EXPECT_NE(motor.find("GPIO17"), std::string::npos) << motor;
 }
 

@@ -40,7 +40,8 @@ class SimulatedLaserRig {
                                       .lasers = camera.lasers},
                                      speed);
               opened.camera = std::make_unique<FailingCamera>(*this, std::move(opened.camera));
-              opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser, bool on) {
+              opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser,
+                                                                         bool on) {
                 set(laser, on && !(dark_laser == laser));
                 log += static_cast<char>((on ? 'A' : 'a') + static_cast<char>(laser));
                 is_on_[laser] = on;
@@ -52,8 +53,8 @@ class SimulatedLaserRig {
   bool is_lit() const { return is_on_[0] || is_on_[1]; }
 
   std::atomic<bool> is_unplugged = false;
-  std::atomic<int> lost_pictures = 0;  ///< so many of the next are never handed out
-  std::atomic<int> pictures = 0;       ///< that were handed out
+  std::atomic<int> lost_pictures = 0;          ///< so many of the next are never handed out
+  std::atomic<int> pictures = 0;               ///< that were handed out
   std::optional<std::size_t> dark_laser = {};  ///< that gives no light; set before a scan
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture; read after a scan
   /// Called before each picture.

@@ -70,11 +70,11 @@ struct Bench {
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture
   std::array<bool, 2> is_on = {};
   std::array<bool, 2> gives_light = {true, true};
-  int stale = 0;               ///< pictures begun long ago that are handed out first
-  int lost_after = 1000;       ///< pictures, then the camera is gone
-  int stop_after = 1000;       ///< pictures, then a stop is requested
-  std::uint8_t room = 20;      ///< grey levels
-  int columns = width;         ///< of its pictures
+  int stale = 0;           ///< pictures begun long ago that are handed out first
+  int lost_after = 1000;   ///< pictures, then the camera is gone
+  int stop_after = 1000;   ///< pictures, then a stop is requested
+  std::uint8_t room = 20;  ///< grey levels
+  int columns = width;     ///< of its pictures
   std::stop_source stop = {};
 
   bool is_lit() const { return is_on[0] || is_on[1]; }
@@ -118,12 +118,12 @@ struct Bench {
     LaserSettings told;
     told.lens = {.width = width, .height = height};
     return {.speed = 1000, .laser = told, .open_camera = [this](const LaserSettings&) {
-              return CameraAndLasers{.camera = std::make_unique<BenchCamera>(*this),
-                                     .set_line = [this](std::size_t laser, bool on) {
-                                       is_on[laser] = on;
-                                       log += static_cast<char>((on ? 'A' : 'a') +
-                                                                static_cast<char>(laser));
-                                     }};
+              return CameraAndLasers{
+                  .camera = std::make_unique<BenchCamera>(*this),
+                  .set_line = [this](std::size_t laser, bool on) {
+                    is_on[laser] = on;
+                    log += static_cast<char>((on ? 'A' : 'a') + static_cast<char>(laser));
+                  }};
             }};
   }
 };
@@ -205,9 +205,8 @@ TEST(TakePictures, HasAllLasersOffWhileThePlatformTurns) {
   Bench bench;
   Rig rig(bench.options());
   std::string lit_while_turning;
-  const ScanObserver observer{.on_turn = [&](double) {
-    lit_while_turning += bench.is_lit() ? "lit" : "dark";
-  }};
+  const ScanObserver observer{
+      .on_turn = [&](double) { lit_while_turning += bench.is_lit() ? "lit" : "dark"; }};
   ASSERT_TRUE(take_pictures(rig, {.position = 3}, {}, observer));
   ASSERT_TRUE(take_pictures(rig, {.index = 1, .position = 6}, {}, observer));
   EXPECT_EQ(lit_while_turning, "darkdark");

@@ -100,9 +100,8 @@ double LaserScene::slope(std::size_t pixel, std::ptrdiff_t step, bool is_first,
 
 LaserScene::Patch LaserScene::patch(int u, int v) const {
   const Intrinsics& lens = simulation_.lens;
-  const std::size_t pixel =
-      static_cast<std::size_t>(v) * static_cast<std::size_t>(lens.width) +
-      static_cast<std::size_t>(u);
+  const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(lens.width) +
+                            static_cast<std::size_t>(u);
   if (seen_[pixel] <= 0) {
     return {};
   }

@@ -15,6 +15,6 @@ std::unique_ptr<LaserSimulator> make(const LaserSimulation& simulation) {
 }  // namespace
 }  // namespace octurn
 
-extern "C" __attribute__((visibility("default"))) const octurn::LaserSimulatorModule
-    octurn_laser_simulator;
+extern "C" __attribute__((visibility("default")))
+const octurn::LaserSimulatorModule octurn_laser_simulator;
 extern "C" const octurn::LaserSimulatorModule octurn_laser_simulator{.make = octurn::make};

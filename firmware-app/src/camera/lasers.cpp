@@ -76,16 +76,16 @@ Lasers::SetLine open_laser_lines(const std::vector<std::string>& lines) {
     named.push_back({.name = line, .high = false});
   }
   // Shared, as a std::function has to be copyable.
-  return [lines, chip = std::make_shared<GpioChip>(drive_lasers(named))](std::size_t laser,
-                                                                         bool on) {
-    try {
-      chip->set(laser, on);
-    } catch (const std::system_error& error) {
-      throw Error(ErrorCode::sensor_failed,
-                  "line " + lines[laser] + " cannot be set: " + error.what(),
-                  "Start Octurn again.");
-    }
-  };
+  return
+      [lines, chip = std::make_shared<GpioChip>(drive_lasers(named))](std::size_t laser, bool on) {
+        try {
+          chip->set(laser, on);
+        } catch (const std::system_error& error) {
+          throw Error(ErrorCode::sensor_failed,
+                      "line " + lines[laser] + " cannot be set: " + error.what(),
+                      "Start Octurn again.");
+        }
+      };
 }
 
 }  // namespace octurn

@@ -118,9 +118,7 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   command.footer(
       "Without --turn it never moves the motor. It ends with 0 if there is no fault, with 1 if one "
       "is.");
-  command.callback([&arguments, &status] {
-    status = doctor(arguments) ? 0 : 1;
-  });
+  command.callback([&arguments, &status] { status = doctor(arguments) ? 0 : 1; });
 }
 
 void add_calibrate(CLI::App& program, CalibrateArguments& arguments,

@@ -79,25 +79,25 @@ std::vector<const CLI::Option*> add_simulation_options(CLI::App& command, RigArg
 }
 
 /// Options of a simulated rig with a depth sensor.
-std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command,
-                                                             RigArguments& rig) {
-  return {command
-              .add_option("--simulate-wall", rig.wall,
-                          "the simulated sensor looks squarely at a wall so far away, as for a map "
-                          "of its own error")
-              ->type_name("METRES")
-              ->check(CLI::Range(0.3, 6.0)),
-          command
-              .add_option("--simulate-gear", rig.gear_ratio,
-                          "gear ratio of the simulated turntable, where it is not what is set")
-              ->type_name("RATIO")
-              ->check(CLI::Range(0.001, 1000.0)),
-          command.add_flag("--simulate-reversed", rig.reversed,
-                           "the simulated motor is wired the other way"),
-          command
-              .add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
-              ->type_name("DEGREES")
-              ->check(CLI::Range(0.0, 10.0))};
+std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, RigArguments& rig) {
+  return {
+      command
+          .add_option("--simulate-wall", rig.wall,
+                      "the simulated sensor looks squarely at a wall so far away, as for a map "
+                      "of its own error")
+          ->type_name("METRES")
+          ->check(CLI::Range(0.3, 6.0)),
+      command
+          .add_option("--simulate-gear", rig.gear_ratio,
+                      "gear ratio of the simulated turntable, where it is not what is set")
+          ->type_name("RATIO")
+          ->check(CLI::Range(0.001, 1000.0)),
+      command.add_flag("--simulate-reversed", rig.reversed,
+                       "the simulated motor is wired the other way"),
+      command
+          .add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
+          ->type_name("DEGREES")
+          ->check(CLI::Range(0.0, 10.0))};
 }
 
 /// Refuses options that are given without what they belong to.

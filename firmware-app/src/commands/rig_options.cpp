@@ -55,12 +55,11 @@ RigOptions laser_rig_options(const RigArguments& arguments, const Config& config
   if (!arguments.simulate) {
     return {.stepper = config.turntable, .laser = config.laser};
   }
-  return {.speed = arguments.speed,
-          .laser = config.laser,
-          .open_camera = [simulation = to_simulation(arguments, config.laser),
-                          speed = arguments.speed](const LaserSettings&) {
-            return simulate_laser_rig(simulation, speed);
-          }};
+  return {
+      .speed = arguments.speed,
+      .laser = config.laser,
+      .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed](
+                         const LaserSettings&) { return simulate_laser_rig(simulation, speed); }};
 }
 
 }  // namespace

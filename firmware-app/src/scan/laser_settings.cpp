@@ -22,8 +22,8 @@ constexpr double normal_tolerance = 1e-3;     // of decimals that a person typed
 constexpr double max_source_distance = 0.05;  // metres of a laser from its plane
 
 /// Lines that a Raspberry Pi pulls up while it boots.
-constexpr std::array<std::string_view, 9> pulled_up = {
-    "GPIO0", "GPIO1", "GPIO2", "GPIO3", "GPIO4", "GPIO5", "GPIO6", "GPIO7", "GPIO8"};
+constexpr std::array<std::string_view, 9> pulled_up = {"GPIO0", "GPIO1", "GPIO2", "GPIO3", "GPIO4",
+                                                       "GPIO5", "GPIO6", "GPIO7", "GPIO8"};
 
 json numbers_schema(int count) {
   return {{"type", "array"},
@@ -104,14 +104,14 @@ std::vector<Field> lens_fields(LaserSettings& s) {
       {.key = "k1",
        .help = "radial distortion of the lens, x (1 + k1 r^2 + k2 r^4)",
        .access = number(s.k1, -max_distortion, max_distortion)},
-      {.key = "k2",
-       .help = "the same",
-       .access = number(s.k2, -max_distortion, max_distortion)},
+      {.key = "k2", .help = "the same", .access = number(s.k2, -max_distortion, max_distortion)},
   };
 }
 
 Field line_field(std::string_view key, std::string_view help, LaserLine& line) {
-  return {.key = key, .help = help, .access = object(fields(line), [&line](JsonObject& keys) {
+  return {.key = key,
+          .help = help,
+          .access = object(fields(line), [&line](JsonObject& keys) {
             const double off = line.laser.normal.dot(*line.laser.source) - line.laser.distance;
             if (std::abs(off) > max_source_distance) {
               keys.refuse("source_m", source(line.laser).write(),
@@ -170,12 +170,11 @@ std::vector<Field> fields(LaserLine& line) {
 
 std::vector<Field> fields(LaserSettings& settings) {
   std::vector<Field> all = lens_fields(settings);
-  all.push_back(
-      {.key = "platform_from_sensor",
-       .unit = "m",
-       .help = "pose of the camera: four rows of four numbers",
-       .access = pose(settings.platform_from_sensor),
-       .default_text = "0.28 m before the axis, 0.18 m up, 25 degrees down"});
+  all.push_back({.key = "platform_from_sensor",
+                 .unit = "m",
+                 .help = "pose of the camera: four rows of four numbers",
+                 .access = pose(settings.platform_from_sensor),
+                 .default_text = "0.28 m before the axis, 0.18 m up, 25 degrees down"});
   all.push_back(line_field("left", "the laser to the camera's left, below", settings.left));
   all.push_back(line_field("right", "the laser to its right", settings.right));
   return all;

@@ -23,8 +23,7 @@ bool is_same(const Scan& scan, const ScanSettings& settings, Rig& rig) {
   if (const LaserSettings* laser = rig.laser()) {
     return has_camera_of(*laser, scan);
   }
-  return !scan.laser &&
-         scaled(rig.sensor().intrinsics(), settings.depth_scale) == scan.intrinsics;
+  return !scan.laser && scaled(rig.sensor().intrinsics(), settings.depth_scale) == scan.intrinsics;
 }
 
 }  // namespace

@@ -66,7 +66,8 @@ void store_pictures(const std::filesystem::path& folder, Scan& scan, double angl
   Shot shot{.angle = angle};
   const auto index = static_cast<int>(scan.shots.size());
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    shot.pictures.push_back(picture_file(shot_file(index), i == 0 ? "dark" : scan.laser->lasers[i - 1].name));
+    shot.pictures.push_back(
+        picture_file(shot_file(index), i == 0 ? "dark" : scan.laser->lasers[i - 1].name));
     write_picture(folder / shot.pictures.back(), pictures[i]);
   }
   scan.shots.push_back(std::move(shot));

@@ -76,8 +76,8 @@ void expect_line(const Picture& dark, const Picture& lit, const std::string& las
   for (std::size_t first = 0; first < lit.samples.size(); first += width) {
     int brighter = 0;
     for (std::size_t pixel = first; pixel < first + width; ++pixel) {
-      brighter = std::max(brighter, static_cast<int>(lit.samples[pixel]) -
-                                        static_cast<int>(dark.samples[pixel]));
+      brighter = std::max(
+          brighter, static_cast<int>(lit.samples[pixel]) - static_cast<int>(dark.samples[pixel]));
     }
     rows += brighter >= line_levels ? 1 : 0;
   }

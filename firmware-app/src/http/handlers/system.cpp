@@ -87,9 +87,8 @@ Response send_diagnostics(App& app) {
 Response send_depth_picture(App& app) {
   const auto camera = app.scanner.camera_frame();
   return {.headers = {{"Content-Type", "image/png"}, {"Cache-Control", "no-store"}},
-          .body = camera->picture.width > 0
-                      ? preview_png(camera->picture)
-                      : preview_png(camera->frame, camera->lens.depth_unit)};
+          .body = camera->picture.width > 0 ? preview_png(camera->picture)
+                                            : preview_png(camera->frame, camera->lens.depth_unit)};
 }
 
 }  // namespace octurn

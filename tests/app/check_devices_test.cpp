@@ -7,7 +7,9 @@
 #include <thread>
 
 #include "app/few_snapshots.hpp"
+#include "app/simulated_laser_rig.hpp"
 #include "doctor/doctor.hpp"
+#include "doctor/sensor_checks.hpp"
 #include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -110,6 +112,27 @@ TEST(SensorReading, SaysWhyThereIsNoSensor) {
   const SensorReading look = read_sensor(rig, {});
   ASSERT_TRUE(std::holds_alternative<Failure>(look));
   EXPECT_EQ(std::get<Failure>(look).code, ErrorCode::sensor_missing);
+}
+
+TEST(SensorReading, TellsWhichLasersACameraSees) {
+  SimulatedLaserRig simulated;
+  Rig rig(simulated.options(200));
+  const auto findings = check_sensor(read_sensor(rig, {}), {}, Eigen::Isometry3d::Identity());
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].state, Finding::State::ok);
+  EXPECT_NE(findings[0].measured.find("laser left and right"), std::string::npos)
+      << findings[0].measured;
+  EXPECT_FALSE(simulated.is_lit());
+}
+
+TEST(SensorReading, NamesALaserThatGivesNoLight) {
+  SimulatedLaserRig simulated;
+  simulated.dark_laser = 1;
+  Rig rig(simulated.options(200));
+  const auto findings = check_sensor(read_sensor(rig, {}), {}, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(findings[0].state, Finding::State::fault);
+  EXPECT_NE(findings[0].measured.find("laser right"), std::string::npos) << findings[0].measured;
+  EXPECT_FALSE(simulated.is_lit());
 }
 
 TEST(SensorReading, IsBusyIfItIsStopped) {

@@ -33,12 +33,23 @@ std::string real_time_refusal() {
   return "";
 }
 
+/// The lines of turntable and lasers.
+std::vector<NamedLine> lines_of_rig(const RigOptions& rig) {
+  std::vector<NamedLine> lines = lines_of(*rig.stepper);
+  if (rig.laser) {
+    for (const std::string& line : gpio_lines_of(*rig.laser)) {
+      lines.push_back({.name = line});
+    }
+  }
+  return lines;
+}
+
 std::vector<Finding> check_turntable(const DoctorInput& input) {
   const Lateness lateness = measure_wake_ups(wake_ups, wake_up_interval);
   if (!input.rig.stepper) {
     return {check_simulated_turntable(), check_wake_ups(lateness, Lateness::value_type::max())};
   }
-  const HeaderState header = read_gpio_header(lines_of(*input.rig.stepper));
+  const HeaderState header = read_gpio_header(lines_of_rig(input.rig));
   return {check_gpio_chip(header), check_gpio_lines(header, input.lines),
           check_gpio_permission(input.root), check_real_time(real_time_refusal()),
           check_wake_ups(lateness, late_after)};
@@ -90,7 +101,7 @@ DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =
       check_sensor(reading, input.config.scan.clip, unscaled_pose(input.config.scan));
-  if (is_on_usb(input.rig.sensor_uri)) {
+  if (!input.rig.laser && is_on_usb(input.rig.sensor_uri)) {
     findings.push_back(check_usb(input.root));
   }
   for (const std::vector<Finding>& more : {check_turntable(input), check_machine(input)}) {

@@ -101,6 +101,14 @@ std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
     }
     return findings;
   }
+  if (const auto* camera = std::get_if<CameraSample>(&reading)) {
+    std::string seen = camera->name + ", " + std::to_string(camera->width) + " x " +
+                       std::to_string(camera->height) + ", sees laser";
+    for (const std::string& laser : camera->lasers) {
+      seen += (laser == camera->lasers.front() ? " " : " and ") + laser;
+    }
+    return {sensor.ok(seen)};
+  }
   const auto& sample = std::get<SensorSample>(reading);
   const PlatformView view = measure_platform(sample, clip, platform_from_sensor);
   return {sensor.ok(sample.name + ", " + std::to_string(sample.intrinsics.width) + " x " +

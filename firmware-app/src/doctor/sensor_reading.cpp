@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "scan/take_pictures.hpp"
+
 namespace octurn {
 namespace {
 
@@ -34,11 +36,31 @@ std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& s
   return sample;
 }
 
+/// @return nothing if `stop` is requested first
+/// @throws Error  that says what is wrong with the camera, the room or a laser
+std::optional<CameraSample> sample_camera(Rig& rig, const std::stop_token& stop) {
+  const auto pictures = take_pictures_here(rig, stop, {});
+  if (!pictures) {
+    return std::nullopt;
+  }
+  CameraSample sample{.name = rig.camera().name(),
+                      .width = pictures->front().width,
+                      .height = pictures->front().height};
+  for (const Laser& laser : laser_camera(*rig.laser()).lasers) {
+    sample.lasers.push_back(laser.name);
+  }
+  return sample;
+}
+
 }  // namespace
 
 SensorReading read_sensor(Rig& rig, const std::stop_token& stop) {
   try {
-    if (auto seen = sample(rig.sensor(), stop)) {
+    if (rig.laser() != nullptr) {
+      if (auto seen = sample_camera(rig, stop)) {
+        return *std::move(seen);
+      }
+    } else if (auto seen = sample(rig.sensor(), stop)) {
       return *std::move(seen);
     }
     return Failure{.code = ErrorCode::busy,

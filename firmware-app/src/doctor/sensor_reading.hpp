@@ -24,11 +24,19 @@ struct SensorSample {
   std::optional<Tilt> tilt = {};
 };
 
-/// A sample, or why there is none. The code "busy" says that the sensor is in use.
-using SensorReading = std::variant<SensorSample, Failure>;
+/// A camera with lasers that sees the lines of all of them.
+struct CameraSample {
+  std::string name = {};
+  int width = 0;  ///< pixels
+  int height = 0;
+  std::vector<std::string> lasers = {};  ///< their names
+};
 
-/// Reads frames for about two seconds; "busy" if `stop` is requested before. Closes a sensor that
-/// fails.
+/// A sample, or why there is none. The code "busy" says that the sensor is in use.
+using SensorReading = std::variant<SensorSample, CameraSample, Failure>;
+
+/// Reads frames for about two seconds, or takes a picture with each laser where the platform
+/// stands; "busy" if `stop` is requested before. Closes a sensor that fails.
 SensorReading read_sensor(Rig& rig, const std::stop_token& stop);
 
 }  // namespace octurn

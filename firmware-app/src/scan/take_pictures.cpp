@@ -91,15 +91,9 @@ void expect_line(const Picture& dark, const Picture& lit, const std::string& las
   }
 }
 
-std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
-                                                  const std::stop_token& stop,
-                                                  const ScanObserver& observer) {
-  rig.turntable();  // whose faults are told before the camera's
+std::optional<std::vector<Picture>> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                                       const ScanObserver& observer) {
   Camera& camera = rig.camera();
-  if (!turn_to(rig, at, stop, observer)) {
-    return std::nullopt;
-  }
-  camera.show_angle(radians_from_degrees(rig.platform_angle_deg()));
   std::vector<Picture> pictures;
   const auto take = [&] {
     std::optional<Picture> picture = read_picture(camera, Clock::now(), stop, observer);
@@ -125,6 +119,18 @@ std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
     expect_line(pictures.front(), pictures.back(), lines[laser].laser.name);
   }
   return pictures;
+}
+
+std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
+                                                  const std::stop_token& stop,
+                                                  const ScanObserver& observer) {
+  rig.turntable();  // whose faults are told before the camera's
+  Camera& camera = rig.camera();
+  if (!turn_to(rig, at, stop, observer)) {
+    return std::nullopt;
+  }
+  camera.show_angle(radians_from_degrees(rig.platform_angle_deg()));
+  return take_pictures_here(rig, stop, observer);
 }
 
 }  // namespace octurn

@@ -21,6 +21,10 @@ std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
                                                   const std::stop_token& stop,
                                                   const ScanObserver& observer);
 
+/// The same where the platform stands.
+std::optional<std::vector<Picture>> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                                       const ScanObserver& observer);
+
 /// A picture without a laser has to be dark enough to show lines.
 /// @throws Error "sensor-blind"
 void expect_dark_room(const Picture& dark, const std::string& camera);

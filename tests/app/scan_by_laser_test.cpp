@@ -38,7 +38,7 @@ Job ended(Scanner& scanner) {
   return *status.job;
 }
 
-class LaserScan : public ::testing::Test {
+class ScanByLaser : public ::testing::Test {
  protected:
   /// Has something happen before the picture of that number, counted from the scan's start.
   void before_picture(int number, const std::function<void()>& action) {
@@ -55,7 +55,7 @@ class LaserScan : public ::testing::Test {
   SimulatedLaserRig rig_ = SimulatedLaserRig();
 };
 
-TEST_F(LaserScan, StoresAFolderThatTheReconstructionReads) {
+TEST_F(ScanByLaser, StoresAFolderThatTheReconstructionReads) {
   Scanner scanner(rig_.options(speed), {}, store_);
   scanner.start(settings());
   const Job job = ended(scanner);
@@ -77,7 +77,7 @@ TEST_F(LaserScan, StoresAFolderThatTheReconstructionReads) {
   EXPECT_GT(snapshot.strips[0].points.size(), 100U);
 }
 
-TEST_F(LaserScan, HasALaserOnForItsOwnPictureAlone) {
+TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
   {
     Scanner scanner(rig_.options(speed), {}, store_);
     scanner.start(settings());
@@ -93,7 +93,7 @@ TEST_F(LaserScan, HasALaserOnForItsOwnPictureAlone) {
   EXPECT_EQ(rig_.log.find('A', begin + expected.size()), std::string::npos);
 }
 
-TEST_F(LaserScan, TakesAStopAgainWhosePictureIsLost) {
+TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
   before_picture(7, [this, done = std::make_shared<bool>()] {
     rig_.lost_pictures = *done ? 0 : 1;
     *done = true;
@@ -105,7 +105,7 @@ TEST_F(LaserScan, TakesAStopAgainWhosePictureIsLost) {
   EXPECT_EQ(read_scan(store_.folder(job.id)).shots.size(), std::size_t{stops});
 }
 
-TEST_F(LaserScan, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
+TEST_F(ScanByLaser, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
   before_picture(10, [this] { rig_.is_unplugged = true; });
   Scanner scanner(rig_.options(speed), {}, store_);
   scanner.start(settings());
@@ -123,7 +123,7 @@ TEST_F(LaserScan, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
   EXPECT_EQ(ended(scanner).state, JobState::finished);
 }
 
-TEST_F(LaserScan, PausesWithTheNameOfALaserThatGivesNoLight) {
+TEST_F(ScanByLaser, PausesWithTheNameOfALaserThatGivesNoLight) {
   rig_.dark_laser = 0;
   Scanner scanner(rig_.options(speed), {}, store_);
   scanner.start(settings());
@@ -135,7 +135,7 @@ TEST_F(LaserScan, PausesWithTheNameOfALaserThatGivesNoLight) {
   EXPECT_EQ(paused.snapshots_done, 0);
 }
 
-TEST_F(LaserScan, EndsWithItsLasersOffWhenItIsCancelled) {
+TEST_F(ScanByLaser, EndsWithItsLasersOffWhenItIsCancelled) {
   Scanner scanner(rig_.options(speed), {}, store_);
   std::atomic<bool> is_there = false;
   before_picture(5, [&] { is_there = true; });
@@ -148,7 +148,7 @@ TEST_F(LaserScan, EndsWithItsLasersOffWhenItIsCancelled) {
   EXPECT_FALSE(rig_.is_lit());
 }
 
-TEST_F(LaserScan, IsNoTurnForACalibrationOfADepthSensor) {
+TEST_F(ScanByLaser, IsNoTurnForACalibrationOfADepthSensor) {
   Scanner scanner(rig_.options(speed), {}, store_);
   ASSERT_TRUE(scanner.calibrate(settings()));
   scanner.wait_until_done(patience);

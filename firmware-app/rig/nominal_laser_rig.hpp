@@ -12,7 +12,7 @@ namespace octurn {
 /// @return optical frame to platform frame, metres
 Eigen::Isometry3d nominal_platform_from_camera();
 
-/// A laser of that rig: 0.35 m from the platform's axis and 0.12 m above its surface. Its upright
+/// A laser of that rig: 0.35 m from the platform's axis and 0.25 m above its surface. Its upright
 /// plane of light holds the axis.
 /// @param azimuth  radians from the camera's direction, seen from above; negative: to its left
 /// @return in the camera's optical frame

@@ -36,8 +36,7 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 ///                have are those of the sensor
 /// @throws Error "bad-config"  that names file and key, the value and what is allowed; also for an
 ///                             unknown key
-Config read_config(const std::filesystem::path& file,
-                   const std::optional<SensorKind>& sensor = {});
+Config read_config(const std::filesystem::path& file, const std::optional<SensorKind>& sensor = {});
 
 struct Field;
 

@@ -16,7 +16,7 @@ namespace octurn {
 /// Options of the sensor and the turntable.
 struct RigArguments {
   bool simulate = false;
-  bool laser = false;  ///< what is simulated is a camera with line lasers
+  bool laser = false;          ///< what is simulated is a camera with line lasers
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
   std::optional<double> wall = {};        ///< metres: the simulated sensor looks at a wall

@@ -58,7 +58,8 @@ class Rig {
   /// Has the object of a simulated rig lie so, as `DepthSensor::lay_object` says.
   void lay_object(int pose);
 
-  /// Closes the sensor, which switches its projector or its lasers off; the next use opens it again.
+  /// Closes the sensor, which switches its projector or its lasers off; the next use opens it
+  /// again.
   void close_sensor();
 
   /// Since when the sensor is open, and warms up; nothing while it is closed.

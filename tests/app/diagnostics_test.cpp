@@ -15,7 +15,7 @@ using nlohmann::json;
 
 Job job_of(const std::string& id, const std::string& name) {
   return {.id = id,
-          .name = name,
+          .label = {.name = name},
           .state = JobState::failed,
           .times = {.created = "2026-11-21T08:15:00Z"}};
 }

@@ -49,7 +49,7 @@ TEST_F(ScanBinTest, KeepsADeletedScanAsItWasAndGivesItBack) {
   store.restore(job.id);
   EXPECT_TRUE(store.bin().is_empty());
   Job named = job;
-  named.name = "Hase";
+  named.label.name = "Hase";
   EXPECT_EQ(to_job_json(*store.find(job.id)), to_job_json(named));
   EXPECT_TRUE(fs::exists(store.model_file(job.id)));
 }

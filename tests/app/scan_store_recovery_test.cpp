@@ -159,7 +159,7 @@ TEST(ScanStore, TakesAScanWhoseNameCannotBeReadAsUnnamed) {
     ScanStore store(folder.path());
     ASSERT_EQ(store.list().size(), 1U);
     EXPECT_EQ(store.list()[0].state, JobState::interrupted);
-    EXPECT_EQ(store.list()[0].name, "");
+    EXPECT_EQ(store.list()[0].label.name, "");
   }
 }
 

@@ -215,13 +215,15 @@ TEST(Serve, KeepsItsDevicesClosedAfterItWasKilledThreeTimesSoonAfterItsStart) {
     EXPECT_EQ(daemon.program().wait(), -SIGKILL);
   }
   {
-    const Daemon daemon(command_with_devices(folder.path()));
+    Daemon daemon(command_with_devices(folder.path()));
     EXPECT_FALSE(sees(daemon));
     const json status = daemon.status();
     EXPECT_EQ(status["sensor"]["state"], "missing");
     EXPECT_NE(status["warnings"].dump().find("safe-mode"), std::string::npos);
     EXPECT_EQ(daemon.get("/api/v1/scans").status, 200);
-  }  // which ends it as it should end
+    daemon.program().send_signal(SIGTERM);
+    EXPECT_EQ(daemon.program().wait(), 0);
+  }
   EXPECT_TRUE(sees(Daemon(command_with_devices(folder.path()))));
 }
 

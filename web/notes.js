@@ -3,10 +3,12 @@
 import {Problem, label} from './api.js';
 import {element, setText} from './dom.js';
 import {sentence} from './format.js';
+import {awaitFragment} from './fragment.js';
 import {change, state} from './page.js';
 import {scanOf, withScan} from './state.js';
 import {text} from './texts.js';
 
+let isHere = false;  // its part of the page
 /** The scan that the field is filled for. @type {string | null} */
 let shown = null;
 
@@ -18,6 +20,9 @@ function say(words, tone) {
 
 /** Fills the field for the scan that is looked at; what somebody is writing there stays. */
 export function showNotes() {
+  if (!isHere) {
+    return;
+  }
   const field = element('notes');
   const scan = scanOf(state, state.selected);
   if (scan && (scan.id !== shown || document.activeElement !== field)) {
@@ -44,6 +49,10 @@ async function keep() {
   }
 }
 
-export function prepareNotes() {
+/** Fetches the field, and makes it work. */
+export async function prepareNotes() {
+  await awaitFragment(element('notes-field'), 'notes.html');
   element('notes').addEventListener('change', keep);
+  isHere = true;
+  showNotes();
 }

@@ -1,7 +1,7 @@
 // Which of the page's texts its first sight does without: those of places and parts that are fetched later. Their keys
 // begin with one of these words.
 
-const later = new Set(['action', 'bin', 'calibrate', 'check', 'choice', 'figure', 'finding', 'keys', 'machine', 'map', 'outgoing', 'placement', 'pose',
+const later = new Set(['action', 'bin', 'calibrate', 'check', 'choice', 'figure', 'finding', 'fit', 'keys', 'machine', 'map', 'notes', 'outgoing', 'placement', 'pose',
   'power', 'run', 'scale', 'setting', 'setting-help', 'settings', 'turn', 'update', 'warm', 'wifi']);
 
 /** @param {string} key */

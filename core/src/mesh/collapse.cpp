@@ -51,10 +51,11 @@ void sort_by_cost(std::vector<Collapse>& collapses) {
     first = end;
   }
   reorder(collapses, keys);
-  const auto copies = std::ranges::unique(collapses, [](const Collapse& a, const Collapse& b) {
-    return a.kept == b.kept && a.removed == b.removed;
-  });
-  collapses.erase(copies.begin(), copies.end());
+  const auto end =
+      std::unique(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
+        return a.kept == b.kept && a.removed == b.removed;
+      });
+  collapses.erase(end, collapses.end());
 }
 
 }  // namespace octurn

@@ -151,6 +151,8 @@ TEST(ConfigSchema, TellsWhatIsAllowedAndWhatWaitsForARestart) {
   EXPECT_EQ(keys["turntable"]["properties"]["gear_ratio"]["maximum"], 1000);
   EXPECT_EQ(keys["turntable"]["x-restart"], true);
   EXPECT_EQ(keys["scan"]["x-restart"], false);
+  EXPECT_FALSE(keys.contains("sensor"));
+  EXPECT_FALSE(keys.contains("laser"));
 }
 
 }  // namespace

@@ -49,6 +49,9 @@ bool applies_at_once(std::string_view key) { return key == "scan" || key == "hos
 json config_schema() {
   Config config;
   json schema = to_schema(fields(config));
+  for (const Field& field : sensor_fields(config)) {
+    schema["properties"].erase(field.key);
+  }
   for (const auto& [key, property] : schema["properties"].items()) {
     property["x-restart"] = !applies_at_once(key);
   }

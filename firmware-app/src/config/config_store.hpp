@@ -73,7 +73,8 @@ std::filesystem::path own_password_file(const Config& config);
 /// Whether a setting is in force at once. @param key  in octurn.json, an outermost one
 bool applies_at_once(std::string_view key);
 
-/// JSON Schema of octurn.json, with "x-restart" for keys that wait for the next start.
+/// JSON Schema of octurn.json, with "x-restart" for keys that wait for the next start. Without what
+/// the rig is built of: that is measured beside it, and the page cannot set it.
 nlohmann::json config_schema();
 
 }  // namespace octurn

@@ -16,7 +16,7 @@ struct StoredSettings {
 
 /// A configuration with some settings changed.
 ///
-/// @param values  in the form of octurn.json, without `data` and `password_file`
+/// @param values  in the form of octurn.json, without `data`, `password_file`, `sensor` and `laser`
 /// @throws Error "bad-settings"  that names the key, its value and what is allowed
 Config with_settings(const Config& base, const nlohmann::json& values);
 

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "octurn/depth_png.hpp"
+#include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
@@ -27,13 +31,14 @@ struct CalibrationTurn {
   std::function<DepthFrame(std::size_t stop)> read = {};
 };
 
-/// Something about the rig that a new pose does not cure.
+/// What a new pose does not cure: slip, turn-not-whole, still, wobble, moved, focal-length, no-map.
 struct CalibrationFinding {
-  std::string code = {};  ///< "slip", "turn-not-whole", "wobble", "moved", "focal-length", "no-map"
+  std::string code = {};  ///< which of these
   std::string detail = {};
   std::string hint = {};
   std::optional<int> stop = {};      ///< of a slip, counted from 0
   std::optional<double> angle = {};  ///< of a slip, radians
+  Parameters parameters = {};        ///< the values in `detail`; their names tell what it says
 };
 
 /// Where the sensor stands, as the depth images of a turn tell.
@@ -90,6 +95,79 @@ struct LaserCalibration {
 /// @throws Stopped
 LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
                                   int threads, const std::stop_token& stop = {});
+
+/// Where four squares of a printed board meet in a picture, two black and two white ones.
+struct BoardCorner {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< (0, 0) is the middle of the top left one
+  int column = 0;  ///< on the board, in squares from any of its corners
+  int row = 0;     ///< the same; from a row to the next as Y is from X in the optical frame
+};
+
+/// What a picture shows of a board, at least a part of it.
+using BoardView = std::vector<BoardCorner>;
+
+/// Finds a board of black and white squares, or the part of it that is in the picture. Where on the
+/// board that part lies cannot be told from it, and a lens needs not know.
+///
+/// Candidates are ChESS features (Bennett and Lasenby 2014). Two are neighbours if the picture
+/// between them is an edge, dark on one side and light on the other; neighbours make a lattice. A
+/// corner is where all gradients around it are perpendicular to the way from it (Foerstner and
+/// Guelch 1987).
+///
+/// @return in the order of rows, then columns; empty if fewer than 20 corners hang together
+BoardView find_board(const Picture& picture);
+
+/// How a board is held before a camera.
+struct BoardPlace {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();   ///< pixels, of the corners that are seen
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length one, away from the camera
+  double square = 0;  ///< pixels, a mean square's side as it is seen
+};
+
+/// The same as a lens without distortion has it.
+/// @param view  not empty
+BoardPlace place_board(const BoardView& view, const Intrinsics& lens);
+
+/// A camera's lens. Distortion is that of `LaserCamera`.
+struct CameraLens {
+  Intrinsics intrinsics = {};  ///< without a depth unit
+  double k1 = 0;
+  double k2 = 0;
+};
+
+/// How many cells of a picture to a side are asked for a corner of a board: 36 cells.
+inline constexpr int lens_cells = 6;
+
+/// Which cells of a picture a board's corners lie in, row by row.
+using LensCoverage = std::array<bool, std::size_t{lens_cells} * lens_cells>;
+
+/// Adds the cells of one view.
+void add_view(LensCoverage& coverage, const BoardView& view, int width, int height);
+
+/// A camera's lens, as views of a board tell.
+struct LensReport {
+  bool accepted = false;
+  std::string reason = {};  ///< why not, for people; empty if accepted
+  CameraLens lens = {};     ///< if there were enough views
+  CameraLens sigma = {};    ///< of its numbers
+  int views = 0;            ///< that were used
+  int corners = 0;          ///< of all of them; those far off are left out
+  double rms = 0;   ///< pixels, of the distances between corners and where the lens has them
+  double tilt = 0;  ///< radians, the largest angle between two of the boards
+  LensCoverage coverage = {};
+};
+
+/// Finds focal lengths, principal point and distortion of a lens from views of one flat board
+/// (Zhang 2000): a homography of each view, fx and fy in closed form, then all numbers and the
+/// board's poses by Levenberg and Marquardt's method. The side of its squares does not matter.
+///
+/// It is refused if fewer than 5 views show a board, if the boards are less than 20 degrees from
+/// parallel or tell a focal length no better than to 0.3 %, if they reached less than 85 % of the
+/// picture, if corners lie farther off than 0.6 pixels of 820 across, or if the distortion folds
+/// the picture over. Deterministic.
+///
+/// @param width, height  pixels, of the pictures
+LensReport calibrate_lens(std::span<const BoardView> views, int width, int height);
 
 /// Where the platform's surface lies, in the platform frame as told.
 struct PlatformSurface {

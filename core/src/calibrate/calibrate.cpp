@@ -60,10 +60,6 @@ constexpr double agreeing_shift = 0.0001;  // metres
 constexpr double agreeing_tilt_deg = 0.05;
 constexpr double agreeing_sigmas = 3;
 
-constexpr const char* no_turn =
-    "every stop shows the same: the platform did not turn, or the object looks the same from all "
-    "sides. Look at the motor and its wiring, or stand another object on the platform";
-
 constexpr int text_digits = 2;  // of millimetres and degrees
 
 double mean_object_pixels(const TurnViews& views) {
@@ -94,12 +90,12 @@ bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
 void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& wobble) {
   if (wobble && wobble->angle >
                     std::max(radians_from_degrees(min_wobble_deg), wobble_sigmas * wobble->sigma)) {
-    report.findings.push_back({.code = "wobble",
-                               .detail = "the platform's surface tilts by " +
-                                         degrees_text(wobble->angle, text_digits) + " as it turns",
-                               .hint = "Look whether the platform sits straight on the motor.",
-                               .stop = {},
-                               .angle = {}});
+    report.findings.push_back(
+        {.code = "wobble",
+         .detail = "the platform's surface tilts by " + degrees_text(wobble->angle, text_digits) +
+                   " as it turns",
+         .hint = "Look whether the platform sits straight on the motor.",
+         .parameters = {{"wobble_deg", degrees_from_radians(wobble->angle)}}});
   }
 }
 
@@ -134,8 +130,7 @@ void add_no_map(CalibrationReport& report, double unevenness) {
        .detail = "the flat platform looks uneven by " +
                  number_text("%.2f units of the sensor's disparity", unevenness),
        .hint = "Flatten the sensor: record a bare wall, and make its map.",
-       .stop = {},
-       .angle = {}});
+       .parameters = {{"unevenness_disparity", unevenness}}});
 }
 
 /// Whether nothing slipped or moved: either would bias the focal length.
@@ -287,11 +282,10 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   const std::string reason = surface.bump && surface.bump->size > max_after
                                  ? report.findings.front().detail
                                  : refuse_solution(report, solution->last_step);
-  if (looks_still(reader.samples(), levelled) &&
-      !(reason.empty() &&
-        looks_round(reader.samples(), turn.intrinsics, report.platform_from_sensor, turn.angles))) {
-    report.findings.clear();  // they are of a turn, and this was none
-    return refused(std::move(report), no_turn);
+  if (auto still = find_still_turn(reader.samples(), turn, levelled, report.platform_from_sensor,
+                                   reason.empty())) {
+    report.findings = std::move(still->findings);
+    return refused(std::move(report), still->reason);
   }
   report.accepted = reason.empty();
   return refused(std::move(report), reason);

@@ -134,13 +134,17 @@ std::optional<CalibrationFinding> find_wrong_focal_length(const FocalLength& sol
   std::snprintf(text.data(), text.size(),
                 "the sensor's focal length is %.1f %% %s than told: %.0f pixels instead of %.0f",
                 100 * error, solved.ratio > 1 ? "longer" : "shorter", told * solved.ratio, told);
-  return CalibrationFinding{.code = "focal-length",
-                            .detail = text.data(),
-                            .hint =
-                                "Look whether the scan is of this sensor, and its depth images "
-                                "of their full size.",
-                            .stop = {},
-                            .angle = {}};
+  return CalibrationFinding{
+      .code = "focal-length",
+      .detail = text.data(),
+      .hint =
+          "Look whether the scan is of this sensor, and its depth images "
+          "of their full size.",
+      .stop = {},
+      .angle = {},
+      .parameters = {{solved.ratio > 1 ? "longer_share" : "shorter_share", error},
+                     {"seen_px", told * solved.ratio},
+                     {"told_px", told}}};
 }
 
 }  // namespace octurn

@@ -193,18 +193,22 @@ void add_move(std::vector<CalibrationFinding>& findings, const ObjectMove& move)
   }
   const bool is_far = move.shift >= max_measured_shift;
   std::string detail = "one more look at the first stop: the object ";
+  Parameters parameters;
   if (has_shifted) {
     detail += std::string("moved by ") + (is_far ? "more than " : "") + mm_text(move.shift, 1);
+    parameters.emplace(is_far ? "min_shift_mm" : "shift_mm", mm_from_metres(move.shift));
   }
   if (has_turned) {
     detail += std::string(has_shifted ? " and " : "") + "turned by " +
               degrees_text(std::abs(move.turn), 1);
+    parameters.emplace("turn_deg", degrees_from_radians(std::abs(move.turn)));
   }
   findings.push_back({.code = "moved",
                       .detail = std::move(detail),
                       .hint = "Fix the object to the platform, or turn more slowly.",
                       .stop = {},
-                      .angle = {}});
+                      .angle = {},
+                      .parameters = std::move(parameters)});
 }
 
 }  // namespace octurn

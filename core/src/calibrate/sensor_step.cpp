@@ -104,7 +104,12 @@ std::optional<CalibrationFinding> find_bump(const SensorStep& step) {
                             .detail = text.data(),
                             .hint = "Fix the sensor and the platform, calibrate, and scan again.",
                             .stop = {},
-                            .angle = {}};
+                            .angle = {},
+                            .parameters = {{"from_stop", static_cast<double>(step.stop - 1)},
+                                           {"to_stop", static_cast<double>(step.stop)},
+                                           {"tilt_deg", degrees_from_radians(step.tilt)},
+                                           {step.height > 0 ? "rise_mm" : "sink_mm",
+                                            mm_from_metres(std::abs(step.height))}}};
 }
 
 }  // namespace octurn

@@ -84,19 +84,48 @@ Count compare_turned(const PlatformSamples& samples, const Intrinsics& lens,
   return count;
 }
 
-}  // namespace
-
 bool looks_still(const PlatformSamples& samples, const Isometry3d& platform_from_sensor) {
   return std::ranges::all_of(samples.depths, [&](const std::vector<float>& depths) {
     return compare(samples, samples.depths.front(), depths, platform_from_sensor).is_edges_alone();
   });
 }
 
-bool looks_round(const PlatformSamples& samples, const Intrinsics& lens,
-                 const Isometry3d& platform_from_sensor, const std::vector<double>& angles) {
-  return std::ranges::all_of(angles, [&](double angle) {
-    return compare_turned(samples, lens, platform_from_sensor, angle).is_edges_alone();
+bool looks_round(const PlatformSamples& samples, const CalibrationTurn& turn,
+                 const Isometry3d& platform_from_sensor) {
+  return std::ranges::all_of(turn.angles, [&](double angle) {
+    return compare_turned(samples, turn.intrinsics, platform_from_sensor, angle).is_edges_alone();
   });
+}
+
+}  // namespace
+
+std::optional<StillTurn> find_still_turn(const PlatformSamples& samples,
+                                         const CalibrationTurn& turn, const Isometry3d& levelled,
+                                         const Isometry3d& solved, bool is_solved) {
+  if (!looks_still(samples, levelled)) {
+    return std::nullopt;
+  }
+  const bool is_round = looks_round(samples, turn, solved);
+  if (is_round && is_solved) {
+    return std::nullopt;
+  }
+  StillTurn still{
+      .reason =
+          "every stop shows the same: the platform did not turn, or the object looks the "
+          "same from all sides. Look at the motor and its wiring, or stand another object "
+          "on the platform"};
+  if (!is_round) {
+    const std::size_t stops = turn.angles.size();
+    still.findings.push_back(
+        {.code = "still",
+         .detail = "each of " + std::to_string(stops) +
+                   " stops shows what the first one shows: the platform did not turn",
+         .hint = "Look at the motor, its power and its wiring.",
+         .stop = {},
+         .angle = {},
+         .parameters = {{"stops", static_cast<double>(stops)}}});
+  }
+  return still;
 }
 
 }  // namespace octurn

@@ -194,7 +194,8 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
                 " from where it should",
       .hint = "Look whether the platform slipped or the motor lost a step; turn more slowly.",
       .stop = stop,
-      .angle = step};
+      .angle = step,
+      .parameters = {{"stop", static_cast<double>(stop)}, {"off_deg", degrees_from_radians(step)}}};
 }
 
 std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
@@ -227,7 +228,8 @@ std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
                             .detail = "a whole turn came out as " + degrees_text(turn + drift),
                             .hint = "Multiply gear_ratio by " + std::string(ratio.data()) + ".",
                             .stop = {},
-                            .angle = {}};
+                            .angle = {},
+                            .parameters = {{"turn_deg", degrees_from_radians(turn + drift)}}};
 }
 
 }  // namespace

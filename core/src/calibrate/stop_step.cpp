@@ -178,7 +178,10 @@ std::optional<CalibrationFinding> find_move(const ObjectStep& step) {
                             .detail = text.data(),
                             .hint = "Fix the object to the platform, or turn more slowly.",
                             .stop = {},
-                            .angle = {}};
+                            .angle = {},
+                            .parameters = {{"from_stop", static_cast<double>(step.stop - 1)},
+                                           {"to_stop", static_cast<double>(step.stop)},
+                                           {"shift_mm", mm_from_metres(size)}}};
 }
 
 }  // namespace octurn

@@ -10,6 +10,12 @@ struct RadialDistortion {
   double k1 = 0;
   double k2 = 0;
 
+  /// What the coordinates of a point at that radius are to be multiplied by, to be where it
+  /// appears.
+  double distorting_factor(double radius) const {
+    return 1 + radius * radius * (k1 + radius * radius * k2);
+  }
+
   /// What the coordinates of a point that appears at `distorted_radius` are to be multiplied by, to
   /// take the distortion out: found by Newton's method.
   /// @param distorted_radius  at most one that passed `is_invertible_to`
@@ -20,7 +26,7 @@ struct RadialDistortion {
   bool is_invertible_to(double distorted_radius) const;
 
  private:
-  double distorted(double r) const { return r * (1 + r * r * (k1 + r * r * k2)); }
+  double distorted(double r) const { return r * distorting_factor(r); }
   double slope(double r) const { return 1 + r * r * (3 * k1 + r * r * 5 * k2); }
 };
 

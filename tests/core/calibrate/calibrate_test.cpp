@@ -86,6 +86,10 @@ TEST(Calibrate, NamesTheStopAtWhichThePlatformSlipped) {
   EXPECT_EQ(report.findings[0].code, "slip");
   EXPECT_EQ(report.findings[0].stop, 5);
   EXPECT_NEAR(degrees_from_radians(report.findings[0].angle.value_or(0)), 1.8, 0.3);
+  const Parameters& values = report.findings[0].parameters;
+  ASSERT_EQ(values.size(), 2U);
+  EXPECT_EQ(values.at("stop"), Parameters::mapped_type(5.0));
+  EXPECT_NEAR(std::get<double>(values.at("off_deg")), 1.8, 0.3);
 }
 
 /// Of a platform that stood still all the while.
@@ -106,7 +110,8 @@ TEST(Calibrate, RefusesAPlatformThatDidNotTurnAndBlamesNoLens) {
       const CalibrationReport report = calibrate(still_turn(object, stops));
       EXPECT_FALSE(report.accepted);
       EXPECT_TRUE(report.reason.starts_with("every stop shows the same")) << report.reason;
-      EXPECT_TRUE(report.findings.empty()) << report.findings.front().detail;
+      ASSERT_EQ(report.findings.size(), 1U);
+      EXPECT_EQ(report.findings[0].code, "still");
     }
   }
 }
@@ -139,6 +144,11 @@ TEST(Calibrate, TellsThatTheObjectMovedAndByHowMuch) {
   const std::string& detail = report.findings[0].detail;
   EXPECT_NE(detail.find("between stops 6 and 7"), std::string::npos) << detail;
   EXPECT_NEAR(std::stod(detail.substr(detail.find(" by ") + 4)), 3.6, 0.5) << detail;
+  const Parameters& values = report.findings[0].parameters;
+  ASSERT_EQ(values.size(), 3U);
+  EXPECT_EQ(values.at("from_stop"), Parameters::mapped_type(6.0));
+  EXPECT_EQ(values.at("to_stop"), Parameters::mapped_type(7.0));
+  EXPECT_NEAR(std::get<double>(values.at("shift_mm")), 3.6, 0.5);
 }
 
 TEST(Calibrate, SeesInOneMoreLookAtTheFirstAngleThatTheObjectMovedAtTheEnd) {
@@ -200,6 +210,7 @@ TEST(Calibrate, TellsThatThePlatformIsNotSquareToItsShaft) {
     ASSERT_TRUE(wobble->detail.starts_with(before)) << wobble->detail;
     // Depths are rounded to 0.1 mm: over the platform's 30 cm by no more than 0.02 degrees.
     EXPECT_NEAR(std::stod(wobble->detail.substr(before.size())), 0.6, 0.05);
+    EXPECT_NEAR(std::get<double>(wobble->parameters.at("wobble_deg")), 0.6, 0.05);
   }
 }
 
@@ -230,6 +241,12 @@ TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
     EXPECT_NEAR(std::stod(wrong->detail.substr(before.size())), 2, 0.9) << wrong->detail;
     EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than told" : "shorter than told"),
               std::string::npos);
+    const Parameters& values = wrong->parameters;
+    ASSERT_EQ(values.size(), 3U);
+    EXPECT_NEAR(std::get<double>(values.at(ratio > 1 ? "longer_share" : "shorter_share")), 0.02,
+                0.009);
+    EXPECT_DOUBLE_EQ(std::get<double>(values.at("told_px")), turn.intrinsics.fx);
+    EXPECT_NEAR(std::get<double>(values.at("seen_px")), Intrinsics().fx, 0.009 * Intrinsics().fx);
   }
 }
 

@@ -68,6 +68,8 @@ TEST(ObjectMove, IsMeasuredInMillimetresAndTold) {
   EXPECT_EQ(findings[0].code, "moved");
   const std::string& detail = findings[0].detail;
   EXPECT_NEAR(std::stod(detail.substr(detail.find("moved by ") + 9)), 2.1, error_mm) << detail;
+  ASSERT_EQ(findings[0].parameters.size(), 1U);
+  EXPECT_NEAR(std::get<double>(findings[0].parameters.at("shift_mm")), 2.12, error_mm);
 }
 
 TEST(ObjectMove, TellsATurnFromAShift) {
@@ -78,6 +80,7 @@ TEST(ObjectMove, TellsATurnFromAShift) {
   const auto findings = found(*move);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_NE(findings[0].detail.find("turned by"), std::string::npos) << findings[0].detail;
+  EXPECT_NEAR(std::get<double>(findings[0].parameters.at("turn_deg")), 1.8, error_deg);
 }
 
 // So far off, some of the platform is taken for the object; both errors are the same in both looks.
@@ -110,6 +113,7 @@ TEST(ObjectMove, IsTooLargeToMeasureIfTheObjectIsGone) {
   const auto findings = found(*move);
   ASSERT_EQ(findings.size(), 1U);
   EXPECT_NE(findings[0].detail.find("more than 20.0 mm"), std::string::npos) << findings[0].detail;
+  EXPECT_EQ(findings[0].parameters, (Parameters{{"min_shift_mm", 20.0}}));
   EXPECT_FALSE(measure_move(first_look(nothing), last_look(nothing), clip));
 }
 
@@ -117,12 +121,12 @@ TEST(ObjectMove, IsNotToldBesideWhatExplainsIt) {
   const ObjectMove move{.shift = 0.004, .shift_sigma = 0.0001};
   for (const char* const code : {"moved", "slip", "turn-not-whole"}) {
     std::vector<CalibrationFinding> findings{
-        {.code = code, .detail = "", .hint = "", .stop = {}, .angle = {}}};
+        {.code = code, .detail = "", .hint = "", .stop = {}, .angle = {}, .parameters = {}}};
     add_move(findings, move);
     EXPECT_EQ(findings.size(), 1U) << code;
   }
   std::vector<CalibrationFinding> other{
-      {.code = "no-map", .detail = "", .hint = "", .stop = {}, .angle = {}}};
+      {.code = "no-map", .detail = "", .hint = "", .stop = {}, .angle = {}, .parameters = {}}};
   add_move(other, move);
   EXPECT_EQ(other.size(), 2U);
   EXPECT_TRUE(found({.shift = 0.004, .shift_sigma = 0.002}).empty()) << "uncertain";

@@ -55,6 +55,12 @@ TEST(SensorStep, IsFoundBesideAWobble) {
   EXPECT_EQ(bump->detail,
             "between stops 6 and 7 the sensor moved: the platform tilts by 0.3 degrees and sinks "
             "by 0.8 mm as it sees it");
+  const Parameters& values = bump->parameters;
+  ASSERT_EQ(values.size(), 4U);
+  EXPECT_EQ(values.at("from_stop"), Parameters::mapped_type(6.0));
+  EXPECT_EQ(values.at("to_stop"), Parameters::mapped_type(7.0));
+  EXPECT_NEAR(std::get<double>(values.at("tilt_deg")), 0.3, 0.05);
+  EXPECT_NEAR(std::get<double>(values.at("sink_mm")), 0.8, 0.05);
 }
 
 TEST(SensorStep, IsNoneOfARigThatStandsFirm) {

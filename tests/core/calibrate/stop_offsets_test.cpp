@@ -125,6 +125,7 @@ TEST(FindSlips, SaysWhatATurnCameOutAs) {
   EXPECT_EQ(findings[0].code, "turn-not-whole");
   EXPECT_NE(findings[0].detail.find("270"), std::string::npos) << findings[0].detail;
   EXPECT_NE(findings[0].hint.find("1.33"), std::string::npos) << findings[0].hint;
+  EXPECT_NEAR(std::get<double>(findings[0].parameters.at("turn_deg")), 270, 1);
 }
 
 TEST(FindSlips, FindsNothingInNoise) {

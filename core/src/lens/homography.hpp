@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "octurn/calibrate.hpp"
+
+namespace octurn {
+
+/// The homography that takes a board's places (column, row, 1) to pixels, by the direct linear
+/// transformation on normalised points (Hartley and Zisserman 2004, section 4.4).
+/// @param view  at least four corners, not all on a line
+Eigen::Matrix3d board_homography(const BoardView& view);
+
+}  // namespace octurn

@@ -77,11 +77,17 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
 void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
   for (const CalibrationFinding& finding : findings) {
     if (finding.code == "moved") {
-      judgement.add(Verdict::look,
-                    {.code = finding.code, .detail = finding.detail, .hint = finding.hint});
-    } else if (finding.code == "slip" || finding.code == "turn-not-whole") {
-      judgement.add(Verdict::look,
-                    {.code = "stops-disagree", .detail = finding.detail, .hint = finding.hint});
+      judgement.add(Verdict::look, {.code = finding.code,
+                                    .detail = finding.detail,
+                                    .hint = finding.hint,
+                                    .parameters = finding.parameters});
+    } else if (finding.code == "slip" || finding.code == "turn-not-whole" ||
+               finding.code == "still") {
+      judgement.add(finding.code == "still" ? Verdict::bad : Verdict::look,
+                    {.code = "stops-disagree",
+                     .detail = finding.detail,
+                     .hint = finding.hint,
+                     .parameters = finding.parameters});
     }
   }
 }

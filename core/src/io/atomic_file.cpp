@@ -24,7 +24,8 @@ constexpr std::size_t page_bytes = 4096;  // direct writes need memory aligned t
   throw Error(full ? ErrorCode::disk_full : ErrorCode::write_failed,
               file.string() + ": cannot " + doing + ": " + reason,
               full ? "Delete scans that are no longer needed, or use a larger disk."
-                   : "Check that the folder exists and that this program may write to it.");
+                   : "Check that the folder exists and that this program may write to it.",
+              {{"path", file.string()}});
 }
 
 std::filesystem::path parent_folder(const std::filesystem::path& file) {

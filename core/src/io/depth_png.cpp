@@ -50,6 +50,14 @@ Picture decode_picture_png(std::string_view name, std::span<const std::byte> png
           .samples = decode_luminance_png(source, expects(source, width, height))};
 }
 
+ColourPicture decode_rgb_png(std::string_view name, std::span<const std::byte> png, int width,
+                             int height) {
+  const PngSource source = of_snapshot(name, png);
+  return {.width = width,
+          .height = height,
+          .pixels = decode_rgb_png(source, expects(source, width, height))};
+}
+
 void write_depth_png(const std::filesystem::path& file, const DepthFrame& frame) {
   write_png(file, encode_depth_png(frame));
 }

@@ -85,6 +85,23 @@ void describe<Rgba>(spng_ihdr& header) {
   header.bit_depth = 8;
   header.color_type = SPNG_COLOR_TYPE_TRUECOLOR_ALPHA;
 }
+template <>
+void describe<Rgb>(spng_ihdr& header) {
+  header.bit_depth = 8;
+  header.color_type = SPNG_COLOR_TYPE_TRUECOLOR;
+}
+
+/// How hard to press. Greyscale is pressed as libspng does by itself.
+template <typename Sample>
+void set_effort(spng_ctx* /*context*/) {}
+/// A camera's noise hardly shrinks, and the platform waits for the file: three times as large as
+/// greyscale it is written in a third of the time, 13 ms in place of 40 for 820 x 616 pixels on
+/// x86-64. By itself libspng takes 107 ms, and saves a tenth.
+template <>
+void set_effort<Rgb>(spng_ctx* context) {
+  check_encoded(spng_set_option(context, SPNG_IMG_COMPRESSION_LEVEL, 2));
+  check_encoded(spng_set_option(context, SPNG_FILTER_CHOICE, SPNG_DISABLE_FILTERING));
+}
 
 template <typename Sample>
 std::vector<std::byte> encode(int width, int height, std::span<const Sample> samples,
@@ -99,6 +116,7 @@ std::vector<std::byte> encode(int width, int height, std::span<const Sample> sam
   header.height = static_cast<std::uint32_t>(height);
   describe<Sample>(header);
   check_encoded(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
+  set_effort<Sample>(context.get());
   check_encoded(spng_set_ihdr(context.get(), &header));
   set_text(context.get(), text);
   check_encoded(spng_encode_image(context.get(), samples.data(), samples.size_bytes(), SPNG_FMT_PNG,
@@ -183,17 +201,42 @@ GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
   return image;
 }
 
-std::vector<std::uint8_t> decode_luminance_png(
-    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
-  const RawPng raw = decode(source, "", [&](const spng_ihdr& header) {
+namespace {
+
+bool is_grey(const RawPng& raw) { return raw.header.color_type == SPNG_COLOR_TYPE_GRAYSCALE; }
+
+/// Refuses what is neither greyscale nor RGB, of 8 bits.
+RawPng decode_picture(const PngSource& source,
+                      const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  return decode(source, "", [&](const spng_ihdr& header) {
     if (header.bit_depth != 8 || (header.color_type != SPNG_COLOR_TYPE_GRAYSCALE &&
                                   header.color_type != SPNG_COLOR_TYPE_TRUECOLOR)) {
       source.refuse("not an 8-bit greyscale or RGB PNG");
     }
     expect_size(header.width, header.height);
   });
+}
+
+}  // namespace
+
+std::vector<Rgb> decode_rgb_png(
+    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  const RawPng raw = decode_picture(source, expect_size);
+  std::vector<Rgb> pixels(std::size_t{raw.header.width} * raw.header.height);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      pixels[i][channel] =
+          std::to_integer<std::uint8_t>(raw.pixels[is_grey(raw) ? i : 3 * i + channel]);
+    }
+  }
+  return pixels;
+}
+
+std::vector<std::uint8_t> decode_luminance_png(
+    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size) {
+  const RawPng raw = decode_picture(source, expect_size);
   std::vector<std::uint8_t> samples(std::size_t{raw.header.width} * raw.header.height);
-  if (raw.header.color_type == SPNG_COLOR_TYPE_GRAYSCALE) {
+  if (is_grey(raw)) {
     std::memcpy(samples.data(), raw.pixels.data(), samples.size());
   } else {
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -216,6 +259,11 @@ std::vector<std::byte> encode_grey_png(int width, int height, std::span<const st
 std::vector<std::byte> encode_colour_png(int width, int height, std::span<const Rgba> pixels) {
   PngText none;
   return encode(width, height, pixels, none);
+}
+
+std::vector<std::byte> encode_rgb_png(const ColourPicture& picture) {
+  PngText none;
+  return encode<Rgb>(picture.width, picture.height, picture.pixels, none);
 }
 
 void write_png(const std::filesystem::path& file, std::span<const std::byte> png) {

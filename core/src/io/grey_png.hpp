@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "octurn/colours.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -51,6 +52,11 @@ GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
 /// @param expect_size  as above
 /// @throws Error "source.malformed"  as above
 std::vector<std::uint8_t> decode_luminance_png(
+    const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
+
+/// Decodes the same to colours; those of a greyscale one are grey.
+/// @throws Error "source.malformed"  as above
+std::vector<Rgb> decode_rgb_png(
     const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
 
 /// Encodes a greyscale picture of 8 or 16 bits a sample.

@@ -41,8 +41,10 @@ std::string degrees_text(double radians, int digits) {
 
 std::string percent_text(double share) { return fixed_text(100 * share, 0) + " %"; }
 
-std::string mb_text(std::size_t bytes) {
-  return fixed_text(std::ceil(mb_from_bytes(static_cast<double>(bytes))), 0) + " MB";
+std::string mb_text(std::size_t bytes) { return fixed_text(rounded_up_mb(bytes), 0) + " MB"; }
+
+double rounded_up_mb(std::size_t bytes) {
+  return std::ceil(mb_from_bytes(static_cast<double>(bytes)));
 }
 
 }  // namespace octurn

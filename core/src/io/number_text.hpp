@@ -25,4 +25,7 @@ std::string percent_text(double share);
 /// Whole, rounded up, so that the memory limit that a message names is enough: "36 MB".
 std::string mb_text(std::size_t bytes);
 
+/// The same as a number.
+double rounded_up_mb(std::size_t bytes);
+
 }  // namespace octurn

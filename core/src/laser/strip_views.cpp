@@ -10,6 +10,7 @@
 
 #include "depth/back_project.hpp"
 #include "depth/depth_limits.hpp"
+#include "laser/draw_triangle.hpp"
 
 namespace octurn {
 namespace {
@@ -20,7 +21,6 @@ constexpr double own_share = 0.49;         // of a point between two lines: they
 constexpr float min_cosine = 0.15F;        // of incidence: 81 degrees
 constexpr float weight_of_line = 2.0F;     // a point's, which outweighs what one ray sees through
 constexpr double platform_slack = 0.0015;  // metres above the platform that may be the platform
-constexpr double corner = 1e-6;            // pixels around a triangle
 
 /// Whether each point of a strip may make a surface, 1 or 0.
 std::vector<char> find_inside(const LineStrip& strip, Box clip_box, const Placement* placement) {
@@ -68,13 +68,7 @@ class StripView {
   }
 
  private:
-  struct Corner {
-    double u = 0;  // pixels
-    double v = 0;
-    double inverse_depth = 0;
-  };
-
-  Corner corner_of(std::uint32_t point) const {
+  ImageCorner corner_of(std::uint32_t point) const {
     const Eigen::Vector3d& p = points_[point];
     const double inverse = 1 / p.z();
     return {.u = p.x() * inverse * lens_.fx + lens_.cx,
@@ -91,7 +85,7 @@ class StripView {
           if (!(points_[point].z() > nearest_z)) {
             return false;
           }
-          const Corner at = corner_of(point);
+          const ImageCorner at = corner_of(point);
           u0 = std::min(u0, at.u);
           u1 = std::max(u1, at.u);
           v0 = std::min(v0, at.v);
@@ -112,32 +106,14 @@ class StripView {
   }
 
   void draw(const LineStrip::Triangle& triangle) {
-    std::array<Corner, 3> c;
-    std::ranges::transform(triangle, c.begin(),
+    std::array<ImageCorner, 3> corners;
+    std::ranges::transform(triangle, corners.begin(),
                            [this](std::uint32_t point) { return corner_of(point); });
-    const double area =
-        (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
-    if (std::abs(area) < corner) {
-      return;
-    }
-    const std::optional<DepthObservation> plane = plane_of(triangle);
-    if (!plane) {
-      return;
-    }
-    const auto [u0, u1] = std::minmax({c[0].u, c[1].u, c[2].u});
-    const auto [v0, v1] = std::minmax({c[0].v, c[1].v, c[2].v});
-    for (int v = static_cast<int>(std::ceil(v0)); v <= static_cast<int>(v1); ++v) {
-      for (int u = static_cast<int>(std::ceil(u0)); u <= static_cast<int>(u1); ++u) {
-        const double b =
-            ((u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (v - c[0].v)) / area;
-        const double d =
-            ((c[1].u - c[0].u) * (v - c[0].v) - (u - c[0].u) * (c[1].v - c[0].v)) / area;
-        const double a = 1 - b - d;
-        if (a >= -corner && b >= -corner && d >= -corner) {
-          set(u, v, triangle, {a, b, d},
-              a * c[0].inverse_depth + b * c[1].inverse_depth + d * c[2].inverse_depth, *plane);
-        }
-      }
+    if (const std::optional<DepthObservation> plane = plane_of(triangle)) {
+      visit_pixels(corners, lens_.width, lens_.height,
+                   [&](int u, int v, const std::array<double, 3>& shares) {
+                     set(u, v, triangle, shares, inverse_depth_at(corners, shares), *plane);
+                   });
     }
   }
 

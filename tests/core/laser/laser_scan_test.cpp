@@ -8,6 +8,7 @@
 #include "core/mesh/surface.hpp"
 #include "octurn/mesh_report.hpp"
 #include "octurn/reconstruct.hpp"
+#include "octurn/register.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -86,6 +87,37 @@ TEST(LaserScan, HasTrianglesBetweenLinesButNoneAcrossGaps) {
       EXPECT_LT(std::abs(ball_on_platform.distance(middle.cast<double>())), 0.0004);
     }
   }
+}
+
+// What a ray would meet, and no surface behind it that other stops saw.
+TEST(LaserScan, IsDrawnAsADepthCameraWouldHaveSeenIt) {
+  const RegistrationTurn turn =
+      laser_turn(LaserScan::get().folder.path(), read_scan(LaserScan::get().folder.path()));
+  ASSERT_EQ(turn.angles.size(), 24U);
+  const Intrinsics& lens = turn.intrinsics;
+  std::vector<double> errors;
+  std::size_t on_ball = 0;
+  for (std::size_t stop = 0; stop < turn.angles.size(); stop += 5) {
+    const DepthFrame frame = turn.read(stop);
+    ASSERT_EQ(frame.depth.size(), static_cast<std::size_t>(lens.width * lens.height));
+    const Eigen::Isometry3d pose = object_from_sensor(turn.platform_from_sensor, turn.angles[stop]);
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      if (frame.depth[i] == 0) {
+        continue;
+      }
+      const auto u = static_cast<double>(i % static_cast<std::size_t>(lens.width));
+      const auto v = static_cast<double>(i / static_cast<std::size_t>(lens.width));
+      const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+      const auto hit = ball_on_platform.cast(pose.translation(), pose.linear() * ray);
+      ASSERT_TRUE(hit);
+      errors.push_back(std::abs(frame.depth[i] * lens.depth_unit - hit->distance));
+      on_ball += (pose * (ray * hit->distance)).z() > 0.004 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(on_ball, 5 * 1000U);
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 0.0001);
+  EXPECT_LT(errors[errors.size() * 98 / 100], 0.0008);  // the ball's rim, of a pixel
 }
 
 TEST(LaserScan, MakesASolidOfTheBallsVolume) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace octurn {
+
+/// A corner of a triangle in the image of a pinhole camera.
+struct ImageCorner {
+  double u = 0;  ///< pixels
+  double v = 0;
+  double inverse_depth = 0;  ///< 1 / metres: that of a plane is linear in the image
+};
+
+/// Calls `visit(u, v, shares)` for each pixel whose middle lies in the triangle, with the share of
+/// each corner there. Neither way round is left out.
+template <class Visit>
+void visit_pixels(const std::array<ImageCorner, 3>& c, int width, int height, const Visit& visit) {
+  constexpr double slack = 1e-6;  // pixels around a triangle, and pixels^2 of one that is none
+  const double area = (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
+  if (std::abs(area) < slack) {
+    return;
+  }
+  const auto [u0, u1] = std::minmax({c[0].u, c[1].u, c[2].u});
+  const auto [v0, v1] = std::minmax({c[0].v, c[1].v, c[2].v});
+  const int right = static_cast<int>(std::min(u1, width - 1.0));
+  const int bottom = static_cast<int>(std::min(v1, height - 1.0));
+  for (int v = static_cast<int>(std::ceil(std::max(v0, 0.0))); v <= bottom; ++v) {
+    for (int u = static_cast<int>(std::ceil(std::max(u0, 0.0))); u <= right; ++u) {
+      const double b = ((u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (v - c[0].v)) / area;
+      const double d = ((c[1].u - c[0].u) * (v - c[0].v) - (u - c[0].u) * (c[1].v - c[0].v)) / area;
+      const double a = 1 - b - d;
+      if (a >= -slack && b >= -slack && d >= -slack) {
+        visit(u, v, std::array<double, 3>{a, b, d});
+      }
+    }
+  }
+}
+
+/// The inverse depth at those shares of a triangle's corners, 1 / metres.
+inline double inverse_depth_at(const std::array<ImageCorner, 3>& corners,
+                               const std::array<double, 3>& shares) {
+  return shares[0] * corners[0].inverse_depth + shares[1] * corners[1].inverse_depth +
+         shares[2] * corners[2].inverse_depth;
+}
+
+}  // namespace octurn

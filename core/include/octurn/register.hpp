@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +13,8 @@
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
+
+struct Scan;
 
 /// The depth images of one turn of the platform, on a rig whose pose is known.
 struct RegistrationTurn {
@@ -29,6 +32,14 @@ struct RegistrationTurn {
   /// there, and other poses that fit as well are no reason to refuse it.
   std::optional<Eigen::Isometry3d> told_object_from_platform = {};
 };
+
+/// A turn by laser line as a depth camera in the camera's place would have seen it from at most 24
+/// of the stops: each depth image shows the surface between the lines of the stops within 45
+/// degrees. The pictures are read here, and no more of them is kept than these images, 6 MB.
+/// @param scan  of one turn
+/// @throws Error "scan-missing", "snapshot-malformed"; Stopped
+RegistrationTurn laser_turn(const std::filesystem::path& folder, const Scan& scan,
+                            const std::stop_token& stop = {});
 
 /// How the object lay in one turn, and how well that is known.
 struct RegisteredPose {

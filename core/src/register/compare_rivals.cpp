@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double min_lead = 0.10;
 constexpr double similar_overlap = 0.85;  // of the best one's
-constexpr double similar_residual = 1.5;
+constexpr double similar_residual = 1.3;
 
 constexpr double near_angle = 0.26;  // radians, 15 degrees: what a fit to the readings still joins
 constexpr double joined_angle = 0.01;      // radians

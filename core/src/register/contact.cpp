@@ -32,12 +32,13 @@ Contact find_contact(const std::vector<SurfacePoint>& points,
   Contact contact{.foot = {},
                   .up = platform_from_points.linear().row(2).transpose(),
                   .height = -platform_from_points.translation().z()};
-  std::vector<double> heights;
+  const auto height_above = [&](const Vector3d& point) {
+    return contact.up.dot(point) - contact.height;
+  };
   double sum = 0;
   double squares = 0;
   for (const SurfacePoint& point : points) {
-    const double above = contact.up.dot(point.point) - contact.height;
-    heights.push_back(above);
+    const double above = height_above(point.point);
     if (std::abs(above) < max_gap && contact.up.dot(point.normal) < -min_facing) {
       contact.foot.push_back(point.point);
       sum += above;
@@ -50,8 +51,10 @@ Contact find_contact(const std::vector<SurfacePoint>& points,
     contact.foot.clear();
     return contact;
   }
-  const auto below = static_cast<double>(std::ranges::count_if(
-      heights, [&](double above) { return above < sum / count - max_below; }));
+  const auto below =
+      static_cast<double>(std::ranges::count_if(points, [&](const SurfacePoint& point) {
+        return height_above(point.point) < sum / count - max_below;
+      }));
   if (below > max_below_share * count) {
     contact.foot.clear();
   }

@@ -1,7 +1,10 @@
 #include "register/find_candidates.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
+#include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "octurn/snapshot.hpp"
@@ -14,11 +17,19 @@ namespace {
 using Eigen::Isometry3d;
 
 constexpr std::size_t rough_points = 300;
+constexpr std::size_t joined_points = 500;
+constexpr int joined_iterations = 12;  // after which most have come to a few poses
 constexpr std::size_t refined_points = 1500;
 constexpr int rough_iterations = 6;
 constexpr std::size_t refined_poses = 60;
 constexpr int iterations = 40;
-constexpr std::size_t max_shapes = 5;  // that a person can choose from
+constexpr std::size_t max_shapes = 5;     // that a person can choose from
+constexpr std::size_t shapes_turned = 2;  // best ones, of which half turns are tried as well
+
+// Between candidates that are contradicted by about as much, what both turns saw decides. A nearly
+// symmetric object's false poses reach no place that was seen empty, but they fit worse.
+constexpr double contradicted_alike = 0.10;
+constexpr double contradicted_square = 5e-7;  // metres^2 that the share of 1 adds to the residual's
 
 /// How much a pose of a turn contradicts what the target's turns saw, and they what it saw.
 double contradiction(const Target& target, const SeenTurn& turn,
@@ -69,6 +80,65 @@ std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const T
   return distinct(candidates, find_middle(points));
 }
 
+/// Moves those of the candidates, the least contradicted first, that are contradicted by about as
+/// much as the first into the order of how well they fit.
+void order_by_fit(std::vector<PoseCandidate>& candidates) {
+  const auto alike_end = std::ranges::find_if(candidates, [&](const PoseCandidate& candidate) {
+    return candidate.contradiction > candidates.front().contradiction + contradicted_alike;
+  });
+  std::ranges::stable_sort(candidates.begin(), alike_end, {}, [](const PoseCandidate& candidate) {
+    return candidate.residual * candidate.residual + contradicted_square * candidate.contradiction;
+  });
+}
+
+/// A candidate by half turns of the whole object about its principal axes, as both turns show it. A
+/// nearly symmetric object fits in these poses as well, so that a search by some points may find
+/// one of them alone.
+std::vector<PoseCandidate> half_turns(const Target& target, const SeenTurn& turn,
+                                      const PoseCandidate& candidate) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  double count = 0;
+  const auto add = [&](const Eigen::Vector3d& point) {
+    sum += point;
+    squares += point * point.transpose();
+    ++count;
+  };
+  for (const SurfacePoint& point : target.points.points()) {
+    add(point.point);
+  }
+  for (const SurfacePoint& point : turn.points) {
+    add(candidate.target_from_points * point.point);
+  }
+  const Eigen::Vector3d middle = sum / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares / count -
+                                                            middle * middle.transpose());
+  std::vector<PoseCandidate> turned;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::AngleAxisd half(std::numbers::pi, axes.eigenvectors().col(i));
+    turned.emplace_back();
+    turned.back().target_from_points = Eigen::Translation3d(middle) * half *
+                                       Eigen::Translation3d(-middle) * candidate.target_from_points;
+  }
+  return turned;
+}
+
+/// Adds the half turns of the best candidates. @return the distinct ones, the best first
+std::vector<PoseCandidate> with_half_turns(std::vector<PoseCandidate> candidates,
+                                           const Target& target, const SeenTurn& turn, int threads,
+                                           const std::stop_token& stop) {
+  std::vector<PoseCandidate> turned;
+  for (std::size_t i = 0; i < std::min(candidates.size(), shapes_turned); ++i) {
+    std::ranges::copy(half_turns(target, turn, candidates[i]), std::back_inserter(turned));
+  }
+  turned = judged(std::move(turned), target, turn, refined_points, iterations, threads, stop);
+  candidates.insert(candidates.end(), turned.begin(), turned.end());
+  std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
+  candidates = distinct(candidates, find_middle(turn.points));
+  order_by_fit(candidates);
+  return candidates;
+}
+
 /// Poses in which target and turn may fit, roughly.
 std::vector<PoseCandidate> searched(const Target& target, const SeenTurn& turn,
                                     const NearestPoints& points, int threads,
@@ -100,7 +170,12 @@ std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn&
   candidates =
       judged(std::move(candidates), target, turn, rough_points, rough_iterations, threads, stop);
   candidates.resize(std::min(candidates.size(), refined_poses));
-  return judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
+  candidates =
+      judged(std::move(candidates), target, turn, joined_points, joined_iterations, threads, stop);
+  candidates =
+      judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
+  order_by_fit(candidates);
+  return with_half_turns(std::move(candidates), target, turn, threads, stop);
 }
 
 PoseCandidate refine_candidate(const Target& target, const SeenTurn& turn,

@@ -35,11 +35,17 @@ NearestPoints::NearestPoints(std::vector<SurfacePoint> points) : points_(std::mo
     const Vector3i last = (voxel.array() + reach).min(size_.array() - 1);
     for (int z = first.z(); z <= last.z(); ++z) {
       for (int y = first.y(); y <= last.y(); ++y) {
+        const Eigen::Vector2d aside(y + 0.5 - at.y(), z + 0.5 - at.z());
+        const double square_aside = aside.squaredNorm();
+        if (square_aside * voxel_side * voxel_side >= cap * cap) {
+          continue;
+        }
+        const std::size_t row = index({0, y, z});
         for (int x = first.x(); x <= last.x(); ++x) {
-          const Vector3d centre(x + 0.5, y + 0.5, z + 0.5);
+          const double along = x + 0.5 - at.x();
           const auto square =
-              static_cast<float>((centre - at).squaredNorm() * voxel_side * voxel_side);
-          const std::size_t to = index({x, y, z});
+              static_cast<float>((along * along + square_aside) * voxel_side * voxel_side);
+          const std::size_t to = row + static_cast<std::size_t>(x);
           if (square < squares[to]) {
             squares[to] = square;
             nearest_[to] = static_cast<std::int32_t>(i);

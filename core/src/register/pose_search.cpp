@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
@@ -123,8 +125,16 @@ void keep_best(std::vector<PoseCandidate>& candidates, const SearchedSide& targe
       shift(candidates[i], target, turn, sample, shifts);
     }
   });
-  std::ranges::stable_sort(candidates, {}, &PoseCandidate::distance);
-  candidates.resize(count);
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(count), {},
+                            [&](std::size_t i) { return std::pair(candidates[i].distance, i); });
+  std::vector<PoseCandidate> best;
+  best.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    best.push_back(candidates[order[i]]);
+  }
+  candidates = std::move(best);
 }
 
 /// Of each rotation, with the middle on the middle.

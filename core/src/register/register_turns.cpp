@@ -33,6 +33,7 @@ constexpr double max_residual = 0.0015;  // metres
 constexpr int turns_over = 8;
 constexpr double max_upright =
     0.3;  // cosine between the two upward axes; below, the underside shows
+constexpr double max_worse = 1.15;  // times the best one's residual: noise explains so much
 
 std::string text(const char* format, double value) {
   std::array<char, 96> buffer{};
@@ -100,7 +101,8 @@ PoseCandidate turned_over(const Target& target, const SeenTurn& turn, const Near
         refine_candidate(target, turn,
                          Eigen::Translation3d(middle) * over * Eigen::Translation3d(-middle) *
                              best.target_from_points);
-    if (refuse(other).empty() && fits_alike(other, best)) {
+    if (refuse(other).empty() && fits_alike(other, best) &&
+        other.residual <= max_worse * best.residual) {
       return other;
     }
   }

@@ -90,9 +90,10 @@ std::optional<SurfacePoint> StopView::read(int u, int v) const {
       }
       nearest = std::min(nearest, z);
       farthest = std::max(farthest, z);
-      sums.sum += 1 / z;
-      sums.sum_u += du / z;
-      sums.sum_v += dv / z;
+      const double inverse = 1 / z;
+      sums.sum += inverse;
+      sums.sum_u += du * inverse;
+      sums.sum_v += dv * inverse;
     }
   }
   if (farthest - nearest > max_step) {

@@ -60,6 +60,18 @@ TEST(Judge, CallsAModelBadIfTheStopsDisagreeMuch) {
   EXPECT_EQ(judge(scan, right_model()).verdict, Verdict::bad);
 }
 
+TEST(Judge, CallsTheModelOfAPlatformThatStoodStillBad) {
+  const std::vector<CalibrationFinding> findings{{.code = "still",
+                                                  .detail = "the platform did not turn",
+                                                  .hint = "Look.",
+                                                  .stop = {},
+                                                  .angle = {},
+                                                  .parameters = {}}};
+  const Quality quality = judge(right_scan(), right_model(), findings);
+  EXPECT_EQ(quality.verdict, Verdict::bad);
+  EXPECT_EQ(codes(quality), Codes{"stops-disagree"});
+}
+
 TEST(Judge, NamesTheStopThatSawWhatOthersSawThrough) {
   ScanFigures scan = right_scan();
   scan.contradicted[7] = 0.3;
@@ -186,12 +198,28 @@ TEST(Judge, TellsTheValuesOfAReasonAsItsDetailDoes) {
 }
 
 TEST(Judge, TakesOverWhatTheCalibrationFound) {
-  const std::vector<CalibrationFinding> findings{
-      {.code = "moved", .detail = "the object moved", .hint = "Fix it.", .stop = {}, .angle = {}},
-      {.code = "slip", .detail = "at stop 5", .hint = "Look.", .stop = 5, .angle = 0.03},
-      {.code = "no-map", .detail = "not flat", .hint = "Flatten.", .stop = {}, .angle = {}}};
-  EXPECT_EQ(codes(judge(right_scan(), right_model(), findings)),
-            (Codes{"moved", "stops-disagree"}));
+  const std::vector<CalibrationFinding> findings{{.code = "moved",
+                                                  .detail = "the object moved",
+                                                  .hint = "Fix it.",
+                                                  .stop = {},
+                                                  .angle = {},
+                                                  .parameters = {}},
+                                                 {.code = "slip",
+                                                  .detail = "at stop 5",
+                                                  .hint = "Look.",
+                                                  .stop = 5,
+                                                  .angle = 0.03,
+                                                  .parameters = {{"stop", 5.0}, {"off_deg", 1.7}}},
+                                                 {.code = "no-map",
+                                                  .detail = "not flat",
+                                                  .hint = "Flatten.",
+                                                  .stop = {},
+                                                  .angle = {},
+                                                  .parameters = {}}};
+  const Quality quality = judge(right_scan(), right_model(), findings);
+  ASSERT_EQ(codes(quality), (Codes{"moved", "stops-disagree"}));
+  EXPECT_EQ(quality.reasons[0].parameters, Parameters{});
+  EXPECT_EQ(quality.reasons[1].parameters, findings[1].parameters);
 }
 
 }  // namespace

@@ -151,7 +151,8 @@ void BennettReconstructor::shrink_slab(Octree& octree, BrickLayers& slab) const 
     const std::size_t enough =
         options_.program_memory + threads * thread_bytes + (threads + 1) * layers;
     throw Error(ErrorCode::memory_limit, "memory limit: one layer of the octree does not fit",
-                "Allow " + mb_text(enough) + ", or choose a larger leaf size.");
+                "Allow " + mb_text(enough) + ", or choose a larger leaf size.",
+                {{"needed_mb", rounded_up_mb(enough)}});
   }
   std::size_t kept = bricks.front();
   int end = slab.low + 1;

@@ -83,11 +83,18 @@ DepthPyramid::MinMax DepthPyramid::min_max(int u0, int v0, int u1, int v1) const
     ++level;
     ++shift;
   }
+  // Three rows of three texels, some of them twice: their number follows no pattern, so that
+  // branches on it would be mispredicted.
+  static_assert(max_texels == 3);
   const Level& texels = levels_[level];
-  for (int v = v0 >> shift; v <= v1 >> shift; ++v) {
-    for (int u = u0 >> shift; u <= u1 >> shift; ++u) {
-      bounds = bounds.min(texels.bounds[static_cast<std::size_t>(v * texels.width + u)]);
-    }
+  const int left = u0 >> shift;
+  const int right = u1 >> shift;
+  const int middle = std::min(left + 1, right);
+  const int top = v0 >> shift;
+  const int bottom = v1 >> shift;
+  for (const int v : {top, std::min(top + 1, bottom), bottom}) {
+    const Bounds* row = &texels.bounds[static_cast<std::size_t>(v * texels.width)];
+    bounds = bounds.min(row[left]).min(row[middle]).min(row[right]);
   }
   return {.min_free = bounds[0],
           .max_free = -bounds[2],

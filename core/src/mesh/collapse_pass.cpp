@@ -7,6 +7,8 @@
 #include <iterator>
 #include <numeric>
 
+#include "mesh/strip_reach.hpp"
+
 namespace octurn {
 namespace {
 
@@ -25,16 +27,14 @@ bool is_degenerate(const MeshTriangle& triangle) {
 /// What one thread does among others: the collapses between vertices of one strip.
 class CollapsePass::Strip {
  public:
-  /// @param is_blocked  one per vertex, 0; those of this strip become 1 where a collapse was left
-  Strip(CollapsePass& pass, const VertexStrips& strips, int index, std::vector<char>& is_blocked)
-      : pass_(pass), strips_(strips), index_(index), is_blocked_(is_blocked) {}
+  Strip(CollapsePass& pass, const StripReach& reach) : pass_(pass), reach_(reach) {}
 
   /// Those of some lists that have an end in the strip.
   Collapses gather(const std::vector<Collapses>& lists) const {
     Collapses own;
     for (const Collapses& list : lists) {
       std::ranges::copy_if(list, std::back_inserter(own), [&](const Collapse& collapse) {
-        return has(collapse.kept) || has(collapse.removed);
+        return reach_.has(collapse.kept) || reach_.has(collapse.removed);
       });
     }
     sort_by_cost(own);
@@ -51,9 +51,9 @@ class CollapsePass::Strip {
       if (is_stale(collapse.kept) || is_stale(collapse.removed)) {
         continue;
       }
-      if (!is_clear_around(collapse.kept) || !is_clear_around(collapse.removed)) {
-        block(collapse.kept);
-        block(collapse.removed);
+      if (!reach_.is_within(collapse.kept) || !reach_.is_within(collapse.removed)) {
+        reach_.leave_around(collapse.kept);
+        reach_.leave_around(collapse.removed);
         left.push_back(collapse);
       } else if (pass_.make_if_valid(collapse)) {
         ++done;
@@ -63,29 +63,12 @@ class CollapsePass::Strip {
   }
 
  private:
-  bool has(std::uint32_t vertex) const { return strips_[vertex] == index_; }
-  bool is_stale(std::uint32_t vertex) const { return has(vertex) && pass_.is_stale_[vertex] != 0; }
-
-  /// Whether a vertex and its neighbours lie in the strip, and no earlier collapse at one was left.
-  bool is_clear_around(std::uint32_t vertex) const {
-    return has(vertex) &&
-           std::ranges::all_of(pass_.adjacency_.triangles_at(vertex), [&](std::uint32_t i) {
-             return std::ranges::all_of(pass_.mesh_.triangles[i], [&](std::uint32_t corner) {
-               return has(corner) && is_blocked_[corner] == 0;
-             });
-           });
-  }
-
-  void block(std::uint32_t vertex) {
-    if (has(vertex)) {
-      is_blocked_[vertex] = 1;
-    }
+  bool is_stale(std::uint32_t vertex) const {
+    return reach_.has(vertex) && pass_.is_stale_[vertex] != 0;
   }
 
   CollapsePass& pass_;
-  const VertexStrips& strips_;
-  int index_;
-  std::vector<char>& is_blocked_;
+  StripReach reach_;
 };
 
 std::size_t CollapsePass::run(double max_cost, double already_tried,
@@ -113,11 +96,11 @@ std::size_t CollapsePass::run(double max_cost, double already_tried,
 /// @param lists  of collapses; then those that were left
 std::size_t CollapsePass::collapse_in_strips(const VertexStrips& strips,
                                              std::vector<Collapses>& lists) {
-  std::vector<char> is_blocked(mesh_.vertices.size(), 0);
+  std::vector<Reach> reach(mesh_.vertices.size(), Reach::unknown);
   std::vector<Collapses> left(lists.size());
   std::vector<std::size_t> done(lists.size());
   team_.run([&](int thread) {
-    Strip strip(*this, strips, thread, is_blocked);
+    Strip strip(*this, {mesh_.triangles, adjacency_, strips, thread, reach});
     const auto i = static_cast<std::size_t>(thread);
     done[i] = strip.run(strip.gather(lists), left[i]);
   });

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -22,27 +26,28 @@ namespace {
 
 constexpr int ray_spacing = 16;  // pixels between rays of which is looked what they pass through
 
-/// Which bricks of which tiles something is in. An octree of a tile whose leaves are its bricks.
+/// The bricks in which something is: a bit for each, as a `Brick` has one for each leaf. One set
+/// for all tiles: noise reaches into many tiles, and an octree for each took more than its bricks.
 class SeenBricks {
  public:
   explicit SeenBricks(const TileLattice& lattice) : lattice_(lattice) {}
 
-  /// Adds the bricks of the leaves around points.
+  /// Adds the bricks of the leaves between two points.
   void add(const LatticePoint& low, const LatticePoint& high) {
-    std::array<std::int64_t, 3> first{};
-    std::array<std::int64_t, 3> last{};
+    std::array<int, 3> first{};
+    std::array<int, 3> last{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] = lattice_.leaf_at(low[axis]) >> Brick::levels;
-      last[axis] = lattice_.leaf_at(high[axis]) >> Brick::levels;
+      first[axis] = static_cast<int>(lattice_.leaf_at(low[axis]) >> Brick::levels);
+      last[axis] = static_cast<int>(lattice_.leaf_at(high[axis]) >> Brick::levels);
     }
     if (first == first_ && last == last_) {
       return;  // neighbouring samples mostly lie in the same bricks
     }
     first_ = first;
     last_ = last;
-    for (std::int64_t z = first[2]; z <= last[2]; ++z) {
-      for (std::int64_t y = first[1]; y <= last[1]; ++y) {
-        for (std::int64_t x = first[0]; x <= last[0]; ++x) {
+    for (int z = first[2]; z <= last[2]; ++z) {
+      for (int y = first[1]; y <= last[1]; ++y) {
+        for (int x = first[0]; x <= last[0]; ++x) {
           add_brick(x, y, z);
         }
       }
@@ -50,32 +55,42 @@ class SeenBricks {
   }
 
   void merge(const SeenBricks& other) {
-    for (const auto& [tile, bricks] : other.tiles_) {
-      octree_of(tile).merge(bricks);
+    for (const auto& [at, block] : other.blocks_) {
+      std::ranges::transform(blocks_[at].layers, block.layers, blocks_[at].layers.begin(),
+                             std::bit_or());
     }
   }
 
-  const std::map<TileIndex, Octree>& tiles() const { return tiles_; }
-
- private:
-  Octree& octree_of(const TileIndex& tile) {
-    const int levels = lattice_.levels() - Brick::levels;
-    return tiles_.try_emplace(tile, lattice_.root_side(), levels).first->second;
+  /// Bricks in each tile that has any.
+  std::map<TileIndex, std::uint64_t> per_tile() const {
+    const int bits = lattice_.levels() - Brick::levels;
+    std::map<TileIndex, std::uint64_t> counts;
+    for (const auto& [at, block] : blocks_) {
+      for (int z = 0; z < Brick::side; ++z) {
+        const std::uint64_t layer = block.layers[static_cast<std::size_t>(z)];
+        for (std::uint64_t rest = layer; rest != 0; rest &= rest - 1) {
+          const int bit = std::countr_zero(rest);
+          ++counts[{.x = (at[0] * Brick::side + bit % Brick::side) >> bits,
+                    .y = (at[1] * Brick::side + bit / Brick::side) >> bits,
+                    .z = (at[2] * Brick::side + z) >> bits}];
+        }
+      }
+    }
+    return counts;
   }
 
-  void add_brick(std::int64_t x, std::int64_t y, std::int64_t z) {
-    const int bits = lattice_.levels() - Brick::levels;
-    const auto tile = [&](std::int64_t at) { return static_cast<int>(at >> bits); };
-    const auto inside = [&](std::int64_t at) {
-      return static_cast<int>(at & ((std::int64_t{1} << bits) - 1));
-    };
-    octree_of({.x = tile(x), .y = tile(y), .z = tile(z)}).set({inside(x), inside(y), inside(z)});
+ private:
+  void add_brick(int x, int y, int z) {
+    constexpr int mask = Brick::side - 1;
+    Brick& block = blocks_[{x >> Brick::levels, y >> Brick::levels, z >> Brick::levels}];
+    block.layers[static_cast<std::size_t>(z & mask)] |= std::uint64_t{1}
+                                                        << ((x & mask) + (y & mask) * Brick::side);
   }
 
   const TileLattice& lattice_;
-  std::map<TileIndex, Octree> tiles_ = {};
-  std::array<std::int64_t, 3> first_ = {};
-  std::array<std::int64_t, 3> last_ = {-1, -1, -1};
+  std::map<std::array<int, 3>, Brick> blocks_ = {};  // by place
+  std::array<int, 3> first_ = {};
+  std::array<int, 3> last_ = {-1, -1, -1};
 };
 
 /// The smallest and the largest of some points, on each axis.
@@ -167,7 +182,7 @@ Seen look(const Snapshot& snapshot, const ReconstructOptions& options, const Til
     add_readings(grid, eye, lattice, make_shell_grid(options).truncation(), own);
     seen.tiles = crossed_tiles(grid, eye, lattice);
   }
-  for (const auto& [tile, ignored] : own.tiles()) {
+  for (const auto& [tile, ignored] : own.per_tile()) {
     seen.tiles.insert(tile);
   }
   bricks.merge(own);
@@ -178,9 +193,9 @@ TilePlan make_plan(const SeenBricks& bricks, const std::vector<Seen>& seen,
                    const ReconstructOptions& options) {
   TilePlan plan;
   std::map<TileIndex, std::size_t> numbers;
-  for (const auto& [index, octree] : bricks.tiles()) {
+  for (const auto& [index, count] : bricks.per_tile()) {
     numbers[index] = plan.tiles.size();
-    plan.tiles.push_back({.index = index, .bytes = tile_bytes(options, octree.leaf_count())});
+    plan.tiles.push_back({.index = index, .bytes = tile_bytes(options, count)});
   }
   for (std::size_t snapshot = 0; snapshot < seen.size(); ++snapshot) {
     plan.snapshots.push_back(seen[snapshot].checksum);

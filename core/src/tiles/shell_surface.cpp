@@ -131,9 +131,9 @@ std::set<TileIndex> drawn_tiles(const TilesByIndex& tiles) {
   return drawn;
 }
 
-/// Draws the cubes of a tile, and simplifies their mesh, which is open to the tiles beside it.
-void draw_tile(const VoxelMask& inside, const ShellField& field, const CubeRange& cubes,
-               double target_error, const FacetSink& sink, const std::stop_token& stop) {
+/// Draws the cubes of a column, and simplifies their mesh, which is open to the columns beside it.
+void draw_column(const VoxelMask& inside, const ShellField& field, const CubeRange& cubes,
+                 double target_error, const FacetSink& sink, const std::stop_token& stop) {
   if (target_error > 0) {
     StreamSimplifier simplifier(mm_from_metres(target_error),
                                 mm_from_metres(margin_voxels * field.voxel_side()), sink, stop);
@@ -157,28 +157,35 @@ SurfaceCount shell_surface(std::span<const StoredTile> tiles, const FacetSink& s
   for (const StoredTile& tile : tiles) {
     by_index[tile.header().index] = &tile;
   }
-  // Vertices depend on the cubes around theirs: so one voxel more is needed below, two above.
   const int side = lattice.leaves_per_side();
-  const CubeRange cubes{.low = {1, 1, 1}, .end = {side + 1, side + 1, side + 1}};
+  const int width = std::min(side, shell_column_side);
+  // Vertices depend on the cubes around theirs: so one voxel more is needed below, two above.
+  const CubeRange cubes{.low = {1, 1, 1}, .end = {width + 1, width + 1, side + 1}};
   SurfaceCount count;
-  for (const TileIndex& index : drawn_tiles(by_index)) {
+  const auto draw = [&](const ShellField& field, const Index3& low) {
     throw_if_stopped(stop);
-    const TileField near = field_of(lattice, by_index, index);
-    const Index3 low{index.x * side - 1, index.y * side - 1, index.z * side - 1};
     const VoxelMask inside =
-        near.field().inside(low, {low.x + side + 3, low.y + side + 3, low.z + side + 3});
+        field.inside(low, {low.x + width + 3, low.y + width + 3, low.z + side + 3});
     if (inside.count() == 0) {
-      continue;
+      return;
     }
     count.leaves += voxels_of(inside, cubes);
-    draw_tile(
-        inside, near.field(), cubes, options.target_error,
+    draw_column(
+        inside, field, cubes, options.target_error,
         [&](std::span<const Facet> facets) {
           throw_if_stopped(stop);
           count.facets += facets.size();
           sink(facets);
         },
         stop);
+  };
+  for (const TileIndex& index : drawn_tiles(by_index)) {
+    const TileField near = field_of(lattice, by_index, index);
+    for (int y = 0; y < side; y += width) {
+      for (int x = 0; x < side; x += width) {
+        draw(near.field(), {index.x * side + x - 1, index.y * side + y - 1, index.z * side - 1});
+      }
+    }
   }
   return count;
 }

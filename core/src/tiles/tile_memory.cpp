@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "io/number_text.hpp"
 #include "octurn/error.hpp"
+#include "tiles/tile_surface.hpp"
 #include "tsdf/shell.hpp"
 #include "tsdf/tsdf_volume.hpp"
 #include "voxel/block_pool.hpp"
@@ -21,9 +23,10 @@ namespace {
 constexpr std::size_t points_bytes = 8 * mebibyte;
 constexpr std::size_t conditioned_bytes = 17 * mebibyte;
 
-// Of each brick of the shell in a layer, where its surface is drawn and simplified: a wall that
-// fills the layer has both its sides, and 128 triangles each, in one window of the simplifier.
-constexpr std::size_t layer_brick_bytes = 256 * std::size_t{170};
+// The simplifier's window takes 170 bytes a triangle. It holds a layer of a column and what waits
+// of the layer below, where a brick of a floor has two sides of 128 triangles; or its usual 30,000.
+constexpr std::size_t layer_brick_bytes = 2 * 256 * std::size_t{170};
+constexpr std::size_t window_bytes = 5 * mebibyte;
 
 std::size_t thread_bytes(const ReconstructOptions& options) {
   return options.method == Method::solid ? conditioned_bytes : points_bytes;
@@ -38,11 +41,16 @@ std::size_t pool_bytes(std::uint64_t items) {
 /// @param needed  bytes that would be enough
 [[noreturn]] void refuse(const ReconstructOptions& options, const TileIndex& tile,
                          std::size_t needed) {
-  throw Error(
-      ErrorCode::memory_limit,
-      "memory limit: tile (" + std::to_string(tile.x) + ", " + std::to_string(tile.y) + ", " +
-          std::to_string(tile.z) + ") does not fit in " + mb_text(options.memory_limit),
-      "Allow " + mb_text(needed) + ", or choose a smaller root size or a larger leaf size.");
+  throw Error(ErrorCode::memory_limit,
+              "memory limit: tile (" + std::to_string(tile.x) + ", " + std::to_string(tile.y) +
+                  ", " + std::to_string(tile.z) + ") does not fit in " +
+                  mb_text(options.memory_limit),
+              "Allow " + mb_text(needed) + ", or choose a smaller root size or a larger leaf size.",
+              {{"tile_x", static_cast<double>(tile.x)},
+               {"tile_y", static_cast<double>(tile.y)},
+               {"tile_z", static_cast<double>(tile.z)},
+               {"limit_mb", rounded_up_mb(options.memory_limit)},
+               {"needed_mb", rounded_up_mb(needed)}});
 }
 
 }  // namespace
@@ -87,16 +95,17 @@ TileRoom room_for(const ReconstructOptions& options, const Tile& tile) {
 
 std::size_t shell_surface_bytes(const ReconstructOptions& options,
                                 std::span<const TileBrick> bricks) {
-  std::size_t largest = 0;  // of the layers of bricks
-  for (auto first = bricks.begin(); first != bricks.end();) {
-    const auto end =
-        std::find_if(first, bricks.end(), [&](const TileBrick& at) { return at.z != first->z; });
-    largest = std::max(largest, static_cast<std::size_t>(end - first));
-    first = end;
+  std::map<std::array<int, 3>, std::size_t> layers;  // bricks in each layer of each column
+  constexpr int column = shell_column_side / VoxelGrid::brick_side;
+  std::size_t largest = 0;
+  for (const TileBrick& at : bricks) {
+    largest = std::max(largest, ++layers[{at.z, at.y / column, at.x / column}]);
   }
-  const VoxelGrid grid = make_shell_grid(options);
-  const auto side = static_cast<std::size_t>(grid.size().x) * VoxelGrid::brick_side;
-  return bricks.size() * sizeof(ShellBrick) + side * side * side / 8 + largest * layer_brick_bytes;
+  const auto height =
+      static_cast<std::size_t>(make_shell_grid(options).size().z) * VoxelGrid::brick_side;
+  const std::size_t width = std::min<std::size_t>(height, shell_column_side);
+  return bricks.size() * sizeof(ShellBrick) + width * width * height / 8 +
+         std::max(window_bytes, largest * layer_brick_bytes);
 }
 
 void expect_surface_room(const ReconstructOptions& options, const TileIndex& tile,

@@ -19,35 +19,6 @@ constexpr double observed_slack = 0.001;  // metres
 // platform.
 constexpr double unseen_foot = 0.004;  // metres
 
-std::size_t sample_index(const Index3& voxel) {
-  return static_cast<std::size_t>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
-}
-
-/// One bit for each voxel of a brick's row.
-template <typename IsInside>
-std::uint64_t row_bits(IsInside is_inside) {
-  std::uint64_t bits = 0;
-  for (int x = 0; x < brick_side; ++x) {
-    bits |= (is_inside(x) ? std::uint64_t{1} : 0) << x;
-  }
-  return bits;
-}
-
-/// Clears the sides and the top of a mask.
-void clear_border(VoxelMask& mask) {
-  const Index3& size = mask.size();
-  for (int z = 0; z < size.z; ++z) {
-    for (int y = 0; y < size.y; ++y) {
-      const auto row = mask.row(y, z);
-      if (y == 0 || y + 1 == size.y || z + 1 == size.z) {
-        std::ranges::fill(row, 0U);
-      }
-      row.front() &= ~std::uint64_t{1};
-      row[static_cast<std::size_t>(size.x - 1) / 64] &= ~(std::uint64_t{1} << (size.x - 1) % 64);
-    }
-  }
-}
-
 }  // namespace
 
 HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop,
@@ -65,7 +36,7 @@ HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> 
 }
 
 void HoleFilledSdf::fill(const std::stop_token& stop, ThreadTeam& team) {
-  KnownBlocks blocks = known_blocks(known_, base_layer_, stop, team);
+  KnownBlocks blocks = known_blocks(known_, base_layer_, platforms_, stop, team);
   if (blocks.distances.values.empty()) {
     return;
   }
@@ -113,7 +84,7 @@ float HoleFilledSdf::filled_at(const Index3& voxel) const {
 /// @param brick  the one that the voxel lies in, or null
 VoxelState HoleFilledSdf::state_at(const Index3& voxel, const CompactBrick* brick) const {
   if (brick != nullptr) {
-    return brick->state(sample_index(voxel));
+    return brick->state(VoxelGrid::sample_index(voxel));
   }
   const Index3& low = grid().low();
   const int per_brick = grid().blocks_per_brick();
@@ -134,7 +105,7 @@ HoleFilledSdf::Value HoleFilledSdf::sample(const Index3& voxel) const {
   const CompactBrick* const brick = brick_at(voxel);
   switch (state_at(voxel, brick)) {
     case VoxelState::observed:
-      return {static_cast<float>(brick->distance[sample_index(voxel)]), true};
+      return {static_cast<float>(brick->distance[VoxelGrid::sample_index(voxel)]), true};
     case VoxelState::free:
       return {VoxelGrid::ticks, false};
     default:
@@ -161,8 +132,8 @@ HoleFilledSdf::Value HoleFilledSdf::at(const Index3& voxel) const {
   return value;
 }
 
-float HoleFilledSdf::foot_ticks() const {
-  return static_cast<float>(unseen_foot / grid().truncation() * VoxelGrid::ticks);
+float HoleFilledSdf::ticks(double metres) const {
+  return static_cast<float>(metres / grid().truncation() * VoxelGrid::ticks);
 }
 
 /// Continues an unobserved foot straight down: a voxel right above a platform that no pose observed
@@ -172,10 +143,10 @@ HoleFilledSdf::Value HoleFilledSdf::fill_foot(const Index3& voxel, Value value) 
     return value;
   }
   for (const PlatformCut& platform : platforms_) {
-    if (platform.height(voxel) >= foot_ticks()) {
+    if (platform.height(voxel) >= ticks(unseen_foot)) {
       continue;
     }
-    const Index3 above = platform.raised(voxel, foot_ticks());
+    const Index3 above = platform.raised(voxel, ticks(unseen_foot));
     const bool is_here = above.x >= low_.x && above.y >= low_.y && above.z >= low_.z &&
                          above.x < end_.x && above.y < end_.y && above.z < end_.z;
     if (is_here) {
@@ -188,7 +159,7 @@ HoleFilledSdf::Value HoleFilledSdf::fill_foot(const Index3& voxel, Value value) 
 /// The intersection with the half-spaces above the platforms of several poses. What was observed
 /// is cut only well below them: a foot is flat where nothing saw it.
 HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value value) const {
-  const auto slack = static_cast<float>(observed_slack / grid().truncation() * VoxelGrid::ticks);
+  const float slack = ticks(observed_slack);
   for (const PlatformCut& platform : platforms_) {
     const float below = -platform.height(voxel) - (value.observed ? slack : 0.0F);
     if (below > value.distance) {
@@ -198,102 +169,17 @@ HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value 
   return value;
 }
 
-bool HoleFilledSdf::is_above_platforms(const Index3& low, const Index3& size) const {
-  return std::ranges::all_of(platforms_, [&, margin = foot_ticks()](const PlatformCut& platform) {
-    return platform.is_below(low, size, margin);
-  });
-}
-
-/// The side of the surface that a whole brick lies on; `both` if its blocks and their neighbours
-/// differ in sign, or if it has samples of its own.
-/// @param brick  counted from the box's lowest corner
-HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
-  const int per_brick = grid().blocks_per_brick();
-  const Index3 first{brick.x * per_brick, brick.y * per_brick, brick.z * per_brick};
-  const Index3 in_grid{low_brick_.x + brick.x, low_brick_.y + brick.y, low_brick_.z + brick.z};
-  if (known_.find(in_grid) != nullptr || brick.z == 0 ||
-      !is_above_platforms({low_.x + brick.x * brick_side, low_.y + brick.y * brick_side,
-                           low_.z + brick.z * brick_side},
-                          {brick_side, brick_side, brick_side})) {
-    return Side::both;
-  }
-  bool any_inside = false;
-  bool any_outside = false;
-  const auto around = [&](int at, int size) {
-    return std::pair(std::max(at - 1, 0), std::min(at + per_brick, size - 1));
-  };
-  const auto [x0, x1] = around(first.x, blocks_.size.x);
-  const auto [y0, y1] = around(first.y, blocks_.size.y);
-  const auto [z0, z1] = around(first.z, blocks_.size.z);
-  for (int z = z0; z <= z1; ++z) {
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        (blocks_.values[blocks_.index(x, y, z)] < 0 ? any_inside : any_outside) = true;
-      }
+/// Where all voxels of a box lie. Below a platform nothing is inside, whatever was observed.
+HoleFilledSdf::Place HoleFilledSdf::place_of(const Index3& low, const Index3& size) const {
+  Place place = Place::above;
+  for (const PlatformCut& platform : platforms_) {
+    const auto [lowest, highest] = platform.heights(low, size);
+    if (highest < -ticks(observed_slack) - 1) {
+      return Place::below;
     }
+    place = lowest < ticks(unseen_foot) ? Place::near : place;
   }
-  if (any_inside && any_outside) {
-    return Side::both;
-  }
-  // A free block is outside, whatever is around it.
-  return any_outside ? Side::outside : Side::inside;
-}
-
-/// The signs of eight voxels of a brick's row, `first` the first of them: 1 where the distance is
-/// negative.
-std::uint64_t HoleFilledSdf::inside_bits(const Index3& first) const {
-  if (first.z < base_layer_ || !is_above_platforms(first, {brick_side, 1, 1})) {
-    return row_bits([&](int x) { return at({first.x + x, first.y, first.z}).distance < 0; });
-  }
-  const CompactBrick* const brick = brick_at(first);
-  return row_bits([&](int x) {
-    const Index3 voxel{first.x + x, first.y, first.z};
-    switch (state_at(voxel, brick)) {
-      case VoxelState::observed:
-        return brick->distance[sample_index(voxel)] < 0;
-      case VoxelState::free:
-        return false;
-      default:
-        return filled_at(voxel) < 0;
-    }
-  });
-}
-
-/// Adds the voxels inside of a brick that is counted from the box's lowest corner.
-void HoleFilledSdf::add_inside(const Index3& brick, VoxelMask& mask) const {
-  const Side side = side_of(brick);
-  if (side == Side::outside) {
-    return;
-  }
-  for (int z = brick.z * brick_side; z < (brick.z + 1) * brick_side; ++z) {
-    for (int y = brick.y * brick_side; y < (brick.y + 1) * brick_side; ++y) {
-      const std::uint64_t bits =
-          side == Side::inside
-              ? 0xff
-              : inside_bits({low_.x + brick.x * brick_side, low_.y + y, low_.z + z});
-      mask.row(y, z)[static_cast<std::size_t>(brick.x) / 8] |= bits << (brick.x % 8 * brick_side);
-    }
-  }
-}
-
-VoxelMask HoleFilledSdf::inside(const std::stop_token& stop, ThreadTeam& team) const {
-  VoxelMask mask(low_, end_);
-  const Index3& size = mask.size();
-  team.for_each(size.z / brick_side, [&](int z) {
-    throw_if_stopped(stop);
-    for (int y = 0; y < size.y / brick_side; ++y) {
-      for (int x = 0; x < size.x / brick_side; ++x) {
-        add_inside({x, y, z}, mask);
-      }
-    }
-  });
-  clear_border(mask);
-  if (!platforms_.empty() && size.z > 0) {  // a lowest layer is no foot
-    for (int y = 0; y < size.y; ++y) {
-      std::ranges::fill(mask.row(y, 0), 0U);
-    }
-  }
-  return mask;
+  return place;
 }
 
 }  // namespace octurn

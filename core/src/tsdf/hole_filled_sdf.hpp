@@ -73,6 +73,7 @@ class HoleFilledSdf {
     float part = 0;
   };
   enum class Side { inside, outside, both };
+  enum class Place { above, near, below };  // the platforms of several poses, or one of them
 
   void fill(const std::stop_token& stop, ThreadTeam& team);
   std::vector<LerpWeight> lerp_weights(int voxels, int blocks) const;
@@ -83,8 +84,8 @@ class HoleFilledSdf {
   Value sample(const Index3& voxel) const;
   Value fill_foot(const Index3& voxel, Value value) const;
   Value cut_by_platforms(const Index3& voxel, Value value) const;
-  float foot_ticks() const;
-  bool is_above_platforms(const Index3& low, const Index3& size) const;
+  float ticks(double metres) const;
+  Place place_of(const Index3& low, const Index3& size) const;
   Side side_of(const Index3& brick) const;
   std::uint64_t inside_bits(const Index3& first) const;
   void add_inside(const Index3& brick, VoxelMask& mask) const;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "octurn/snapshot.hpp"
-#include "parallel/fork_join.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/node_classifier.hpp"
 #include "tsdf/sample_batch.hpp"
@@ -40,9 +39,9 @@ class TsdfIntegrator {
   /// Integrates into one of them.
   void run(int root) {
     const Index3 roots = count_roots(grid_);
-    descend({root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
-             root / (roots.x * roots.y) * root_bricks},
-            root_bricks);
+    const Index3 brick{root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
+                       root / (roots.x * roots.y) * root_bricks};
+    visit(brick, root_bricks, classifier_.classify(lowest_voxel(brick), root_bricks * brick_side));
   }
 
  private:
@@ -51,38 +50,37 @@ class TsdfIntegrator {
     return {roots(grid.size().x), roots(grid.size().y), roots(grid.size().z)};
   }
 
+  static Index3 lowest_voxel(const Index3& brick) {
+    return {brick.x * brick_side, brick.y * brick_side, brick.z * brick_side};
+  }
+
+  /// The lowest corner of a cube's octant. @param side  of the octant
+  static Index3 octant_of(const Index3& low, int side, int octant) {
+    return {low.x + (octant & 1) * side, low.y + (octant >> 1 & 1) * side,
+            low.z + (octant >> 2) * side};
+  }
+
   /// @param bricks  along the node's side
-  void descend(const Index3& brick, int bricks) {
+  void visit(const Index3& brick, int bricks, NodeClass node) {
     const Index3& size = grid_.size();
     const BrickLayers& layers = volume_.layers();
-    if (brick.x >= size.x || brick.y >= size.y || brick.z >= layers.end ||
-        brick.z + bricks <= layers.low) {
+    if (node == NodeClass::outside || brick.x >= size.x || brick.y >= size.y ||
+        brick.z >= layers.end || brick.z + bricks <= layers.low) {
       return;
     }
-    switch (classifier_.classify({brick.x * brick_side, brick.y * brick_side, brick.z * brick_side},
-                                 bricks * brick_side)) {
-      case NodeClass::outside:
-        return;
-      case NodeClass::free:
-        count_free(brick, bricks, votes_of_any_ray);
-        return;
-      case NodeClass::free_to_surface:
-        count_free(brick, bricks, votes_of_surface_ray);
-        return;
-      case NodeClass::partial:
-      case NodeClass::near_surface:
-        break;
-    }
-    if (bricks == 1) {
+    if (node == NodeClass::free) {
+      count_free(brick, bricks, votes_of_any_ray);
+    } else if (node == NodeClass::free_to_surface) {
+      count_free(brick, bricks, votes_of_surface_ray);
+    } else if (bricks == 1) {
       throw_if_stopped(stop_);
-      integrate_brick(brick);
-      return;
-    }
-    const int half = bricks / 2;
-    for (int child = 0; child < 8; ++child) {
-      descend({brick.x + (child & 1) * half, brick.y + (child >> 1 & 1) * half,
-               brick.z + (child >> 2) * half},
-              half);
+      integrate_brick(brick, node);
+    } else {
+      const int half = bricks / 2;
+      const auto octants = classifier_.classify_octants(lowest_voxel(brick), half * brick_side);
+      for (int octant = 0; octant < 8; ++octant) {
+        visit(octant_of(brick, half, octant), half, octants[static_cast<std::size_t>(octant)]);
+      }
     }
   }
 
@@ -103,34 +101,50 @@ class TsdfIntegrator {
     }
   }
 
-  void integrate_brick(const Index3& brick) {
+  void integrate_brick(const Index3& brick, NodeClass node) {
     if (grid_.is_border(brick)) {
       return;
     }
-    const int per_brick = grid_.blocks_per_brick();
-    const int voxels = grid_.block_voxels();
     TsdfBrick* samples = volume_.find(brick);
-    for (int z = 0; z < per_brick; ++z) {
-      for (int y = 0; y < per_brick; ++y) {
-        for (int x = 0; x < per_brick; ++x) {
-          const Index3 block{brick.x * per_brick + x, brick.y * per_brick + y,
-                             brick.z * per_brick + z};
-          const NodeClass node =
-              classifier_.classify({block.x * voxels, block.y * voxels, block.z * voxels}, voxels);
-          if (node == NodeClass::free) {
-            add_votes(volume_.free_count(block), votes_of_any_ray);
-          } else if (node == NodeClass::free_to_surface) {
-            add_votes(volume_.free_count(block), votes_of_surface_ray);
-          } else if (node == NodeClass::near_surface) {
-            integrate_block(brick, block, samples);
-          }
+    const int per_brick = grid_.blocks_per_brick();
+    const Index3 lowest{brick.x * per_brick, brick.y * per_brick, brick.z * per_brick};
+    if (per_brick == 1) {
+      integrate_block(brick, lowest, node, samples);
+      return;
+    }
+    for (int z = 0; z < per_brick; z += 2) {
+      for (int y = 0; y < per_brick; y += 2) {
+        for (int x = 0; x < per_brick; x += 2) {
+          integrate_eight_blocks(brick, {lowest.x + x, lowest.y + y, lowest.z + z}, samples);
         }
       }
     }
   }
 
+  /// @param block  the lowest of them
+  void integrate_eight_blocks(const Index3& brick, const Index3& block, TsdfBrick*& samples) {
+    const int voxels = grid_.block_voxels();
+    const auto octants = classifier_.classify_octants(
+        {block.x * voxels, block.y * voxels, block.z * voxels}, voxels);
+    for (int octant = 0; octant < 8; ++octant) {
+      integrate_block(brick, octant_of(block, 1, octant), octants[static_cast<std::size_t>(octant)],
+                      samples);
+    }
+  }
+
   /// @param samples  the brick's, or null; made where a voxel is near a surface
-  void integrate_block(const Index3& brick, const Index3& block, TsdfBrick*& samples) {
+  void integrate_block(const Index3& brick, const Index3& block, NodeClass node,
+                       TsdfBrick*& samples) {
+    if (node == NodeClass::free) {
+      add_votes(volume_.free_count(block), votes_of_any_ray);
+    } else if (node == NodeClass::free_to_surface) {
+      add_votes(volume_.free_count(block), votes_of_surface_ray);
+    } else if (node == NodeClass::near_surface) {
+      sample_block(brick, block, samples);
+    }
+  }
+
+  void sample_block(const Index3& brick, const Index3& block, TsdfBrick*& samples) {
     const int voxels = grid_.block_voxels();
     SampleBatch batch;
     sampler_.sample({block.x * voxels, block.y * voxels, block.z * voxels}, batch);
@@ -172,11 +186,11 @@ void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::sto
   }
 }
 
-void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths, int threads,
-               const std::stop_token& stop) {
+void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths,
+               ThreadTeam& team, const std::stop_token& stop) {
   const int roots = TsdfIntegrator::root_count(volume.grid());
   std::atomic<int> next = 0;
-  fork_join(threads, [&](int) {
+  team.run([&](int) {
     std::vector<TsdfIntegrator> integrators;
     integrators.reserve(depths.size());
     for (const ConditionedDepth* depth : depths) {

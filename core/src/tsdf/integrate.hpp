@@ -4,6 +4,7 @@
 #include <stop_token>
 
 #include "depth/condition_depth.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/tsdf_volume.hpp"
 
 namespace octurn {
@@ -24,10 +25,10 @@ namespace octurn {
 /// @throws Stopped  between two bricks
 void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::stop_token& stop = {});
 
-/// The same of several snapshots, in their order, on several threads: each takes a cube of bricks
-/// and integrates all of them there, so that their number changes no bit.
+/// The same of several snapshots, in their order, by a team: each of its threads takes a cube of
+/// bricks and integrates all of them there, so that their number changes no bit.
 /// @param volume  that holds all its bricks (`TsdfVolume::holds_all`)
-void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths, int threads,
-               const std::stop_token& stop = {});
+void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths,
+               ThreadTeam& team, const std::stop_token& stop = {});
 
 }  // namespace octurn

@@ -6,6 +6,7 @@
 
 #include "parallel/fork_join.hpp"
 #include "parallel/ordered_pipeline.hpp"
+#include "parallel/thread_team.hpp"
 #include "tsdf/integrate.hpp"
 
 namespace octurn {
@@ -13,11 +14,12 @@ namespace {
 
 void integrate_in_parallel(TsdfVolume& volume, const ConditionedSource& snapshots, int threads,
                            const std::stop_token& stop) {
+  ThreadTeam team(threads);
   const auto at_once = static_cast<std::size_t>(threads);
   for (std::size_t first = 0; first < snapshots.count; first += at_once) {
     const std::size_t count = std::min(at_once, snapshots.count - first);
     std::vector<std::vector<ConditionedDepth>> depths(count);
-    fork_join(static_cast<int>(count), [&](int i) {
+    team.for_each(static_cast<int>(count), [&](int i) {
       throw_if_stopped(stop);
       const auto index = static_cast<std::size_t>(i);
       depths[index] = snapshots.make(first + index);
@@ -28,7 +30,7 @@ void integrate_in_parallel(TsdfVolume& volume, const ConditionedSource& snapshot
         in_order.push_back(&depth);
       }
     }
-    integrate(volume, in_order, threads, stop);
+    integrate(volume, in_order, team, stop);
   }
 }
 

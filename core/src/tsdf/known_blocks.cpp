@@ -23,17 +23,39 @@ struct RunningMean {
   }
 };
 
+/// What is known of blocks.
+struct Knowledge {
+  const CompactTsdf& tsdf;
+  int base_layer = 0;
+  std::span<const PlatformCut> platforms = {};
+};
+
+/// Whether the centre of a block lies below one of the platforms.
+bool is_below_platform(const Knowledge& known, const Index3& block) {
+  const VoxelGrid& grid = known.tsdf.grid();
+  const int voxels = grid.block_voxels();
+  const auto centre = [&](int at, int low) {
+    return (at + low * grid.blocks_per_brick()) * voxels + voxels / 2;
+  };
+  const Index3 voxel{centre(block.x, grid.low().x), centre(block.y, grid.low().y),
+                     centre(block.z, grid.low().z)};
+  return std::ranges::any_of(
+      known.platforms, [&](const PlatformCut& platform) { return platform.height(voxel) < 0; });
+}
+
 /// The mean distance of a block's known samples from the base layer up. An occluded sample counts,
 /// however small its weight: it says that there is something to fill.
 /// @param position  of the brick
-RunningMean mean_known_distance(const VoxelGrid& grid, const CompactBrick& brick,
-                                const Index3& position, const Index3& block, int base_layer) {
+RunningMean mean_known_distance(const Knowledge& known, const CompactBrick& brick,
+                                const Index3& position, const Index3& block) {
+  const VoxelGrid& grid = known.tsdf.grid();
+  const bool is_free_known = !is_below_platform(known, block);
   const int per_brick = grid.blocks_per_brick();
   const int voxels = grid.block_voxels();
   RunningMean mean;
   for (int z = 0; z < voxels; ++z) {
     const int bz = block.z % per_brick * voxels + z;
-    if ((position.z + grid.low().z) * brick_side + bz < base_layer) {
+    if ((position.z + grid.low().z) * brick_side + bz < known.base_layer) {
       continue;
     }
     for (int y = 0; y < voxels; ++y) {
@@ -47,7 +69,9 @@ RunningMean mean_known_distance(const VoxelGrid& grid, const CompactBrick& brick
             mean.add(std::min(static_cast<float>(brick.distance[sample]), free_distance));
             break;
           case VoxelState::free:
-            mean.add(free_distance);
+            if (is_free_known) {
+              mean.add(free_distance);
+            }
             break;
           case VoxelState::unknown:
             break;
@@ -85,9 +109,9 @@ void find_box(const CompactTsdf& known, KnownBlocks& blocks) {
 /// Sets the value of a block, if it is known.
 /// @param block  indexed in the TSDF's grid
 /// @param index  of the block in `distances`
-void classify_block(const CompactTsdf& known, int base_layer, const Index3& block,
-                    std::size_t index, PartialGrid& distances) {
-  const VoxelGrid& grid = known.grid();
+void classify_block(const Knowledge& known, const Index3& block, std::size_t index,
+                    PartialGrid& distances) {
+  const VoxelGrid& grid = known.tsdf.grid();
   const int per_brick = grid.blocks_per_brick();
   const int voxels = grid.block_voxels();
   const Index3 position{block.x / per_brick, block.y / per_brick, block.z / per_brick};
@@ -95,15 +119,12 @@ void classify_block(const CompactTsdf& known, int base_layer, const Index3& bloc
     distances.values[index] = distance;
     distances.known[index] = 1;
   };
-  if (grid.is_border(position)) {
-    set(free_distance);
-    return;
-  }
-  const CompactBrick* const brick = known.find(position);
-  if (brick == nullptr && known.is_free(block)) {
+  const CompactBrick* const brick = known.tsdf.find(position);
+  const bool is_free = grid.is_border(position) || (brick == nullptr && known.tsdf.is_free(block));
+  if (is_free && !is_below_platform(known, block)) {
     set(free_distance);
   } else if (brick != nullptr) {
-    const RunningMean mean = mean_known_distance(grid, *brick, position, block, base_layer);
+    const RunningMean mean = mean_known_distance(known, *brick, position, block);
     if (mean.count * 4 >= voxels * voxels * voxels) {
       set(mean.sum / static_cast<float>(mean.count));
     }
@@ -112,8 +133,10 @@ void classify_block(const CompactTsdf& known, int base_layer, const Index3& bloc
 
 }  // namespace
 
-KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::stop_token& stop,
+KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
+                         std::span<const PlatformCut> platforms, const std::stop_token& stop,
                          ThreadTeam& team) {
+  const Knowledge knowledge{.tsdf = known, .base_layer = base_layer, .platforms = platforms};
   KnownBlocks blocks;
   find_box(known, blocks);
   const int per_brick = known.grid().blocks_per_brick();
@@ -129,7 +152,7 @@ KnownBlocks known_blocks(const CompactTsdf& known, int base_layer, const std::st
     std::size_t index = distances.index(0, 0, z);
     for (int y = 0; y < distances.size.y; ++y) {
       for (int x = 0; x < distances.size.x; ++x, ++index) {
-        classify_block(known, base_layer, {low.x + x, low.y + y, low.z + z}, index, distances);
+        classify_block(knowledge, {low.x + x, low.y + y, low.z + z}, index, distances);
       }
     }
   });

@@ -18,7 +18,7 @@ namespace {
 // Memory beside the volume, measured with frames of 640 x 480 samples: each thread's snapshot and
 // conditioned depth; the simplifier's window.
 constexpr std::size_t thread_bytes = 14 * mebibyte;
-constexpr std::size_t surface_bytes = 16 * mebibyte;
+constexpr std::size_t surface_bytes = 14 * mebibyte;
 constexpr std::size_t min_volume_bytes = 4 * mebibyte;
 
 // Of facets that are kept where there is no limit: 2.7 million.
@@ -29,9 +29,10 @@ constexpr std::size_t unlimited_facets_bytes = 128 * mebibyte;
 constexpr double usual_side = 0.1;  // metres
 constexpr double bricks_by_slope = 1.5;
 
+/// When the surface is made, the threads' snapshots are gone, and its window takes no more.
 std::size_t fixed_overhead(const ReconstructOptions& options) {
-  return options.program_memory +
-         std::max(static_cast<std::size_t>(options.threads) * thread_bytes, surface_bytes);
+  static_assert(surface_bytes <= thread_bytes);
+  return options.program_memory + static_cast<std::size_t>(options.threads) * thread_bytes;
 }
 
 /// Bytes of the tables of bricks and blocks, of the volume and of its compact form.
@@ -77,10 +78,11 @@ void expect_memory(const ReconstructOptions& options) {
   ReconstructOptions coarser = options;
   coarser.leaf_size = fitting_leaf(options, min_bytes);
   const bool fits = min_bytes(coarser) <= options.memory_limit;
-  throw Error(ErrorCode::memory_limit,
-              "memory limit: " + mb_text(options.memory_limit) + " is too little",
-              "Allow at least " + mb_text(needed) +
-                  (fits ? ", or choose a leaf size of " + mm_text(coarser.leaf_size) : "") + ".");
+  throw Error(
+      ErrorCode::memory_limit, "memory limit: " + mb_text(options.memory_limit) + " is too little",
+      "Allow at least " + mb_text(needed) +
+          (fits ? ", or choose a leaf size of " + mm_text(coarser.leaf_size) : "") + ".",
+      {{"limit_mb", rounded_up_mb(options.memory_limit)}, {"needed_mb", rounded_up_mb(needed)}});
 }
 
 }  // namespace
@@ -148,7 +150,8 @@ std::size_t facets_budget(const ReconstructOptions& options, std::size_t taken) 
 void throw_memory_limit(const ReconstructOptions& options) {
   throw Error(ErrorCode::memory_limit,
               "memory limit: " + mb_text(options.memory_limit) + " do not hold what was seen",
-              "Allow " + mb_text(2 * options.memory_limit) + ", or choose a larger leaf size.");
+              "Allow " + mb_text(2 * options.memory_limit) + ", or choose a larger leaf size.",
+              {{"limit_mb", rounded_up_mb(options.memory_limit)}});
 }
 
 }  // namespace octurn

@@ -3,58 +3,94 @@
 #include <cmath>
 
 #include "depth/depth_limits.hpp"
+#include "parallel/vector_levels.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/pixels.hpp"
 
 namespace octurn {
+namespace {
+
+constexpr auto min_z = static_cast<float>(nearest_z);
+
+/// The pixel that bounds a cube on one side, from -1024 to 16384. Projecting its edge at the near
+/// and the far plane bounds it.
+/// @param edge   in the sensor's frame, along X or Y; negated, like `focal`, for an upper bound
+/// @param focal  length, pixels
+int bounding_pixel(float edge, float near, float far, float focal, float centre) {
+  const float at = smaller(edge / near, edge / far) * focal + centre;
+  return nearest_pixel(smaller(larger(at, 0.5F - pixel_bias), 16384.0F));
+}
+
+}  // namespace
 
 NodeClassifier::NodeClassifier(const VoxelGrid& grid, const ConditionedDepth& depth,
                                const SensorFromVoxel& sensor_from_voxel)
     : depth_(depth),
       sensor_from_voxel_(sensor_from_voxel),
-      truncation_(static_cast<float>(grid.truncation())) {
-  SensorFromVoxel::Vector half{};
+      truncation_(static_cast<float>(grid.truncation())),
+      camera_{.fx = static_cast<float>(depth.intrinsics().fx),
+              .fy = static_cast<float>(depth.intrinsics().fy),
+              .cx = static_cast<float>(depth.intrinsics().cx),
+              .cy = static_cast<float>(depth.intrinsics().cy)} {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      half[i] += std::abs(sensor_from_voxel.step[axis][i]) / 2;
+      half_extents_[i] += std::abs(sensor_from_voxel.step[axis][i]) / 2;
     }
   }
-  half_depth_ = half[2];
-  half_extents_ = {half[0], half[0], half[1], half[1]};
-  const Intrinsics& intrinsics = depth.intrinsics();
-  const auto fx = static_cast<float>(intrinsics.fx);
-  const auto fy = static_cast<float>(intrinsics.fy);
-  const auto cx = static_cast<float>(intrinsics.cx);
-  const auto cy = static_cast<float>(intrinsics.cy);
-  focal_ = {fx, -fx, fy, -fy};
-  centre_ = {cx, cx, cy, cy};
 }
 
-NodeClass NodeClassifier::classify(const Index3& low, int voxels) const {
-  constexpr auto min_z = static_cast<float>(nearest_z);
+std::array<NodeClass, 8> NodeClassifier::classify_octants(const Index3& low, int voxels) const {
+  Octants bounds;
+  find_bounds(low, voxels, bounds);
+  std::array<NodeClass, 8> classes{};
+  for (std::size_t octant = 0; octant < 8; ++octant) {
+    classes[octant] = classify(bounds, octant);
+  }
+  return classes;
+}
+
+/// Without branches, and by copies that no bound can alias, so that it is vectorised.
+OCTURN_VECTOR_LEVELS
+void NodeClassifier::find_bounds(const Index3& low, int voxels, Octants& bounds) const {
+  const SensorFromVoxel sensor_from_voxel = sensor_from_voxel_;
   const auto side = static_cast<float>(voxels);
   const float half = 0.5F * side;
-  const SensorFromVoxel::Vector middle =
-      sensor_from_voxel_(static_cast<float>(low.x) + half, static_cast<float>(low.y) + half,
-                         static_cast<float>(low.z) + half);
-  const float near = middle[2] - half_depth_ * side;
-  const float far = middle[2] + half_depth_ * side;
+  const float half_x = half_extents_[0] * side;
+  const float half_y = half_extents_[1] * side;
+  const float half_z = half_extents_[2] * side;
+  const auto [fx, fy, cx, cy] = camera_;
+  for (int i = 0; i < 8; ++i) {
+    const auto [x, y, z] =
+        sensor_from_voxel(static_cast<float>(low.x + (i & 1) * voxels) + half,
+                          static_cast<float>(low.y + (i >> 1 & 1) * voxels) + half,
+                          static_cast<float>(low.z + (i >> 2) * voxels) + half);
+    const auto octant = static_cast<std::size_t>(i);
+    const float near = z - half_z;
+    const float far = z + half_z;
+    bounds.near[octant] = near;
+    bounds.far[octant] = far;
+    const float near_at = larger(near, min_z);
+    const float far_at = larger(far, min_z);
+    bounds.u0[octant] = bounding_pixel(x - half_x, near_at, far_at, fx, cx);
+    bounds.u1[octant] = bounding_pixel(-x - half_x, near_at, far_at, -fx, cx);
+    bounds.v0[octant] = bounding_pixel(y - half_y, near_at, far_at, fy, cy);
+    bounds.v1[octant] = bounding_pixel(-y - half_y, near_at, far_at, -fy, cy);
+  }
+}
+
+NodeClass NodeClassifier::classify(const Octants& bounds, std::size_t octant) const {
+  const float near = bounds.near[octant];
+  const float far = bounds.far[octant];
   if (far <= min_z) {
     return NodeClass::outside;
   }
   if (near <= min_z) {
     return NodeClass::near_surface;
   }
-  // Conservative pixel bounds of the node. Projecting each edge at the near and the far plane
-  // bounds it; maxima are negated so that all four are minima.
-  const Eigen::Array4f edge =
-      Eigen::Array4f(middle[0], -middle[0], middle[1], -middle[1]) - half_extents_ * side;
-  const Eigen::Array4f at = (edge / near).min(edge / far) * focal_ + centre_;
-  const Eigen::Array4i pixels = nearest_pixels(at.max(0.5F - pixel_bias).min(16384.0F));
-  const int u0 = pixels[0];
-  const int u1 = pixels[1];
-  const int v0 = pixels[2];
-  const int v1 = pixels[3];
+  const int u0 = bounds.u0[octant];
+  const int u1 = bounds.u1[octant];
+  const int v0 = bounds.v0[octant];
+  const int v1 = bounds.v1[octant];
   if (u1 < 0 || v1 < 0 || u0 >= depth_.intrinsics().width || v0 >= depth_.intrinsics().height) {
     return NodeClass::outside;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
 #include "tsdf/sensor_from_voxel.hpp"
 
@@ -23,18 +24,47 @@ class NodeClassifier {
   NodeClassifier(const VoxelGrid& grid, const ConditionedDepth& depth,
                  const SensorFromVoxel& sensor_from_voxel);
 
-  /// @param low     the cube's lowest voxel, counted from the grid's lowest corner
-  /// @param voxels  along its side
-  NodeClass classify(const Index3& low, int voxels) const;
+  /// The classes of a cube's eight octants. Bits 0, 1 and 2 of an index are set for the upper half
+  /// along x, y and z.
+  /// @param low     the lowest octant's lowest voxel, counted from the grid's lowest corner
+  /// @param voxels  along an octant's side
+  std::array<NodeClass, 8> classify_octants(const Index3& low, int voxels) const;
+
+  /// The same of one cube.
+  NodeClass classify(const Index3& low, int voxels) const {
+    return classify_octants(low, voxels)[0];
+  }
 
  private:
+  /// A pinhole camera in single precision.
+  struct Camera {
+    float fx;
+    float fy;
+    float cx;
+    float cy;
+  };
+
+  /// Conservative bounds of eight cubes, as a structure of arrays.
+  struct Octants {
+    template <typename Value>
+    using Each = std::array<Value, 8>;
+
+    Each<float> near;  // along the sensor's Z, metres
+    Each<float> far;
+    Each<int> u0;  // pixels
+    Each<int> u1;
+    Each<int> v0;
+    Each<int> v1;
+  };
+
+  void find_bounds(const Index3& low, int voxels, Octants& bounds) const;
+  NodeClass classify(const Octants& bounds, std::size_t octant) const;
+
   const ConditionedDepth& depth_;
   SensorFromVoxel sensor_from_voxel_;
   float truncation_;
-  float half_depth_;             // of a voxel: half its extent along the sensor's Z
-  Eigen::Array4f half_extents_;  // of a voxel along the sensor's X, X, Y, Y
-  Eigen::Array4f focal_;         // fx, -fx, fy, -fy
-  Eigen::Array4f centre_;        // cx, cx, cy, cy
+  Camera camera_;
+  std::array<float, 3> half_extents_ = {};  // of a voxel along the sensor's axes
 };
 
 }  // namespace octurn

@@ -21,13 +21,16 @@ PlatformCut::PlatformCut(const VoxelGrid& grid, const Placement& placement) {
   square_ = step_[0] * step_[0] + step_[1] * step_[1] + step_[2] * step_[2];
 }
 
-bool PlatformCut::is_below(const Index3& low, const Index3& size, float margin) const {
+std::pair<float, float> PlatformCut::heights(const Index3& low, const Index3& size) const {
   float lowest = height(low);
+  float highest = lowest;
   const std::array<int, 3> steps{size.x - 1, size.y - 1, size.z - 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    lowest += std::min(step_[axis] * static_cast<float>(steps[axis]), 0.0F);
+    const float along = step_[axis] * static_cast<float>(steps[axis]);
+    lowest += std::min(along, 0.0F);
+    highest += std::max(along, 0.0F);
   }
-  return lowest >= margin;
+  return {lowest, highest};
 }
 
 Index3 PlatformCut::raised(const Index3& voxel, float to_height) const {

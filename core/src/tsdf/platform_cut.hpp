@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "octurn/snapshot.hpp"
 #include "tsdf/voxel_grid.hpp"
@@ -19,10 +20,8 @@ class PlatformCut {
            step_[1] * static_cast<float>(voxel.y) + step_[2] * static_cast<float>(voxel.z);
   }
 
-  /// Whether all centres of the half-open box of voxels from `low` on are so far above the
-  /// platform.
-  /// @param margin  ticks
-  bool is_below(const Index3& low, const Index3& size, float margin) const;
+  /// The smallest and the largest of those heights in the half-open box of voxels from `low` on.
+  std::pair<float, float> heights(const Index3& low, const Index3& size) const;
 
   /// The voxel right above a lower one, at that height in ticks.
   Index3 raised(const Index3& voxel, float to_height) const;

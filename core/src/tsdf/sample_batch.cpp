@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "depth/depth_limits.hpp"
+#include "parallel/vector_levels.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/pixels.hpp"
 
@@ -15,9 +16,6 @@ constexpr int brick_side = VoxelGrid::brick_side;
 constexpr auto min_z = static_cast<float>(nearest_z);
 
 auto four(SampleBatch::Each<float>& each, std::size_t first) {
-  return Eigen::Array4f::Map(&each[first]);
-}
-auto four(const SampleBatch::Each<float>& each, std::size_t first) {
   return Eigen::Array4f::Map(&each[first]);
 }
 
@@ -83,19 +81,15 @@ void BlockSampler::append_rows(const Index3& voxel, SampleBatch& batch) const {
 
 /// Finds each sample's pixel. Samples outside the image get a pixel at its edge, which says
 /// nothing.
+OCTURN_VECTOR_LEVELS
 void BlockSampler::project(SampleBatch& batch) const {
   const auto [fx, fy, cx, cy, last_u, last_v, width] = camera_;
   const auto& [x, y, z] = batch.at;
-  for (std::size_t i = 0; i < batch.count; i += 4) {
-    const Eigen::Array4f inverse_depth = 1.0F / four(z, i).max(min_z);
-    four(batch.seen_at[0], i) =
-        (four(x, i) * inverse_depth * fx + cx).max(0.0F).min(last_u) + (pixel_bias + 0.5F);
-    four(batch.seen_at[1], i) =
-        (four(y, i) * inverse_depth * fy + cy).max(0.0F).min(last_v) + (pixel_bias + 0.5F);
-  }
   for (std::size_t i = 0; i < batch.count; ++i) {
-    batch.pixel[i] = (static_cast<int>(batch.seen_at[1][i]) - pixel_bias) * width +
-                     static_cast<int>(batch.seen_at[0][i]) - pixel_bias;
+    const float inverse_depth = 1.0F / larger(z[i], min_z);
+    const float u = smaller(larger(x[i] * inverse_depth * fx + cx, 0.0F), last_u);
+    const float v = smaller(larger(y[i] * inverse_depth * fy + cy, 0.0F), last_v);
+    batch.pixel[i] = nearest_pixel(v) * width + nearest_pixel(u);
   }
 }
 
@@ -119,6 +113,7 @@ void BlockSampler::gather(SampleBatch& batch) const {
 }
 
 /// Decides which samples are near a surface, and through which the ray passed.
+OCTURN_VECTOR_LEVELS
 void BlockSampler::classify(SampleBatch& batch) const {
   int near = 0;
   int free = 0;

@@ -18,7 +18,6 @@ struct SampleBatch {
   std::size_t count = 0;                          // a multiple of four
   std::array<int, TsdfBrick::samples / 4> first;  // index in the brick, of the first of four
   std::array<Each<float>, 3> at;                  // sensor's frame, metres
-  std::array<Each<float>, 2> seen_at;             // u and v, pixels, plus a bias
   Each<int> pixel;                                // row-major
   Each<float> distance;                           // to the tangent plane, metres
   Each<float> weight;                             // of the reading; 0: the pixel has no surface

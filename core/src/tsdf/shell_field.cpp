@@ -42,10 +42,8 @@ const ShellBrick* ShellField::find(const Index3& brick) const {
 
 HoleFilledSdf::Value ShellField::at(const Index3& voxel) const {
   const ShellBrick* const brick = find({voxel.x >> 3, voxel.y >> 3, voxel.z >> 3});
-  const std::int16_t distance = brick == nullptr
-                                    ? ShellBrick::not_observed
-                                    : brick->distance[static_cast<std::size_t>(
-                                          (voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6)];
+  const std::int16_t distance =
+      brick == nullptr ? ShellBrick::not_observed : brick->distance[VoxelGrid::sample_index(voxel)];
   return {.distance = static_cast<float>(distance),
           .observed = distance != ShellBrick::not_observed};
 }

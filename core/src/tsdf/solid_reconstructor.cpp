@@ -137,8 +137,8 @@ SurfaceCount SolidReconstructor::make_surface(const CompactTsdf& known, const Ho
                                               const FacetSink& sink, const std::stop_token& stop,
                                               ThreadTeam& team) const {
   expect_room(options_, known.bytes() + mask_bytes(sdf));
-  const auto [parts, dropped] = keep_parts(sdf, stop, team);
-  VoxelMask solid = parts.cropped();
+  auto [solid, dropped] = keep_parts(sdf, stop, team);
+  solid = solid.cropped();  // a mask of the whole box is as large as all that was seen
   solid.remove_spurs(stop);
   solid.fill_cavities(stop);
   SurfaceCount count{.leaves = solid.count(),

@@ -45,6 +45,11 @@ class VoxelGrid {
   int block_voxels() const { return block_voxels_; }
   int blocks_per_brick() const { return brick_side / block_voxels_; }
 
+  /// The place of a voxel among the samples of its brick.
+  static std::size_t sample_index(const Index3& voxel) {
+    return static_cast<std::size_t>((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6);
+  }
+
   /// The coordinate of a voxel's centre on one axis (0 to 2), metres, platform frame.
   double centre(int voxel, std::size_t axis) const {
     return (voxel + 0.5) * voxel_side_ - (axis < 2 ? root_side_ / 2 : 0.0);

@@ -13,7 +13,8 @@ constexpr std::size_t mebibyte = std::size_t{1} << 20U;
 inline void check_memory_limit(std::size_t limit, std::size_t min) {
   if (limit != 0 && limit < min) {
     throw Error(ErrorCode::memory_limit, "memory limit: " + mb_text(limit) + " is too little",
-                "Allow at least " + mb_text(min) + ".");
+                "Allow at least " + mb_text(min) + ".",
+                {{"limit_mb", rounded_up_mb(limit)}, {"needed_mb", rounded_up_mb(min)}});
   }
 }
 

@@ -145,6 +145,10 @@ TEST_P(TilesOf, NameTheTileThatDoesNotFit) {
 
   EXPECT_EQ(to_string(error.code()), "memory-limit");
   EXPECT_NE(std::string(error.what()).find("tile ("), std::string::npos) << error.what();
+  EXPECT_EQ(error.parameters().at("limit_mb"),
+            Parameters::mapped_type(GetParam() == Method::solid ? 20.0 : 9.0));
+  EXPECT_GT(std::get<double>(error.parameters().at("needed_mb")),
+            std::get<double>(error.parameters().at("limit_mb")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, TilesOf, testing::Values(Method::intersection, Method::solid),

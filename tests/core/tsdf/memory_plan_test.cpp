@@ -22,6 +22,8 @@ ReconstructOptions options(double leaf_size, std::size_t limit_mb) {
 TEST(MemoryPlan, RefusesBeforeAnythingIsReadWhatItsTablesAloneExceed) {
   const Error error = error_thrown_by([] { make_reconstructor(options(0.0001, 128)); });
   EXPECT_EQ(to_string(error.code()), "memory-limit");
+  EXPECT_EQ(error.parameters().at("limit_mb"), Parameters::mapped_type(128.0));
+  EXPECT_GT(std::get<double>(error.parameters().at("needed_mb")), 128);
   ASSERT_NE(error.hint().find("choose a leaf size of "), std::string::npos) << error.hint();
   const double leaf_mm = std::stod(error.hint().substr(error.hint().find("size of ") + 8));
   EXPECT_GT(leaf_mm, 0.1);

@@ -109,6 +109,31 @@ TEST(SolidOfSeveralPoses, HasAFlatFootWhereNothingSawIt) {
   EXPECT_NEAR(size.y(), 70, 6);
 }
 
+/// A block of 90 x 70 mm that stands on one of its long edges.
+Eigen::Isometry3d tilted(double angle) {
+  Eigen::Isometry3d platform_from_object(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()));
+  platform_from_object.pretranslate(Eigen::Vector3d(0, 0, 0.035 * std::sin(angle)));
+  return platform_from_object.inverse();
+}
+
+TEST(SolidOfSeveralPoses, HasAFlatFootAboveFreeSpaceThatTheOtherPoseSaw) {
+  const std::vector<Placement> placements{{.clip = clip_box},
+                                          {.object_from_platform = tilted(0.6), .clip = clip_box}};
+  const SnapshotSource turns = turns_of(block({0.09, 0.07, 0.09}), placements);
+
+  const Model model = model_of(turns, solid(placements));
+
+  EXPECT_TRUE(topology_of(model.facets).manifold);
+  for (const Facet& facet : model.facets) {
+    const auto packed = facet.corners;
+    for (const auto& [x, y, z] : packed) {
+      if (std::abs(x) < 35 && std::abs(y) < 25 && z < 45) {
+        ASSERT_NEAR(z, 0, 1.5) << x << ' ' << y;
+      }
+    }
+  }
+}
+
 TEST(SolidOfSeveralPoses, IsTheSameInSlabs) {
   const std::vector<Placement> placements{
       {.clip = clip_box}, {.object_from_platform = turned_over(), .clip = clip_box}};

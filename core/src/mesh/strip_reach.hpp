@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "mesh/triangle_adjacency.hpp"
+#include "mesh/vertex_strips.hpp"
+
+namespace octurn {
+
+/// What the edges at a vertex reach.
+enum class Reach : char {
+  unknown,  ///< nobody has asked yet
+  within,   ///< only vertices of its own strip, beside none of which a collapse was left
+  beyond,
+};
+
+/// Tells one thread which vertices of its strip it may collapse while others work at theirs.
+class StripReach {
+ public:
+  /// @param triangles  as the collapses change them
+  /// @param adjacency  of the vertices that were not collapsed since
+  /// @param reach      one per vertex, at first `unknown`; changed in this strip only
+  StripReach(std::span<const MeshTriangle> triangles, const TriangleAdjacency& adjacency,
+             const VertexStrips& strips, int strip, std::span<Reach> reach)
+      : triangles_(triangles),
+        adjacency_(adjacency),
+        strips_(strips),
+        strip_(strip),
+        reach_(reach) {}
+
+  bool has(std::uint32_t vertex) const { return strips_[vertex] == strip_; }
+
+  /// A collapse within the strip never joins a vertex to one that is beyond: what is within stays
+  /// so until something beside it is left.
+  bool is_within(std::uint32_t vertex) {
+    if (!has(vertex)) {
+      return false;
+    }
+    if (reach_[vertex] == Reach::unknown) {
+      const bool is_within =
+          std::ranges::all_of(adjacency_.triangles_at(vertex), [&](std::uint32_t i) {
+            return std::ranges::all_of(triangles_[i],
+                                       [&](std::uint32_t corner) { return has(corner); });
+          });
+      reach_[vertex] = is_within ? Reach::within : Reach::beyond;
+    }
+    return reach_[vertex] == Reach::within;
+  }
+
+  /// A collapse at this vertex was left: those after it that depend on it must be, too.
+  void leave_around(std::uint32_t vertex) {
+    if (!has(vertex)) {
+      return;
+    }
+    for (const std::uint32_t i : adjacency_.triangles_at(vertex)) {
+      for (const std::uint32_t corner : triangles_[i]) {
+        if (has(corner)) {
+          reach_[corner] = Reach::beyond;
+        }
+      }
+    }
+  }
+
+ private:
+  std::span<const MeshTriangle> triangles_;
+  const TriangleAdjacency& adjacency_;
+  const VertexStrips& strips_;
+  int strip_;
+  std::span<Reach> reach_;
+};
+
+}  // namespace octurn

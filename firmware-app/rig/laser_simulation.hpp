@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "octurn/colours.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/scan_folder.hpp"
 
@@ -20,9 +21,17 @@ namespace octurn {
 struct LaserSimulation {
   std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
   std::uint32_t seed = 1;      ///< of noise and speckle: same seed, same pictures
-  Intrinsics lens = {};        ///< of the camera; it has no distortion
+  Intrinsics lens = {};        ///< of the camera
+  double k1 = 0;               ///< of its lens, as of `LaserCamera`
+  double k2 = 0;
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
   std::vector<Laser> lasers = {};                                          ///< with their sources
+};
+
+/// A picture, and its pixels in colour.
+struct ColourExposure {
+  Picture picture = {};
+  std::vector<Rgb> colours = {};  ///< of the picture's luminance, but for rounding
 };
 
 /// Takes the pictures of a simulated camera. Used by one thread at a time.
@@ -40,6 +49,14 @@ class LaserSimulator {
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   /// @param lit    index of the laser that is on; nothing: none is
   virtual Picture expose(double angle, std::optional<std::size_t> lit) = 0;
+
+  /// The same with colours.
+  virtual ColourExposure expose_in_colour(double angle, std::optional<std::size_t> lit) = 0;
+
+  /// Takes a picture of a printed board that is waved before the camera: it is held still for some
+  /// pictures, each time in another place and another way.
+  /// @param number  of the picture since the board is shown, from 0
+  virtual Picture expose_board(int number) = 0;
 };
 
 /// What the module libOcturnLaserSimulator offers, as its symbol `octurn_laser_simulator`.

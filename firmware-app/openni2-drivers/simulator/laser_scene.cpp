@@ -30,6 +30,7 @@ constexpr double check = 0.008;  // metres, of the object's pattern
 constexpr double light_check = 0.95;
 constexpr double dark_check = 0.61;
 constexpr double surroundings_albedo = 0.35;
+constexpr double saturation = 0.4;
 
 double check_albedo(const Eigen::Vector3d& point) {
   const Eigen::Vector3d cells = (point / check).array().floor();
@@ -39,6 +40,19 @@ double check_albedo(const Eigen::Vector3d& point) {
 
 std::uint8_t to_grey(float light) {
   return static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L));
+}
+
+/// The hue of the object's paint: once round the axis, with the luminance of white.
+Eigen::Vector2f axial_tint(const Eigen::Vector3d& point) {
+  const Eigen::Vector2d outwards = point.head<2>();
+  return (saturation * outwards / std::max(outwards.norm(), 1e-6)).cast<float>();
+}
+
+/// Red, green and blue of a luminance and its tint: ITU-R BT.601.
+Rgb to_colour(float light, const Eigen::Vector2f& tint) {
+  return {to_grey(light * (1 + 1.402F * tint.y())),
+          to_grey(light * (1 - 0.344136F * tint.x() - 0.714136F * tint.y())),
+          to_grey(light * (1 + 1.772F * tint.x()))};
 }
 
 }  // namespace
@@ -78,11 +92,13 @@ void LaserScene::look(double angle) {
   }
   const int width = simulation_.lens.width;
   room_light_.assign(seen_.size(), 0);
+  tints_.assign(seen_.size(), Eigen::Vector2f::Zero());
   for (std::size_t pixel = 0; pixel < seen_.size(); ++pixel) {
     const auto at = static_cast<int>(pixel);
     if (const Patch seen = patch(at % width, at / width); seen.is_seen) {
       const double facing = -seen.normal.dot(seen.point.normalized());
       room_light_[pixel] = static_cast<float>(room * seen.albedo * (0.65 + 0.35 * facing));
+      tints_[pixel] = seen.tint;
     }
   }
 }
@@ -113,8 +129,12 @@ LaserScene::Patch LaserScene::patch(int u, int v) const {
   const Eigen::Vector3d normal(a * lens.fx, b * lens.fy,
                                inverse + a * (lens.cx - u) + b * (lens.cy - v));
   Patch seen{.point = ray / inverse, .normal = -normal.normalized(), .is_seen = true};
-  seen.albedo = seen_[pixel] > background_[pixel] ? check_albedo(object_from_sensor_ * seen.point)
-                                                  : surroundings_albedo;
+  seen.albedo = surroundings_albedo;
+  if (seen_[pixel] > background_[pixel]) {
+    const Eigen::Vector3d on_object = object_from_sensor_ * seen.point;
+    seen.albedo = check_albedo(on_object);
+    seen.tint = axial_tint(on_object);
+  }
   return seen;
 }
 
@@ -176,7 +196,8 @@ void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
   }
 }
 
-Picture LaserScene::expose(double angle, std::optional<std::size_t> lit) {
+/// What the camera's pixels take, in grey levels before they are rounded.
+std::vector<float> LaserScene::levels(double angle, std::optional<std::size_t> lit) {
   if (seen_.empty() || angle != angle_) {
     look(angle);
   }
@@ -190,18 +211,34 @@ Picture LaserScene::expose(double angle, std::optional<std::size_t> lit) {
   if (lit) {
     add_line(*lit, light);
   }
-  Picture picture{.width = lens.width, .height = lens.height, .samples = {}};
-  picture.samples.reserve(light.size());
   std::size_t pixel = 0;
   for (int v = 0; v < lens.height; ++v) {
     const std::uint32_t sequence = mixed(number, static_cast<std::uint32_t>(v));
     for (std::size_t u = 0; u < static_cast<std::size_t>(lens.width); ++u, ++pixel) {
       const float spread = std::sqrt(read_noise * read_noise + shot_noise * light[pixel]);
-      picture.samples.push_back(
-          to_grey(light[pixel] + spread * noise_.at(sequence, u) - black_level + 0.4F));
+      light[pixel] = light[pixel] + spread * noise_.at(sequence, u) - black_level + 0.4F;
     }
   }
+  return light;
+}
+
+Picture LaserScene::to_picture(const std::vector<float>& levels) const {
+  Picture picture{.width = simulation_.lens.width, .height = simulation_.lens.height};
+  picture.samples.resize(levels.size());
+  std::ranges::transform(levels, picture.samples.begin(), to_grey);
   return picture;
+}
+
+Picture LaserScene::expose(double angle, std::optional<std::size_t> lit) {
+  return to_picture(levels(angle, lit));
+}
+
+ColourExposure LaserScene::expose_in_colour(double angle, std::optional<std::size_t> lit) {
+  const std::vector<float> light = levels(angle, lit);
+  ColourExposure seen{.picture = to_picture(light)};
+  seen.colours.resize(light.size());
+  std::ranges::transform(light, tints_, seen.colours.begin(), to_colour);
+  return seen;
 }
 
 }  // namespace octurn

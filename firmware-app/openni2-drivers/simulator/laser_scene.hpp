@@ -19,15 +19,17 @@ namespace octurn {
 ///
 /// A laser's line has a Gaussian profile, 0.8 mm wide (1/e^2), which a pixel integrates and the
 /// lens blurs. Lambert's law holds. Neither what the camera does not see nor what the laser's own
-/// rays do not reach is lit. There are speckle, an object with checks of 8 mm of two shades, shot
-/// and read noise, and a lamp that flickers by 2 % from picture to picture. There is no light that
-/// scatters, and no gloss.
-class LaserScene final : public LaserSimulator {
+/// rays do not reach is lit. There are speckle, an object with checks of 8 mm of two shades, whose
+/// hue goes once round its axis, shot and read noise, and a lamp that flickers by 2 % from picture
+/// to picture. There is no light that scatters, and no gloss. Its lens does not distort.
+class LaserScene {
  public:
   explicit LaserScene(const LaserSimulation& simulation);
 
-  void lay_object(int pose) override;
-  Picture expose(double angle, std::optional<std::size_t> lit) override;
+  // As of `LaserSimulator`.
+  void lay_object(int pose);
+  Picture expose(double angle, std::optional<std::size_t> lit);
+  ColourExposure expose_in_colour(double angle, std::optional<std::size_t> lit);
 
  private:
   /// What the camera sees at a pixel.
@@ -35,10 +37,14 @@ class LaserScene final : public LaserSimulator {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();   // metres, optical frame
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of length one, towards the camera
     double albedo = 0;
+    /// How much blue and red differ from luminance, for each level of that (U and V of BT.601).
+    Eigen::Vector2f tint = Eigen::Vector2f::Zero();
     bool is_seen = false;
   };
 
   void look(double angle);
+  std::vector<float> levels(double angle, std::optional<std::size_t> lit);
+  Picture to_picture(const std::vector<float>& levels) const;
   Patch patch(int u, int v) const;
   double slope(std::size_t pixel, std::ptrdiff_t step, bool is_first, bool is_last) const;
   void add_line(std::size_t laser, std::vector<float>& light) const;
@@ -51,7 +57,8 @@ class LaserScene final : public LaserSimulator {
   std::vector<LaserFan> fans_at_rest_ = {};  // that meet what does not turn
   std::vector<LaserFan> fans_ = {};
   InverseDepth seen_ = {};
-  std::vector<float> room_light_ = {};  // grey levels
+  std::vector<float> room_light_ = {};       // grey levels
+  std::vector<Eigen::Vector2f> tints_ = {};  // of its pixels
   Eigen::Isometry3d object_from_sensor_ = Eigen::Isometry3d::Identity();
   double angle_ = 0;
   std::uint32_t pictures_ = 0;

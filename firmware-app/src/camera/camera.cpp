@@ -1,17 +1,15 @@
 #include "camera/camera.hpp"
 
-#include "octurn/error.hpp"
+#include "camera/camera_module.hpp"
+#include "module.hpp"
 
 namespace octurn {
 
-void Camera::show_angle(double /*angle*/) {}
-
-void Camera::lay_object(int /*pose*/) {}
-
-std::unique_ptr<Camera> open_camera() {
-  throw Error(ErrorCode::sensor_missing,
-              "no camera: this version drives none, only the simulated one",
-              "Start Octurn with --simulate-laser, or set \"sensor\" to \"depth\" in octurn.json.");
+std::unique_ptr<Camera> open_camera(const CameraWish& wish) {
+  const auto& module = *static_cast<const CameraModule*>(load_module(
+      "libOcturnCamera.so", "octurn_camera", "the driver of cameras",
+      "Install libcamera, and Octurn as it is built with it; or start it with --simulate-laser."));
+  return module.open(wish);
 }
 
 }  // namespace octurn

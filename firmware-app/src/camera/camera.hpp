@@ -5,7 +5,9 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include "octurn/colours.hpp"
 #include "octurn/depth_png.hpp"
 
 namespace octurn {
@@ -13,7 +15,19 @@ namespace octurn {
 /// A camera's picture, and the beginning of its exposure by the steady clock.
 struct TimedPicture {
   Picture picture = {};
+  /// Its pixels in colour, of the same luminance; empty: none were asked for, or the camera has
+  /// none.
+  std::vector<Rgb> colours = {};
   std::chrono::steady_clock::time_point begin = {};
+};
+
+/// How a camera is to look. Nothing of it changes while a scan runs.
+struct CameraWish {
+  int width = 0;                               ///< pixels, of the lens that is told
+  int height = 0;                              ///< pixels
+  std::chrono::microseconds exposure{10'000};  ///< of each picture
+  double gain = 1;                             ///< of the analogue signal
+  double focus = 0.3;                          ///< metres from the lens, where it can be set
 };
 
 /// A camera that sees lines of lasers, with fixed exposure. Used by one thread at a time.
@@ -34,6 +48,9 @@ class Camera {
   /// @throws Error "sensor-silent" if none comes, "sensor-lost" if the device is gone
   virtual std::optional<TimedPicture> read(const std::stop_token& stop) = 0;
 
+  /// The same, with its colours. A camera without any needs none of its own.
+  virtual std::optional<TimedPicture> read_in_colour(const std::stop_token& stop);
+
   /// Tells a simulated camera the platform's angle. Others ignore it.
   /// @param angle  radians, counter-clockwise seen from above
   virtual void show_angle(double angle);
@@ -41,10 +58,17 @@ class Camera {
   /// Turns the object of a simulated camera over. Others ignore it: a person does it.
   /// @param pose  which way it lies, 0: as it stood at first
   virtual void lay_object(int pose);
+
+  /// Waves a printed board before a simulated camera. Others ignore it: a person does it.
+  /// @param is_shown  false: it is put away
+  virtual void show_board(bool is_shown);
 };
 
-/// Opens the camera of this machine.
-/// @throws Error "sensor-missing"
-std::unique_ptr<Camera> open_camera();
+/// Opens the first camera of this machine that libcamera knows, and starts it.
+/// @throws Error "sensor-missing"  if there is none, or no driver for cameras
+/// @throws Error "sensor-other"    if it makes no pictures of the size, or of no layout that is
+/// read
+/// @throws Error "sensor-failed"   if it is in use, or does not start
+std::unique_ptr<Camera> open_camera(const CameraWish& wish);
 
 }  // namespace octurn

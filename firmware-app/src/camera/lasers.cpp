@@ -1,5 +1,7 @@
 #include "camera/lasers.hpp"
 
+#include <sys/prctl.h>
+
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -70,6 +72,9 @@ void Lasers::switch_off(std::size_t laser) {
 
 Lasers::SetLine open_laser_lines(const std::vector<std::string>& lines) {
   expect_released_lines_to_fall();
+  // The kernel releases the lines of a program that has crashed only after its memory was dumped,
+  // which takes seconds on a Pi: a laser would be on for so long.
+  ::prctl(PR_SET_DUMPABLE, 0);
   std::vector<NamedLine> named;
   named.reserve(lines.size());
   for (const std::string& line : lines) {

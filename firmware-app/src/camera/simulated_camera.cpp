@@ -34,24 +34,51 @@ class SimulatedCamera final : public Camera {
   std::string serial() const override { return "simulated-laser"; }
 
   std::optional<TimedPicture> read(const std::stop_token& stop) override {
+    const auto begin = wait(stop);
+    if (!begin) {
+      return std::nullopt;
+    }
+    return TimedPicture{.picture = shows_board_ ? simulator_->expose_board(board_pictures_++)
+                                                : simulator_->expose(angle_, *lit_),
+                        .begin = *begin};
+  }
+
+  std::optional<TimedPicture> read_in_colour(const std::stop_token& stop) override {
+    const auto begin = wait(stop);
+    if (!begin) {
+      return std::nullopt;
+    }
+    ColourExposure seen = simulator_->expose_in_colour(angle_, *lit_);
+    return TimedPicture{
+        .picture = std::move(seen.picture), .colours = std::move(seen.colours), .begin = *begin};
+  }
+
+  void show_angle(double angle) override { angle_ = angle; }
+  void lay_object(int pose) override { simulator_->lay_object(pose); }
+  void show_board(bool is_shown) override {
+    shows_board_ = is_shown;
+    board_pictures_ = 0;
+  }
+
+ private:
+  /// Waits until the next picture begins. @return nothing if stopped first
+  std::optional<steady_clock::time_point> wait(const std::stop_token& stop) {
     if (!sleep_until(stop, due_)) {
       return std::nullopt;
     }
     const steady_clock::time_point begin = steady_clock::now();
     due_ = std::max(due_ + period_, begin);
-    return TimedPicture{.picture = simulator_->expose(angle_, *lit_), .begin = begin};
+    return begin;
   }
 
-  void show_angle(double angle) override { angle_ = angle; }
-  void lay_object(int pose) override { simulator_->lay_object(pose); }
-
- private:
   std::string name_ = "Laser line (simulated)";
   std::unique_ptr<LaserSimulator> simulator_;
   std::shared_ptr<const Lit> lit_;
   steady_clock::duration period_;
   steady_clock::time_point due_ = {};  // the next picture
   double angle_ = 0;                   // of the platform, radians
+  bool shows_board_ = false;
+  int board_pictures_ = 0;  // since it is shown
 };
 
 }  // namespace

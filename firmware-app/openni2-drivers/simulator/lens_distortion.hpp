@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rig/laser_simulation.hpp"
+
+namespace octurn {
+
+/// The ray (x, y, 1) that the simulated lens shows at a pixel.
+Eigen::Vector2d ray_at(const LaserSimulation& simulation, double u, double v);
+
+/// What the simulated lens makes of the picture of one without distortion: black where that shows
+/// nothing.
+/// @param samples   of a picture of the lens's size, row by row
+/// @param channels  samples of a pixel
+std::vector<std::uint8_t> distorted(std::span<const std::uint8_t> samples, std::size_t channels,
+                                    const LaserSimulation& simulation);
+
+}  // namespace octurn

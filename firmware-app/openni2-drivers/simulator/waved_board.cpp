@@ -1,0 +1,156 @@
+#include "simulator/waved_board.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "simulator/lens_distortion.hpp"
+#include "simulator/noise_field.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double square = 0.015;  // metres
+constexpr int columns = 17;
+constexpr int rows = 12;
+constexpr double margin = 0.6;  // of a square
+
+// Grey levels.
+constexpr double black = 28;
+constexpr double white = 205;
+constexpr double room = 92;
+constexpr double fall_off = 0.35;  // of the light, from the right to the left
+constexpr float noise_level = 1.2F;
+
+constexpr int still_pictures = 5;
+constexpr int moving_pictures = 2;
+constexpr double soft_edge = 1.6;  // pixels, as the lens and a pixel's area blur it
+
+/// Where a board is held: its middle as shares of the picture, its distance, and its turns.
+struct Hold {
+  double across = 0.5;
+  double down = 0.5;
+  double distance = 0.33;  // metres
+  double about_x = 0;      // radians
+  double about_y = 0;
+  double about_z = 0;
+};
+
+constexpr std::array<Hold, 14> holds = {{{0.5, 0.5, 0.32, 0.05, 0.02, 0.0},
+                                         {0.45, 0.5, 0.34, 0.5, 0.0, 0.1},
+                                         {0.55, 0.5, 0.34, -0.5, 0.05, 1.5},
+                                         {0.5, 0.45, 0.34, 0.0, 0.55, 0.2},
+                                         {0.5, 0.55, 0.34, 0.1, -0.55, 1.2},
+                                         {0.25, 0.25, 0.28, 0.3, 0.25, 0.0},
+                                         {0.75, 0.25, 0.28, 0.3, -0.25, 0.1},
+                                         {0.25, 0.75, 0.28, -0.3, 0.25, 0.05},
+                                         {0.75, 0.75, 0.28, -0.3, -0.25, -0.1},
+                                         {0.2, 0.5, 0.24, 0.1, 0.3, 1.5},
+                                         {0.8, 0.5, 0.24, 0.1, -0.3, 1.6},
+                                         {0.5, 0.2, 0.22, 0.25, 0.1, 0.0},
+                                         {0.5, 0.8, 0.22, -0.25, 0.1, 0.1},
+                                         {0.5, 0.5, 0.42, 0.4, 0.4, 0.7}}};
+
+Hold between(const Hold& one, const Hold& other, double share) {
+  const auto mix = [share](double a, double b) { return a + share * (b - a); };
+  return {.across = mix(one.across, other.across),
+          .down = mix(one.down, other.down),
+          .distance = mix(one.distance, other.distance),
+          .about_x = mix(one.about_x, other.about_x),
+          .about_y = mix(one.about_y, other.about_y),
+          .about_z = mix(one.about_z, other.about_z)};
+}
+
+Hold hold_at(int number) {
+  constexpr int of_one = still_pictures + moving_pictures;
+  const auto index = static_cast<std::size_t>(number / of_one);
+  const int within = number % of_one;
+  const Hold& now = holds[index % holds.size()];
+  const Hold& next = holds[(index + 1) % holds.size()];
+  const double share = std::max(0, within - still_pictures + 1) / (moving_pictures + 1.0);
+  return between(now, next, share);
+}
+
+/// The board's frame has its origin at the board's corner, lengths in squares.
+Eigen::Isometry3d camera_from_board(const LaserSimulation& simulation, const Hold& hold) {
+  const Intrinsics& lens = simulation.lens;
+  const Vector2d middle =
+      ray_at(simulation, hold.across * (lens.width - 1), hold.down * (lens.height - 1));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(hold.distance / square * middle.homogeneous());
+  pose.rotate(Eigen::AngleAxisd(hold.about_x, Vector3d::UnitX()));
+  pose.rotate(Eigen::AngleAxisd(hold.about_y, Vector3d::UnitY()));
+  pose.rotate(Eigen::AngleAxisd(hold.about_z, Vector3d::UnitZ()));
+  pose.translate(Vector3d(-columns / 2.0, -rows / 2.0, 0));
+  return pose;
+}
+
+Vector2d met_by(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray) {
+  const Vector3d from = board_from_camera.translation();
+  const Vector3d way = board_from_camera.linear() * ray.homogeneous();
+  return (from - way * (from.z() / way.z())).head<2>();
+}
+
+/// 1 inside of the even squares, -1 inside of the odd ones, and between them at their border.
+/// @param width  of the border, squares
+double parity(double place, double width) {
+  const double border = std::round(place);
+  const double side = std::clamp(2 * (place - border) / width, -1.0, 1.0);
+  return std::fmod(std::abs(border), 2) < 0.5 ? side : -side;
+}
+
+double light_at(const Vector2d& met, const Vector2d& width) {
+  const bool is_paper = met.x() > -margin && met.y() > -margin && met.x() < columns + margin &&
+                        met.y() < rows + margin;
+  const bool is_board = met.x() > 0 && met.y() > 0 && met.x() < columns && met.y() < rows;
+  if (!is_board) {
+    return is_paper ? white : room;
+  }
+  const double dark = (1 + parity(met.x(), width.x()) * parity(met.y(), width.y())) / 2;
+  return white + dark * (black - white);
+}
+
+}  // namespace
+
+WavedBoard::WavedBoard(const LaserSimulation& simulation)
+    : simulation_(simulation), noise_(simulation.seed) {
+  const Intrinsics& lens = simulation.lens;
+  for (int v = 0; v < lens.height; ++v) {
+    for (int u = 0; u < lens.width; ++u) {
+      rays_.push_back(ray_at(simulation, u, v));
+    }
+  }
+}
+
+Picture WavedBoard::picture(int number) const {
+  const Intrinsics& lens = simulation_.lens;
+  const Eigen::Isometry3d board_from_camera =
+      camera_from_board(simulation_, hold_at(number)).inverse();
+  Picture picture{.width = lens.width, .height = lens.height, .samples = {}};
+  picture.samples.reserve(static_cast<std::size_t>(lens.width) *
+                          static_cast<std::size_t>(lens.height));
+  const std::uint32_t of_picture = mixed(simulation_.seed + 2, static_cast<std::uint32_t>(number));
+  for (int v = 0; v < lens.height; ++v) {
+    const std::uint32_t sequence = mixed(of_picture, static_cast<std::uint32_t>(v));
+    for (int u = 0; u < lens.width; ++u) {
+      const Vector2d& ray = rays_[picture.samples.size()];
+      const Vector2d met = met_by(board_from_camera, ray);
+      const Vector2d right = met_by(board_from_camera, ray + Vector2d(1 / lens.fx, 0)) - met;
+      const Vector2d below = met_by(board_from_camera, ray + Vector2d(0, 1 / lens.fy)) - met;
+      const Vector2d width = soft_edge * (right.cwiseAbs() + below.cwiseAbs());
+      const double shade = 1 - fall_off * (1 - static_cast<double>(u) / lens.width);
+      const auto grain =
+          static_cast<double>(noise_level * noise_.at(sequence, static_cast<std::size_t>(u)));
+      picture.samples.push_back(static_cast<std::uint8_t>(
+          std::clamp(std::lround(shade * light_at(met, width) + grain), 0L, 255L)));
+    }
+  }
+  return picture;
+}
+
+}  // namespace octurn

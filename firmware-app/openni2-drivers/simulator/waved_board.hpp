@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "octurn/depth_png.hpp"
+#include "rig/laser_simulation.hpp"
+#include "simulator/white_noise.hpp"
+
+namespace octurn {
+
+/// A printed board that is waved before a camera: 12 by 17 squares of 15 mm with a white margin, in
+/// light that falls off to one side, before a grey room. It is held still for five pictures and
+/// moves for two, through places all over the picture, tilted each way.
+class WavedBoard {
+ public:
+  explicit WavedBoard(const LaserSimulation& simulation);
+
+  /// @param number  of the picture since the board is shown, from 0
+  Picture picture(int number) const;
+
+ private:
+  LaserSimulation simulation_;
+  WhiteNoise noise_;
+  std::vector<Eigen::Vector2d> rays_ = {};  // of the pixels, row by row
+};
+
+}  // namespace octurn

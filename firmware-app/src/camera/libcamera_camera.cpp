@@ -1,0 +1,250 @@
+// The module that drives cameras by libcamera: those of the Pi's CSI connectors, and USB cameras.
+
+#include <libcamera/control_ids.h>
+#include <libcamera/libcamera.h>
+#include <libcamera/property_ids.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/camera_module.hpp"
+#include "camera/colour_picture.hpp"
+#include "camera/completed_requests.hpp"
+#include "camera/mapped_plane.hpp"
+#include "camera/pixel_formats.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr auto longest_silence = std::chrono::seconds(2);
+constexpr const char* again = "Unplug the camera, and plug it in again.";
+
+/// Nanoseconds by the clock that counts from the machine's start, as that of the steady clock,
+/// which stands still while the machine sleeps.
+steady_clock::time_point from_boot_time(std::int64_t nanoseconds) {
+  timespec boot{};
+  ::clock_gettime(CLOCK_BOOTTIME, &boot);
+  const auto age = std::chrono::seconds(boot.tv_sec) + std::chrono::nanoseconds(boot.tv_nsec) -
+                   std::chrono::nanoseconds(nanoseconds);
+  return steady_clock::now() - std::chrono::duration_cast<steady_clock::duration>(age);
+}
+
+/// The camera's controls that it has, all fixed: light that changes from picture to picture would
+/// be taken for a laser's.
+libcamera::ControlList fixed_controls(const libcamera::Camera& camera, const CameraWish& wish) {
+  libcamera::ControlList controls(camera.controls());
+  const auto set = [&](const auto& control, auto value) {
+    if (camera.controls().find(control.id()) != camera.controls().end()) {
+      controls.set(control, value);
+    }
+  };
+  set(libcamera::controls::AeEnable, false);
+  set(libcamera::controls::AwbEnable, false);
+  set(libcamera::controls::ExposureTime, static_cast<std::int32_t>(wish.exposure.count()));
+  set(libcamera::controls::AnalogueGain, static_cast<float>(wish.gain));
+  set(libcamera::controls::AfMode, static_cast<std::int32_t>(libcamera::controls::AfModeManual));
+  set(libcamera::controls::LensPosition, static_cast<float>(1 / wish.focus));  // dioptres
+  return controls;
+}
+
+std::shared_ptr<libcamera::Camera> first_camera(libcamera::CameraManager& manager) {
+  const auto cameras = manager.cameras();
+  if (cameras.empty()) {
+    throw Error(
+        ErrorCode::sensor_missing, "no camera was found",
+        "Plug in a USB camera, or connect one to the Pi's camera connector and start the Pi "
+        "again. The command `cam -l` lists those that libcamera knows.");
+  }
+  return cameras.front();
+}
+
+std::string name_of(const libcamera::Camera& camera) {
+  const auto model = camera.properties().get(libcamera::properties::Model);
+  return model ? std::string(*model) : camera.id();
+}
+
+class LibcameraCamera final : public Camera {
+ public:
+  explicit LibcameraCamera(const CameraWish& wish) : wish_(wish) {
+    if (manager_.start() != 0) {
+      throw Error(ErrorCode::sensor_failed, "libcamera does not start", again);
+    }
+    camera_ = first_camera(manager_);
+    name_ = name_of(*camera_);
+    expect(camera_->acquire() == 0, "is in use by another program",
+           "End the other program, and try again.");
+    try {
+      start();
+    } catch (...) {
+      end();
+      throw;
+    }
+  }
+
+  ~LibcameraCamera() override { end(); }
+
+  const std::string& name() const override { return name_; }
+  std::string serial() const override { return camera_->id(); }
+
+  std::optional<TimedPicture> read(const std::stop_token& stop) override {
+    return read_newest(stop, Kind::grey);
+  }
+  std::optional<TimedPicture> read_in_colour(const std::stop_token& stop) override {
+    return read_newest(stop, Kind::colour);
+  }
+
+ private:
+  enum class Kind { grey, colour };
+
+  /// The newest picture that is there.
+  std::optional<TimedPicture> read_newest(const std::stop_token& stop, Kind kind) {
+    for (;;) {
+      switch (completed_.wait(stop, longest_silence)) {
+        case CompletedRequests::Outcome::stopped:
+          return std::nullopt;
+        case CompletedRequests::Outcome::disconnected:
+          throw Error(ErrorCode::sensor_lost, "camera: " + name_ + " is gone", again);
+        case CompletedRequests::Outcome::late:
+          throw Error(ErrorCode::sensor_silent,
+                      "camera: " + name_ + " has sent no picture for 2 seconds", again);
+        case CompletedRequests::Outcome::completed:
+          break;
+      }
+      if (auto picture = newest(completed_.take(), kind)) {
+        return picture;
+      }
+    }
+  }
+
+  void expect(bool holds, const std::string& otherwise, const char* hint = again) const {
+    if (!holds) {
+      throw Error(ErrorCode::sensor_failed, "camera: " + name_ + " " + otherwise, hint);
+    }
+  }
+
+  void start() {
+    const std::unique_ptr<libcamera::CameraConfiguration> configuration =
+        camera_->generateConfiguration({libcamera::StreamRole::VideoRecording});
+    expect(configuration != nullptr && !configuration->empty(), "has no stream of pictures");
+    const PixelLayout layout = choose_format(*configuration, wish_, *camera_, name_);
+    expect(camera_->configure(configuration.get()) == 0, "cannot be set up");
+    libcamera::Stream* const stream = configuration->at(0).stream();
+    rows_ = {.layout = layout,
+             .width = wish_.width,
+             .height = wish_.height,
+             .stride = configuration->at(0).stride};
+    buffers_ = std::make_unique<libcamera::FrameBufferAllocator>(camera_);
+    expect(buffers_->allocate(stream) > 0, "has no memory for its pictures");
+    for (const auto& buffer : buffers_->buffers(stream)) {
+      mapped_.emplace_back(*buffer);
+      std::unique_ptr<libcamera::Request> request = camera_->createRequest(mapped_.size() - 1);
+      expect(request != nullptr && request->addBuffer(stream, buffer.get()) == 0,
+             "takes no requests");
+      requests_.push_back(std::move(request));
+    }
+    camera_->requestCompleted.connect(this, &LibcameraCamera::on_completed);
+    camera_->disconnected.connect(this, &LibcameraCamera::on_disconnected);
+    libcamera::ControlList controls = fixed_controls(*camera_, wish_);
+    expect(camera_->start(&controls) == 0, "does not start");
+    for (const auto& request : requests_) {
+      request->controls().merge(controls);  // USB cameras take none at their start
+      expect(camera_->queueRequest(request.get()) == 0, "takes no requests");
+    }
+  }
+
+  void end() {
+    camera_->stop();
+    camera_->requestCompleted.disconnect(this);
+    camera_->disconnected.disconnect(this);
+    requests_.clear();
+    mapped_.clear();
+    buffers_.reset();
+    camera_->release();
+    camera_.reset();
+    manager_.stop();
+  }
+
+  void on_completed(libcamera::Request* request) {
+    if (request->status() == libcamera::Request::RequestComplete) {
+      completed_.add(request);
+    }
+  }
+
+  void on_disconnected() { completed_.disconnect(); }
+
+  /// The picture of the last request that has one; all are queued again.
+  std::optional<TimedPicture> newest(const std::vector<libcamera::Request*>& requests, Kind kind) {
+    std::optional<TimedPicture> picture;
+    for (auto request = requests.rbegin(); request != requests.rend(); ++request) {
+      if (!picture) {
+        picture = picture_of(**request, kind);
+      }
+      (*request)->reuse(libcamera::Request::ReuseBuffers);
+      if (camera_->queueRequest(*request) != 0) {
+        throw Error(ErrorCode::sensor_lost, "camera: " + name_ + " is gone", again);
+      }
+    }
+    return picture;
+  }
+
+  /// @return nothing if the driver says that the picture is damaged
+  std::optional<TimedPicture> picture_of(libcamera::Request& request, Kind kind) const {
+    const libcamera::FrameBuffer& buffer = *request.buffers().begin()->second;
+    if (buffer.metadata().status != libcamera::FrameMetadata::FrameSuccess) {
+      return std::nullopt;
+    }
+    const MappedBuffer& mapped = mapped_[request.cookie()];
+    const auto planes = mapped.planes();
+    mapped.begin_reading();
+    TimedPicture picture{.picture = grey_picture(planes.front(), rows_),
+                         .begin = begin_of(request)};
+    if (kind == Kind::colour) {
+      picture.colours = colour_picture(planes, rows_);
+    }
+    mapped.end_reading();
+    return picture;
+  }
+
+  /// Drivers tell when a row's exposure begins or when it ends: the earlier is counted, so that no
+  /// picture is taken for one of a laser that was switched on in its middle.
+  steady_clock::time_point begin_of(libcamera::Request& request) const {
+    const auto told = request.metadata().get(libcamera::controls::SensorTimestamp);
+    const auto exposed = request.metadata().get(libcamera::controls::ExposureTime);
+    const std::chrono::microseconds exposure =
+        exposed ? std::chrono::microseconds(*exposed) : wish_.exposure;
+    const std::int64_t at =
+        told ? *told
+             : static_cast<std::int64_t>(request.buffers().begin()->second->metadata().timestamp);
+    return from_boot_time(at) - exposure;
+  }
+
+  CameraWish wish_;
+  libcamera::CameraManager manager_ = {};
+  std::shared_ptr<libcamera::Camera> camera_ = {};
+  std::string name_ = {};
+  PixelRows rows_ = {};
+  std::unique_ptr<libcamera::FrameBufferAllocator> buffers_ = {};
+  std::deque<MappedBuffer> mapped_ = {};                            // in the buffers' order
+  std::vector<std::unique_ptr<libcamera::Request>> requests_ = {};  // cookie: index of its buffer
+  CompletedRequests completed_ = {};
+};
+
+std::unique_ptr<Camera> open(const CameraWish& wish) {
+  return std::make_unique<LibcameraCamera>(wish);
+}
+
+}  // namespace
+}  // namespace octurn
+
+extern "C" __attribute__((visibility("default"))) const octurn::CameraModule octurn_camera;
+extern "C" const octurn::CameraModule octurn_camera{.open = octurn::open};

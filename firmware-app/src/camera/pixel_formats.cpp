@@ -1,0 +1,105 @@
+#include "camera/pixel_formats.hpp"
+
+#include <libcamera/formats.h>
+#include <libcamera/property_ids.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+using libcamera::PixelFormat;
+using libcamera::Size;
+
+// What needs the least work first; of a camera with colours grey is the last. libcamera names
+// colours by the bits of a little-endian word: BGR888 has red first in memory.
+using Readable = std::array<std::pair<PixelFormat, PixelLayout>, 9>;
+const Readable readable = {{
+    {libcamera::formats::R8, PixelLayout::grey},
+    {libcamera::formats::NV12, PixelLayout::nv12},
+    {libcamera::formats::NV21, PixelLayout::nv21},
+    {libcamera::formats::YUV420, PixelLayout::yuv420},
+    {libcamera::formats::YVU420, PixelLayout::yvu420},
+    {libcamera::formats::YUYV, PixelLayout::yuyv},
+    {libcamera::formats::UYVY, PixelLayout::uyvy},
+    {libcamera::formats::BGR888, PixelLayout::rgb_bytes},
+    {libcamera::formats::RGB888, PixelLayout::bgr_bytes},
+}};
+
+Readable readable_of(const libcamera::Camera& camera) {
+  Readable formats = readable;
+  const auto filter = camera.properties().get(libcamera::properties::draft::ColorFilterArrangement);
+  if (filter != libcamera::properties::draft::MONO) {
+    std::rotate(formats.begin(), formats.begin() + 1, formats.end());
+  }
+  return formats;
+}
+
+std::string size_text(const Size& size) {
+  return std::to_string(size.width) + " x " + std::to_string(size.height);
+}
+
+/// The sizes that a stream has in formats that are read, the largest first.
+std::vector<Size> sizes_of(const libcamera::StreamConfiguration& stream) {
+  std::vector<Size> sizes;
+  for (const auto& [format, layout] : readable) {
+    for (const Size& size : stream.formats().sizes(format)) {
+      if (std::ranges::find(sizes, size) == sizes.end()) {
+        sizes.push_back(size);
+      }
+    }
+  }
+  std::ranges::sort(sizes, [](const Size& a, const Size& b) {
+    return std::size_t{a.width} * a.height > std::size_t{b.width} * b.height;
+  });
+  return sizes;
+}
+
+[[noreturn]] void refuse(const libcamera::StreamConfiguration& stream, const Size& wanted,
+                         const std::string& camera) {
+  const std::vector<Size> sizes = sizes_of(stream);
+  if (sizes.empty()) {
+    throw Error(ErrorCode::sensor_other, camera + ": none of its formats can be read",
+                "Use a camera that sends pictures without compression.");
+  }
+  std::string others;
+  for (const Size& size : sizes) {
+    others += (others.empty() ? "" : ", ") + size_text(size);
+  }
+  throw Error(
+      ErrorCode::sensor_other, camera + ": it makes no pictures of " + size_text(wanted),
+      "Set laser.width and laser.height to a size of its own, and the other keys of its lens: "
+      "it has " +
+          others + ".");
+}
+
+}  // namespace
+
+PixelLayout choose_format(libcamera::CameraConfiguration& configuration, const CameraWish& wish,
+                          const libcamera::Camera& camera, const std::string& name) {
+  libcamera::StreamConfiguration& stream = configuration.at(0);
+  const Size wanted(static_cast<unsigned>(wish.width), static_cast<unsigned>(wish.height));
+  const std::vector<PixelFormat> offered = stream.formats().pixelformats();
+  for (const auto& [format, layout] : readable_of(camera)) {
+    if (std::ranges::find(offered, format) == offered.end()) {
+      continue;
+    }
+    stream.pixelFormat = format;
+    stream.size = wanted;
+    stream.colorSpace = libcamera::ColorSpace::Sycc;  // all levels, and BT.601 as is computed with
+    // What is validated may be adjusted: to another size, or another format.
+    if (configuration.validate() != libcamera::CameraConfiguration::Invalid &&
+        stream.size == wanted && stream.pixelFormat == format) {
+      return layout;
+    }
+  }
+  refuse(stream, wanted, name);
+}
+
+}  // namespace octurn

@@ -2,12 +2,21 @@
 
 #include <malloc.h>
 
+#include <limits>
+
 namespace octurn {
 namespace {
 
 constexpr int large_block_bytes = 1 << 18;  // below the blocks that voxels are stored in
 
+constexpr int kept_bytes = 1 << 25;  // of a block: the most that the C library keeps
+
 }  // namespace
+
+void keep_freed_memory() {
+  ::mallopt(M_MMAP_THRESHOLD, kept_bytes);
+  ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
 
 void return_freed_memory() { ::mallopt(M_MMAP_THRESHOLD, large_block_bytes); }
 

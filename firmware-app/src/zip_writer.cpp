@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void throw_full(const fs::path& file) {
   throw Error(ErrorCode::disk_full, file.string() + ": cannot be written",
-              "Delete scans that are no longer needed.");
+              "Delete scans that are no longer needed.", {{"path", file.string()}});
 }
 
 }  // namespace

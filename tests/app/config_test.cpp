@@ -58,7 +58,7 @@ TEST(Config, IsWrittenAsItIsRead) {
                     "take_up_steps": 5},
       "sensor": "depth",
       "laser": {"width": 640, "height": 480, "fx": 500.5, "fy": 501.0, "cx": 319.5, "cy": 239.5,
-                "k1": -0.05, "k2": 0.25,
+                "k1": -0.05, "k2": 0.25, "exposure_ms": 25, "gain": 2.5,
                 "platform_from_sensor": [[1, 0, 0, 0.5], [0, 0, 1, -0.25], [0, -1, 0, 0.125],
                                          [0, 0, 0, 1]],
                 "left": {"line": "GPIO12", "plane_m": [1, 0, 0, 0.25], "source_m": [0.25, 0, 0.5]},

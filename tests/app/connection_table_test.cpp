@@ -161,6 +161,32 @@ TEST(ConnectionTable, TakesAHeadThatNoThreadHasReadForOneInTheQueue) {
   EXPECT_TRUE(std::ranges::none_of(table.cut_all_due(start + 1005ms), is_first));
 }
 
+/// Two connections too many, all of which came at `start`, each from another address.
+ConnectionTable table_of_six() {
+  ConnectionTable table(limits);
+  std::vector<AcceptedSocket> open;
+  for (int i = 1; i <= 6; ++i) {
+    open.push_back(socket_from("10.0.0." + std::to_string(i), i));
+  }
+  table.refresh(open, start);
+  return table;
+}
+
+TEST(ConnectionTable, GivesABusyMachineLongerToReadAHead) {
+  ConnectionTable table = table_of_six();
+  table.note_lateness(30ms);
+  EXPECT_TRUE(table.cut_all_due(start + 200ms).empty());
+  table.note_lateness(-1ms);  // woken before its time
+  EXPECT_TRUE(table.cut_all_due(start + 300ms).empty());
+  EXPECT_EQ(table.cut_all_due(start + 400ms).size(), 2U);
+}
+
+TEST(ConnectionTable, CutsAfterASecondHoweverBusyTheMachineIs) {
+  ConnectionTable table = table_of_six();
+  table.note_lateness(1h);
+  EXPECT_EQ(table.cut_all_due(start + 1100ms).size(), 2U);
+}
+
 TEST(ConnectionTable, ForgetsWhatIsClosedAndKnowsASocketByItsInode) {
   OneClient client(Wait::body);
   AcceptedSocket next = socket_from("10.0.0.2", 1);  // the same descriptor

@@ -32,6 +32,7 @@ TEST(FittingReconstruction, BecomesCoarserAsLongAsTheModelDoesNotFit) {
   };
   const Error error = error_thrown_by(make);
   ASSERT_EQ(error.code(), ErrorCode::memory_limit);
+  EXPECT_EQ(error.parameters(), (Parameters{{"limit_mb", 24.0}}));
   reconstruction.make_coarser(error);
   make();
   EXPECT_TRUE(check.closed());

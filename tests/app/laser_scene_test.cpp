@@ -163,6 +163,44 @@ TEST_F(LaserSceneTest, TakesTheSamePicturesForTheSameSeed) {
   EXPECT_FALSE(first.expose(0.3, {}).samples == first.expose(0.3, {}).samples);  // noise
 }
 
+// So that the dark picture can be subtracted whether it is stored in colour or not.
+TEST_F(LaserSceneTest, HasColoursOfThePicturesLuminance) {
+  LaserScene scene(simulation());
+  LaserScene same(simulation());
+  const ColourExposure seen = scene.expose_in_colour(0.3, {});
+  EXPECT_TRUE(seen.picture.samples == same.expose(0.3, {}).samples);
+  ASSERT_EQ(seen.colours.size(), seen.picture.samples.size());
+  for (std::size_t i = 0; i < seen.colours.size(); ++i) {
+    const auto& [r, g, b] = seen.colours[i];
+    ASSERT_NEAR(0.299 * r + 0.587 * g + 0.114 * b, seen.picture.samples[i], 1.01) << i;
+  }
+}
+
+// Red is strongest where the object's Y axis points, and blue where its X axis does.
+TEST_F(LaserSceneTest, PaintsTheObjectOnceRoundItsAxis) {
+  const LaserSimulation told = simulation();
+  LaserScene scene(told);
+  constexpr double quarter = std::numbers::pi / 2;
+  for (int side = 0; side < 4; ++side) {
+    // The side that faces the camera, which looks along Y.
+    const ColourExposure seen = scene.expose_in_colour(side * quarter, {});
+    const Vector3d at = told.platform_from_sensor.inverse() * Vector3d(0, -0.03, 0.02);
+    const int u = static_cast<int>(std::lround(told.lens.fx * at.x() / at.z() + told.lens.cx));
+    const int v = static_cast<int>(std::lround(told.lens.fy * at.y() / at.z() + told.lens.cy));
+    Vector3d sum = Vector3d::Zero();
+    for (int y = v - 10; y <= v + 10; ++y) {
+      for (int x = u - 3; x <= u + 3; ++x) {
+        const auto& [r, g, b] = seen.colours[static_cast<std::size_t>(y * told.lens.width + x)];
+        sum += Vector3d(r, g, b);
+      }
+    }
+    const double light = sum.dot(Vector3d(0.299, 0.587, 0.114));
+    const double azimuth = -quarter - side * quarter;  // of that side on the object
+    EXPECT_NEAR((sum.z() / light - 1) / 1.772, 0.4 * std::cos(azimuth), 0.06) << side;
+    EXPECT_NEAR((sum.x() / light - 1) / 1.402, 0.4 * std::sin(azimuth), 0.06) << side;
+  }
+}
+
 TEST_F(LaserSceneTest, TurnsWithThePlatform) {
   const LaserSimulation told = simulation();
   LaserScene scene(told);

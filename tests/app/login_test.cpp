@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "http/password_file.hpp"
@@ -38,6 +39,8 @@ class LoginTest : public ::testing::Test {
     return last_ ? last_->status : 200;
   }
 
+  const std::optional<Response>& last() const { return last_; }
+
   bool is_told_stale() const { return challenge_of(last_).find("stale=true") != std::string::npos; }
 
   static std::string challenge_of(const std::optional<Response>& response) {
@@ -61,6 +64,18 @@ TEST_F(LoginTest, LetsInWhoKnowsThePassword) {
   EXPECT_EQ(answer(proof_of("open sesame", one)), 200);
   EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 2})), 200);
   EXPECT_EQ(answer(proof_of("sesame", one, {.uses = 3})), 401);
+}
+
+TEST_F(LoginTest, TellsAProgramWhatIsMissingAndWho) {
+  ASSERT_EQ(answer("", {.path = "/api/v1/status"}), 401);
+  const auto& response = last();
+  EXPECT_EQ(response->headers.front(),
+            (Headers::value_type{"Content-Type", "application/problem+json"}));
+  const auto body = nlohmann::json::parse(std::get<std::string>(response->body));
+  EXPECT_EQ(body["status"], 401);
+  EXPECT_EQ(body["code"], "password-needed");
+  EXPECT_EQ(body["detail"], "the page has a password");
+  EXPECT_EQ(body["hint"], "The user is octurn.");
 }
 
 TEST_F(LoginTest, TakesAProofForItsOwnTargetAndMethodAlone) {

@@ -209,6 +209,9 @@ TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
     const Error error =
         error_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); });
     EXPECT_EQ(error.code(), ErrorCode::disk_full) << bytes;
+    ASSERT_TRUE(error.parameters().contains("path")) << error.what();
+    EXPECT_TRUE(
+        std::get<std::string>(error.parameters().at("path")).starts_with(folder.path().string()));
     EXPECT_EQ(fs::exists(folder.path() / "Scan.stl"), false);
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder.path())) {
       EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();

@@ -12,7 +12,11 @@
 
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
+#include "mesh/vertex_table.hpp"
 #include "octurn/scan_folder.hpp"
+#include "scan/colour_model.hpp"
+#include "scan/stored_scan.hpp"
+#include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
@@ -75,6 +79,48 @@ TEST_F(ScanByLaser, StoresAFolderThatTheReconstructionReads) {
   const Snapshot snapshot = stored_snapshots(folder, scan).read(0);
   ASSERT_EQ(snapshot.strips.size(), 2U);
   EXPECT_GT(snapshot.strips[0].points.size(), 100U);
+}
+
+TEST_F(ScanByLaser, HasThePicturesAndTheModelInColour) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job job = ended(scanner);
+  ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
+  EXPECT_TRUE(job.builds.have_colours);
+  EXPECT_TRUE(store_.get(job.id).builds.have_colours);
+  EXPECT_TRUE(has_colours(store_.folder(job.id), read_scan(store_.folder(job.id))));
+
+  ASSERT_TRUE(scanner.colour_model(job, 0));
+  const fs::path model = store_.model_file(job.id);
+  const std::vector<Rgb> colours = read_colours(model);
+  EXPECT_EQ(colours.size(), VertexTable(FacetFile(model)).vertices().size());
+}
+
+TEST_F(ScanByLaser, RefusesColoursThatTakeMoreMemoryThanIsAllowed) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job job = ended(scanner);
+  const fs::path model = store_.model_file(job.id);
+  const auto colour = [&](std::size_t limit) {
+    colour_model(model, scan_of_model(store_, job, 0), limit, {});
+  };
+
+  EXPECT_EQ(code_thrown_by([&] { colour(1 << 20U); }), "memory-limit");
+  EXPECT_FALSE(fs::exists(colours_file(model)));
+  colour(64 << 20U);
+  EXPECT_TRUE(fs::exists(colours_file(model)));
+}
+
+TEST_F(ScanByLaser, EndsColoursWhenItIsStopped) {
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scanner.start(settings());
+  const Job job = ended(scanner);
+  std::stop_source stop;
+  stop.request_stop();
+  const fs::path model = store_.model_file(job.id);
+
+  EXPECT_THROW(colour_model(model, scan_of_model(store_, job, 0), 0, stop.get_token()), Stopped);
+  EXPECT_FALSE(fs::exists(colours_file(model)));
 }
 
 TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {

@@ -164,6 +164,8 @@ TEST_F(PausedScan, GoesOnWithItsOwnSensorOnly) {
   const Job other = ended(scanner_);
   EXPECT_EQ(other.state, JobState::paused);
   EXPECT_EQ(other.failure->code, ErrorCode::sensor_other);
+  EXPECT_EQ(other.failure->parameters,
+            (Parameters{{"begun_with", read_scan(store_.folder(job.id)).sensor_name}}));
   rig_.set_lens({});
   ASSERT_TRUE(scanner_.resume(job.id));
   EXPECT_EQ(ended(scanner_).state, JobState::finished);

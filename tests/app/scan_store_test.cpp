@@ -53,19 +53,27 @@ TEST(ScanStore, ReturnsAFinishedScanAsItWasSaved) {
                                .volume = 0.000123,
                                .size = {0.12, 0.095, 0.151}},
                     .build_time = std::chrono::milliseconds(80)};
-  job.calibration = ScanCalibration{
-      .accepted = true,
-      .solved = SolvedPose{.platform_from_sensor = nominal_platform_from_sensor(),
-                           .position_sigma = 0.00004,
-                           .direction_sigma = 0.0002,
-                           .before = 0.0021,
-                           .after = 0.0005},
-      .findings = {{.code = "slip", .detail = "stop 3", .hint = "Look.", .stop = 3, .angle = 0.03}},
-      .rebuilt = 36};
+  job.calibration =
+      ScanCalibration{.accepted = true,
+                      .solved = SolvedPose{.platform_from_sensor = nominal_platform_from_sensor(),
+                                           .position_sigma = 0.00004,
+                                           .direction_sigma = 0.0002,
+                                           .before = 0.0021,
+                                           .after = 0.0005},
+                      .findings = {{.code = "slip",
+                                    .detail = "stop 3",
+                                    .hint = "Look.",
+                                    .stop = 3,
+                                    .angle = 0.03,
+                                    .parameters = {{"stop", 3.0}, {"off_deg", 1.7}}}},
+                      .rebuilt = 36};
   store.save(job);
   const auto found = store.find(job.id);
   ASSERT_TRUE(found && found->model);
   EXPECT_EQ(to_job_json(*found), to_job_json(job));
+  ASSERT_EQ(found->calibration->findings.size(), 1U);
+  EXPECT_EQ(found->calibration->findings[0].parameters,
+            (Parameters{{"stop", 3.0}, {"off_deg", 1.7}}));
   EXPECT_NEAR(found->model->report.volume, 0.000123, 1e-12);
   EXPECT_EQ(store.newest_finished()->id, job.id);
 }
@@ -275,6 +283,14 @@ TEST(ScanStore, RefusesAScanThatMayNotFit) {
   const Error error = error_thrown_by([&] { store.create(settings); });
   EXPECT_EQ(error.code(), ErrorCode::disk_full);
   EXPECT_FALSE(error.hint().empty());
+  ASSERT_EQ(error.parameters().size(), 3U);
+  EXPECT_EQ(error.parameters().at("path"), Parameters::mapped_type(folder.path().string()));
+  const std::string needed =
+      std::to_string(std::llround(std::get<double>(error.parameters().at("needed_mb"))));
+  EXPECT_NE(std::string(error.what()).find("needs " + needed + " MB"), std::string::npos)
+      << error.what();
+  EXPECT_LT(std::get<double>(error.parameters().at("free_mb")),
+            std::get<double>(error.parameters().at("needed_mb")));
   EXPECT_TRUE(store.list().empty());
 }
 

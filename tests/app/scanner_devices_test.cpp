@@ -23,9 +23,12 @@ TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
   });
   EXPECT_TRUE(silent.busy());
   EXPECT_EQ(silent.job->failure->code, ErrorCode::sensor_silent);
+  ASSERT_TRUE(silent.job->times.until_pause);
+  EXPECT_LE(*silent.job->times.until_pause, 30s);
   const Status status = scanner.wait_until_done(patience);
   EXPECT_EQ(status.job->state, JobState::finished);
   EXPECT_FALSE(status.job->failure);
+  EXPECT_FALSE(status.job->times.until_pause);
   EXPECT_EQ(status.sensor.state, DeviceStatus::State::ready);
 }
 

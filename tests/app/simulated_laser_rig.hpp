@@ -10,6 +10,7 @@
 
 #include "camera/simulated_camera.hpp"
 #include "octurn/error.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/rig.hpp"
 
 namespace octurn {
@@ -34,8 +35,11 @@ class SimulatedLaserRig {
                 throw Error(ErrorCode::sensor_missing, "no camera is plugged in", "Plug it in.");
               }
               const LaserCamera camera = laser_camera(settings_);
+              const CameraLens lens = other_lens.value_or(told_lens(settings_));
               CameraAndLasers opened =
-                  simulate_laser_rig({.lens = settings_.lens,
+                  simulate_laser_rig({.lens = lens.intrinsics,
+                                      .k1 = lens.k1,
+                                      .k2 = lens.k2,
                                       .platform_from_sensor = settings_.platform_from_sensor,
                                       .lasers = camera.lasers},
                                      speed);
@@ -56,6 +60,7 @@ class SimulatedLaserRig {
   std::atomic<int> lost_pictures = 0;          ///< so many of the next are never handed out
   std::atomic<int> pictures = 0;               ///< that were handed out
   std::optional<std::size_t> dark_laser = {};  ///< that gives no light; set before a scan
+  std::optional<CameraLens> other_lens = {};   ///< that differs from the told one
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture; read after a scan
   /// Called before each picture.
   std::function<void(SimulatedLaserRig& rig)> on_picture = [](SimulatedLaserRig&) {};
@@ -68,7 +73,17 @@ class SimulatedLaserRig {
     const std::string& name() const override { return camera_->name(); }
     std::string serial() const override { return camera_->serial(); }
     void show_angle(double angle) override { camera_->show_angle(angle); }
+    void show_board(bool is_shown) override { camera_->show_board(is_shown); }
     std::optional<TimedPicture> read(const std::stop_token& stop) override {
+      return read_by([&] { return camera_->read(stop); });
+    }
+    std::optional<TimedPicture> read_in_colour(const std::stop_token& stop) override {
+      return read_by([&] { return camera_->read_in_colour(stop); });
+    }
+
+   private:
+    template <typename Read>
+    std::optional<TimedPicture> read_by(const Read& read) {
       rig_.on_picture(rig_);
       if (rig_.is_unplugged) {
         throw Error(ErrorCode::sensor_lost, "the camera is gone", "Plug it in.");
@@ -77,13 +92,12 @@ class SimulatedLaserRig {
         --rig_.lost_pictures;
         throw Error(ErrorCode::sensor_silent, "no picture for 2000 ms", "Plug it in again.");
       }
-      auto picture = camera_->read(stop);
+      auto picture = read();
       rig_.pictures += picture ? 1 : 0;
       rig_.log += picture ? "p" : "";
       return picture;
     }
 
-   private:
     SimulatedLaserRig& rig_;
     std::unique_ptr<Camera> camera_;
   };

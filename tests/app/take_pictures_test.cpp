@@ -65,9 +65,11 @@ TEST(Line, IsMoreThanNoiseInAFewRows) {
             "sensor-blind");
 }
 
+constexpr Rgb paint = {40, 12, 9};
+
 /// A camera of a test, with two lasers. It knows which are on.
 struct Bench {
-  std::string log = {};  ///< A and B for on, a and b for off, p for a picture
+  std::string log = {};  ///< A and B for on, a and b for off, p for a picture, c for one in colour
   std::array<bool, 2> is_on = {};
   std::array<bool, 2> gives_light = {true, true};
   int stale = 0;           ///< pictures begun long ago that are handed out first
@@ -75,6 +77,7 @@ struct Bench {
   int stop_after = 1000;   ///< pictures, then a stop is requested
   std::uint8_t room = 20;  ///< grey levels
   int columns = width;     ///< of its pictures
+  bool has_colours = false;
   std::stop_source stop = {};
 
   bool is_lit() const { return is_on[0] || is_on[1]; }
@@ -84,6 +87,14 @@ struct Bench {
     explicit BenchCamera(Bench& bench) : bench_(bench) {}
     const std::string& name() const override { return name_; }
     std::string serial() const override { return "7"; }
+    std::optional<TimedPicture> read_in_colour(const std::stop_token& stop) override {
+      std::optional<TimedPicture> timed = read(stop);
+      if (timed && bench_.has_colours) {
+        timed->colours.assign(timed->picture.samples.size(), paint);
+        bench_.log.back() = bench_.log.back() == 'p' ? 'c' : bench_.log.back();
+      }
+      return timed;
+    }
     std::optional<TimedPicture> read(const std::stop_token& stop) override {
       if (stop.stop_requested()) {
         return std::nullopt;
@@ -128,27 +139,39 @@ struct Bench {
   }
 };
 
-std::optional<std::vector<Picture>> take(Bench& bench) {
+std::optional<StopPictures> take(Bench& bench) {
   Rig rig(bench.options());
   return take_pictures(rig, {.index = 0, .position = 3}, bench.stop.get_token(), {});
 }
 
 TEST(TakePictures, TakesADarkOneAndOneWithEachLaserAlone) {
   Bench bench;
-  const auto pictures = take(bench);
+  const auto taken = take(bench);
   EXPECT_EQ(bench.log, "abpApaBpbab");
-  ASSERT_TRUE(pictures);
-  ASSERT_EQ(pictures->size(), 3U);
-  EXPECT_EQ(pictures->at(0).samples, grey(20).samples);
-  EXPECT_EQ(pictures->at(1).samples, with_line(20, height, 250).samples);
+  ASSERT_TRUE(taken);
+  ASSERT_EQ(taken->pictures.size(), 3U);
+  EXPECT_EQ(taken->pictures[0].samples, grey(20).samples);
+  EXPECT_EQ(taken->pictures[1].samples, with_line(20, height, 250).samples);
+  EXPECT_TRUE(taken->colours.empty());
+}
+
+TEST(TakePictures, TakesTheDarkOneAloneInColour) {
+  Bench bench;
+  bench.has_colours = true;
+  bench.stale = 2;
+  const auto taken = take(bench);
+  EXPECT_EQ(bench.log, "abcApaBpbab");
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->colours, std::vector<Rgb>(width * height, paint));
+  EXPECT_EQ(taken->pictures[0].samples, grey(20).samples);
 }
 
 TEST(TakePictures, LeavesOutPicturesThatBeganTooEarly) {
   Bench bench;
   bench.stale = 5;
-  const auto pictures = take(bench);
-  ASSERT_TRUE(pictures);
-  EXPECT_EQ(pictures->at(0).samples, grey(20).samples);
+  const auto taken = take(bench);
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->pictures[0].samples, grey(20).samples);
 }
 
 TEST(TakePictures, RefusesACameraWithOldPicturesAlone) {

@@ -148,7 +148,7 @@ TEST_F(VerdictTest, IsTheErrorOfAScanOfAnEmptyPlatform) {
 }
 
 TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
-  const Seen bumped = seen(object(), 0.6);  // 0.6 degrees; the platform's middle is 1.2 mm lower
+  const Seen bumped = seen(object(), 0.9);  // 0.9 degrees; the platform's middle is 1.8 mm lower
   const json scan =
       scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
   EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;
@@ -156,8 +156,8 @@ TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
   ASSERT_EQ(moved.size(), 1U) << scan;
   EXPECT_EQ(
       moved[0]["detail"],
-      "between stops 3 and 4 the sensor moved: the platform tilts by 0.6 degrees and sinks by "
-      "1.2 mm as it sees it");
+      "between stops 3 and 4 the sensor moved: the platform tilts by 0.9 degrees and sinks by "
+      "1.8 mm as it sees it");
   EXPECT_EQ(moved[0]["hint"], "Fix the sensor and the platform, calibrate, and scan again.");
   EXPECT_EQ(reasons(scan, "stops-disagree").size(), 1U) << scan;
 }

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "commands/calibrate_options.hpp"
 #include "commands/commands.hpp"
 #include "commands/model_commands.hpp"
 #include "commands/options.hpp"
@@ -10,19 +11,6 @@
 
 namespace octurn {
 namespace {
-
-void add_config_option(CLI::App& command, ConfigArguments& config) {
-  command
-      .add_option("--config", config.file,
-                  std::string("settings (") + default_config_file + ", if it is there)")
-      ->type_name("FILE");
-}
-
-void add_config_options(CLI::App& command, ConfigArguments& config) {
-  add_config_option(command, config);
-  Config defaults;
-  add_options(command, data_fields(defaults), config.given);
-}
 
 void add_serve(CLI::App& program, ServeArguments& arguments) {
   CLI::App& command = *program.add_subcommand("serve", "the daemon: page, API, scans");
@@ -121,51 +109,6 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   command.callback([&arguments, &status] { status = doctor(arguments) ? 0 : 1; });
 }
 
-void add_calibrate(CLI::App& program, CalibrateArguments& arguments,
-                   CalibrateWallArguments& wall_arguments, int& status) {
-  CLI::App& command = *program.add_subcommand(
-      "calibrate",
-      "where the sensor stands, as a turn or a stored scan tells; or its own error, as walls tell");
-  CLI::Option* folder = command.add_option(
-      "SCAN_DIR", arguments.folder, "folder with a scan.json; without it the platform is turned");
-  CLI::Option* apply = command.add_flag(
-      "--apply", arguments.apply, "write what is accepted into scan.json, for models to come");
-  apply->needs(folder);
-  CLI::Option* map = add_sensor_map_option(command, arguments.sensor_map)->needs(folder);
-  add_rig_options(command, arguments.rig, arguments.config);
-  add_config_options(command, arguments.config);
-  CLI::Option* stops = command.add_option("--stops", arguments.stops, "stops of the turn (24)")
-                           ->type_name("N")
-                           ->check(CLI::Range(min_calibration_stops, max_calibration_stops))
-                           ->excludes(folder);
-  CLI::Option* wall =
-      command
-          .add_option("--wall", wall_arguments.walls,
-                      "looks at a bare wall, as `octurn record --wall` makes them: make a map of "
-                      "the sensor's own error from them")
-          ->type_name("WALL_DIR")
-          ->expected(1, 100)
-          ->excludes(folder)
-          ->excludes(apply)
-          ->excludes(map)
-          ->excludes(stops);
-  CLI::Option* output =
-      command.add_option("-o,--output", wall_arguments.output, "file for the map, a PNG")
-          ->type_name("MAP")
-          ->needs(wall);
-  wall->needs(output);
-  command.add_flag("--json", arguments.json, "print one line of JSON in place of text");
-  command.footer("It ends with 0 if what it found is accepted, with 1 if it is not.");
-  command.callback([&, wall] {
-    if (wall->count() > 0) {
-      wall_arguments.json = arguments.json;
-      status = calibrate_wall(wall_arguments) ? 0 : 1;
-    } else {
-      status = calibrate(arguments) ? 0 : 1;
-    }
-  });
-}
-
 void add_set(CLI::App& program, SetArguments& arguments) {
   CLI::App& command =
       *program.add_subcommand("set", "sets keys of octurn.json, or of a file like it");
@@ -240,8 +183,7 @@ int run(int argc, char** argv) {
   JoinArguments join_arguments;
   std::filesystem::path build_folder;
   ImportArguments import_arguments;
-  CalibrateArguments calibrate_arguments;
-  CalibrateWallArguments calibrate_wall_arguments;
+  CalibrateOptions calibrate_options;
   SetArguments set_arguments;
   MergeArguments merge_arguments;
   std::filesystem::path password_file;
@@ -255,7 +197,7 @@ int run(int argc, char** argv) {
   add_join(program, join_arguments);
   add_build(program, build_folder);
   add_import(program, import_arguments);
-  add_calibrate(program, calibrate_arguments, calibrate_wall_arguments, status);
+  add_calibrate(program, calibrate_options, status);
   add_set(program, set_arguments);
   add_merge(program, merge_arguments, status);
   add_password(program, password_file);

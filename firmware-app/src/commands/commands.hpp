@@ -18,6 +18,7 @@ struct RigArguments {
   bool simulate = false;
   bool laser = false;          ///< what is simulated is a camera with line lasers
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
+  bool other_lens = false;     ///< the simulated camera's lens is not the one of the settings
   bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
   std::optional<double> wall = {};        ///< metres: the simulated sensor looks at a wall
   double speed = 1.0;                     ///< of the simulated rig, relative to life
@@ -29,7 +30,6 @@ struct RigArguments {
 
 /// The rig that the options select.
 /// @param config  what it is told of itself. A simulated turntable obeys gear_ratio and reversed
-/// @throws Error "bad-simulation"  if the simulator has no lens as the settings have it
 RigOptions rig_options(const RigArguments& arguments, const Config& config);
 
 /// Options of the configuration.
@@ -107,6 +107,7 @@ struct ReconstructArguments {
   nlohmann::json settings = nlohmann::json::object();    ///< of ModelSettings, by their keys
   std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
   bool json = false;                                     ///< one line of JSON on standard output
+  bool colour = false;  ///< the model is no STL, and has the colours of the scan's pictures
 };
 
 /// `octurn reconstruct`: makes a model from a scan folder.
@@ -136,6 +137,24 @@ struct CalibrateWallArguments {
 /// `octurn calibrate --wall`: the map of a sensor's own error, from looks at flat walls.
 /// @return false if they are no walls
 bool calibrate_wall(const CalibrateWallArguments& arguments);
+
+struct CalibrateBoardArguments {
+  std::filesystem::path folder = {};     ///< of pictures; empty: the rig's camera looks at it
+  std::optional<std::string> keep = {};  ///< serial number of the camera that took them
+  std::filesystem::path pdf = {};        ///< for `print_board`
+  std::string paper = "a4";              ///< of that
+  bool json = false;                     ///< one line of JSON in place of text
+  RigArguments rig = {};
+  ConfigArguments config = {};
+};
+
+/// `octurn calibrate --board`: the lens of a camera with lasers, from pictures of a printed board
+/// or from such a board that is held before the camera. The latter is kept if it is accepted.
+/// @return false if what was solved is not to be trusted
+bool calibrate_board(const CalibrateBoardArguments& arguments);
+
+/// `octurn calibrate --print-board`: writes that board as a PDF.
+void print_board(const CalibrateBoardArguments& arguments);
 
 struct SetArguments {
   std::filesystem::path file = {};

@@ -58,6 +58,12 @@ void add_reconstruct(CLI::App& program, TileArguments& arguments) {
           ->excludes(json)
           ->excludes(plan);
   command
+      .add_flag("--colour", arguments.model.colour,
+                "of a scan by laser line: the model with the colours of its pictures, to a FILE "
+                "that ends with .ply, .glb or .3mf")
+      ->excludes(plan)
+      ->excludes(tile);
+  command
       .add_option("--plan-file", arguments.plan_file,
                   "the plan as --plan -o wrote it: without it each --tile makes it anew")
       ->type_name("FILE")

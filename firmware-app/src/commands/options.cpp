@@ -100,6 +100,13 @@ std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, 
           ->check(CLI::Range(0.0, 10.0))};
 }
 
+/// Options of a simulated rig with a camera and lasers.
+std::vector<const CLI::Option*> add_laser_simulation_options(CLI::App& command, RigArguments& rig) {
+  return {command.add_flag("--simulate-lens", rig.other_lens,
+                           "the simulated camera's lens is not the one of the settings: it is 1 % "
+                           "longer, off the middle, and distorts")};
+}
+
 /// Refuses options that are given without what they belong to.
 void expect_partner(const std::vector<const CLI::Option*>& options, bool has_partner,
                     const std::string& partner) {
@@ -124,6 +131,19 @@ void add_options(CLI::App& command, const std::vector<Field>& fields, json& give
   }
 }
 
+void add_config_option(CLI::App& command, ConfigArguments& config) {
+  command
+      .add_option("--config", config.file,
+                  std::string("settings (") + default_config_file + ", if it is there)")
+      ->type_name("FILE");
+}
+
+void add_config_options(CLI::App& command, ConfigArguments& config) {
+  add_config_option(command, config);
+  Config defaults;
+  add_options(command, data_fields(defaults), config.given);
+}
+
 void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& config) {
   const CLI::Option* simulate =
       add_mesh_option(command, "--simulate", rig,
@@ -133,6 +153,7 @@ void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& conf
                       "the same with a camera and line lasers, as the settings have them");
   std::vector<const CLI::Option*> of_any = add_simulation_options(command, rig);
   std::vector<const CLI::Option*> of_depth = add_depth_simulation_options(command, rig);
+  std::vector<const CLI::Option*> of_laser = add_laser_simulation_options(command, rig);
   command
       .add_option("--sensor", rig.sensor_uri,
                   "use this as the sensor: kinect://, another OpenNI2 device, an .oni file, or a "
@@ -146,6 +167,7 @@ void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& conf
     }
     expect_partner(of_any, rig.simulate, "--simulate or --simulate-laser");
     expect_partner(of_depth, rig.simulate && !rig.laser, "--simulate");
+    expect_partner(of_laser, rig.laser, "--simulate-laser");
     if (rig.simulate) {
       config.sensor = rig.laser ? SensorKind::laser_line : SensorKind::depth;
     }

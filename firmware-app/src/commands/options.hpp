@@ -28,6 +28,12 @@ struct ConfigArguments;
 /// @param config  the same; gets the kind of a simulated sensor
 void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& config);
 
+/// Adds the option of the configuration file. @param config  outlives the parsing
+void add_config_option(CLI::App& command, ConfigArguments& config);
+
+/// The same, and options of what is in it of the folder of scans and the machine's memory.
+void add_config_options(CLI::App& command, ConfigArguments& config);
+
 /// Refuses options of the other method. @throws Error "bad-settings"  that names the option
 void expect_options_of_method(const nlohmann::json& given, const std::vector<Field>& fields,
                               std::string_view method);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands/coloured_model.hpp"
 #include "commands/commands.hpp"
 #include "commands/reconstruct_input.hpp"
 #include "octurn/error.hpp"
@@ -148,12 +149,29 @@ std::filesystem::path spool_of(const std::filesystem::path& output) {
   return output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
 }
 
+/// Prints the report, where it is asked for.
+void print(const ReconstructArguments& arguments, const Json& report) {
+  if (!arguments.json) {
+    return;
+  }
+  const std::string line = report.dump() + "\n";
+  if (arguments.output == "-") {
+    std::cerr << line;  // a line of text does not belong into the model
+  } else {
+    write_standard_output(line);
+  }
+}
+
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
   const SignalStop signal;
   const std::stop_token stop = signal.token();
   const auto [settings, scan, findings, options] = read_input(arguments, stop);
+  std::optional<ColouredModel> coloured;
+  if (arguments.colour) {
+    coloured.emplace(arguments.output, scan);
+  }
   const bool is_tiled = has_free_poses(scan);
   const std::unique_ptr<Reconstructor> reconstruction =
       is_tiled ? make_tiled_reconstructor(options, spool_of(arguments.output))
@@ -175,7 +193,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
     reconstruction->add(snapshots, stop);
     const Clock::time_point seen = Clock::now();
     bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
-    ModelOutput output(arguments.output,
+    ModelOutput output(coloured ? coloured->stl() : arguments.output,
                        [&] { return reconstruction->count(snapshots, stop).facets; });
     const auto checked = [&](std::span<const Facet> facets) {
       check.add(facets);
@@ -186,6 +204,9 @@ void reconstruct(const ReconstructArguments& arguments) try {
       throw Stopped{};
     }
     output.commit();
+    if (coloured) {
+      coloured->write(arguments.folder, scan, stop);
+    }
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
   const ModelReport report = report_of(*count, check);
@@ -196,14 +217,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
       std::cerr << to_text(*quality);
     }
   }
-  if (arguments.json) {
-    const std::string line = to_json(report, quality, settings, times).dump() + "\n";
-    if (arguments.output == "-") {
-      std::cerr << line;  // a line of text does not belong into the model
-    } else {
-      write_standard_output(line);
-    }
-  }
+  print(arguments, to_json(report, quality, settings, times));
 } catch (const Stopped&) {
   throw_stopped("no model was written");
 }

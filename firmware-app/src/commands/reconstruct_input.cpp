@@ -93,6 +93,8 @@ ReconstructInput read_input(const ReconstructArguments& arguments, const std::st
   input.options = options_from(input.settings, input.scan);
   if (input.options.memory_limit != 0) {
     return_freed_memory();
+  } else {
+    keep_freed_memory();
   }
   return input;
 }

@@ -3,10 +3,10 @@
 
 #include "camera/simulated_camera.hpp"
 #include "commands/commands.hpp"
-#include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "rig/nominal_laser_rig.hpp"
 #include "rig/simulation.hpp"
+#include "scan/lens_files.hpp"
 #include "sensor/simulated_mechanism.hpp"
 
 namespace octurn {
@@ -32,14 +32,25 @@ std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> sensor_opene
 constexpr double left_turn_deg = 0.06;  // 0.35 mm at the platform's axis
 constexpr double right_turn_deg = -0.04;
 
+/// A lens that differs from the told one as one of another make does.
+CameraLens other_lens(CameraLens lens) {
+  Intrinsics& in = lens.intrinsics;
+  in.fx *= 1.012;
+  in.fy *= 1.010;
+  in.cx += 0.006 * in.width;
+  in.cy -= 0.006 * in.height;
+  lens.k1 -= 0.06;
+  lens.k2 += 0.02;
+  return lens;
+}
+
 /// The rig as it stands in truth.
 LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings& told) {
-  if (told.k1 != 0 || told.k2 != 0) {
-    throw Error(ErrorCode::bad_simulation, "the simulated camera's lens has no distortion",
-                "Set laser.k1 and laser.k2 to 0, or leave them out.");
-  }
+  const CameraLens lens = arguments.other_lens ? other_lens(told_lens(told)) : told_lens(told);
   LaserSimulation simulation{.mesh_file = arguments.mesh_file,
-                             .lens = told.lens,
+                             .lens = lens.intrinsics,
+                             .k1 = lens.k1,
+                             .k2 = lens.k2,
                              .platform_from_sensor = told.platform_from_sensor,
                              .lasers = laser_camera(told).lasers};
   const Eigen::Vector3d up =

@@ -39,13 +39,13 @@ std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& s
 /// @return nothing if `stop` is requested first
 /// @throws Error  that says what is wrong with the camera, the room or a laser
 std::optional<CameraSample> sample_camera(Rig& rig, const std::stop_token& stop) {
-  const auto pictures = take_pictures_here(rig, stop, {});
-  if (!pictures) {
+  const auto taken = take_pictures_here(rig, stop, {});
+  if (!taken) {
     return std::nullopt;
   }
   CameraSample sample{.name = rig.camera().name(),
-                      .width = pictures->front().width,
-                      .height = pictures->front().height};
+                      .width = taken->pictures.front().width,
+                      .height = taken->pictures.front().height};
   for (const Laser& laser : laser_camera(*rig.laser()).lasers) {
     sample.lasers.push_back(laser.name);
   }

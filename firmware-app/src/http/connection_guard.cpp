@@ -78,7 +78,9 @@ void ConnectionGuard::watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     changed_.wait(lock, stop, [this] { return !table_.is_empty(); });
-    changed_.wait_for(lock, stop, table_.is_crowded() ? crowded_tick : tick, [] { return false; });
+    const auto due = Clock::now() + (table_.is_crowded() ? crowded_tick : tick);
+    changed_.wait_until(lock, stop, due, [] { return false; });
+    table_.note_lateness(Clock::now() - due);
     look();
   }
 }

@@ -10,10 +10,18 @@ namespace {
 // A debt that a packet which is lost and sent again does not explain: such clients are cut first.
 constexpr double noticeable_debt = 1;  // seconds
 
-// Time from a whole head's arrival to the thread that parses it, at most: a thread of a busy
-// machine waits for its turn. With 10 ms a visitor was cut as the only one who could be, while
-// others filled the queue.
+// Time from a whole head's arrival to the thread that parses it, at most. With 10 ms a visitor was
+// cut as the only one who could be, while others filled the queue.
 constexpr std::chrono::milliseconds reading_time(100);
+
+// A thread of a busy machine waits for its turn more than once while it parses a head.
+constexpr int turns_of_reading = 10;
+
+// However busy the machine is, those who hold the server are cut after this.
+constexpr std::chrono::milliseconds max_reading_time(1000);
+
+// Share of the lateness that the next look still counts: a machine that was busy may be so again.
+constexpr double remembered_lateness = 0.9;
 
 /// What a slow reader has not taken would stay in the kernel's memory for minutes.
 Cut final_cut(Wait wait) { return wait == Wait::reader ? Cut::reset : Cut::finish; }
@@ -35,6 +43,10 @@ void ConnectionTable::refresh(std::span<const AcceptedSocket> open, Time now) {
     }
   }
   connections_ = std::move(still_open);
+}
+
+void ConnectionTable::note_lateness(std::chrono::duration<double> lateness) {
+  lateness_ = std::max({lateness, remembered_lateness * lateness_, decltype(lateness_)(0)});
 }
 
 std::optional<ConnectionTable::Key> ConnectionTable::claim(std::string_view address, int port,
@@ -159,10 +171,11 @@ std::size_t ConnectionTable::count_held() const {
 
 /// The connections that wait for their clients, and have for a while.
 std::vector<ConnectionTable::Connection*> ConnectionTable::candidates(Time now) {
+  const auto reading = std::min<std::chrono::duration<double>>(
+      reading_time + turns_of_reading * lateness_, max_reading_time);
   std::vector<Connection*> waiting;
   for (auto& [key, connection] : connections_) {
-    if (!connection.ended && !waits_for_server(connection) &&
-        now - connection.since >= reading_time) {
+    if (!connection.ended && !waits_for_server(connection) && now - connection.since >= reading) {
       waiting.push_back(&connection);
     }
   }

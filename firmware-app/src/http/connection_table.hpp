@@ -55,6 +55,10 @@ class ConnectionTable {
   /// Takes up the connections that are new, and forgets those that are closed.
   void refresh(std::span<const AcceptedSocket> open, Time now);
 
+  /// By how much a thread that waits for a moment was late: on a busy machine a head that has come
+  /// is parsed later, and its client is not to blame.
+  void note_lateness(std::chrono::duration<double> lateness);
+
   /// The connection of this peer, whose head is read. From here on it waits for the server.
   std::optional<Key> claim(std::string_view address, int port, Time now);
 
@@ -102,6 +106,7 @@ class ConnectionTable {
   Connection* worst(Time now);
 
   ConnectionLimits limits_;
+  std::chrono::duration<double> lateness_ = {};  // the longest of the last looks, fading
   std::unordered_map<Key, Connection> connections_ = {};
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "http/entity_tags.hpp"
 #include "octurn/json_object.hpp"
@@ -11,10 +12,19 @@ namespace octurn {
 
 using nlohmann::json;
 
-Response json_response(const json& body, int status) {
+std::string json_text(const json& value) {
+  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+Response json_text_response(std::string text, int status) {
+  text += '\n';
   return {.status = status,
           .headers = {{"Content-Type", "application/json"}, {"Cache-Control", "private, no-cache"}},
-          .body = body.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"};
+          .body = std::move(text)};
+}
+
+Response json_response(const json& body, int status) {
+  return json_text_response(json_text(body), status);
 }
 
 Response tagged(const Request& request, Response response) {

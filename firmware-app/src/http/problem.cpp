@@ -4,6 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "http/json_body.hpp"
 #include "scan/parameters_json.hpp"
 
 namespace octurn {
@@ -88,7 +89,7 @@ Response to_response(const HttpProblem& problem) {
                             {"parameters", to_json(problem.parameters)}};
   return {.status = problem.status,
           .headers = {{"Content-Type", "application/problem+json"}},
-          .body = body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"};
+          .body = json_text(body) + "\n"};
 }
 
 }  // namespace octurn

@@ -92,6 +92,8 @@ std::span<const Route> other_routes() {
       Route{"POST", "/api/v1/calibration", start_calibration, WaitsFor::start},
       Route{"GET", "/api/v1/calibration/sensor-map", send_sensor_map},
       Route{"POST", "/api/v1/calibration/cancel", cancel_calibration},
+      Route{"POST", "/api/v1/calibration/solve", solve_lens},
+      Route{"GET", "/api/v1/calibration/board.pdf", send_board},
       Route{"POST", "/api/v1/calibration/undo", undo_calibration},
       Route{"GET", "/api/v1/preview/points", send_points, WaitsFor::look},
       Route{"GET", "/api/v1/turntable", send_turntable},

@@ -28,6 +28,10 @@ json to_json(const std::optional<ScanCalibration>& calibration) {
   return calibration ? to_json(*calibration) : json();
 }
 
+json to_json(const std::optional<std::chrono::duration<double>>& time) {
+  return time ? json(to_thousandths(time->count())) : json();
+}
+
 json to_json(const ClusterJob& job) { return {{"id", job.id}, {"detail", job.detail}}; }
 
 }  // namespace
@@ -43,14 +47,16 @@ json to_json(const Job& job) {
           {"snapshots_done", job.snapshots_done},
           {"snapshots_total", job.settings.snapshots},
           {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
-          {"seconds_left", job.times.left ? json(to_thousandths(job.times.left->count())) : json()},
+          {"seconds_left", to_json(job.times.left)},
+          {"seconds_until_pause", to_json(job.times.until_pause)},
           {"late_pulses", job.times.late_pulses},
           {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},
           {"calibration", to_json(job.calibration)},
           {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
           {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0},
-          {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()}};
+          {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
+          {"has_colours", job.builds.have_colours}};
 }
 
 json to_json(const Job& job, const Build& build) {

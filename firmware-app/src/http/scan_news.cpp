@@ -8,6 +8,7 @@
 
 #include "doctor/finding.hpp"
 #include "host_name.hpp"
+#include "http/json_body.hpp"
 #include "http/scan_view.hpp"
 #include "utc.hpp"
 
@@ -23,7 +24,7 @@ Happening happening(const std::string& event, const char* key, const json& about
   if (key != nullptr) {
     body[key] = about;
   }
-  return {.event = event, .body = body.dump(-1, ' ', false, json::error_handler_t::replace)};
+  return {.event = event, .body = json_text(body)};
 }
 
 /// The event that tells of a state; empty if none does.

@@ -42,7 +42,7 @@ json to_json(const App& app, const Job& job) {
   return scan;
 }
 
-json scans_json(const App& app) {
+void for_each_scan(const App& app, const std::function<void(json)>& show) {
   const std::vector<Job> jobs = app.scanner.list();
   std::unordered_map<std::string, std::vector<Job>> poses;  // by the first scan; oldest first
   for (const Job& job : jobs) {
@@ -51,14 +51,12 @@ json scans_json(const App& app) {
       of_scan.insert(of_scan.begin(), job);
     }
   }
-  json scans = json::array();
   for (const Job& job : jobs) {
     json scan = with_preview(app, job);
     const auto of_job = poses.find(job.id);
     scan["poses"] = of_job == poses.end() ? json::array() : poses_json(of_job->second);
-    scans.push_back(std::move(scan));
+    show(std::move(scan));
   }
-  return scans;
 }
 
 }  // namespace octurn

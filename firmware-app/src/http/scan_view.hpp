@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,7 @@ std::optional<Job> running_scan(const App& app);
 /// A scan as web/API.md has it.
 nlohmann::json to_json(const App& app, const Job& job);
 
-/// All of them, the newest first.
-nlohmann::json scans_json(const App& app);
+/// Shows each of them as web/API.md has it, the newest first.
+void for_each_scan(const App& app, const std::function<void(nlohmann::json)>& show);
 
 }  // namespace octurn

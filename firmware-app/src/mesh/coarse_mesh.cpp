@@ -22,7 +22,7 @@ Corners corners_of(const Facet& facet) {
   const auto packed = facet.corners;  // which are not aligned in a facet
   Corners corners;
   std::ranges::transform(packed, corners.begin(), [](const std::array<float, 3>& corner) {
-    return Eigen::Vector3d(corner[0], corner[1], corner[2]);
+    return Eigen::Vector3f(corner[0], corner[1], corner[2]).cast<double>().eval();
   });
   return corners;
 }
@@ -57,7 +57,8 @@ class Clusters {
     if (cells[0] == cells[1] || cells[1] == cells[2] || cells[2] == cells[0]) {
       return;
     }
-    std::ranges::rotate(cells, std::ranges::min_element(cells));  // each facet once
+    // Each facet once.
+    std::rotate(cells.begin(), std::ranges::min_element(cells), cells.end());
     if (known_.insert(cells).second) {
       facets_.push_back({.cells = cells, .attributes = facet.attributes});
     }

@@ -1,11 +1,13 @@
 // Binary glTF 2.0: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html, section 4.
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
 #include "mesh/mesh_formats.hpp"
+#include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/error.hpp"
 
@@ -18,6 +20,7 @@ constexpr std::uint32_t magic = 0x46546C67;  // "glTF"
 constexpr std::uint32_t json_chunk = 0x4E4F534A;
 constexpr std::uint32_t binary_chunk = 0x004E4942;
 constexpr int type_float = 5126;
+constexpr int type_ushort = 5123;
 constexpr int type_uint = 5125;
 constexpr int array_buffer = 34962;
 constexpr int element_array_buffer = 34963;
@@ -40,9 +43,51 @@ Bounds bounds_of(std::span<const Vertex> vertices) {
   return bounds;
 }
 
-/// What the buffer holds: first the indices, then the positions.
+/// Red, green, blue and opacity, linear: 16 bits, as 8 have too few levels where it is dark.
+using LinearColour = std::array<std::uint16_t, 4>;
+
+/// Undoes sRGB's transfer function (IEC 61966-2-1).
+std::array<std::uint16_t, 256> linear_levels() {
+  std::array<std::uint16_t, 256> levels{};
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const double encoded = static_cast<double>(i) / 255;
+    const double linear =
+        encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    levels[i] = static_cast<std::uint16_t>(std::lround(65535 * linear));
+  }
+  return levels;
+}
+
+std::vector<LinearColour> linear(std::span<const Rgb> colours) {
+  const auto levels = linear_levels();
+  std::vector<LinearColour> all;
+  all.reserve(colours.size());
+  for (const auto& [r, g, b] : colours) {
+    all.push_back({levels[r], levels[g], levels[b], 65535});
+  }
+  return all;
+}
+
+/// Adds the colours of vertices to what a description has, behind the positions.
+void add_colours(json& all, std::size_t count) {
+  const std::uint64_t at = all["buffers"][0]["byteLength"];
+  const std::uint64_t bytes = count * sizeof(LinearColour);
+  all["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = all["accessors"].size();
+  all["accessors"].push_back({{"bufferView", all["bufferViews"].size()},
+                              {"componentType", type_ushort},
+                              {"normalized", true},
+                              {"count", count},
+                              {"type", "VEC4"}});
+  all["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", at}, {"byteLength", bytes}, {"target", array_buffer}});
+  all["buffers"][0]["byteLength"] = at + bytes;
+  all["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json::array({1, 1, 1, 1});
+}
+
+/// What the buffer holds: first the indices, then the positions, then the colours, if there are
+/// any.
 std::string description(std::uint64_t index_bytes, std::span<const Vertex> vertices,
-                        const std::string& name) {
+                        std::size_t colours, const std::string& name) {
   const auto [min, max] = bounds_of(vertices);
   const double half = std::numbers::sqrt2 / 2;  // a quarter of a turn about X: Z up becomes Y up
   const json node{{"mesh", 0},
@@ -71,16 +116,18 @@ std::string description(std::uint64_t index_bytes, std::span<const Vertex> verti
                            {"byteOffset", index_bytes},
                            {"byteLength", vertices.size_bytes()},
                            {"target", array_buffer}};
-  const json all{
-      {"asset", {{"version", "2.0"}, {"generator", "Octurn"}}},
-      {"scene", 0},
-      {"scenes", json::array({json{{"nodes", json::array({0})}}})},
-      {"nodes", json::array({node})},
-      {"meshes", json::array({json{{"primitives", json::array({primitive})}}})},
-      {"materials", json::array({material})},
-      {"accessors", json::array({indices, positions})},
-      {"bufferViews", json::array({index_view, position_view})},
-      {"buffers", json::array({json{{"byteLength", index_bytes + vertices.size_bytes()}}})}};
+  json all{{"asset", {{"version", "2.0"}, {"generator", "Octurn"}}},
+           {"scene", 0},
+           {"scenes", json::array({json{{"nodes", json::array({0})}}})},
+           {"nodes", json::array({node})},
+           {"meshes", json::array({json{{"primitives", json::array({primitive})}}})},
+           {"materials", json::array({material})},
+           {"accessors", json::array({indices, positions})},
+           {"bufferViews", json::array({index_view, position_view})},
+           {"buffers", json::array({json{{"byteLength", index_bytes + vertices.size_bytes()}}})}};
+  if (colours > 0) {
+    add_colours(all, colours);
+  }
   std::string text = all.dump(-1, ' ', false, json::error_handler_t::replace);
   text.append((4 - text.size() % 4) % 4, ' ');  // a chunk ends at a multiple of four bytes
   return text;
@@ -89,12 +136,15 @@ std::string description(std::uint64_t index_bytes, std::span<const Vertex> verti
 }  // namespace
 
 void write_glb(const FacetFile& facets, const std::string& name,
-               const std::filesystem::path& target) {
+               const std::filesystem::path& target, std::span<const Rgb> colours) {
   const VertexTable table(facets);
+  expect_colours_of(table, colours);
   const std::span<const Vertex> vertices = table.vertices();
+  const std::vector<LinearColour> linear_colours = linear(colours);
   const std::uint64_t index_bytes = facets.count() * 3 * sizeof(std::uint32_t);
-  const std::string text = description(index_bytes, vertices, name);
-  const std::uint64_t buffer_bytes = index_bytes + vertices.size_bytes();
+  const std::string text = description(index_bytes, vertices, colours.size(), name);
+  const std::uint64_t buffer_bytes =
+      index_bytes + vertices.size_bytes() + std::span(linear_colours).size_bytes();
   const auto length = static_cast<std::uint32_t>(heads + text.size() + buffer_bytes);
   AtomicFile file(target);
   const std::array head{magic, std::uint32_t{2}, length, static_cast<std::uint32_t>(text.size()),
@@ -115,6 +165,7 @@ void write_glb(const FacetFile& facets, const std::string& name,
     file.write(std::as_bytes(std::span(indices)));
   });
   file.write(std::as_bytes(vertices));
+  file.write(std::as_bytes(std::span(linear_colours)));
   file.commit();
 }
 

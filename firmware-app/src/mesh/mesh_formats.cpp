@@ -29,4 +29,20 @@ std::string_view media_type(MeshFormat format) {
   return std::ranges::find(formats, format, &Names::format)->media_type;
 }
 
+void write_mesh(MeshFormat format, const FacetFile& facets, const std::string& name,
+                const std::string& thumbnail, const std::filesystem::path& target,
+                std::span<const Rgb> colours) {
+  switch (format) {
+    case MeshFormat::ply:
+      write_ply(facets, target, colours);
+      break;
+    case MeshFormat::glb:
+      write_glb(facets, name, target, colours);
+      break;
+    case MeshFormat::threemf:
+      write_3mf(facets, name, thumbnail, target, colours);
+      break;
+  }
+}
+
 }  // namespace octurn

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "mesh/facet_file.hpp"
+#include "octurn/colours.hpp"
 
 namespace octurn {
 
@@ -20,21 +22,29 @@ std::string_view media_type(MeshFormat format);
 
 // Each writer writes the facets of a model, in their order and with the bits of their corners, to a
 // file that appears whole or not at all. Memory is that of a VertexTable and of one block.
-// All throw Error "disk-full", "write-failed", "read-failed", "memory-limit".
+// `colours` are of the vertices of its VertexTable; without them the file has none.
+// All throw Error "disk-full", "write-failed", "read-failed", "memory-limit"; "no-model" if there
+// are not as many colours as vertices.
 
 /// Binary little-endian PLY 1.0, millimetres, Z up. The property `filled` of a face is 1 where hole
 /// filling has made it.
-void write_ply(const FacetFile& facets, const std::filesystem::path& target);
+void write_ply(const FacetFile& facets, const std::filesystem::path& target,
+               std::span<const Rgb> colours = {});
 
 /// Binary glTF 2.0. Its positions are the model's in millimetres, Z up; its one node turns and
-/// scales them to what glTF has: metres, Y up.
+/// scales them to what glTF has: metres, Y up. Colours are linear there.
 void write_glb(const FacetFile& facets, const std::string& name,
-               const std::filesystem::path& target);
+               const std::filesystem::path& target, std::span<const Rgb> colours = {});
 
 /// 3MF, core specification 1.3: one object with that name, in millimetres, Z up, standing as it was
-/// scanned.
+/// scanned. Colours are a group of the materials extension 1.2.
 /// @param thumbnail  a PNG, which programs show for the file; empty: none
 void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
-               const std::filesystem::path& target);
+               const std::filesystem::path& target, std::span<const Rgb> colours = {});
+
+/// Writes a file of that format, by its writer above.
+void write_mesh(MeshFormat format, const FacetFile& facets, const std::string& name,
+                const std::string& thumbnail, const std::filesystem::path& target,
+                std::span<const Rgb> colours = {});
 
 }  // namespace octurn

@@ -2,12 +2,17 @@
 #include <vector>
 
 #include "mesh/mesh_formats.hpp"
+#include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 
 namespace octurn {
 namespace {
 
 #pragma pack(push, 1)
+struct ColouredVertex {
+  Vertex place = {};
+  Rgb colour = {};
+};
 struct Face {
   std::uint8_t corners = 3;
   std::array<std::uint32_t, 3> indices = {};
@@ -15,22 +20,42 @@ struct Face {
 };
 #pragma pack(pop)
 
-std::string header(std::size_t vertices, std::uint64_t faces) {
+/// @param colour  properties of a vertex
+std::string header(std::size_t vertices, const std::string& colour, std::uint64_t faces) {
   return "ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\nelement vertex " +
-         std::to_string(vertices) +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-         std::to_string(faces) +
+         std::to_string(vertices) + "\nproperty float x\nproperty float y\nproperty float z" +
+         colour + "\nelement face " + std::to_string(faces) +
          "\nproperty list uchar uint vertex_indices\nproperty uchar filled\nend_header\n";
+}
+
+std::vector<ColouredVertex> coloured(std::span<const Vertex> vertices,
+                                     std::span<const Rgb> colours) {
+  std::vector<ColouredVertex> all;
+  all.reserve(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    all.push_back({.place = vertices[i], .colour = colours[i]});
+  }
+  return all;
 }
 
 }  // namespace
 
-void write_ply(const FacetFile& facets, const std::filesystem::path& target) {
+void write_ply(const FacetFile& facets, const std::filesystem::path& target,
+               std::span<const Rgb> colours) {
   const VertexTable table(facets);
+  expect_colours_of(table, colours);
   AtomicFile file(target);
-  const std::string head = header(table.vertices().size(), facets.count());
+  const std::string colour = colours.empty() ? ""
+                                             : "\nproperty uchar red\nproperty uchar green"
+                                               "\nproperty uchar blue";
+  const std::string head = header(table.vertices().size(), colour, facets.count());
   file.write(std::as_bytes(std::span(head)));
-  file.write(std::as_bytes(table.vertices()));
+  if (colours.empty()) {
+    file.write(std::as_bytes(table.vertices()));
+  } else {
+    const std::vector<ColouredVertex> vertices = coloured(table.vertices(), colours);
+    file.write(std::as_bytes(std::span(vertices)));
+  }
   std::vector<Face> faces;
   facets.read([&](std::span<const Facet> block) {
     faces.clear();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mesh/mesh_formats.hpp"
+#include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 #include "zip_writer.hpp"
 
@@ -81,27 +82,63 @@ class XmlStream {
   std::string text_ = {};
 };
 
-void write_model(XmlStream& xml, const FacetFile& facets, const std::string& name) {
+constexpr std::string_view materials =
+    R"( xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02")";
+
+/// A group with a colour of each vertex, at its index.
+void write_colours(XmlStream& xml, std::span<const Rgb> colours) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  xml << R"(<m:colorgroup id="2">)";
+  for (const Rgb& colour : colours) {
+    std::string text = "#";
+    for (const std::uint8_t level : colour) {
+      text += {digits[level / 16U], digits[level % 16U]};
+    }
+    xml << "<m:color color=\"" << text << "\"/>";
+  }
+  xml << "</m:colorgroup>";
+}
+
+void write_triangles(XmlStream& xml, const FacetFile& facets, const VertexTable& table,
+                     std::span<const Rgb> colours) {
+  facets.read([&](std::span<const Facet> block) {
+    for (const Facet& facet : block) {
+      const auto corners = facet.corners;  // which are not aligned in a facet
+      const std::array<std::uint32_t, 3> indices{table.index(corners[0]), table.index(corners[1]),
+                                                 table.index(corners[2])};
+      (xml << "<triangle v1=\"").number(indices[0]);
+      (xml << "\" v2=\"").number(indices[1]);
+      (xml << "\" v3=\"").number(indices[2]);
+      if (!colours.empty()) {
+        (xml << "\" pid=\"2\" p1=\"").number(indices[0]);
+        (xml << "\" p2=\"").number(indices[1]);
+        (xml << "\" p3=\"").number(indices[2]);
+      }
+      xml << "\"/>";
+    }
+  });
+}
+
+void write_model(XmlStream& xml, const FacetFile& facets, const std::string& name,
+                 std::span<const Rgb> colours) {
   const VertexTable table(facets);
+  expect_colours_of(table, colours);
   xml << R"(<?xml version="1.0" encoding="UTF-8"?>
-<model unit="millimeter" xml:lang="en" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><metadata name="Title">)"
-      << escaped(name)
-      << R"(</metadata><metadata name="Application">Octurn</metadata><resources><object id="1" type="model" name=")"
-      << escaped(name) << R"("><mesh><vertices>)";
+<model unit="millimeter" xml:lang="en" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02")"
+      << (colours.empty() ? "" : materials) << R"(><metadata name="Title">)" << escaped(name)
+      << R"(</metadata><metadata name="Application">Octurn</metadata><resources>)";
+  if (!colours.empty()) {
+    write_colours(xml, colours);
+  }
+  xml << R"(<object id="1" type="model" name=")" << escaped(name)
+      << (colours.empty() ? R"("><mesh><vertices>)" : R"(" pid="2" pindex="0"><mesh><vertices>)");
   for (const Vertex& vertex : table.vertices()) {
     (xml << "<vertex x=\"").number(vertex[0]);
     (xml << "\" y=\"").number(vertex[1]);
     (xml << "\" z=\"").number(vertex[2]) << "\"/>";
   }
   xml << "</vertices><triangles>";
-  facets.read([&](std::span<const Facet> block) {
-    for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
-      (xml << "<triangle v1=\"").number(table.index(corners[0]));
-      (xml << "\" v2=\"").number(table.index(corners[1]));
-      (xml << "\" v3=\"").number(table.index(corners[2])) << "\"/>";
-    }
-  });
+  write_triangles(xml, facets, table, colours);
   xml << R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)"
       << "\n";
   xml.flush();
@@ -110,7 +147,7 @@ void write_model(XmlStream& xml, const FacetFile& facets, const std::string& nam
 }  // namespace
 
 void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
-               const std::filesystem::path& target) {
+               const std::filesystem::path& target, std::span<const Rgb> colours) {
   ZipWriter zip(target);
   zip.begin("[Content_Types].xml", ZipMethod::deflated);
   zip.write(content_types);
@@ -123,7 +160,7 @@ void write_3mf(const FacetFile& facets, const std::string& name, const std::stri
   }
   zip.begin("3D/3dmodel.model", ZipMethod::deflated);
   XmlStream xml(zip);
-  write_model(xml, facets, name);
+  write_model(xml, facets, name, colours);
   zip.commit();
 }
 

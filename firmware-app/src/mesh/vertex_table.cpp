@@ -33,7 +33,8 @@ VertexTable::VertexTable(const FacetFile& facets) : slots_(first_slots, empty) {
     throw Error(ErrorCode::memory_limit,
                 "the model has " + std::to_string(facets.count()) +
                     " triangles, too many for a format that lists its corners",
-                "Download the STL, or build it with a larger leaf size.");
+                "Download the STL, or build it with a larger leaf size.",
+                {{"triangles", static_cast<double>(facets.count())}});
   }
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {

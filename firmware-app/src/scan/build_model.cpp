@@ -10,6 +10,7 @@
 #include "octurn/scan_folder.hpp"
 #include "scan/checked_snapshots.hpp"
 #include "scan/last_look.hpp"
+#include "scan/model_scan.hpp"
 #include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
 
@@ -17,27 +18,6 @@ namespace octurn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// The scan as the settings want it, before its pose is solved.
-Scan to_scan(const BuildInput& input) {
-  Scan scan = read_scan(input.folder);
-  if (!scan.poses
-           .empty()) {  // which were registered with the rig as it was solved, and their boxes
-    if (input.settings.platform_from_sensor) {
-      throw Error(ErrorCode::bad_settings, "a model of several poses has the pose that they solved",
-                  "Leave platform_from_sensor out.");
-    }
-    return scan;
-  }
-  scan.clip = input.settings.scan.clip;
-  if (input.settings.platform_from_sensor) {
-    scan.platform_from_sensor = *input.settings.platform_from_sensor;
-  }
-  if (input.settings.platform_from_sensor || input.settings.scan.pose == PoseSource::told) {
-    scan.solved.reset();
-  }
-  return scan;
-}
 
 /// What a model is clipped to: as the settings say; of several poses, each to its own box as long
 /// as the settings have that of the scan.
@@ -101,7 +81,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   const Clock::time_point begin = Clock::now();
   const BuildSettings& settings = input.settings;
   Build build{.settings = settings};
-  Scan scan = to_scan(input);
+  Scan scan = scan_to_build(input.folder, settings);
   const auto all = static_cast<int>(scan.shots.size());
   auto findings = input.findings;
   if (!findings) {

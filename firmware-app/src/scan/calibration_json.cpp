@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "octurn/units.hpp"
+#include "scan/parameters_json.hpp"
 #include "scan/pose_json.hpp"
 
 namespace octurn {
@@ -22,6 +23,9 @@ json to_json(const CalibrationFinding& finding) {
   if (finding.angle) {
     object["deg"] = degrees_from_radians(*finding.angle);
   }
+  if (!finding.parameters.empty()) {
+    object["parameters"] = octurn::to_json(finding.parameters);
+  }
   return object;
 }
 
@@ -38,7 +42,9 @@ CalibrationFinding to_finding(const JsonValue& object) {
   CalibrationFinding finding{.code = keys.at("code").text(),
                              .detail = keys.at("detail").text(),
                              .hint = keys.at("hint").text(),
-                             .stop = keys.whole_number("stop", 0, max_stop)};
+                             .stop = keys.whole_number("stop", 0, max_stop),
+                             .angle = {},
+                             .parameters = to_parameters(keys.value("parameters"))};
   if (const auto deg = keys.value("deg")) {
     finding.angle = radians_from_degrees(deg->number());
   }

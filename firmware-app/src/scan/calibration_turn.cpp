@@ -10,6 +10,7 @@
 #include "scan/calibration_json.hpp"
 #include "scan/depth_scale.hpp"
 #include "scan/failure_json.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/plan.hpp"
 #include "scan/sensor_map_json.hpp"
 #include "scan/take_depth_image.hpp"
@@ -86,20 +87,27 @@ json to_json(const TurnReport& report) {
   return object;
 }
 
+json report_of(const CalibrationRun& run) {
+  return run.report ? to_json(*run.report)
+         : run.wall ? to_json(*run.wall)
+         : run.lens ? to_json(*run.lens)
+                    : json();
+}
+
 }  // namespace
 
 json to_json(const CalibrationRun& run) {
-  constexpr std::array<std::string_view, 2> kinds{"turn", "wall"};
+  constexpr std::array<std::string_view, 3> kinds{"turn", "wall", "lens"};
   constexpr std::array<std::string_view, 5> states{"running", "done", "refused", "failed",
                                                    "cancelled"};
   constexpr std::array<std::string_view, 3> phases{"turning", "solving", "looking"};
-  const json wall = run.wall ? to_json(*run.wall) : json();
   return {{"kind", kinds[static_cast<std::size_t>(run.kind)]},
           {"state", states[static_cast<std::size_t>(run.state)]},
           {"phase", phases[static_cast<std::size_t>(run.phase)]},
           {"stop", run.stop},
           {"stops", run.stops},
-          {"report", run.report ? to_json(*run.report) : wall},
+          {"report", report_of(run)},
+          {"look", run.look ? to_json(*run.look) : json()},
           {"error", run.failure ? to_json(*run.failure) : json()}};
 }
 

@@ -4,12 +4,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/sensor_map.hpp"
+#include "scan/board_watch.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
 
@@ -34,17 +36,20 @@ struct TurnReport {
 
 /// A measurement of the rig, as it goes on.
 struct CalibrationRun {
-  enum class Kind { turn, wall };
+  enum class Kind { turn, wall, lens };
   enum class State { running, done, refused, failed, cancelled };
   enum class Phase { turning, solving, looking };
 
   Kind kind = Kind::turn;
   State state = State::running;
   Phase phase = Phase::turning;
-  int stop = 0;  ///< that are done; of a wall, frames
+  int stop = 0;  ///< that are done; of a wall, frames; of a lens, views of a board
   int stops = 0;
   std::optional<TurnReport> report = {};     ///< of a turn
   std::optional<SensorMapReport> wall = {};  ///< of a wall; its map has no pixels here
+  std::optional<BoardLook> look = {};        ///< of a lens, while a board is looked at
+  std::optional<LensReport> lens = {};       ///< of a lens
+  std::string camera = {};                   ///< of a lens: the serial number of whose it is
   std::optional<Failure> failure = {};
 };
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
-#include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -12,7 +12,6 @@
 #include <string_view>
 #include <variant>
 
-#include "octurn/reconstruct.hpp"
 #include "scan/build_run.hpp"
 #include "scan/job.hpp"
 #include "scan/model_pipe.hpp"
@@ -30,10 +29,11 @@ struct DeviceCheckCommand {
   std::packaged_task<void(Rig& rig, const std::stop_token& stop)> check = {};
 };
 
-/// Make a model from a stored scan, with other settings.
+/// Make something of a stored scan for a request: a model with other settings, or the colours of
+/// one.
 struct RebuildCommand {
-  std::filesystem::path folder = {};
-  ReconstructOptions options = {};  ///< but for the clip box, which is the scan's
+  /// Gives the pipe what it makes, and closes it; asks it whether to stop.
+  std::function<void(ModelPipe& pipe)> make = {};
   std::shared_ptr<ModelPipe> pipe = {};
 };
 
@@ -64,9 +64,13 @@ struct WallCommand {
   int frames = 0;
 };
 
+/// Look at a board for the lens of a camera with lasers.
+struct LensCommand {};
+
 /// What the worker can be asked to do, the least urgent first.
-using Command = std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand,
-                             ScanCommand, ResumeCommand, CalibrateCommand, WallCommand>;
+using Command =
+    std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand, ScanCommand,
+                 ResumeCommand, CalibrateCommand, WallCommand, LensCommand>;
 
 /// Why a scan is stopped.
 enum class ScanStop { end, pause };

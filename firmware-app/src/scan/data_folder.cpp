@@ -4,6 +4,7 @@
 #include <sys/file.h>
 
 #include <cerrno>
+#include <cmath>
 #include <string_view>
 
 #include "octurn/error.hpp"
@@ -34,6 +35,8 @@ bool is_unfinished_json(std::string_view name) {
          name.substr(numbers + ending.size()).find_first_not_of("0123456789-") == name.npos;
 }
 
+std::string mb_text(double mb) { return std::to_string(static_cast<std::uint64_t>(mb)) + " MB"; }
+
 }  // namespace
 
 void throw_data_error(const fs::path& path, const std::string& doing, std::error_code reason) {
@@ -42,7 +45,8 @@ void throw_data_error(const fs::path& path, const std::string& doing, std::error
       full ? ErrorCode::disk_full : ErrorCode::data_failed,
       path.string() + ": cannot " + doing + ": " + reason.message(),
       full ? "Delete scans that are no longer needed."
-           : "Check that this program may write there, or choose another folder with --data.");
+           : "Check that this program may write there, or choose another folder with --data.",
+      {{"path", path.string()}});
 }
 
 std::uint64_t max_scan_bytes(const ScanSettings& settings) {
@@ -55,12 +59,13 @@ void expect_room(const fs::path& data, std::uint64_t available, std::uint64_t ne
                  const std::string& what) {
   if (available < needed) {
     const auto mb = [](std::uint64_t bytes) {
-      return std::to_string(static_cast<std::uint64_t>(mb_from_bytes(static_cast<double>(bytes)))) +
-             " MB";
+      return std::floor(mb_from_bytes(static_cast<double>(bytes)));
     };
     throw Error(ErrorCode::disk_full,
-                mb(available) + " free in " + data.string() + ", " + what + " needs " + mb(needed),
-                "Delete scans that are no longer needed.");
+                mb_text(mb(available)) + " free in " + data.string() + ", " + what + " needs " +
+                    mb_text(mb(needed)),
+                "Delete scans that are no longer needed.",
+                {{"free_mb", mb(available)}, {"needed_mb", mb(needed)}, {"path", data.string()}});
   }
 }
 

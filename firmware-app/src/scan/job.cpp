@@ -83,6 +83,7 @@ Job to_interrupted(Job job, int snapshots) {
   job.phase = Phase::done;
   job.snapshots_done = snapshots;
   job.times.left.reset();
+  job.times.until_pause.reset();
   job.failure = interruption();
   return job;
 }

@@ -103,6 +103,8 @@ struct JobTimes {
   std::string created = {};  ///< UTC, as in ISO 8601
   std::chrono::duration<double> elapsed = {};
   std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
+  /// Of a running scan at a stop where a device fails: how long it still tries that stop again.
+  std::optional<std::chrono::duration<double>> until_pause = {};
   int late_pulses = 0;  ///< of the motor, which turned more slowly for it
 };
 
@@ -110,6 +112,7 @@ struct JobTimes {
 struct JobBuilds {
   std::vector<Build> all = {};  ///< in order of their numbers
   int chosen = 0;               ///< whose model is the scan's; 0: what the scan itself made
+  bool have_colours = false;    ///< if asked for: the scan's pictures do, of a scan by laser line
 };
 
 /// What a person wrote on a scan; empty if nobody did.

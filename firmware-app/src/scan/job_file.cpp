@@ -43,6 +43,9 @@ std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_pose_of(*object));
 }
 
+/// Of a key that earlier versions did not write.
+bool flag_in(const std::optional<JsonValue>& flag) { return flag && flag->flag(); }
+
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_model(*object));
 }
@@ -64,7 +67,8 @@ json to_job_json(const Job& job) {
               {"calibration", nullptr},
               {"model", nullptr},
               {"build", job.builds.chosen},
-              {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()}};
+              {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
+              {"has_colours", job.builds.have_colours}};
   if (job.failure) {
     object["error"] = to_json(*job.failure);
   }
@@ -92,7 +96,8 @@ Job to_job(const json& object) {
           .failure = failure_from(keys.value("error")),
           .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model")),
-          .builds = {.chosen = static_cast<int>(number_or_zero(keys, "build", max_int))},
+          .builds = {.chosen = static_cast<int>(number_or_zero(keys, "build", max_int)),
+                     .have_colours = flag_in(keys.value("has_colours"))},
           .pose_of = pose_of_from(keys.value("pose_of"))};
 }
 

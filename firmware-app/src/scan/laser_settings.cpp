@@ -105,6 +105,14 @@ std::vector<Field> lens_fields(LaserSettings& s) {
        .help = "radial distortion of the lens, x (1 + k1 r^2 + k2 r^4)",
        .access = number(s.k1, -max_distortion, max_distortion)},
       {.key = "k2", .help = "the same", .access = number(s.k2, -max_distortion, max_distortion)},
+      {.key = "exposure_ms",
+       .unit = "ms",
+       .help = "of each picture: longer where a dark object shows no line, shorter where a bright "
+               "one is white",
+       .access = milliseconds(s.exposure, 1, 1000)},
+      {.key = "gain",
+       .help = "of the camera's signal, where it can be set; more of it is more noise",
+       .access = number(s.gain, 1, 64)},
   };
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <chrono>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ struct LaserSettings {
       .width = 820, .height = 616, .fx = 682.4, .fy = 682.4, .cx = 409.5, .cy = 307.5};
   double k1 = 0;  ///< distortion, as of `LaserCamera`
   double k2 = 0;
+  std::chrono::milliseconds exposure{10};  ///< of each picture
+  double gain = 1;
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_camera();  ///< metres
   LaserLine left = {.gpio_line = "GPIO23", .laser = nominal_laser("left", -std::numbers::pi / 6)};
   LaserLine right = {.gpio_line = "GPIO24", .laser = nominal_laser("right", std::numbers::pi / 6)};

@@ -56,6 +56,7 @@ std::optional<std::vector<CalibrationFinding>> pose_findings(
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (CalibrationFinding& finding : scan_findings(store.get(poses[i]), store.folder(poses[i]))) {
       finding.detail.insert(0, "side " + std::to_string(i + 2) + ": ");
+      finding.parameters.emplace("object_side", static_cast<double>(i + 2));
       findings.push_back(std::move(finding));
     }
   }

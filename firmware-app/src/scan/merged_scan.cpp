@@ -8,6 +8,7 @@
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "scan/solve_pose.hpp"
+#include "scan/stored_scan.hpp"
 
 namespace octurn {
 namespace {
@@ -44,11 +45,7 @@ void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
   const auto refuse = [&](const std::string& what, const std::string& hint) {
     throw Error(ErrorCode::scan_malformed, folder.string() + ": " + what, hint);
   };
-  if (scan.laser) {
-    refuse("is by laser line, and has no depth images to register",
-           "Merge scans of a sensor that measures depth.");
-  }
-  if (!turns.empty() && !(turns.front().scan.intrinsics == scan.intrinsics)) {
+  if (!turns.empty() && !have_same_sensor(turns.front().scan, scan)) {
     refuse("is of another sensor than " + turns.front().folder.string(),
            "Merge scans of one sensor.");
   }
@@ -84,9 +81,8 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 /// What the object's readings of one stop span that lie in a turn's clip box: metres, platform
 /// frame at angle 0. Every other row and column is enough.
-Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Scan& scan, double angle) {
-  const Intrinsics& lens = scan.intrinsics;
-  const Eigen::Isometry3d pose = object_from_sensor(model_pose(scan), angle);
+Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Intrinsics& lens,
+                              const Eigen::Isometry3d& pose, const Box& clip) {
   Eigen::AlignedBox3d extent;
   for (int v = 0; v < frame.height; v += 2) {
     const auto row = frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
@@ -94,7 +90,7 @@ Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Scan& scan, double 
       if (row[u] > 0) {
         const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
         const Eigen::Vector3d point = pose * (ray * (row[u] * lens.depth_unit));
-        if (point.z() > min_height && contains(scan.clip, point)) {
+        if (point.z() > min_height && contains(clip, point)) {
           extent.extend(point);
         }
       }
@@ -120,6 +116,34 @@ Box drawn_in(const StoredTurn& turn) {
   return box;
 }
 
+/// Files what a stop saw into a folder, as the stop of that number.
+Shot filed(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int number) {
+  Shot there = shot;
+  if (turn.scan.laser) {
+    there.pictures = picture_files(number, *turn.scan.laser);
+    for (std::size_t i = 0; i < shot.pictures.size(); ++i) {
+      link_or_copy(turn.folder / shot.pictures[i], folder / there.pictures[i]);
+    }
+  } else {
+    there.file = shot_file(number);
+    link_or_copy(turn.folder / shot.file, folder / there.file);
+  }
+  return there;
+}
+
+/// What a turn's models are made with, where that is not what the merged scan was told.
+std::optional<SolvedPose> solved_in(const Scan& merged, const Scan& turn) {
+  const auto same_plane = [](const Laser& a, const Laser& b) {
+    return a.normal == b.normal && a.distance == b.distance;
+  };
+  if (turn.solved || !turn.laser ||
+      std::ranges::equal(turn.laser->lasers, merged.laser->lasers, same_plane)) {
+    return turn.solved;
+  }
+  return SolvedPose{.platform_from_sensor = turn.platform_from_sensor,
+                    .lasers = turn.laser->lasers};
+}
+
 /// Files the snapshots of all turns into a folder. @return the scan that they make
 Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
             const Registration& registration) {
@@ -133,14 +157,11 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
     const Scan& scan = turns[i].scan;
     merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
                             .platform_from_sensor = scan.platform_from_sensor,
-                            .solved = scan.solved,
+                            .solved = solved_in(merged, scan),
                             .clip = drawn_in(turns[i])});
-    for (Shot shot : scan.shots) {
-      const std::string file = shot_file(static_cast<int>(merged.shots.size()));
-      link_or_copy(turns[i].folder / shot.file, folder / file);
-      shot.file = file;
-      shot.pose = static_cast<int>(i);
-      merged.shots.push_back(std::move(shot));
+    for (const Shot& shot : scan.shots) {
+      merged.shots.push_back(filed(shot, turns[i], folder, static_cast<int>(merged.shots.size())));
+      merged.shots.back().pose = static_cast<int>(i);
     }
   }
   return merged;
@@ -166,6 +187,21 @@ void share_rig(std::vector<StoredTurn>& turns) {
   }
 }
 
+/// A turn of a sensor that measures depth.
+RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop) {
+  RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
+                       .platform_from_sensor = model_pose(turn.scan),
+                       .clip = turn.scan.clip};
+  for (const Shot& shot : turn.scan.shots) {
+    one.angles.push_back(shot.angle);
+  }
+  one.read = [&turn, stored = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t i) {
+    auto kept = turn.kept ? turn.kept->find(i) : std::nullopt;
+    return kept ? *std::move(kept) : stored.read(i).frame;
+  };
+  return one;
+}
+
 }  // namespace
 
 std::vector<StoredTurn> read_turns(const std::vector<fs::path>& folders) {
@@ -188,13 +224,13 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
                                      kept->keep(index, snapshot.frame);
                                      return snapshot;
                                    }};
-    const CalibrationReport report = solve_pose(turn.scan, read_once, threads);
+    const ScanSolution solution = solve_scan(turn.folder, turn.scan, read_once, threads, stop);
     turn.kept = kept;
-    if (report.accepted && !report.confirms_told()) {
-      turn.scan.solved = to_solved_pose(report);
+    if (solution.replaces_told) {
+      turn.scan.solved = solution.solved;
     }
   }
-  if (!turns.empty()) {
+  if (!turns.empty() && !turns.front().scan.laser) {  // a plane goes with the pose of its turn
     share_rig(turns);
   }
 }
@@ -203,21 +239,16 @@ Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop) {
   std::vector<RegistrationTurn> seen;
   for (StoredTurn& turn : turns) {
-    turn.extents.assign(turn.scan.shots.size(), {});
-    RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
-                         .platform_from_sensor = model_pose(turn.scan),
-                         .angles = {},
-                         .clip = turn.scan.clip,
-                         .read = {},
-                         .object_from_platform = turn.object_from_platform,
-                         .told_object_from_platform = turn.told_object_from_platform};
-    for (const Shot& shot : turn.scan.shots) {
-      one.angles.push_back(shot.angle);
-    }
-    one.read = [&turn, stored = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t i) {
-      auto kept = turn.kept ? turn.kept->find(i) : std::nullopt;
-      DepthFrame frame = kept ? *std::move(kept) : stored.read(i).frame;
-      turn.extents[i] = extent_of(frame, turn.scan, turn.scan.shots[i].angle);
+    RegistrationTurn one =
+        turn.scan.laser ? laser_turn(turn.folder, turn.scan, stop) : depth_turn(turn, stop);
+    one.object_from_platform = turn.object_from_platform;
+    one.told_object_from_platform = turn.told_object_from_platform;
+    turn.extents.assign(one.angles.size(), {});
+    one.read = [&turn, lens = one.intrinsics, angles = one.angles,
+                read = std::move(one.read)](std::size_t i) {
+      DepthFrame frame = read(i);
+      turn.extents[i] = extent_of(frame, lens, object_from_sensor(model_pose(turn.scan), angles[i]),
+                                  turn.scan.clip);
       return frame;
     };
     seen.push_back(std::move(one));
@@ -243,7 +274,7 @@ void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& tu
     fs::remove_all(temporary, ignored);
     const bool is_full = error.code() == std::errc::no_space_on_device;
     throw Error(is_full ? ErrorCode::disk_full : ErrorCode::write_failed,
-                target.string() + ": " + error.code().message());
+                target.string() + ": " + error.code().message(), {}, {{"path", target.string()}});
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(temporary, ignored);

@@ -11,14 +11,11 @@
 #include "scan/stored_scan.hpp"
 
 namespace octurn {
-namespace {
 
-void stream_model(const RebuildCommand& command) {
-  ModelPipe& pipe = *command.pipe;
+void make_model(const std::filesystem::path& folder, ReconstructOptions options, ModelPipe& pipe) {
   const std::stop_token stop = pipe.stop().get_token();
-  const Scan scan = read_scan(command.folder);
-  const SnapshotSource snapshots = readable_snapshots(command.folder, scan, stop);
-  ReconstructOptions options = command.options;
+  const Scan scan = read_scan(folder);
+  const SnapshotSource snapshots = readable_snapshots(folder, scan, stop);
   options.clip = model_clip(scan);
   options.placements = placements(scan);
   fit_to_sensor(options, scan);
@@ -35,16 +32,14 @@ void stream_model(const RebuildCommand& command) {
   pipe.close();
 }
 
-}  // namespace
-
 void rebuild(const RebuildCommand& command) {
   try {
-    stream_model(command);
+    command.make(*command.pipe);
   } catch (const Stopped&) {
     command.pipe->stop().request_stop();
   } catch (...) {
     Failure failure = current_failure();
-    log::error("scanner", "model from " + command.folder.string() + ": " + failure.detail);
+    log::error("scanner", "what a request asked for: " + failure.detail);
     command.pipe->fail(std::move(failure));
   }
 }

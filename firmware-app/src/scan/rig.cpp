@@ -28,6 +28,12 @@ DepthSensor& Rig::sensor() {
   return *sensor_;
 }
 
+void Rig::use_lens(const CameraLens& lens) {
+  options_.laser->lens = lens.intrinsics;
+  options_.laser->k1 = lens.k1;
+  options_.laser->k2 = lens.k2;
+}
+
 Camera& Rig::camera() {
   if (!camera_) {
     CameraAndLasers opened = options_.open_camera(*options_.laser);
@@ -109,7 +115,12 @@ int Rig::late_pulses() const {
 
 CameraAndLasers open_camera_and_lasers(const LaserSettings& settings) {
   Lasers::SetLine lines = open_laser_lines(gpio_lines_of(settings));
-  return {.camera = open_camera(), .set_line = std::move(lines)};
+  const CameraWish wish{.width = settings.lens.width,
+                        .height = settings.lens.height,
+                        .exposure = settings.exposure,
+                        .gain = settings.gain,
+                        .focus = settings.platform_from_sensor.translation().norm()};
+  return {.camera = open_camera(wish), .set_line = std::move(lines)};
 }
 
 }  // namespace octurn

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "camera/lasers.hpp"
+#include "octurn/calibrate.hpp"
 #include "scan/laser_settings.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "turntable/stepper.hpp"
@@ -49,6 +50,9 @@ class Rig {
 
   /// What the rig is told of its camera and lasers; null if it has a depth sensor.
   const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
+
+  /// From now on the rig is told another lens of its camera, which it has.
+  void use_lens(const CameraLens& lens);
 
   /// Opens the camera if it is closed, and with it the lines of its lasers.
   /// @throws Error  as `open_camera_and_lasers`

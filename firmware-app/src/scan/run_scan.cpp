@@ -14,6 +14,7 @@
 #include "octurn/units.hpp"
 #include "scan/checked_snapshots.hpp"
 #include "scan/coverage.hpp"
+#include "scan/early_model.hpp"
 #include "scan/fitting_reconstruction.hpp"
 #include "scan/last_look.hpp"
 #include "scan/plan.hpp"
@@ -82,6 +83,7 @@ class Run {
   PoseChecks check_;          // of the snapshots that the reconstruction was given
   int added_ = 0;             // snapshots that the reconstruction was given
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
+  EarlyModel early_;          // with the pose that is in force, while another is solved
 };
 
 bool Run::take_snapshots() {
@@ -127,11 +129,11 @@ bool Run::take_depth(const Stop& at, double angle) {
 /// The surface at a stop's lines ends at those of the stops beside it, so that nothing is added to
 /// the reconstruction before the last stop. @return false if stopped first
 bool Run::take_lines(const Stop& at, double angle) {
-  const auto pictures = take_pictures(rig_, at, stop_, observer_);
-  if (pictures) {
-    store_pictures(folder_, scan_, angle, *pictures);
+  const auto taken = take_pictures(rig_, at, stop_, observer_);
+  if (taken) {
+    store_pictures(folder_, scan_, angle, *taken);
   }
-  return pictures.has_value();
+  return taken.has_value();
 }
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
@@ -156,12 +158,15 @@ std::vector<CalibrationFinding> Run::calibrate() {
     return {};
   }
   observer_.on_progress(Phase::calibrating, done());
+  if (added_ == done() && wait_for_added([] {}) && !stop_.stop_requested()) {
+    early_.begin(*reconstruction_, readable_snapshots(folder_, scan_, stop_), folder_ / "Scan.stl");
+  }
   const ScanSolution solution =
       solve_scan(folder_, scan_, readable_snapshots(folder_, scan_, stop_), threads(), stop_);
   throw_if_stopped(stop_);
   observer_.on_calibrated(solution.report);
   if (solution.replaces_told) {
-    wait_for_added([] {});
+    early_.give_up();
     scan_.solved = solution.solved;
     write_solved_pose(folder_, *scan_.solved);
     reconstruction_.start_again();
@@ -239,8 +244,10 @@ std::optional<ModelReport> Run::write() {
       return std::nullopt;  // before all was added
     }
     try {
-      return write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
-                         folder_ / "Scan.stl", stop_);
+      return early_.has_begun()
+                 ? early_.finish(stop_)
+                 : write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
+                               folder_ / "Scan.stl", stop_);
     } catch (const Error& error) {
       reconstruction_.make_coarser(error);
       added_ = 0;

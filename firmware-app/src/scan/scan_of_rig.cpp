@@ -1,32 +1,13 @@
 #include "scan/scan_of_rig.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "octurn/error.hpp"
 #include "scan/checked_snapshots.hpp"
 #include "scan/depth_scale.hpp"
+#include "scan/stored_scan.hpp"
 
 namespace octurn {
-namespace {
-
-/// Whether a rig has the scan's camera and lasers. Their planes may have been measured since: the
-/// scan has those that it was begun with.
-bool has_camera_of(const LaserSettings& rig, const Scan& scan) {
-  const LaserCamera camera = laser_camera(rig);
-  return scan.laser && rig.lens == scan.intrinsics && rig.k1 == scan.laser->k1 &&
-         rig.k2 == scan.laser->k2 &&
-         std::ranges::equal(camera.lasers, scan.laser->lasers, {}, &Laser::name, &Laser::name);
-}
-
-bool is_same(const Scan& scan, const ScanSettings& settings, Rig& rig) {
-  if (const LaserSettings* laser = rig.laser()) {
-    return has_camera_of(*laser, scan);
-  }
-  return !scan.laser && scaled(rig.sensor().intrinsics(), settings.depth_scale) == scan.intrinsics;
-}
-
-}  // namespace
 
 Scan scan_of_rig(const Rig& rig, const ScanSettings& settings) {
   const LaserSettings* const told = rig.laser();
@@ -67,11 +48,19 @@ void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem:
   }
 }
 
+bool has_sensor_of(const Scan& scan, const ScanSettings& settings, Rig& rig) {
+  Scan of_rig = scan_of_rig(rig, settings);
+  if (!of_rig.laser) {
+    of_rig.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale);
+  }
+  return have_same_sensor(of_rig, scan);
+}
+
 void expect_same_rig(const Scan& scan, const ScanSettings& settings, Rig& rig) {
-  if (!is_same(scan, settings, rig)) {
+  if (!has_sensor_of(scan, settings, rig)) {
     throw Error(ErrorCode::sensor_other,
                 "this scan was begun with another sensor: " + scan.sensor_name,
-                "Plug in the one that it was begun with.");
+                "Plug in the one that it was begun with.", {{"begun_with", scan.sensor_name}});
   }
 }
 

@@ -21,6 +21,10 @@ ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& setting
 void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
                 Rig& rig);
 
+/// Whether a scan was made with the rig's kind of sensor, or with its camera and lasers. The
+/// lasers' planes may have been measured since: a scan has those that it was begun with.
+bool has_sensor_of(const Scan& scan, const ScanSettings& settings, Rig& rig);
+
 /// Whether a scan that was begun can go on with this rig.
 /// @throws Error "sensor-other"
 void expect_same_rig(const Scan& scan, const ScanSettings& settings, Rig& rig);

@@ -12,6 +12,7 @@
 #include "scan/job_file.hpp"
 #include "scan/scan_label.hpp"
 #include "scan/scan_store.hpp"
+#include "scan/stored_scan.hpp"
 #include "utc.hpp"
 
 namespace octurn {
@@ -40,7 +41,7 @@ Job read_adopted_job(const fs::path& folder, const Scan& scan) {
 }
 
 /// A scan that has all its snapshots, and waits for its model.
-Job to_waiting(Job job, const Scan& scan) {
+Job to_waiting(Job job, const fs::path& folder, const Scan& scan) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;
   job.snapshots_done = static_cast<int>(scan.shots.size());
@@ -52,6 +53,7 @@ Job to_waiting(Job job, const Scan& scan) {
   job.model.reset();
   job.builds = {};
   job.pose_of.reset();
+  job.builds.have_colours = has_colours(folder, scan);
   return job;
 }
 
@@ -78,7 +80,7 @@ Job ScanStore::adopt(const fs::path& beginning) {
         "this scan has free poses: it has no platform, and the page has no view of spaces",
         "Unpack the archive, and make its model with: octurn reconstruct FOLDER -o Scan.stl");
   }
-  Job job = to_waiting(read_adopted_job(beginning, scan), scan);
+  Job job = to_waiting(read_adopted_job(beginning, scan), beginning, scan);
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
   job.id = to_scan_id(now);

@@ -16,7 +16,6 @@ constexpr auto camera_patience =
 constexpr auto camera_interest = 5s;  // frames are read for that long after someone asked
 constexpr auto failure_lasts = 2s;    // so long a failure needs no other look
 constexpr auto fresh = 200ms;         // a frame of that age shows what is there now
-constexpr auto model_patience = 5s;   // with another model that is made for a request
 constexpr auto max_silence = 30s;     // of the worker: ten times what a device may take
 
 RigOptions at_angle(RigOptions rig, double angle_deg) {
@@ -28,7 +27,7 @@ RigOptions at_angle(RigOptions rig, double angle_deg) {
 
 Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
                  const std::optional<SlurmOptions>& slurm)
-    : store_(store), calibration_(store.data()), board_(rig) {
+    : store_(store), limits_(limits), calibration_(store.data()), board_(rig) {
   if (slurm) {
     slurm_.emplace(*slurm, store, limits);
   }
@@ -199,15 +198,6 @@ void Scanner::expect_ready() {
   if (!now.busy() && !is_ready(now.turntable)) {
     throw to_error(now.turntable.failure);
   }
-}
-
-std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
-                                                   const ReconstructOptions& options) {
-  const auto pipe = std::make_shared<ModelPipe>();
-  const RebuildCommand rebuild{.folder = store_.folder(id), .options = options, .pipe = pipe};
-  return slot_.offer_rebuild(rebuild, pipe->stop(), model_patience)
-             ? std::make_unique<ModelStream>(pipe)
-             : nullptr;
 }
 
 bool Scanner::calibrate(const ScanSettings& settings) {

@@ -154,6 +154,23 @@ class Scanner {
   /// @return false if a scan, or another measurement, goes on
   bool look_at_wall(int frames);
 
+  /// Has the camera look at a board that somebody holds before it, and solves its lens. What is
+  /// found is in the run, and `keep_lens` puts it into force.
+  /// @return false if a scan, or another measurement, goes on
+  bool look_at_board();
+
+  /// Has the lens solved from the views of the board so far. @return false if none are taken
+  bool solve_lens();
+
+  /// Keeps the lens that was found last, or forgets it: the run is over then.
+  /// @throws Error "not-found"  if none was found
+  void keep_lens();
+  void discard_lens();
+
+  /// Removes the kept lens of the camera that was opened last: the settings' holds again.
+  /// @throws Error "not-found"  if there is none; "write-failed"
+  void forget_lens();
+
   /// Removes the map of the sensor that was opened last, and the looks that it was made of.
   /// @return false if a scan, or a measurement, goes on
   /// @throws Error "not-found"  if it has none; "write-failed"
@@ -212,6 +229,14 @@ class Scanner {
   /// @throws Error  if the scan cannot be read, the model is empty or does not fit into memory
   std::unique_ptr<ModelStream> stream_model(std::string_view id, const ReconstructOptions& options);
 
+  /// Has the worker make the colours of a model, and waits for them. As above there is one such
+  /// thing at a time, and a scan that starts ends it.
+  /// @param build  that the model is of; 0: what the scan itself made
+  /// @return false while a scan or a build goes on, or something else is made for too long
+  /// @throws Error  as `octurn::colour_model` and `scan_of_model`; "busy"  if a scan starts
+  /// meanwhile
+  bool colour_model(const Job& job, int build);
+
   /// Has the worker use the rig, between scans, and waits until it has. A scan that starts asks for
   /// it back.
   /// @param check  returns soon after its token has a stop request; what it throws comes out here
@@ -229,12 +254,15 @@ class Scanner {
   bool is_building(std::string_view id) const;
   void expect_idle(std::string_view id) const;
   void expect_last_pose(const Job& pose) const;
+  CalibrationRun found_lens() const;
   void take_back(const Job& pose);
   std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);
+  std::unique_ptr<ModelStream> make_for_request(std::function<void(ModelPipe& pipe)> make);
 
   ScanStore& store_;
+  Limits limits_;
   CalibrationStore calibration_;
   StatusBoard board_;
   CommandSlot slot_;

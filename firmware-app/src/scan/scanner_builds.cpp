@@ -1,15 +1,19 @@
-// How a scanner takes builds of stored scans.
+// How a scanner takes builds of stored scans, and what requests have made of them.
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <utility>
 
+#include "scan/colour_model.hpp"
+#include "scan/rebuild.hpp"
 #include "scan/scanner.hpp"
 #include "utc.hpp"
 
 namespace octurn {
 namespace {
+
+constexpr auto model_patience = std::chrono::seconds(5);  // with what is made for another request
 
 /// Whether a scan has all its snapshots, but no model yet.
 bool waits_for_model(const Job& job) {
@@ -80,6 +84,32 @@ std::vector<BuildRun> Scanner::build_runs() const {
     runs.insert(runs.end(), elsewhere->begin(), elsewhere->end());
   }
   return runs;
+}
+
+std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
+                                                   const ReconstructOptions& options) {
+  return make_for_request([folder = store_.folder(id), options](ModelPipe& pipe) {
+    make_model(folder, options, pipe);
+  });
+}
+
+bool Scanner::colour_model(const Job& job, int build) {
+  const auto make = [job, build, this](ModelPipe& pipe) {
+    octurn::colour_model(store_.model_file(job.id, build), scan_of_model(store_, job, build),
+                         limits_.memory_bytes, pipe.stop().get_token());
+    pipe.set_length(0);
+    pipe.close();
+  };
+  return make_for_request(make) != nullptr;
+}
+
+/// @return nothing while a scan or a build goes on, or something else is made for too long
+/// @throws Error  as what is made does, before the pipe has its length
+std::unique_ptr<ModelStream> Scanner::make_for_request(std::function<void(ModelPipe& pipe)> make) {
+  const auto pipe = std::make_shared<ModelPipe>();
+  return slot_.offer_rebuild({.make = std::move(make), .pipe = pipe}, pipe->stop(), model_patience)
+             ? std::make_unique<ModelStream>(pipe)
+             : nullptr;
 }
 
 }  // namespace octurn

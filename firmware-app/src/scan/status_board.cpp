@@ -48,6 +48,9 @@ Status StatusBoard::status() const {
     if (status.job_end) {
       status.job->times.left = status.job_end->left(now);
     }
+    if (status.job_gives_up) {
+      status.job->times.until_pause = std::max(*status.job_gives_up - now, Clock::duration::zero());
+    }
   }
   return status;
 }
@@ -57,17 +60,20 @@ void StatusBoard::begin_scan(const Job& job, Clock::time_point started) {
     status.job = job;
     status.job_started = started;
     status.job_end.reset();
+    status.job_gives_up.reset();
   });
   mesh_preview_.set({.id = job.id});
 }
 
-void StatusBoard::set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end) {
+void StatusBoard::set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end,
+                          const std::optional<Clock::time_point>& gives_up) {
   status_.update([&](Status& status) {
     if (status.job && status.job->id == job.id) {
       ScanLabel label = std::move(status.job->label);
       status.job = job;
       status.job->label = std::move(label);
       status.job_end = expected_end;
+      status.job_gives_up = gives_up;
     }
   });
 }
@@ -130,6 +136,12 @@ void StatusBoard::set_sensor_closed() {
 void StatusBoard::clear_sensor_map() {
   known_sensor_.update([](KnownSensor& sensor) { sensor.map.reset(); });
 }
+
+void StatusBoard::set_lens(std::optional<KeptLens> lens) {
+  known_sensor_.update([&](KnownSensor& sensor) { sensor.lens = lens; });
+}
+
+void StatusBoard::forget_calibration_run() { calibration_run_.set(std::nullopt); }
 
 void StatusBoard::set_calibration_run(CalibrationRun run) {
   const bool is_running = run.state == CalibrationRun::State::running;

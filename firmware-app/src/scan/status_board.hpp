@@ -12,6 +12,7 @@
 #include "scan/calibration_turn.hpp"
 #include "scan/job.hpp"
 #include "scan/latest.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_label.hpp"
 #include "scan/sensor_map_files.hpp"
@@ -40,6 +41,7 @@ struct Status {
   std::optional<Job> job = {};
   Clock::time_point job_started = {};
   std::optional<ExpectedEnd> job_end = {};
+  std::optional<Clock::time_point> job_gives_up = {};  ///< at a stop where a device fails
 
   bool is_measuring = false;  ///< the rig, with a turn or a wall
   bool is_building = false;   ///< a model from a stored scan, to be kept
@@ -66,6 +68,7 @@ struct KnownSensor {
   std::optional<std::chrono::steady_clock::time_point> since =
       {};                                    ///< when it opened; none: closed
   std::optional<SensorMapSummary> map = {};  ///< none: this machine has none of it
+  std::optional<KeptLens> lens = {};         ///< the same, of a camera
 };
 
 /// A coarse mesh of the snapshots so far of the scan that was started last.
@@ -96,7 +99,9 @@ class StatusBoard {
   void begin_scan(const Job& job, Status::Clock::time_point started);
 
   /// What has become of the scan that was begun last. Its name stays.
-  void set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end = {});
+  /// @param gives_up  when it tries a stop no more where a device fails; none: no device fails
+  void set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end = {},
+               const std::optional<Status::Clock::time_point>& gives_up = {});
 
   /// What a person called a scan.
   void label(std::string_view id, const LabelChange& change);
@@ -114,6 +119,10 @@ class StatusBoard {
   void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
   void set_sensor_closed();
   void clear_sensor_map();
+  /// What is kept of the camera's lens now.
+  void set_lens(std::optional<KeptLens> lens);
+  /// There is no measurement any more to tell of.
+  void forget_calibration_run();
   void set_build_run(BuildRun run);
   /// The build that waits will never begin, for this reason.
   void drop_waiting_build(const std::optional<Failure>& reason);

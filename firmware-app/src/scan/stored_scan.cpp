@@ -1,6 +1,9 @@
 #include "scan/stored_scan.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -25,21 +28,32 @@ Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
           .pose = shot.pose};
 }
 
-/// "snapshots/000-dark.png" beside "snapshots/000.png".
-std::string picture_file(const std::string& shot, const std::string& name) {
-  const std::filesystem::path file(shot);
-  return (file.parent_path() / (file.stem().string() + "-" + name + ".png")).string();
-}
-
-void write_picture(const std::filesystem::path& file, const Picture& picture) {
+void write_png(const std::filesystem::path& file, const std::vector<std::byte>& png) {
   std::error_code ignored;  // if the folder cannot be made, writing the file says why
   std::filesystem::create_directories(file.parent_path(), ignored);
-  const std::vector<std::byte> png =
-      encode_grey_png(picture.width, picture.height, picture.samples);
   write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
+bool is_grey(const Rgb& pixel) { return pixel[0] == pixel[1] && pixel[1] == pixel[2]; }
+
+std::vector<std::byte> encode(const Picture& picture, const std::vector<Rgb>& colours) {
+  return std::ranges::all_of(colours, is_grey)  // or there are none
+             ? encode_grey_png(picture.width, picture.height, picture.samples)
+             : encode_rgb_png(
+                   {.width = picture.width, .height = picture.height, .pixels = colours});
+}
+
+bool is_same(const LaserCamera& one, const LaserCamera& other) {
+  return one.k1 == other.k1 && one.k2 == other.k2 &&
+         std::ranges::equal(one.lasers, other.lasers, {}, &Laser::name, &Laser::name);
+}
+
 }  // namespace
+
+bool have_same_sensor(const Scan& one, const Scan& other) {
+  return one.intrinsics == other.intrinsics && one.laser.has_value() == other.laser.has_value() &&
+         (!one.laser || is_same(*one.laser, *other.laser));
+}
 
 SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Scan& scan,
                                   const std::stop_token& stop) {
@@ -61,17 +75,38 @@ void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot&
   write_scan(folder, scan);
 }
 
+std::vector<std::string> picture_files(int stop, const LaserCamera& camera) {
+  const std::filesystem::path file(shot_file(stop));
+  const std::string stem = (file.parent_path() / file.stem()).string();
+  std::vector<std::string> files{stem + "-dark.png"};
+  for (const Laser& laser : camera.lasers) {
+    files.push_back(stem + "-" + laser.name + ".png");
+  }
+  return files;
+}
+
 void store_pictures(const std::filesystem::path& folder, Scan& scan, double angle,
-                    const std::vector<Picture>& pictures) {
+                    const StopPictures& taken) {
   Shot shot{.angle = angle};
-  const auto index = static_cast<int>(scan.shots.size());
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    shot.pictures.push_back(
-        picture_file(shot_file(index), i == 0 ? "dark" : scan.laser->lasers[i - 1].name));
-    write_picture(folder / shot.pictures.back(), pictures[i]);
+  shot.pictures = picture_files(static_cast<int>(scan.shots.size()), *scan.laser);
+  const std::vector<Rgb> none;
+  for (std::size_t i = 0; i < taken.pictures.size(); ++i) {
+    write_png(folder / shot.pictures[i], encode(taken.pictures[i], i == 0 ? taken.colours : none));
   }
   scan.shots.push_back(std::move(shot));
   write_scan(folder, scan);
+}
+
+bool has_colours(const std::filesystem::path& folder, const Scan& scan) {
+  if (!scan.laser || scan.shots.empty()) {
+    return false;
+  }
+  // A PNG begins with its signature and its header, where the kind of its pixels is the 26th byte.
+  constexpr std::size_t kind_at = 25;
+  constexpr char truecolour = 2;
+  std::array<char, kind_at + 1> head{};
+  std::ifstream file(folder / scan.shots.front().pictures.front(), std::ios::binary);
+  return file.read(head.data(), head.size()) && head[kind_at] == truecolour;
 }
 
 }  // namespace octurn

@@ -27,17 +27,20 @@ constexpr double max_white_share = 0.25;
 constexpr int line_levels = 24;
 constexpr int rows_per_line_row = 30;
 
+/// `Camera::read`, or the same with colours.
+using Read = std::optional<TimedPicture> (Camera::*)(const std::stop_token& stop);
+
 /// Takes a picture whose exposure began after `switched`; nothing if stopped first.
-std::optional<Picture> read_picture(Camera& camera, Clock::time_point switched,
-                                    const std::stop_token& stop, const ScanObserver& observer) {
+std::optional<TimedPicture> read_picture(Camera& camera, Read read, Clock::time_point switched,
+                                         const std::stop_token& stop,
+                                         const ScanObserver& observer) {
   for (int stale = 0; stale <= max_stale_pictures; ++stale) {
-    std::optional<TimedPicture> timed = camera.read(stop);
-    if (!timed) {
-      return std::nullopt;
-    }
-    if (timed->begin >= switched) {
-      observer.on_picture(timed->picture);
-      return std::move(timed->picture);
+    std::optional<TimedPicture> timed = (camera.*read)(stop);
+    if (!timed || timed->begin >= switched) {
+      if (timed) {
+        observer.on_picture(timed->picture);
+      }
+      return timed;
     }
   }
   throw Error(ErrorCode::sensor_failed, camera.name() + ": its pictures are older than they may be",
@@ -51,7 +54,12 @@ void expect_size(const Picture& picture, const Intrinsics& lens, const std::stri
                     std::to_string(picture.height) + " pixels, where the settings say " +
                     std::to_string(lens.width) + " x " + std::to_string(lens.height),
                 "Plug in the camera that the settings are of, or correct laser.width and the "
-                "other keys of its lens.");
+                "other keys of its lens.",
+                {{"camera", camera},
+                 {"width_px", static_cast<double>(picture.width)},
+                 {"height_px", static_cast<double>(picture.height)},
+                 {"told_width_px", static_cast<double>(lens.width)},
+                 {"told_height_px", static_cast<double>(lens.height)}});
   }
 }
 
@@ -91,39 +99,41 @@ void expect_line(const Picture& dark, const Picture& lit, const std::string& las
   }
 }
 
-std::optional<std::vector<Picture>> take_pictures_here(Rig& rig, const std::stop_token& stop,
-                                                       const ScanObserver& observer) {
+std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                               const ScanObserver& observer) {
   Camera& camera = rig.camera();
-  std::vector<Picture> pictures;
-  const auto take = [&] {
-    std::optional<Picture> picture = read_picture(camera, Clock::now(), stop, observer);
-    if (picture) {
-      expect_size(*picture, rig.laser()->lens, camera.name());
-      pictures.push_back(*std::move(picture));
+  StopPictures taken;
+  std::vector<Picture>& pictures = taken.pictures;
+  const auto take = [&](Read read) {
+    std::optional<TimedPicture> timed = read_picture(camera, read, Clock::now(), stop, observer);
+    if (timed) {
+      expect_size(timed->picture, rig.laser()->lens, camera.name());
+      pictures.push_back(std::move(timed->picture));
     }
-    return picture.has_value();
+    return timed;
   };
-  if (!take()) {
+  auto dark = take(&Camera::read_in_colour);
+  if (!dark) {
     return std::nullopt;
   }
+  taken.colours = std::move(dark->colours);
   expect_dark_room(pictures.front(), camera.name());
   Lasers& lasers = rig.lasers();
   const std::vector<LaserLine> lines = lines_of(*rig.laser());
   for (std::size_t laser = 0; laser < lasers.count(); ++laser) {
     {
       const Lasers::Light light = lasers.light(laser);
-      if (!take()) {
+      if (!take(&Camera::read)) {
         return std::nullopt;
       }
     }
     expect_line(pictures.front(), pictures.back(), lines[laser].laser.name);
   }
-  return pictures;
+  return taken;
 }
 
-std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
-                                                  const std::stop_token& stop,
-                                                  const ScanObserver& observer) {
+std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
+                                          const ScanObserver& observer) {
   rig.turntable();  // whose faults are told before the camera's
   Camera& camera = rig.camera();
   if (!turn_to(rig, at, stop, observer)) {

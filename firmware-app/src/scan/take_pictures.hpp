@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "octurn/colours.hpp"
 #include "octurn/depth_png.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
@@ -11,19 +12,24 @@
 
 namespace octurn {
 
+/// What a camera sees at a stop.
+struct StopPictures {
+  std::vector<Picture> pictures = {};  ///< one without a laser, then one with each, in their order
+  std::vector<Rgb> colours = {};       ///< the first one's; empty if the camera has none
+};
+
 /// Turns to a stop and takes its pictures: one without a laser, then one with each, in their order.
 /// Each is exposed as a whole after the platform stood still and the laser was switched.
 ///
 /// @return nothing if stopped first: then, as after every error, all lasers are off
 /// @throws Error "sensor-blind"  if the room is too bright, or a laser's line is not seen; and
 ///               "sensor-...", "turntable-..."
-std::optional<std::vector<Picture>> take_pictures(Rig& rig, const Stop& at,
-                                                  const std::stop_token& stop,
-                                                  const ScanObserver& observer);
+std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
+                                          const ScanObserver& observer);
 
 /// The same where the platform stands.
-std::optional<std::vector<Picture>> take_pictures_here(Rig& rig, const std::stop_token& stop,
-                                                       const ScanObserver& observer);
+std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                               const ScanObserver& observer);
 
 /// A picture without a laser has to be dark enough to show lines.
 /// @throws Error "sensor-blind"

@@ -50,6 +50,7 @@ class Worker {
   void carry_out(ResumeCommand& command, const std::stop_source& stop);
   void carry_out(CalibrateCommand& command, const std::stop_source& stop);
   void carry_out(WallCommand& command, const std::stop_source& stop);
+  void carry_out(LensCommand& command, const std::stop_source& stop);
 
   void look_for_turntable();
   void run(Job job, const std::stop_token& stop);
@@ -65,11 +66,14 @@ class Worker {
   void show_picture(const Picture& picture);
   void show_progress(Phase phase, int snapshots_done);
   void begin(Phase phase);
+  void show_job();
   void save_progress();
   void keep_calibration(const CalibrationReport& report);
   void show_rebuilt(int snapshots);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void flatten(CalibrationRun& run, const std::stop_token& stop);
+  void find_lens(CalibrationRun& run, const std::stop_token& stop);
+  void use_lens();
   void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
   void introduce_sensor();
   void close_device(const Failure& failure);
@@ -78,12 +82,14 @@ class Worker {
   void finish();
 
   Rig rig_;
-  double speed_;  // of a simulated rig, relative to life
+  double speed_;                         // of a simulated rig, relative to life
+  std::optional<CameraLens> told_lens_;  // as the settings have it; none: no camera with lasers
   Limits limits_;
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs
   Clock::time_point job_started_ = {};
   std::optional<TimeLeft> time_left_ = {};            // of it
+  std::optional<Clock::time_point> gives_up_ = {};    // at a stop where a device fails
   Clock::time_point rebuild_started_ = {};            // of its model
   std::optional<Clock::time_point> introduced_ = {};  // when the sensor opened that is on the board
   bool turntable_is_ready_ = false;

@@ -1,5 +1,6 @@
 // How the worker measures the rig: the sensor's pose with a turn, its own error with a wall.
 
+#include <array>
 #include <utility>
 
 #include "log.hpp"
@@ -38,6 +39,7 @@ std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std:
 std::string outcome_of(const CalibrationRun& run) {
   const std::string reason = run.report ? run.report->calibration.reason
                              : run.wall ? run.wall->reason
+                             : run.lens ? run.lens->reason
                                         : "";
   switch (run.state) {
     case CalibrationRun::State::done:
@@ -67,7 +69,8 @@ void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
 void Worker::carry_out(CalibrationRun run,
                        const std::function<void(CalibrationRun& run)>& measurement) {
   ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
-  const std::string name = run.kind == CalibrationRun::Kind::turn ? "turn" : "wall";
+  constexpr std::array<const char*, 3> names{"turn", "wall", "lens"};
+  const std::string name = names[static_cast<std::size_t>(run.kind)];
   log::info("calibration", name + " started, of=" + std::to_string(run.stops));
   try {
     measurement(run);
@@ -155,6 +158,7 @@ void Worker::introduce_sensor() {
                     .since = since};
   try {
     known.map = find_map_summary(ports_.store.data(), known.serial);
+    known.lens = is_camera ? octurn::find_lens(ports_.store.data(), known.serial) : std::nullopt;
   } catch (...) {
     log::warning("calibration", current_failure().detail);
   }

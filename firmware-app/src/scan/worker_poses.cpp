@@ -5,9 +5,9 @@
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/depth_scale.hpp"
 #include "scan/merged_model.hpp"
 #include "scan/pose_points.hpp"
+#include "scan/scan_of_rig.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -32,15 +32,11 @@ void Worker::expect_same_sensor() {
   if (!job_.pose_of) {
     return;
   }
-  if (rig_.laser() != nullptr) {
-    throw Error(ErrorCode::bad_settings, "turns by laser line are not made one model of yet",
-                "Scan the object as it lies now as a scan of its own.");
-  }
   const Scan first = read_scan(ports_.store.folder(job_.pose_of->scan));
-  if (scaled(rig_.sensor().intrinsics(), job_.settings.depth_scale) != first.intrinsics) {
+  if (!has_sensor_of(first, job_.settings, rig_)) {
     throw Error(ErrorCode::sensor_other,
                 "the scan of the first pose was made with another sensor: " + first.sensor_name,
-                "Plug in the one that it was made with.");
+                "Plug in the one that it was made with.", {{"first_pose_with", first.sensor_name}});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "octurn/stl.hpp"
 #include "scan/earlier_scans.hpp"
 #include "scan/sensor_map_files.hpp"
+#include "scan/stored_scan.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -66,7 +67,8 @@ void Worker::run(Job job, const std::stop_token& stop) {
   job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.times.elapsed);
   time_left_.emplace(estimate_scan(earlier_scans(ports_.store), job_.settings),
                      job_.settings.snapshots, job_.snapshots_done, Clock::now());
-  ports_.board.set_job(job_, time_left_->expected());
+  gives_up_.reset();
+  show_job();
   log::info("scanner", "scan " + job_.id +
                            " started, snapshots=" + std::to_string(job_.settings.snapshots) +
                            ", of which taken=" + std::to_string(job_.snapshots_done));
@@ -93,7 +95,6 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
     return std::chrono::duration_cast<Clock::duration>(life / speed_);
   };
   int failed_at = -1;  // snapshots that were done then
-  Clock::time_point last_attempt = {};
   while (!stop.stop_requested()) {
     attempt(stop);
     if (job_.state != JobState::paused) {
@@ -102,15 +103,15 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
     const Clock::time_point now = Clock::now();
     if (job_.snapshots_done > failed_at) {
       failed_at = job_.snapshots_done;
-      last_attempt = now + at_speed(attempts_time);
+      gives_up_ = now + at_speed(attempts_time);
     }
-    if (now >= last_attempt) {
+    if (now >= *gives_up_) {
       job_.failure->hint += " Then resume the scan.";
       return;
     }
     job_.state = JobState::running;
     time_left_->lose_pace();
-    ports_.board.set_job(job_);
+    show_job();
     ports_.heartbeat.beat();
     ports_.slot.wait_for_command(at_speed(attempt_interval));
   }
@@ -123,6 +124,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 void Worker::attempt(const std::stop_token& stop) {
   try {
     rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
+    use_lens();
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
       if (rig_.laser() == nullptr) {
@@ -162,6 +164,7 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   const bool is_stop_done = snapshots_done > job_.snapshots_done;
   if (is_stop_done) {
     job_.failure.reset();
+    gives_up_.reset();
   }
   if (is_of_turn(job_.phase) && !is_of_turn(phase)) {
     time_left_->begin_model(now);
@@ -169,15 +172,21 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   time_left_->count(snapshots_done, now);
   job_.phase = phase;
   job_.snapshots_done = snapshots_done;
+  if (is_stop_done && snapshots_done == 1 && rig_.laser() != nullptr) {
+    const std::filesystem::path folder = ports_.store.folder(job_.id);
+    job_.builds.have_colours = has_colours(folder, read_scan(folder));
+  }
   if (phase == Phase::rebuilding) {
     rebuild_started_ = now;
   }
-  ports_.board.set_job(job_, time_left_->expected());
+  show_job();
   if (is_stop_done) {
     save_progress();
   }
   begin(phase);
 }
+
+void Worker::show_job() { ports_.board.set_job(job_, time_left_->expected(), gives_up_); }
 
 /// So that a scan that is cut off here goes on with the time that it has taken so far.
 void Worker::save_progress() {
@@ -205,7 +214,7 @@ void Worker::begin(Phase phase) {
 void Worker::keep_calibration(const CalibrationReport& report) {
   job_.calibration = to_scan_calibration(report);
   log::info("scanner", "scan " + job_.id + ": " + to_text(report));
-  ports_.board.set_job(job_, time_left_->expected());
+  show_job();
   try {
     ports_.store.save(job_);
     if (report.accepted && !report.confirms_told() && rig_.laser() == nullptr) {
@@ -224,7 +233,7 @@ void Worker::show_rebuilt(int snapshots) {
     time_left_->count_model(static_cast<double>(snapshots) / job_.snapshots_done, rebuild_started_,
                             Clock::now());
   }
-  ports_.board.set_job(job_, time_left_->expected());
+  show_job();
 }
 
 void Worker::close_device(const Failure& failure) {

@@ -106,6 +106,7 @@ std::filesystem::path find_build_model(const App& app, std::string_view id,
 
 Response send_build_model(App& app, const Request& request, std::string_view id,
                           std::string_view build) {
+  refuse_colours(request);
   const std::string name =
       download_name(find_scan(app, id), "-" + std::string(build).append(".stl"));
   return file_response(request, find_build_model(app, id, build), "model/stl", name);

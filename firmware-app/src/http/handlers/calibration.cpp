@@ -3,13 +3,16 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "http/handlers/appliance.hpp"
 #include "http/json_body.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
+#include "scan/board_pdf.hpp"
 #include "scan/depth_scale.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/pose_json.hpp"
 #include "scan/sensor_map_json.hpp"
 #include "scan/wall_looks.hpp"
@@ -21,6 +24,13 @@ namespace {
 using nlohmann::json;
 
 constexpr int point_step = 8;  // pixels: 80 x 60 points show where the sensor looks
+
+/// What is told and kept of the lens of a camera with lasers; null of another sensor.
+json lens_json(const App& app, const std::optional<KeptLens>& kept) {
+  return app.rig.laser ? json{{"told", to_json(told_lens(*app.rig.laser))},
+                              {"kept", kept ? to_json(*kept) : json()}}
+                       : json();
+}
 
 Response send_calibration(App& app, int status) {
   std::vector<PoseRecord> records = app.scanner.calibration().records(app.settings.config().scan);
@@ -36,6 +46,7 @@ Response send_calibration(App& app, int status) {
       std::chrono::steady_clock::now() - sensor->since.value_or(std::chrono::steady_clock::now());
   body["sensor_map"] = sensor->map ? to_json(*sensor->map) : json();
   body["sensor_on_s"] = sensor->since ? json(std::floor(open.count())) : json();
+  body["lens"] = lens_json(app, sensor->lens);
   body["run"] = *run ? to_json(**run) : json();
   return json_response(body, status);
 }
@@ -77,6 +88,47 @@ void start_wall(App& app, JsonObject& keys) {
   }
 }
 
+/// What a body asks for about a lens.
+enum class LensWish { none, keep, discard, remove };
+
+LensWish to_lens_wish(JsonObject& keys) {
+  const auto lens = keys.value("lens");
+  if (!lens) {
+    return LensWish::none;
+  }
+  if (lens->json() == "keep") {
+    return LensWish::keep;
+  }
+  if (lens->json() == "discard") {
+    return LensWish::discard;
+  }
+  if (!lens->json().is_null()) {
+    lens->refuse("\"keep\" or \"discard\" for what was found, or null, which removes what is kept");
+  }
+  return LensWish::remove;
+}
+
+void carry_out(App& app, LensWish wish) {
+  switch (wish) {
+    case LensWish::keep:
+      return app.scanner.keep_lens();
+    case LensWish::discard:
+      return app.scanner.discard_lens();
+    case LensWish::remove:
+      return app.scanner.forget_lens();
+    case LensWish::none:
+      break;
+  }
+}
+
+void start_lens(App& app, JsonObject& keys) {
+  keys.refuse_unread();
+  expect_no_update(app);
+  if (!app.scanner.look_at_board()) {
+    refuse_busy();
+  }
+}
+
 /// @return whether the body asks for the sensor's map to be removed
 bool is_without_map(JsonObject& keys) {
   const auto map = keys.value("sensor_map");
@@ -95,12 +147,14 @@ Response change_calibration(App& app, const Request& request) {
   JsonObject keys(body, ErrorCode::bad_settings, "");
   const PoseChange change = to_change(keys);
   const bool forget_map = is_without_map(keys);
+  const LensWish lens = to_lens_wish(keys);
   keys.refuse_unread();
   const bool is_change = change.scale || change.platform_from_sensor || change.is_settings_pose;
-  if (!is_change && !forget_map) {
+  if (!is_change && !forget_map && lens == LensWish::none) {
     throw Error(ErrorCode::bad_settings, "the body changes nothing",
-                "It takes platform_from_sensor, scale and sensor_map.");
+                "It takes platform_from_sensor, scale, sensor_map and lens.");
   }
+  carry_out(app, lens);
   if (forget_map && !app.scanner.forget_sensor_map()) {
     refuse_busy();
   }
@@ -118,8 +172,10 @@ Response start_calibration(App& app, const Request& request) {
     start_turn(app, keys);
   } else if (kind.text() == "wall") {
     start_wall(app, keys);
+  } else if (kind.text() == "lens") {
+    start_lens(app, keys);
   } else {
-    kind.refuse("\"turn\" or \"wall\"");
+    kind.refuse("\"turn\", \"wall\" or \"lens\"");
   }
   return send_calibration(app, 202);
 }
@@ -130,6 +186,29 @@ Response cancel_calibration(App& app) {
                 "POST /api/v1/calibration begins one.");
   }
   return send_calibration(app, 202);
+}
+
+Response solve_lens(App& app) {
+  if (!app.scanner.solve_lens()) {
+    throw Error(ErrorCode::not_running, "no board is looked at, or it was not seen yet",
+                "POST /api/v1/calibration with the kind \"lens\" looks at one.");
+  }
+  return send_calibration(app, 202);
+}
+
+Response send_board(App& /*app*/, const Request& request) {
+  std::optional<Paper> paper = Paper::a4;
+  for (const auto& [name, value] : request.parameters) {
+    paper = name == "paper" ? paper_named(value) : std::nullopt;
+  }
+  if (!paper) {
+    throw Error(ErrorCode::bad_settings, "the query asks for a board that there is not",
+                "It takes paper=a4 or paper=letter.");
+  }
+  return {.headers = {{"Content-Type", "application/pdf"},
+                      {"Content-Disposition", "inline; filename=\"octurn-board.pdf\""},
+                      {"Cache-Control", "no-store"}},
+          .body = board_pdf(*paper)};
 }
 
 Response undo_calibration(App& app) {

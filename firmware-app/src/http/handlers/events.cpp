@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "http/handlers/system.hpp"
+#include "http/json_body.hpp"
 #include "http/problem.hpp"
 
 namespace octurn {
@@ -12,10 +13,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* retry_after = "30";  // seconds
-
-std::string to_line(const json& data) {
-  return data.dump(-1, ' ', false, json::error_handler_t::replace);
-}
 
 }  // namespace
 
@@ -31,10 +28,10 @@ std::vector<News> StatusNews::operator()() {
   before_ = std::move(now);
   const json status = status_json(app_);
   const json devices{{"sensor", status.at("sensor")}, {"turntable", status.at("turntable")}};
-  return {{"devices", to_line(devices)},
-          {"warnings", to_line({{"warnings", status.at("warnings")}})},
-          {"scans", to_line({{"scans_revision", status.at("scans_revision")}})},
-          {"status", to_line(status)}};
+  return {{"devices", json_text(devices)},
+          {"warnings", json_text({{"warnings", status.at("warnings")}})},
+          {"scans", json_text({{"scans_revision", status.at("scans_revision")}})},
+          {"status", json_text(status)}};
 }
 
 Response send_events(EventFeed& feed, const Request& request) {

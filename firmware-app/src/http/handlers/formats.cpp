@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "http/file_response.hpp"
 #include "http/handlers/builds.hpp"
@@ -15,6 +16,7 @@
 #include "mesh/coarse_mesh.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/thumbnail.hpp"
+#include "scan/colour_model.hpp"
 
 namespace octurn {
 namespace {
@@ -26,6 +28,8 @@ constexpr std::size_t max_thumbnail_bytes = std::size_t{1} << 20U;
 
 // Memory is for one at a time. Held while a file is looked at and made.
 std::mutex making;
+// The same of colours: who asks for those of one model in several formats waits for them once.
+std::mutex colouring;
 
 /// When a file was written; long ago where there is none.
 fs::file_time_type written(const fs::path& file) {
@@ -61,60 +65,90 @@ Response send_coarse(const Request& request, const fs::path& model) {
   return file_response(request, file, "model/stl", "coarse.stl");
 }
 
-/// @param thumbnail  of the model, for a format that has one in it
-void write_mesh(MeshFormat format, const fs::path& model, const fs::path& thumbnail,
-                const std::string& name, const fs::path& file) {
-  const FacetFile facets(model);
-  switch (format) {
-    case MeshFormat::ply:
-      write_ply(facets, file);
-      break;
-    case MeshFormat::glb:
-      write_glb(facets, name, file);
-      break;
-    case MeshFormat::threemf:
-      write_3mf(facets, name, read_regular_file(thumbnail, max_thumbnail_bytes).value_or(""), file);
-      break;
-  }
-}
+/// What a file in another format is made of besides the model: the name, and colours if it has any.
+enum class Paint { clay, colours };
 
 /// The file of a model in another format, made if it is not there.
-fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, MeshFormat format,
-                    const std::string& extension) {
-  fs::path file = model.parent_path() / ("Scan" + extension);
-  const auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
+fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
+                    const std::string& extension, Paint paint = Paint::clay) {
+  const MeshFormat format = mesh_format_of(extension).value();
+  const bool is_coloured = paint == Paint::colours;
+  fs::path file = model.parent_path() / ((is_coloured ? "Scan-colour" : "Scan") + extension);
+  auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
+  source = is_coloured ? std::max(source, written(colours_file(model))) : source;
   const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
-  keep_fresh(file, source,
-             [&] { write_mesh(format, model, thumbnail, download_name(job, ""), file); });
+  keep_fresh(file, source, [&] {
+    const auto png =
+        read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing where it has none
+    write_mesh(format, FacetFile(model), download_name(job, ""), png.value_or(""), file,
+               is_coloured ? read_colours(model) : std::vector<Rgb>());
+  });
   return file;
 }
 
+/// What a query asks for: nothing, or `colour` as true or false.
+Paint wanted_paint(const Request& request) {
+  if (request.parameters.empty()) {
+    return Paint::clay;
+  }
+  const auto& [name, value] = request.parameters.front();
+  if (request.parameters.size() > 1 || name != "colour" || (value != "true" && value != "false")) {
+    throw Error(ErrorCode::bad_settings, "the query of this format takes colour alone",
+                "It is true or false: ?colour=true");
+  }
+  return value == "true" ? Paint::colours : Paint::clay;
+}
+
+/// Has the colours of a model made, unless they are there. Pictures are many and large: the worker
+/// does that, when it has nothing else to do.
+/// @param build  that the model is of
+void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
+  if (!job.builds.have_colours) {
+    throw Error(ErrorCode::bad_settings, "this scan has no pictures in colour",
+                "Only a scan by laser line has them, if its camera sees colours.");
+  }
+  const std::lock_guard lock(colouring);
+  const bool is_fresh = written(colours_file(model)) > fs::file_time_type::min() &&
+                        written(colours_file(model)) >= written(model);
+  if (!is_fresh && !app.scanner.colour_model(job, build)) {
+    throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
+                "Wait for its end.");
+  }
+}
+
 /// A model in the format that its path ends with.
+/// @param build   that the model is of
 /// @param suffix  of the name under which a browser saves it, before the extension
 Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
-                        const std::string& suffix) {
-  const std::string extension = fs::path(request.path).extension().string();
-  const MeshFormat format = mesh_format_of(extension).value();  // as its route has it
-  return file_response(request, fresh_mesh(app, job, model, format, extension),
-                       std::string(media_type(format)), download_name(job, suffix + extension));
+                        int build, std::string suffix) {
+  const std::string extension = fs::path(request.path).extension().string();  // as its route has it
+  const Paint paint = wanted_paint(request);
+  if (paint == Paint::colours) {
+    keep_colours(app, job, model, build);
+    suffix += "-colour";
+  }
+  return file_response(request, fresh_mesh(app, job, model, extension, paint),
+                       std::string(media_type(mesh_format_of(extension).value())),
+                       download_name(job, suffix + extension));
 }
 
 }  // namespace
 
 fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
   fs::path model = find_model(app, job);
-  const auto format = mesh_format_of(extension);
-  return format ? fresh_mesh(app, job, model, *format, extension) : model;
+  return mesh_format_of(extension) ? fresh_mesh(app, job, model, extension) : model;
 }
 
 Response send_mesh(App& app, const Request& request, std::string_view id) {
   const Job job = find_scan(app, id);
-  return send_in_format(app, request, job, find_model(app, job), "");
+  const int build = find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0;
+  return send_in_format(app, request, job, find_model(app, job), build, "");
 }
 
 Response send_build_mesh(App& app, const Request& request, std::string_view id,
                          std::string_view build) {
-  return send_in_format(app, request, find_scan(app, id), find_build_model(app, id, build),
+  const fs::path model = find_build_model(app, id, build);  // so that it is a number
+  return send_in_format(app, request, find_scan(app, id), model, std::stoi(std::string(build)),
                         "-" + std::string(build));
 }
 

@@ -15,7 +15,9 @@ namespace octurn {
 /// The file of a scan's model. @param extension  ".stl", or of another format, which is made first
 std::filesystem::path model_in_format(const App& app, const Job& job, const std::string& extension);
 
-/// The model in the format that the path's ending names: 3MF, PLY or GLB.
+/// The model in the format that the path's ending names: 3MF, PLY or GLB. With the parameter
+/// `colour` it has the colours of the scan's pictures.
+/// @throws Error "bad-settings"  if the scan has none; "busy", "memory-limit"
 Response send_mesh(App& app, const Request& request, std::string_view id);
 
 /// The same of a build.

@@ -1,5 +1,6 @@
 #include "http/handlers/models.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -85,6 +86,14 @@ Response make_model(App& app, const Request& request, const Job& job) {
 
 }  // namespace
 
+void refuse_colours(const Request& request) {
+  if (std::ranges::find(request.parameters, "colour", &Headers::value_type::first) !=
+      request.parameters.end()) {
+    throw Error(ErrorCode::bad_settings, "an STL has no colours",
+                "Ask for Scan.ply, Scan.glb or Scan.3mf.");
+  }
+}
+
 std::string download_name(const Job& job, std::string_view ending) {
   return std::string(job.label.name.empty() ? "Scan" : job.label.name).append(ending);
 }
@@ -99,6 +108,7 @@ std::filesystem::path find_model(const App& app, const Job& job) {
 }
 
 Response send_newest_model(App& app, const Request& request) {
+  refuse_colours(request);
   const std::optional<Job> newest = app.store.newest_finished();
   if (!newest) {
     throw Error(ErrorCode::no_model, "no scan is finished yet",
@@ -109,6 +119,7 @@ Response send_newest_model(App& app, const Request& request) {
 
 Response send_model(App& app, const Request& request, std::string_view id) {
   const Job job = find_scan(app, id);
+  refuse_colours(request);
   if (!request.parameters.empty()) {
     return make_model(app, request, job);
   }

@@ -18,6 +18,9 @@ Response send_newest_model(App& app, const Request& request);
 /// @throws Error "no-such-scan", "no-model", "bad-settings", "busy", "memory-limit"
 Response send_model(App& app, const Request& request, std::string_view id);
 
+/// Refuses a query that asks for colours where a file has none. @throws Error "bad-settings"
+void refuse_colours(const Request& request);
+
 /// What a file of a scan is called when it is downloaded.
 /// @param ending  with its dot, such as ".stl"
 std::string download_name(const Job& job, std::string_view ending);

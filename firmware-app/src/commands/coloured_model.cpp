@@ -1,0 +1,48 @@
+#include "commands/coloured_model.hpp"
+
+#include <string>
+#include <system_error>
+
+#include "mesh/model_colours.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+
+namespace octurn {
+namespace {
+
+MeshFormat format_of(const std::filesystem::path& file) {
+  const auto format = mesh_format_of(file.extension().string());
+  if (!format) {
+    throw Error(
+        ErrorCode::bad_settings,
+        file.string() + ": a model with colours is a file that ends with .ply, .glb or .3mf",
+        "An STL has no colours.");
+  }
+  return *format;
+}
+
+}  // namespace
+
+ColouredModel::ColouredModel(const std::filesystem::path& file, const Scan& scan)
+    : file_(std::filesystem::absolute(file)),
+      stl_(temporary_name(file_.string() + ".stl", 0)),
+      format_(format_of(file)) {
+  if (!scan.laser) {
+    throw Error(ErrorCode::scan_malformed, "the scan has no pictures, and so no colours",
+                "Only a scan by laser line has them.");
+  }
+}
+
+ColouredModel::~ColouredModel() {
+  std::error_code ignored;
+  std::filesystem::remove(stl_, ignored);
+}
+
+void ColouredModel::write(const std::filesystem::path& folder, const Scan& scan,
+                          const std::stop_token& stop) const {
+  const FacetFile facets(stl_);
+  const std::vector<Rgb> colours = model_colours(facets, folder, scan, stop);
+  write_mesh(format_, facets, file_.stem().string(), "", file_, colours);
+}
+
+}  // namespace octurn

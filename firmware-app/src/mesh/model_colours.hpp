@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "mesh/facet_file.hpp"
+#include "mesh/vertex_table.hpp"
+#include "octurn/colours.hpp"
+
+namespace octurn {
+
+/// The colours of the vertices of a model's VertexTable, as `vertex_colours` has them. Memory is
+/// that of the table, and about 60 bytes a vertex.
+/// @param folder  of the scan that the model was made of
+/// @throws Error  as `vertex_colours`; "memory-limit"
+std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::path& folder,
+                               const Scan& scan, const std::stop_token& stop = {});
+
+/// Refuses colours that are not as many as a model has vertices: it was built anew meanwhile.
+/// @param colours  may be none
+/// @throws Error "no-model"
+void expect_colours_of(const VertexTable& table, std::span<const Rgb> colours);
+
+}  // namespace octurn

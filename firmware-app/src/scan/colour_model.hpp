@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <vector>
+
+#include "octurn/colours.hpp"
+#include "scan/model_scan.hpp"
+
+namespace octurn {
+
+/// The colours of a model's vertices, in the folder of its STL: three bytes for each, in the order
+/// of a `VertexTable`.
+std::filesystem::path colours_file(const std::filesystem::path& model);
+
+/// Refuses a scan that is none by laser line. @throws Error "scan-malformed"
+void expect_pictures(const Scan& scan);
+
+/// Makes that file from the pictures of the scan that the model was made of. It appears whole or
+/// not at all.
+/// @param memory_limit  bytes, of this process; 0: none
+/// @throws Error "memory-limit"  if the model has so many triangles that it might take more; as
+///                               `vertex_colours`, and "disk-full", "write-failed"; Stopped
+void colour_model(const std::filesystem::path& model, const ModelScan& of, std::size_t memory_limit,
+                  const std::stop_token& stop);
+
+/// Reads that file.
+/// @throws Error "read-failed"  if it is not there, or not whole
+std::vector<Rgb> read_colours(const std::filesystem::path& model);
+
+}  // namespace octurn

@@ -1,0 +1,48 @@
+#include "scan/model_scan.hpp"
+
+#include <string>
+
+#include "octurn/error.hpp"
+
+namespace octurn {
+
+Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings) {
+  Scan scan = read_scan(folder);
+  if (!scan.poses
+           .empty()) {  // which were registered with the rig as it was solved, and their boxes
+    if (settings.platform_from_sensor) {
+      throw Error(ErrorCode::bad_settings, "a model of several poses has the pose that they solved",
+                  "Leave platform_from_sensor out.");
+    }
+    return scan;
+  }
+  scan.clip = settings.scan.clip;
+  if (settings.platform_from_sensor) {
+    scan.platform_from_sensor = *settings.platform_from_sensor;
+  }
+  if (settings.platform_from_sensor || settings.scan.pose == PoseSource::told) {
+    scan.solved.reset();
+  }
+  return scan;
+}
+
+ModelScan scan_of_model(const ScanStore& store, const Job& job, int build) {
+  if (build == 0) {
+    const std::filesystem::path folder = store.folder(job.id);
+    return {.folder = folder, .scan = read_scan(folder)};
+  }
+  const Build* const built = find_build(job, build);
+  if (built == nullptr) {
+    throw Error(ErrorCode::no_model, "this scan has no build " + std::to_string(build),
+                "GET its builds lists them.");
+  }
+  const std::filesystem::path folder = store.merged_scan(job.id, built->poses);
+  ModelScan of{.folder = folder, .scan = scan_to_build(folder, built->settings)};
+  const auto& calibration = built->calibration;
+  if (calibration && calibration->accepted && !calibration->confirms_told) {
+    of.scan.solved = calibration->solved;
+  }
+  return of;
+}
+
+}  // namespace octurn

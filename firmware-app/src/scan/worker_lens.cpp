@@ -1,0 +1,107 @@
+// How the worker has a camera's lens found, and which one a scan is taken with.
+
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/scan_folder.hpp"
+#include "scan/lens_files.hpp"
+#include "scan/worker.hpp"
+
+namespace octurn {
+namespace {
+
+/// Has a board waved before a simulated camera, as long as it lives.
+class ShownBoard {
+ public:
+  explicit ShownBoard(Camera& camera) : camera_(camera) { camera_.show_board(true); }
+  ~ShownBoard() { camera_.show_board(false); }
+  ShownBoard(const ShownBoard&) = delete;
+  ShownBoard& operator=(const ShownBoard&) = delete;
+
+ private:
+  Camera& camera_;
+};
+
+void expect_size(const Picture& picture, const Intrinsics& lens, const std::string& camera) {
+  if (picture.width != lens.width || picture.height != lens.height) {
+    throw Error(ErrorCode::sensor_other,
+                camera +
+                    ": its pictures have another size than laser.width and "
+                    "laser.height say",
+                "Correct them, or plug in the camera that they are of.");
+  }
+}
+
+}  // namespace
+
+void Worker::carry_out(LensCommand& /*command*/, const std::stop_source& stop) {
+  carry_out({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
+            [&](CalibrationRun& run) { find_lens(run, stop.get_token()); });
+}
+
+/// Takes views of a board until they are enough, or somebody says so, and solves the lens.
+void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
+  if (!told_lens_) {
+    throw Error(ErrorCode::sensor_other, "this rig has a depth sensor, and no camera with lasers",
+                "A board is for the lens of such a camera.");
+  }
+  ports_.heartbeat.suspend();  // it lasts for as long as somebody holds a board
+  Camera& camera = rig_.camera();
+  if (camera.serial().empty()) {
+    throw Error(ErrorCode::sensor_other,
+                camera.name() + ": tells nothing that it is known again by",
+                "Take pictures of a board, and use octurn calibrate --board.");
+  }
+  const Intrinsics lens = told_lens_->intrinsics;
+  run.camera = camera.serial();
+  const ShownBoard board(camera);
+  BoardWatch watch(lens);
+  while (!watch.is_complete()) {
+    const std::optional<TimedPicture> timed = camera.read(stop);
+    if (!timed) {
+      break;
+    }
+    expect_size(timed->picture, lens, camera.name());
+    watch.see(timed->picture);
+    show_picture(timed->picture);
+    ports_.heartbeat.suspend();
+    run.look = watch.look();
+    run.stop = watch.look().taken;
+    run.stops = watch.look().wanted;
+    ports_.board.set_calibration_run(run);
+  }
+  if (stop.stop_requested() &&
+      (ports_.slot.scan_stop() != ScanStop::pause || ports_.slot.has_ended())) {
+    run.state = CalibrationRun::State::cancelled;
+    return;
+  }
+  run.phase = CalibrationRun::Phase::solving;
+  ports_.board.set_calibration_run(run);
+  run.lens = calibrate_lens(watch.views(), lens.width, lens.height);
+  run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
+}
+
+/// Tells the rig the lens of its camera. A scan that goes on, or that another one is joined to,
+/// keeps the lens that it was begun with, as long as its camera is there.
+void Worker::use_lens() {
+  if (!told_lens_) {
+    return;
+  }
+  const std::string serial = rig_.camera().serial();
+  CameraLens lens = lens_in_force(ports_.store.data(), serial, *told_lens_);
+  const bool is_scan = ports_.board.status().is_scanning();
+  const std::string begun = !is_scan                  ? ""
+                            : job_.snapshots_done > 0 ? job_.id
+                            : job_.pose_of            ? job_.pose_of->scan
+                                                      : "";
+  if (!begun.empty()) {
+    const Scan scan = read_scan(ports_.store.folder(begun));
+    if (scan.laser && scan.sensor_serial == serial &&
+        scan.intrinsics.width == lens.intrinsics.width &&
+        scan.intrinsics.height == lens.intrinsics.height) {
+      lens = {.intrinsics = scan.intrinsics, .k1 = scan.laser->k1, .k2 = scan.laser->k2};
+    }
+  }
+  rig_.use_lens(lens);
+}
+
+}  // namespace octurn

@@ -15,7 +15,6 @@ import {refusalText} from './wording.js';
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
  * @typedef {import('./wording.js').Parameters} Parameters
- *
  * @typedef {{code: string, detail: string, hint: string, parameters?: Parameters, places_mm?: number[][]}} Reason  places_mm: where, in the model's frame
  *
  * @typedef {Object} Model
@@ -46,6 +45,7 @@ import {refusalText} from './wording.js';
  * @property {number} snapshots_total
  * @property {number} seconds_elapsed
  * @property {number | null} seconds_left
+ * @property {number | null} seconds_until_pause  while a stop is tried again
  * @property {boolean} [can_resume]
  * @property {Settings} settings
  * @property {number} late_pulses  of the motor
@@ -55,6 +55,7 @@ import {refusalText} from './wording.js';
  * @property {number} [build]  whose model it is; 0 is what the scan itself made
  * @property {{scan: string, registration: import('./api_poses.js').Registration | null} | null} [pose_of]  of a scan of another pose
  * @property {import('./api_poses.js').Pose[]} [poses]  of the same object
+ * @property {boolean} [has_colours]  its pictures do
  * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
  *
  * @typedef {Object} Device

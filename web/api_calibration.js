@@ -23,24 +23,38 @@ import {json, sending} from './api.js';
  * @property {number | null} before_mm
  * @property {number | null} after_mm
  * @property {{angle_deg: number, off_deg: number}[]} stops
- * @property {{code: string, detail: string, hint: string, stop?: number}[]} findings
+ * @property {{code: string, detail: string, hint: string, stop?: number, parameters?: import('./wording.js').Parameters}[]} findings
  * @property {{before: number[][], after: number[][]}} [slice_mm]
+ *
+ * @typedef {{fx: number, fy: number, cx: number, cy: number, k1: number, k2: number}} Lens
+ *
+ * @typedef {Object} LensReport  what a printed board told of a camera's lens
+ * @property {boolean} accepted
+ * @property {string} reason
+ * @property {Lens | null} lens
+ * @property {Lens | null} sigma
+ * @property {number | null} rms_px
+ * @property {number} views
+ *
+ * @typedef {{advice: 'show' | 'hold-still' | 'tilt' | 'reach' | 'turn', corners: number[][], coverage: number[]}} BoardLook
  *
  * @typedef {{accepted: boolean, reason: string, rms_before: number | null, rms_after: number | null, walls: {distance_m: number}[]}} WallReport
  *
  * @typedef {Object} CalibrationRun
- * @property {'turn' | 'wall'} kind
+ * @property {'turn' | 'wall' | 'lens'} kind
  * @property {'running' | 'done' | 'refused' | 'failed' | 'cancelled'} state
  * @property {'turning' | 'solving' | 'looking'} phase
  * @property {number} stop
  * @property {number} stops
- * @property {TurnReport | WallReport | null} report  of its kind
+ * @property {TurnReport | WallReport | LensReport | null} report  of its kind
+ * @property {BoardLook | null} look  of a lens
  * @property {{code: string, detail: string, hint: string} | null} error
  *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
  *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
  *   sensor_on_s: number | null,
+ *   lens: {told: Lens, kept: (Lens & {serial: string, at: string, rms_px: number}) | null} | null,
  *   history: PoseRecord[], run: CalibrationRun | null}} Calibration
  *
  * @typedef {{sensor: import('./overlay.js').Sensor, points_mm: import('./pose.js').Point[]}} Points  in the optical frame
@@ -52,7 +66,7 @@ export const points = () => json('preview/points');
 /** @returns {Promise<Calibration>} */
 export const calibration = () => json('calibration');
 
-/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number}} what */
+/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number} | {kind: 'lens'}} what */
 export const measure = (what) => json('calibration', sending('POST', what));
 
 /** @returns {Promise<import('./map_picture.js').MapPicture>} */
@@ -63,7 +77,7 @@ export const cancel = () => json('calibration/cancel', sending('POST'));
 /** Brings back the pose before the one in force. */
 export const undo = () => json('calibration/undo', sending('POST'));
 
-/** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null}} wanted */
+/** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null, lens?: 'keep' | 'discard' | null}} wanted */
 export const change = (wanted) => json('calibration', sending('PATCH', wanted));
 
 /** Whether a pose was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */

@@ -7,8 +7,9 @@ import {changeSettings} from './api_settings.js';
 import {showCalibration, showMap, showNotice} from './calibrate_view.js';
 import {scaleOf, turnStops} from './calibration.js';
 import {chosenSpace, discardSpace, prepareSpace, showSpace} from './clip_form.js';
-import {element, setText} from './dom.js';
+import {element, setText, show} from './dom.js';
 import {sentence} from './format.js';
+import {prepareLens, showLens} from './lens.js';
 import {here} from './places.js';
 import {chosenPose, discard, preparePlacement, showPlacement} from './placement_form.js';
 import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPose} from './pose_picture.js';
@@ -30,26 +31,38 @@ const isWatched = () => here() === 'calibrate' && !document.hidden;
 /** @param {unknown} error */
 const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
 
+/** @type {Promise<void> | null} the card of a camera's lens, which other sensors have no use for */
+let lensCard = null;
+
 /** @param {Calibration} news */
 function see(news) {
   calibration = news;
+  // A camera measures no depth that a wall could flatten, and each scan with lasers finds out where they stand.
+  ['flatten', 'pose-by-turn', 'by-hand'].forEach((id) => show(element(id), !news.lens));
+  if (news.lens) {
+    lensCard ??= prepareLens(act);
+    lensCard.then(() => showLens(calibration ?? news));
+  }
   showCalibration(news);
   showPlacement(news.platform_from_sensor);
 }
 
-/** @param {string} failure  key of the text that says what did not happen then @param {() => Promise<unknown>} action */
-async function act(failure, action) {
+/**
+ * @param {string} failure  key of the text that says what did not happen then @param {() => Promise<unknown>} action
+ * @param {string} [notice]  where that is said
+ */
+async function act(failure, action, notice = 'pose-problem') {
   if (isPending) {
     return;
   }
   isPending = true;
-  showNotice('pose-problem', null);
+  showNotice(notice, null);
   try {
     await action();
     see(await requests.calibration());
   } catch (error) {
     const {title, detail, hint} = problemOf(error);
-    showNotice('pose-problem', {title: text(failure), detail: [detail || title, hint].map(sentence).join(' ')});
+    showNotice(notice, {title: text(failure), detail: [detail || title, hint].map(sentence).join(' ')});
   }
   ++actions;
   isPending = false;
@@ -130,6 +143,13 @@ async function lookAtCalibration() {
 }
 
 async function lookAtPicture() {
+  if (!calibration) {
+    return 250;
+  }
+  if (calibration.lens) {
+    showNoPicture(text('lens.no-depth'));
+    return 2000;
+  }
   try {
     const [png, seen] = await Promise.all([api.preview(), requests.points()]);
     await showPicture(png);

@@ -6,6 +6,7 @@ import {element, list, part, setText, show} from './dom.js';
 import {degrees, sentence} from './format.js';
 import {drawMap} from './map_picture.js';
 import {drawSlice} from './plans.js';
+import {reasonText} from './wording.js';
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 
@@ -77,9 +78,9 @@ function showReport({run}) {
     setText(part(item, 'dt'), label);
     setText(part(item, 'dd'), text);
   });
-  list(element('turn-findings'), report.findings, ({code, detail}) => `${code} ${detail}`, 'turn-finding', (item, {detail, hint}) => {
-    setText(part(item, '.finding-name'), sentence(detail));
-    setText(part(item, '.finding-advice'), sentence(hint));
+  list(element('turn-findings'), report.findings, ({code, detail}) => `${code} ${detail}`, 'turn-finding', (item, found) => {
+    setText(part(item, '.finding-name'), sentence(reasonText(found)));
+    setText(part(item, '.finding-advice'), sentence(found.hint));
   });
   const mark = JSON.stringify(report);
   if (drawn !== mark) {

@@ -3,6 +3,7 @@
 import {isCalibrated} from './api_calibration.js';
 import {degrees, millimetres, percent, sentence, when} from './format.js';
 import {fixed, text} from './texts.js';
+import {refusalText} from './wording.js';
 
 /** @typedef {import('./api_calibration.js').Calibration} Calibration */
 /** @typedef {import('./api_calibration.js').PoseRecord} PoseRecord */
@@ -22,6 +23,9 @@ const isTold = ({source}) => source !== 'default';
 
 /** @param {Calibration} calibration */
 export function summaryOf(calibration) {
+  if (calibration.lens) {
+    return {tone: 'idle', title: text('lens.rig'), text: text('lens.rig-about')};
+  }
   if (!isTold(calibration)) {
     return {
       tone: 'warn',
@@ -79,7 +83,7 @@ export function outcomeOf(calibration, kind) {
   if (!run || run.kind !== kind || run.state === 'running') {
     return null;
   }
-  const detail = sentence(run.error?.detail || run.report?.reason || '');
+  const detail = sentence(run.error ? refusalText(run.error) : run.report?.reason ?? '');
   const hint = run.error?.hint ? sentence(run.error.hint) : text(`run.${kind}-hint`);
   switch (run.state) {
     case 'cancelled': return {tone: 'idle', title: text('run.cancelled'), detail: text('update.unchanged'), hint: ''};

@@ -33,8 +33,11 @@ async function askForRig() {
     const [{platform_from_sensor: pose}, sensor] = await Promise.all([
       requests.calibration(), told?.sensor ?? requests.points().then((points) => points.sensor)]);
     told = {pose, sensor};
-  } catch {
+  } catch (error) {
     told = null;
+    if (error instanceof api.Problem && error.code === 'not-found') {
+      toldAt = Infinity;  // a camera with lasers measures no depth
+    }
   }
 }
 

@@ -1,7 +1,7 @@
 // What the viewer shows: a model of clay, and the platform below it.
 
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+  BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
   MeshStandardMaterial,
 } from './three.js';
 
@@ -16,22 +16,26 @@ export const ringStep = 50;   // millimetres between the platform's rings
  * @param {Object} shown
  * @param {{value: number}} shown.edges  how strongly, 0 to 1
  * @param {{value: number}} shown.filled  how strongly what was filled in has its own colour, 0 to 1
+ * @param {{value: number}} shown.painted  1 where the colours of the corners are shown, and 0 where clay is
  * @param {{value: number}} shown.top  millimetres: what is higher is cut off, and lets the eye see inside
  */
-export function clayMaterial({edges, filled, top}) {
+export function clayMaterial({edges, filled, painted, top}) {
   const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true, side: DoubleSide});
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, {
-      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour}, top,
+      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour}, painted, top,
     });
-    shader.vertexShader = `attribute float filled;\nvarying float vFilled;\nvarying vec3 vCorner;\nvarying float vHeight;\n${shader.vertexShader}`
+    shader.vertexShader = `attribute float filled;\nattribute vec3 paint;\nvarying vec3 vPaint;\nvarying float vFilled;\nvarying vec3 vCorner;\nvarying float vHeight;\n${shader.vertexShader}`
         .replace('void main() {', `void main() {
       vFilled = filled;
+      vPaint = paint;
       vHeight = (modelMatrix * vec4(position, 1.0)).z;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
     shader.fragmentShader = `varying vec3 vCorner;
 varying float vFilled;
+varying vec3 vPaint;
+uniform float painted;
 uniform float edgeStrength;
 uniform vec3 edgeColour;
 uniform float filledStrength;
@@ -41,6 +45,7 @@ uniform float top;
 ${shader.fragmentShader}`
         .replace('#include <color_fragment>', `#include <color_fragment>
       if (vHeight > top) discard;
+      diffuseColor.rgb = mix(diffuseColor.rgb, pow(vPaint, vec3(2.2)), painted);
       diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
         .replace('#include <opaque_fragment>', `
       vec3 perPixel = fwidth(vCorner);
@@ -51,6 +56,18 @@ ${shader.fragmentShader}`
       #include <opaque_fragment>`);
   };
   return material;
+}
+
+/** Light from beside the eye, so that a shape reads from every side. @param {any} camera */
+export function lightsBeside(camera) {
+  const key = new DirectionalLight(0xfff6e8, 2.1);
+  key.position.set(-0.5, 0.8, 1);
+  const rim = new DirectionalLight(0x7fe3dd, 1.1);
+  rim.position.set(1, 0.35, -0.8);
+  for (const light of [key, rim]) {
+    light.target = camera;
+    camera.add(light);
+  }
 }
 
 /** @param {number} radius @returns {number[]} line segments of rings and two axes on the platform's surface */

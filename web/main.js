@@ -14,7 +14,7 @@ import {here, preparePlaces, showPlace} from './places.js';
 import {cancel, end, pause, rename, resume, start} from './scan_actions.js';
 import {prepareStage} from './stage.js';
 import * as states from './state.js';
-import {fillTexts, language} from './texts.js';
+import {awaitTexts, fillTexts, language} from './texts.js';
 import {seeWarnings} from './warnings.js';
 
 /** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
@@ -22,7 +22,8 @@ async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  (await import('./scan_page.js')).prepare();
+  const [page] = await Promise.all([import('./scan_page.js'), awaitTexts()]);  // reasons of a verdict among them
+  page.prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};
 }

@@ -43,6 +43,10 @@ function stepStates(scan) {
 const timeOf = ({seconds_elapsed, seconds_left, error}) => seconds_left === null || error ? format.clock(seconds_elapsed) :
     text('time.of', {elapsed: format.clock(seconds_elapsed), total: format.clock(seconds_elapsed + seconds_left)});
 
+/** How long a stop that fails is still tried. @param {Scan} scan */
+const untilPause = ({seconds_until_pause}) => seconds_until_pause === null ? '' :
+    text('phase.pauses', {time: `${Math.ceil(seconds_until_pause)} s`});
+
 /** @param {Scan} scan */
 export const progressOf = (scan) => ({
   id: scan.id,
@@ -52,7 +56,7 @@ export const progressOf = (scan) => ({
   percent: percent(scan),
   done: scan.snapshots_done,
   total: scan.snapshots_total,
-  left: scan.error ? '' : format.timeLeft(scan.seconds_left),  // nobody knows how long a stop is tried again
+  left: scan.error ? untilPause(scan) : format.timeLeft(scan.seconds_left),
   time: timeOf(scan),
   steps: stepStates(scan),
 });

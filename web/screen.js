@@ -121,9 +121,13 @@ function verdictShown(state, {model, calibration}) {
  * What else can be downloaded: the model that is shown in other formats, and the scan itself.
  * @param {Scan} scan  as it is shown
  */
-function formatsOf({id, model, state, snapshots_done}) {
-  const models = model ? ['3mf', 'ply', 'glb'].map((ending) =>
-    ({name: ending.toUpperCase(), title: text('scan.format', {format: ending.toUpperCase()}), url: model.url.replace(/stl$/, ending)})) : [];
+function formatsOf({id, model, state, snapshots_done, has_colours}) {
+  const others = model ? ['3mf', 'ply', 'glb'].map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
+  const models = [
+    ...others.map(({format: name, url}) => ({name, title: text('scan.format', {format: name}), url})),
+    ...(has_colours ? others : []).map(({format: name, url}) =>
+      ({name: text('scan.coloured', {format: name}), title: text('scan.format', {format: text('scan.coloured', {format: name})}), url: `${url}?colour=true`})),
+  ];
   const raw = {name: text('scan.raw'), title: text('scan.raw-about'), url: `/api/v1/scans/${id}/scan.zip`};
   return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
 }
@@ -255,6 +259,7 @@ export function screenOf(state) {
       shows: has3D ? state.stage : 'camera',
       hasChoice: has3D,
       model: hasModel && chosen && shown?.model ? {...shown.model, url: pictureUrl(chosen, buildShown(state, chosen))} : null,
+      hasColours: Boolean(chosen?.has_colours),
       object: chosen?.id ?? '',
       places: verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,

@@ -6,7 +6,7 @@ import * as format from './format.js';
 import {coarseUrl, hasCoarse, loadsUnasked} from './state.js';
 import {readStl} from './stl.js';
 import {text} from './texts.js';
-import {prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
+import {offerColours, prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('./api.js').Model} Model */
@@ -59,6 +59,7 @@ function put(mesh, isFirst) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst});
   standUp();
+  offerColours(due?.hasColours && due.model?.url || null);
   if (isFirst) {
     viewer?.turn(!isStill);
   }

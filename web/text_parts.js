@@ -1,8 +1,8 @@
 // Which of the page's texts its first sight does without: those of places and parts that are fetched later. Their keys
 // begin with one of these words.
 
-const later = new Set(['action', 'bin', 'calibrate', 'check', 'choice', 'figure', 'finding', 'fit', 'keys', 'machine', 'map', 'notes', 'outgoing', 'placement', 'pose',
-  'power', 'run', 'scale', 'setting', 'setting-help', 'settings', 'turn', 'update', 'warm', 'wifi']);
+const later = new Set(['action', 'bin', 'box-side', 'calibrate', 'check', 'choice', 'figure', 'finding', 'fit', 'keys', 'lens', 'machine', 'map', 'notes', 'outgoing', 'placement', 'pose',
+  'power', 'reason', 'run', 'scale', 'setting', 'setting-help', 'settings', 'turn', 'update', 'warm', 'wifi']);
 
 /** @param {string} key */
 export const isLater = (key) => later.has(key.split('.')[0]);

@@ -79,7 +79,7 @@ function showVerdict(verdict) {
     list(element('reasons'), verdict.reasons, ({key}) => key, 'reason', (item, {detail, hint, action, places, isShown}) => {
       const toggle = part(item, '.reason-places');
       show(toggle, places.length > 0);
-      setText(toggle, text(isShown ? 'reason.hide' : 'reason.show'));
+      setText(toggle, text(isShown ? 'where.hide' : 'where.show'));
       toggle.setAttribute('aria-pressed', String(isShown));
       setText(part(item, '.reason-detail'), detail);
       setText(part(item, '.reason-hint'), hint);

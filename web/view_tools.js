@@ -13,14 +13,21 @@ let viewer = () => undefined;
 let measuring = null;
 /** @type {'upright' | 'waiting' | 'laid'} waiting: for the side to lay the model on */
 let lying = 'upright';
+/** @type {string | null} the STL of the model that has colours */
+let coloured = null;
+
+/** @param {string} words  on the picture; empty: none */
+function say(words) {
+  show(element('measured'), words !== '');
+  setText(element('measured'), words);
+}
 
 function render() {
   pressed('measure', measuring !== null);
   pressed('lay', lying !== 'upright');
   element('view').dataset.measuring = measuring || lying === 'waiting' ? 'yes' : 'no';
   const words = measuring ? measureText(measuring) : lying === 'waiting' ? text('view.lay-which') : '';
-  show(element('measured'), words !== '');
-  setText(element('measured'), words);
+  say(words);
 }
 
 /** @param {number[][] | null} points_mm */
@@ -56,6 +63,16 @@ function setCut(isCut) {
   cutAt(isCut ? element('cut-share').valueAsNumber : 1);
 }
 
+/**
+ * Offers the colours of the model that is shown, which stands in clay.
+ * @param {string | null} url  of its STL; null: it has none
+ */
+export function offerColours(url) {
+  coloured = url;
+  pressed('colours', false);
+  show(element('colours'), url !== null);
+}
+
 /** What a click on the model does. @param {import('./pick.js').Spot} spot */
 export function useTool(spot) {
   if (measuring) {
@@ -82,6 +99,10 @@ export function putToolsAway() {
 export function prepareTools(shown) {
   viewer = shown;
   element('measure').addEventListener('click', () => setMeasure(measuring ? null : []));
+  element('colours').addEventListener('click', async () => {
+    const {toggleColours} = await import('./colours.js');
+    toggleColours({viewer, url: () => coloured, say: (words) => words === '' ? render() : say(words)});
+  });
   element('lay').addEventListener('click', () => setLying(lying === 'upright' ? 'waiting' : 'upright'));
   element('cut').addEventListener('click', () => {
     element('cut-share').value = 0.5;

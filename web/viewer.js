@@ -1,11 +1,11 @@
 // The model in 3D, in millimetres, Z up, standing on a drawing of the platform.
 
 import {
-  BufferAttribute, BufferGeometry, DirectionalLight, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
+  BufferAttribute, BufferGeometry, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
   WebGLRenderer,
 } from './three.js';
 import {fitToCanvas, onClick} from './canvas.js';
-import {clayMaterial, platform, ringStep} from './clay.js';
+import {clayMaterial, lightsBeside, platform, ringStep} from './clay.js';
 import {measureMark} from './measure_mark.js';
 import {spotAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
@@ -27,6 +27,7 @@ export class Viewer {
   #scene = new Scene();
   #edges = {value: 0};
   #filled = {value: 0};
+  #painted = {value: 0};
   #top = {value: uncut};
   #heights = [0, 0];  // of the model as it lies, millimetres
   #uprightHeights = [0, 0];
@@ -56,7 +57,7 @@ export class Viewer {
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
     this.#camera.up.set(0, 0, 1);
     this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
-    this.#lights();
+    lightsBeside(this.#camera);
     this.#controls = new OrbitControls(this.#camera, canvas);
     canvas.style.touchAction = 'pan-y';  // a finger that goes up or down scrolls the page, which may be no wider than the picture
     this.#controls.enableDamping = true;
@@ -73,18 +74,6 @@ export class Viewer {
       const spot = this.#model && spotAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
       spot && onSpot(spot);
     });
-  }
-
-  /** The light comes from beside the eye, so that a shape reads from every side. */
-  #lights() {
-    const key = new DirectionalLight(0xfff6e8, 2.1);
-    key.position.set(-0.5, 0.8, 1);
-    const rim = new DirectionalLight(0x7fe3dd, 1.1);
-    rim.position.set(1, 0.35, -0.8);
-    for (const light of [key, rim]) {
-      light.target = this.#camera;
-      this.#camera.add(light);
-    }
   }
 
   /**
@@ -105,7 +94,7 @@ export class Viewer {
     }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
-    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, top: this.#top}));
+    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top}));
     this.#uprightHeights = this.#heights = [min[2], max[2]];
     const corners = positions.length / 3;
     this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
@@ -133,6 +122,7 @@ export class Viewer {
     this.#model = null;
     this.#places = null;
     this.#measure = null;
+    this.#painted.value = 0;
     this.turn(false);
   }
 
@@ -246,6 +236,14 @@ export class Viewer {
   /** @param {boolean} isShown  by a colour of its own */
   showFilled(isShown) {
     this.#filled.value = isShown ? 0.85 : 0;
+    this.#draw();
+  }
+
+  /** @param {Uint8Array | null} colours  red, green and blue of each corner of the model that is shown; null: it is of clay */
+  paint(colours) {
+    const geometry = this.#model?.geometry;
+    this.#painted.value = colours && colours.length === 3 * geometry?.attributes.position.count ? 1 : 0;
+    this.#painted.value && geometry.setAttribute('paint', new BufferAttribute(colours, 3, true));
     this.#draw();
   }
 

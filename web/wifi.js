@@ -5,6 +5,7 @@ import {codes} from './countries.js';
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
 import {locale, text} from './texts.js';
+import {codePath, wifiCodeText} from './wifi_code.js';
 
 /** @typedef {import('./api.js').Wifi} Wifi */
 /** @typedef {import('./api.js').Network} Network */
@@ -34,6 +35,12 @@ export function consequenceOf(wifi, chosen, page) {
   const before = state === 'hotspot' ? hotspot : state === 'joined' && name !== chosen ? name : '';
   return [before ? text('wifi.leaves', {before, there}) : text('wifi.joins', {there}), text('wifi.follow', {there, page}), fallbackOf(wifi)].join(' ');
 }
+
+/**
+ * The WiFi that a phone may join from this screen: the scanner's own one, or the one whose password was typed here. Pure.
+ * @param {Wifi} wifi @param {{name: string, password: string} | null} told  to the scanner, which is joining it
+ */
+export const sharedOf = ({state, hotspot}, told) => told ?? (state === 'hotspot' ? {name: hotspot, password: ''} : null);
 
 /** How many of four bars a signal is worth. Pure. @param {number} dbm */
 export const barsOf = (dbm) => dbm >= -55 ? 4 : dbm >= -65 ? 3 : dbm >= -75 ? 2 : 1;
@@ -112,6 +119,17 @@ function showFields() {
   setText(element('wifi-consequence'), consequenceOf(wifi, chosenName(), page()));
 }
 
+/** @param {{name: string, password: string} | null} shared */
+function showCode(shared) {
+  show(element('wifi-code'), shared !== null);
+  if (shared) {
+    const {size, path} = codePath(wifiCodeText(shared.name, shared.password));
+    part(element('wifi-code'), 'svg').setAttribute('viewBox', `0 0 ${size} ${size}`);
+    part(element('wifi-code'), 'path').setAttribute('d', path);
+    setText(element('wifi-code-about'), text('wifi.code', {name: shared.name}));
+  }
+}
+
 function render() {
   const isJoining = wifi.state === 'joining' || isAsked;
   const trouble = isJoining ? null : failure ? {title: text('wifi.not-told'), detail: failure} : troubleOf(wifi);
@@ -121,6 +139,7 @@ function render() {
   show(element('wifi-trouble'), trouble !== null);
   setText(part(element('wifi-trouble'), 'strong'), trouble?.title ?? '');
   setText(part(element('wifi-trouble'), 'p'), trouble?.detail ?? '');
+  showCode(sharedOf(wifi, isJoining && asked ? {name: asked, password: isOpenWifi() ? '' : element('wifi-password').value} : null));
   show(element('wifi-change'), !isJoining && !isOpen);
   setText(part(element('wifi-change'), 'span'), text(wifi.state === 'joined' ? 'wifi.join-another' : 'wifi.join-one'));
   show(element('wifi-form'), !isJoining && isOpen);

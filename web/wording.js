@@ -3,7 +3,7 @@
 // none is said as the scanner says it.
 
 import {degrees, leaf, millimetres, number, percent} from './format.js';
-import {isText, text} from './texts.js';
+import {fixed, isText, text} from './texts.js';
 
 /** @typedef {Record<string, number | string>} Parameters  by name, which ends with the unit */
 /** @typedef {{code: string, detail: string, parameters?: Parameters}} Said */
@@ -13,8 +13,12 @@ function valueText(name, value) {
   const unit = name.slice(name.lastIndexOf('_') + 1);
   switch (unit) {
     case 'mm': return name.endsWith('leaf_size_mm') ? leaf(value) : millimetres(value, 1);
-    case 'deg': return degrees(value, 0);
-    case 'share': return percent(value);
+    case 'deg': return degrees(value, name === 'gap_deg' ? 0 : 1);
+    case 'share': return percent(value, value < 0.1 ? 1 : 0);
+    case 'mb': return `${number(value)} MB`;
+    case 'disparity': return fixed(value, 2);
+    case 'px': return number(Math.round(value));
+    case 'triangles': return number(value);
     case 'cm3': return `${number(value)} cm³`;
     case 'ms': return `${number(value)} ms`;
     case 'side': return isText(`box-side.${value}`) ? text(`box-side.${value}`) : value;
@@ -28,10 +32,15 @@ const shown = (parameters) => Object.fromEntries(Object.entries(parameters).map(
 /** @param {string} code @param {Parameters} parameters */
 const keyOf = (code, parameters) => [code, ...Object.keys(parameters).sort()].join('.');
 
-/** Why a model is not good. @param {Said} reason */
+/** Findings of a calibration that a verdict has under its own code. */
+const sameAs = new Map([['stops-disagree.off_deg.stop', 'slip.off_deg.stop'],
+  ['stops-disagree.turn_deg', 'turn-not-whole.turn_deg'], ['stops-disagree.stops', 'still.stops']]);
+
+/** Why a model is not good, or what a calibration found. @param {Said} reason */
 export function reasonText({code, detail, parameters = {}}) {
   const {object_side: side, ...own} = parameters;  // of a scan from several sides, which one it is about
-  const key = keyOf(code, own);
+  const said = keyOf(code, own);
+  const key = sameAs.get(said) ?? said;
   if (!isText(`reason.${key}`)) {
     return detail;
   }

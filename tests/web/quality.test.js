@@ -49,3 +49,17 @@ test('a reason with its values is worded by the page, one without them as the sc
   assert.equal(detailOf({code: 'floats'}), 'As it is said.');
   assert.equal(detailOf({code: 'floats', parameters: {depth_furlong: 1}}), 'As it is said.');
 });
+
+test('what a calibration found is worded with its values, also where the verdict has it under its own code', () => {
+  const detailOf = (code, parameters) => verdictOf(judged('look', [{code, detail: 'as it is said', hint: '', parameters}])).reasons[0].detail;
+  assert.equal(detailOf('moved', {from_stop: 6, to_stop: 7, shift_mm: 3.56}), 'Between stops 6 and 7 the object moved by 3.6 mm.');
+  assert.equal(detailOf('moved', {from_stop: 6, to_stop: 7, tilt_deg: 0.31, sink_mm: 0.8}),
+      'Between stops 6 and 7 the sensor moved: the platform tilts by 0.3° and sinks by 0.8 mm as it sees it.');
+  assert.equal(detailOf('moved', {min_shift_mm: 20, turn_deg: 12}), 'One more look at the first stop: the object moved by more than 20.0 mm and turned by 12.0°.');
+  assert.equal(detailOf('stops-disagree', {stop: 5, off_deg: 1.83}), 'At stop 5 the platform stood 1.8° from where it should.');
+  assert.equal(detailOf('stops-disagree', {stops: 8}), 'Each of 8 stops shows what the first one shows: the platform did not turn.');
+  assert.equal(detailOf('stops-disagree', {turn_deg: 270, object_side: 2}), 'Side 2: A whole turn came out as 270.0°.');
+  assert.equal(detailOf('focal-length', {shorter_share: 0.021, seen_px: 562.4, told_px: 574}),
+      'The sensor’s focal length is 2.1% shorter than told: 562 pixels instead of 574.');
+  assert.equal(detailOf('no-map', {unevenness_disparity: 0.456}), 'The flat platform looks uneven by 0.46 units of the sensor’s disparity.');
+});

@@ -147,6 +147,16 @@ test('a finished scan is downloaded in four formats and as it was taken, one wit
   assert.deepEqual(names({...running, state: 'cancelled'}), ['scan.zip']);
 });
 
+test('a scan whose pictures have colours is downloaded with them, too, but as STL', () => {
+  const {details, stage} = screenOf(looking({...finished, has_colours: true}));
+  const coloured = details.formats.filter(({url}) => url.includes('colour'));
+  assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['Scan.3mf?colour=true', 'Scan.ply?colour=true', 'Scan.glb?colour=true']);
+  assert.equal(coloured[1].name, 'PLY in colour');
+  assert.equal(new Set(details.formats.map(({name}) => name)).size, details.formats.length);
+  assert.equal(stage.hasColours, true);
+  assert.equal(screenOf(looking(finished)).stage.hasColours, false);
+});
+
 test('a build that is looked at is downloaded in all formats, and not the scan\'s own model', () => {
   const url = '/api/v1/scans/done/builds/2/Scan.stl';
   const {formats} = screenOf(looking({...finished, model: {...finished.model, url}})).details;
@@ -162,10 +172,10 @@ test('a scan has one name, in its row, its heading and the title', () => {
 
 test('while a device is tried again the progress says which, and at what stop', () => {
   const error = {code: 'sensor-silent', detail: 'no frame for 2000 ms', hint: ''};
-  const {progress} = screenOf(scanning({error}));
+  const {progress} = screenOf(scanning({error, seconds_until_pause: 20.3}));
   assert.equal(progress.text, 'Trying stop 10 of 36 again');
   assert.equal(progress.trouble, 'No frame for 2000 ms.');
-  assert.equal(progress.left, '', 'nobody knows how long that takes');
+  assert.equal(progress.left, 'gives up in 21 s');
   assert.equal(screenOf(scanning({error})).announcement, 'Trying stop 10 of 36 again.');
   assert.equal(screenOf(scanning({})).progress.trouble, '');
 });

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {barsOf, consequenceOf, inPlace, nameComplaint, passwordComplaint, regionOf, summaryOf, troubleOf} from '../../web/wifi.js';
+import {barsOf, consequenceOf, inPlace, nameComplaint, passwordComplaint, regionOf, sharedOf, summaryOf, troubleOf} from '../../web/wifi.js';
 
 const wifi = {state: 'hotspot', name: '', country: '', hotspot: 'Octurn-1A2B', error: '', host: 'octurn', networks: []};
 const network = (name, signal_dbm = -60) => ({name, signal_dbm, secured: true});
@@ -11,6 +11,13 @@ test('the summary tells where the scanner is', () => {
   assert.equal(new Set(said).size, 5);
   assert.match(said[1], /^Joining “Home”/);
   assert.match(said[4], /“Octurn-1A2B”/);
+});
+
+test('a phone may join from the screen what is open, or what was told the scanner there', () => {
+  const told = {name: 'Home', password: 'open sesame'};
+  assert.deepEqual(sharedOf(wifi, null), {name: 'Octurn-1A2B', password: ''});
+  assert.deepEqual(sharedOf(wifi, told), told);
+  assert.equal(sharedOf({...wifi, state: 'joined', name: 'Home', hotspot: ''}, null), null, 'nobody tells its password again');
 });
 
 test('what is wrong is told with the name that could not be joined', () => {

@@ -8,7 +8,8 @@ import {createServer} from 'node:net';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
-/** What differs between QEMU's machines: its options, and the name of the console that is QEMU's standard output. */
+/** What differs between QEMU's machines: its options, the name of the console that is QEMU's standard output, and the seconds
+ * within which its page answers, where these are more than 3. */
 const machines = {
   virt: {
     console: 'ttyAMA0',
@@ -60,14 +61,19 @@ async function readSystem(card) {
 /** Seconds since `start`, of performance.now(). */
 export const secondsSince = (start) => (performance.now() - start) / 1000;
 
+// A second of its clock is half a billion instructions, however busy this machine is.
+machines.twin = {...machines.raspi3b, pace: ['-icount', 'shift=1'], answers: 40};
+
 export class Guest {
   #qemu;
   #said = '';
   #commands = 0;
+  #answers;  // within as many seconds, when it is there
 
-  /** Switches on. @param {'virt' | 'raspi3b'} name @param {string} card  the folder with card.img
-   * @param {string} [stick]  the image of a USB stick that is plugged in */
-  static async start(name, card, stick) {
+  /** Switches on. @param {'virt' | 'raspi3b' | 'twin'} name @param {string} card  the folder with card.img
+   * @param {string} [stick]  the image of a USB stick that is plugged in
+   * @param {string[]} [more]  options of QEMU */
+  static async start(name, card, stick, more = []) {
     await readSystem(card);
     const port = await freePort();
     const machine = machines[name];
@@ -80,12 +86,14 @@ export class Guest {
     const guest = new Guest();
     guest.start = performance.now();
     guest.url = `http://127.0.0.1:${port}/`;
+    guest.#answers = machine.answers ?? 3;
     guest.#qemu = spawn('qemu-system-aarch64', [
-      '-display', 'none', '-monitor', 'none', '-no-reboot', '-accel', 'tcg,thread=multi',
+      '-display', 'none', '-monitor', 'none', '-no-reboot', ...(machine.pace ?? ['-accel', 'tcg,thread=multi']),
       '-kernel', `${card}/vmlinuz`, '-initrd', `${card}/initrd.img`, '-append', kernel.join(' '),
       ...machine.options({card, forward: `hostfwd=tcp:127.0.0.1:${port}-:80`}),
       ...(stick ? [...machine.usb, '-drive', `if=none,id=stick,format=raw,readonly=on,file=${stick}`,
         '-device', 'usb-storage,drive=stick'] : []),
+      ...more,
     ], {stdio: 'pipe'});
     const end = () => guest.#qemu.kill('SIGKILL');
     process.once('exit', end);
@@ -120,7 +128,7 @@ export class Guest {
     let found;
     const ask = async () => {
       try {
-        const response = await fetch(this.url, {signal: AbortSignal.timeout(3000)});
+        const response = await fetch(this.url, {signal: AbortSignal.timeout(1000 * this.#answers)});
         if ((await response.text()).includes('<title>')) {
           found ??= secondsSince(this.start);
         }
@@ -130,7 +138,7 @@ export class Guest {
     };
     return this.#until('page', seconds, async () => {
       ask();
-      await sleep(400);
+      await sleep(130 * this.#answers);
       return found;
     });
   }
@@ -152,7 +160,7 @@ export class Guest {
     return response.json();
   }
 
-  /** Starts a scan, once the simulated sensor has rendered its first frame, which an emulated processor takes its time for. */
+  /** Starts a scan, once the sensor has sent its first frame, which an emulated processor takes its time for. */
   async startScan(settings, seconds) {
     return this.#until('scan', seconds, async () => {
       try {

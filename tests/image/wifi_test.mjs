@@ -74,19 +74,33 @@ async function separate(guest, phone) {
 const unite = (guest) => guest.run('ip rule add pref 0 lookup local; ' +
   'for rule in 1 1 2 2 3; do ip rule del pref $rule; done; ip route flush table 71; ip route flush table 72');
 
+/** What the scanner answers a phone that looks for something at a host. @param {string} filter  a command for the answer */
+const askByAir = (guest, host, path, filter) => guest.run('timeout 60 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
+  `printf 'GET ${path} HTTP/1.1\\r\\nHost: ${host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; cat <&3" | ${filter}`, 90);
+
+/** A phone that looks for the internet finds the page: by the name servers of its lease, and by what answers there. */
+async function testPortal(guest) {
+  const [host, path] = ['captive.apple.com', '/hotspot-detect.html'];
+  const found = await guest.run(`resolvectl query --interface=wlan1 --cache=no ${host}`, 90);
+  require(found.startsWith(`${host}: 192.168.77.1 `), `a phone that asks for ${host} is told ${found}`);
+  const answer = await askByAir(guest, host, path, 'head -n 20');
+  require(/^HTTP\/1.1 302 /.test(answer) && answer.includes('Location: http://192.168.77.1/'), `${host} answers ${answer}`);
+  say(`a phone that asks for ${host} is led to the page`);
+}
+
 async function testHotspot(guest, hotspot) {
   await use(guest, 'wlan1', [`ssid="${hotspot}"`, 'key_mgmt=NONE']);
   const phone = await address(guest, 'wlan1', '192.168.77');
   await separate(guest, phone);
   const received = async () => Number(await guest.run('cat /sys/class/net/wlan1/statistics/rx_bytes'));
   const before = await received();
-  const page = await guest.run('timeout 60 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
-    'printf \'GET / HTTP/1.1\\r\\nHost: 192.168.77.1\\r\\nConnection: close\\r\\n\\r\\n\' >&3; cat <&3" | wc -c', 90);
+  const page = await askByAir(guest, '192.168.77.1', '/', 'wc -c');
   const through = await received() - before;
   require(Number(page) > 1000 && through > Number(page), `of the page there are ${page} bytes, and ${through} came by air`);
   const names = await guest.run('journalctl -b -u avahi-daemon -o cat | grep -c "interface wlan0.IPv4 with address 192.168.77.1"');
   require(Number(names) > 0, 'avahi answers nobody in the hotspot');
   say(`a phone in ${hotspot} gets the address ${phone} and the page of ${page} bytes`);
+  await testPortal(guest);
 }
 
 /** As the daemon asks for it. */
@@ -113,6 +127,8 @@ async function testWifi(guest) {
   await guest.run('wpa_cli -i wlan1 terminate');
   await startRouter(guest, 'IEEE', 'password');
   await reaches(guest, 'joined', 'IEEE');  // tried again, as nobody is in the hotspot
+  const names = await guest.run('systemctl is-active octurn-names');
+  require(names === 'inactive', `outside of the hotspot octurn-names is ${names}`);
   await guest.run('wpa_cli -i wlan2 terminate');
   await reaches(guest, 'hotspot', 'IEEE');
 

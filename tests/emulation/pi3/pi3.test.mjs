@@ -4,6 +4,8 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 
+import { GpioRegisters } from './registers.mjs';
+
 const folder = process.env.OCTURN_PI3;
 const base = 512; // the number of the header's first line, for Debian 13's kernel
 const step = 17;
@@ -104,24 +106,8 @@ test('lines that somebody else has are refused by name', () => {
 
 /** What was written to the GPIO registers of our lines: {line, level}, or {line, input}. */
 function registerWrites() {
-  const writes = [];
-  const functions = new Map();
-  for (const text of readFileSync(`${folder}/registers.log`, 'latin1').trim().split('\n')) {
-    const [, address, value] = /addr 0x([0-9a-f]+) value 0x([0-9a-f]+) /.exec(text);
-    const register = parseInt(address, 16) - 0x3f200000;
-    const bits = parseInt(value, 16);
-    for (const line of lines) {
-      // BCM2835 peripherals, 6.1: GPFSELn has three bits for each of ten lines; GPSET0 and GPCLR0 one.
-      if (register === 4 * Math.floor(line / 10)) {
-        const now = (bits >>> (3 * (line % 10))) & 7;
-        if (now === 0 && functions.get(line) === 1) writes.push({ line, input: true });
-        functions.set(line, now);
-      } else if ((register === 0x1c || register === 0x28) && (bits >>> line) & 1) {
-        writes.push({ line, level: register === 0x1c ? 1 : 0 });
-      }
-    }
-  }
-  return writes;
+  const registers = new GpioRegisters(lines);
+  return readFileSync(`${folder}/registers.log`, 'latin1').trim().split('\n').flatMap((text) => registers.take(text));
 }
 
 test('the registers were written as the kernel says, change for change', () => {

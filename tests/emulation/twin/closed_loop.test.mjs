@@ -90,8 +90,8 @@ before(async () => {
     await kinect.tell('lose 3 100 5');  // every third frame is torn
     turntable.atPulse(350, () => kinect.tell('unplug').then(() => kinect.tell('plug')));
     turntable.lose(20, pulsesInTurn + 350);  // in the second turn, on the way to stop 4
-    turntable.atPulse(2 * pulsesInTurn + 1, () => {
-      turntable.isEnableStuck = true;  // in the third
+    turntable.atPulse(2 * pulsesInTurn, () => {
+      turntable.isEnableStuck = true;  // in the third turn
     });
   });
   console.log(turn.said.trim());

@@ -9,6 +9,8 @@
 // or what is wrong:
 //
 //   plug, unplug              the Kinect's plug
+//   frames                    answered by "SENT DAMAGED", so far
+//   speed FACTOR              of its frames, which are 30 a second until then
 //   lose PERIOD FIRST COUNT   of each PERIOD-th frame, COUNT packets from the FIRST on; 1 0 0: none
 
 #include <arpa/inet.h>
@@ -214,6 +216,10 @@ class TwinKinect {
       plug();
     } else if (verb == "unplug") {
       unplug();
+    } else if (verb == "speed") {
+      double factor = 1;
+      words >> factor;
+      kinect_.speed = factor;
     } else if (verb == "lose") {
       int period = 1;
       int first = 0;
@@ -222,6 +228,8 @@ class TwinKinect {
       kinect_.loss_period = period;
       kinect_.first_lost = first;
       kinect_.lost_packets = count;
+    } else if (verb == "frames") {
+      return std::to_string(kinect_.frames_sent) + " " + std::to_string(kinect_.frames_damaged);
     } else {
       return "there is no such order";
     }

@@ -28,13 +28,24 @@ export class TwinKinect {
     }
   }
 
+  /** @param {string} order @returns {Promise<string>} the answer */
+  ask(order) {
+    this.#socket.write(`${order}\n`);
+    return new Promise((come) => this.#waiting.push(come));
+  }
+
   /** Has it carry out an order. @throws {Error}  unless it does */
   async tell(order) {
-    this.#socket.write(`${order}\n`);
-    const answer = await new Promise((come) => this.#waiting.push(come));
+    const answer = await this.ask(order);
     if (answer !== 'ok') {
       throw new Error(`the Kinect, told "${order}": ${answer}`);
     }
+  }
+
+  /** @returns {Promise<{sent: number, damaged: number}>} of its frames so far */
+  async frames() {
+    const [sent, damaged] = (await this.ask('frames')).split(' ').map(Number);
+    return {sent, damaged};
   }
 
   async close() {
@@ -50,6 +61,7 @@ export class TwinKinect {
     socket.once('close', () => {
       if (this.#socket === socket) {
         this.#socket = undefined;
+        this.#waiting = [];
       }
     });
     createInterface({input: socket}).on('line', (line) => {

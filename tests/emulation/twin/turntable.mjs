@@ -10,15 +10,26 @@ const lines = {step: 17, direction: 27, enable: 5};
 /** Microsteps of a turn: a motor of 1.8 degrees on the platform's shaft, in quarter steps. */
 export const stepsPerTurn = 800;
 
+/** Microsteps of the coils' period, four whole steps. The driver begins at one place of each when it gets power (A4988, table 2:
+ * "home"). */
+const stepsPerPeriod = 16;
+
+/** As the resistors on the board have them until somebody drives the lines. */
+const undriven = {[lines.step]: 0, [lines.direction]: 0, [lines.enable]: 1};
+
 /** An A4988, a motor, and the platform on it. */
 export class Turntable {
-  // As the resistors on the board have them until somebody drives the lines.
-  #levels = {[lines.step]: 0, [lines.direction]: 0, [lines.enable]: 1};
+  #levels = {...undriven};
   #toLose = [];
+  #lossPeriod = Infinity;
+  #isAtHome = false;  // the driver, since it got power
   #actions = new Map();
 
   /** Where the platform stands, in microsteps counter-clockwise. */
   position = 0;
+
+  /** Where it would stand if no step had been lost. */
+  commanded = 0;
 
   /** Rising edges of STEP so far. */
   pulses = 0;
@@ -35,12 +46,29 @@ export class Turntable {
     return 2 * Math.PI * this.position / stepsPerTurn;
   }
 
+  /** Radians, where it would stand if no step had been lost. */
+  get commandedAngle() {
+    return 2 * Math.PI * this.commanded / stepsPerTurn;
+  }
+
   /** Of the pulses to come, the motor misses `count` after `after` others. */
   lose(count, after = 0) {
     this.#toLose = Array.from({length: count}, (_, i) => this.pulses + after + i + 1);
   }
 
-  /** Has something happen with a pulse: with the 350th, say, in the middle of a move. */
+  /** From now on the motor misses each `period`-th pulse, as one that is too weak for its load; Infinity: none. */
+  loseEach(period) {
+    this.#lossPeriod = period;
+  }
+
+  /** Power fails, and comes back: the lines are as nobody drives them, and as soon as the driver switches the motor on, that
+   * jumps to the nearest place at which the driver begins. */
+  losePower() {
+    this.#levels = {...undriven};
+    this.#isAtHome = true;
+  }
+
+  /** Has something happen after a pulse: after the 350th, say, in the middle of a move. */
   atPulse(number, action) {
     this.#actions.set(number, action);
   }
@@ -49,14 +77,18 @@ export class Turntable {
   change(line, level) {
     const rises = level === 1 && this.#levels[line] === 0;
     this.#levels[line] = level;
+    if (this.isOn && this.#isAtHome) {
+      this.position = stepsPerPeriod * Math.round(this.position / stepsPerPeriod);
+      this.#isAtHome = false;
+    }
     if (line !== lines.step || !rises) {
       return;
     }
-    ++this.pulses;
+    const step = this.#levels[lines.direction] === 1 ? 1 : -1;
+    const isLost = this.#toLose.includes(++this.pulses) || this.pulses % this.#lossPeriod === 0;
+    this.commanded += step;
+    this.position += this.isOn && !isLost ? step : 0;
     this.#actions.get(this.pulses)?.();
-    if (this.isOn && !this.#toLose.includes(this.pulses)) {
-      this.position += this.#levels[lines.direction] === 1 ? 1 : -1;
-    }
   }
 }
 

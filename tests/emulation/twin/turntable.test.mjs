@@ -54,6 +54,63 @@ test('the motor misses the pulses that it is told to', () => {
   assert.equal(turntable.position, 17);
 });
 
+test('it knows where it was told to be, and where it is', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  turntable.lose(20);
+  steps(turntable, 400);
+  assert.equal(turntable.commandedAngle, Math.PI);
+  assert.equal(turntable.commanded - turntable.position, 20);
+  turntable.isEnableStuck = true;
+  steps(turntable, 100);
+  assert.deepEqual([turntable.commanded, turntable.position], [500, 380]);
+});
+
+test('a weak motor misses a share of the pulses', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  turntable.loseEach(25);
+  steps(turntable, 800);
+  assert.equal(turntable.position, 800 - 32);
+  turntable.loseEach(Infinity);
+  steps(turntable, 100);
+  assert.equal(turntable.position, 900 - 32);
+});
+
+test('after a cut of power the lines are undriven, and the motor jumps to where its driver begins once it is on', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  steps(turntable, 99);
+  turntable.change(step, 1);
+  assert.equal(turntable.position, 100);
+  turntable.losePower();
+  assert.equal(turntable.isOn, false);
+  assert.equal(turntable.position, 100);
+  turntable.change(enable, 0);
+  assert.equal(turntable.position, 96);
+  turntable.change(direction, 1);
+  steps(turntable, 4);  // also the first, though STEP was high
+  assert.equal(turntable.position, 100);
+  turntable.change(enable, 1);
+  turntable.change(enable, 0);
+  assert.equal(turntable.position, 100);
+});
+
+test('something happens with a pulse, after the platform has made its step', () => {
+  const turntable = new Turntable();
+  turntable.change(enable, 0);
+  turntable.change(direction, 1);
+  let seen;
+  turntable.atPulse(3, () => {
+    seen = turntable.position;
+  });
+  steps(turntable, 5);
+  assert.equal(seen, 3);
+});
+
 test('QEMU tells each change of the lines that are outputs', async () => {
   const changes = [];
   const witness = await GpioWitness.listen((line, level) => changes.push([line, level]));

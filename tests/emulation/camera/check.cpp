@@ -1,0 +1,104 @@
+// Takes pictures with the driver of cameras, on the machine of `machine`. What it prints is looked
+// at by camera.test.mjs, which shows it the pictures and pulls the plug where it says so.
+
+#include <dlfcn.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "camera/camera_module.hpp"
+#include "octurn/error.hpp"
+
+namespace octurn {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr CameraWish wish{.width = 820, .height = 616};
+
+void say(const std::string& text) { std::cout << "check: " << text << std::endl; }
+
+/// Pixels that are not those of the picture whose number is the first pixel: x + 2 y more than it.
+/// Those in colour are as grey: the camera sends no colour.
+std::size_t wrong_pixels(const TimedPicture& timed) {
+  const Picture& picture = timed.picture;
+  std::size_t wrong = 0;
+  for (std::size_t at = 0; at < timed.colours.size(); ++at) {
+    const std::uint8_t level = picture.samples[at];
+    wrong += timed.colours[at] == Rgb{level, level, level} ? 0 : 1;
+  }
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const auto at = static_cast<std::size_t>(y * picture.width + x);
+      wrong +=
+          picture.samples[at] == static_cast<std::uint8_t>(picture.samples[0] + x + 2 * y) ? 0 : 1;
+    }
+  }
+  return wrong;
+}
+
+void take(Camera& camera, int count) {
+  steady_clock::time_point last = {};
+  for (int i = 0; i < count; ++i) {
+    const bool is_in_colour = i % 2 == 1;
+    const std::optional<TimedPicture> timed =
+        is_in_colour ? camera.read_in_colour({}) : camera.read({});
+    if (!timed) {
+      say("stopped");
+      return;
+    }
+    if (timed->colours.size() != (is_in_colour ? timed->picture.samples.size() : 0)) {
+      say("colours that were not asked for, or none that were");
+    }
+    const bool is_later = timed->begin > last && timed->begin < steady_clock::now();
+    last = timed->begin;
+    say("picture " + std::to_string(timed->picture.samples[0]) + " of " +
+        std::to_string(timed->picture.width) + " x " + std::to_string(timed->picture.height) +
+        ", " + std::to_string(wrong_pixels(*timed)) + " pixels wrong, begun " +
+        (is_later ? "in order" : "out of order"));
+  }
+}
+
+/// Reads until an error comes.
+void take_until_it_fails(Camera& camera) {
+  while (camera.read({})) {
+  }
+}
+
+void check(const CameraModule& module, const CameraWish& as, const std::string& then) {
+  try {
+    const std::unique_ptr<Camera> camera = module.open(as);
+    say("camera " + camera->name() + ", serial " + camera->serial());
+    take(*camera, 8);
+    say(then);
+    take_until_it_fails(*camera);
+  } catch (const Error& error) {
+    say("error " + std::string(to_string(error.code())) + ": " + error.what() + " (" +
+        error.hint() + ")");
+  }
+}
+
+}  // namespace
+}  // namespace octurn
+
+int main(int /*count*/, char** arguments) {
+  using namespace octurn;
+  void* const loaded = ::dlopen(arguments[1], RTLD_NOW);
+  const void* const found = loaded == nullptr ? nullptr : ::dlsym(loaded, "octurn_camera");
+  if (found == nullptr) {
+    say(::dlerror());
+    return 1;
+  }
+  const auto& module = *static_cast<const CameraModule*>(found);
+  CameraWish small = wish;
+  small.width = 640;
+  check(module, small, "");
+  check(module, wish, "be silent");
+  check(module, wish, "unplug");
+  return 0;
+}

@@ -20,6 +20,11 @@ export function require(condition, message) {
   }
 }
 
+/** Fails the attack, but for a sanitized daemon, whose memory is not its own. */
+export function requireMemory(isLittle, message) {
+  require(isLittle || process.env.OCTURN_SANITIZED, message);
+}
+
 export const sleep = (ms) => new Promise((done) => {
   setTimeout(done, ms);
 });

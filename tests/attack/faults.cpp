@@ -65,15 +65,14 @@ Faults* map_faults() {
   return memory == MAP_FAILED ? nullptr : static_cast<Faults*>(memory);
 }
 
-Faults* faults() {
-  static Faults* const mapped = map_faults();
-  return mapped;
-}
+// Null until the library is initialised: a sanitizer opens and writes files before that, when there
+// is no environment yet.
+Faults* const mapped_faults = map_faults();
+const char* const folder_path = std::getenv("OCTURN_FAULTS_FOLDER");
 
-std::string_view folder() {
-  static const char* const path = std::getenv("OCTURN_FAULTS_FOLDER");
-  return path != nullptr ? path : "";
-}
+Faults* faults() { return mapped_faults; }
+
+std::string_view folder() { return folder_path != nullptr ? folder_path : ""; }
 
 bool is_ours(std::string_view path) {
   return !folder().empty() && path.substr(0, folder().size()) == folder();

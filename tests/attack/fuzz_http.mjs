@@ -7,7 +7,7 @@ import {connect} from 'node:net';
 import {join} from 'node:path';
 import {gunzipSync} from 'node:zlib';
 
-import {argument, Daemon, makeFolder, require} from './daemon.mjs';
+import {argument, Daemon, makeFolder, require, requireMemory} from './daemon.mjs';
 import {makeRandom} from './random.mjs';
 import {someRequest} from './requests.mjs';
 
@@ -112,7 +112,7 @@ try {
   }
   const memory = daemon.memory();
   require(daemon.descriptors() <= descriptors + 20, `${daemon.descriptors()} descriptors are open, and were ${descriptors}`);
-  require(memory < 400e6, `${memory} bytes are resident`);
+  requireMemory(memory < 400e6, `${memory} bytes are resident`);
   const [status, signal] = await daemon.end();
   require(status === 0, `SIGTERM ends it with ${status ?? signal}`);
   console.log(`counted: fuzz_http: ${sent} requests (seed ${seed}), ${Math.round(memory / 1e6)} MB resident, answers ${JSON.stringify(statuses)}`);

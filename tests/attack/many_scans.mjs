@@ -1,10 +1,11 @@
 // many_scans SCANS: a data folder of so many scans, every second one unfinished. The start and each answer take as long for
 // a scan as with a tenth of them, within the machine's moods, and memory stays bounded.
 
-import {cpSync, linkSync, mkdirSync, readdirSync, renameSync, rmSync} from 'node:fs';
+import {renameSync, rmSync} from 'node:fs';
 import {join} from 'node:path';
 
-import {argument, Daemon, makeFolder, require} from './daemon.mjs';
+import {argument, Daemon, makeFolder, require, requireMemory} from './daemon.mjs';
+import {copyScan, idOf} from './scans.mjs';
 
 const count = argument(0, 2000);
 const folder = makeFolder();
@@ -20,26 +21,6 @@ async function time(action, times = 3) {
     shortest = Math.min(shortest, performance.now() - begin);
   }
   return shortest;
-}
-
-/** A scan folder again, under another name: small files copied, large ones shared. */
-function copyScan(from, to) {
-  mkdirSync(join(to, 'snapshots'), {recursive: true});
-  for (const entry of readdirSync(from, {withFileTypes: true, recursive: true})) {
-    const path = join(entry.path, entry.name).slice(from.length);
-    if (entry.isDirectory()) {
-      mkdirSync(join(to, path), {recursive: true});
-    } else if (/\.(png|stl)$/.test(path)) {
-      linkSync(join(from, path), join(to, path));
-    } else {
-      cpSync(join(from, path), join(to, path));
-    }
-  }
-}
-
-function idOf(i) {
-  const time = new Date(Date.UTC(2020, 0, 1) + i * 60_000).toISOString().replace(/[-:]/g, '');
-  return `${time.slice(0, 8)}-${time.slice(9, 15)}-${i.toString(16).padStart(4, '0').slice(-4)}`;
 }
 
 /** What the daemon takes for a folder of so many scans. */
@@ -84,5 +65,5 @@ for (const what of ['start', 'list']) {
   require(many[what] < moment + 10 * slack * few[what], `${what} takes longer for each scan where there are more`);
 }
 require(many.status < 50 + 2 * slack * few.status, 'status takes longer where there are more scans');
-// A list of them is built in memory as a JSON document and as its text, some times at once.
-require(many.memory - few.memory < 80_000 * count, 'a scan takes more than 80 kB of memory');
+// They are held in memory, and their list is made there as text, some times at once.
+requireMemory(many.memory - few.memory < 50_000 * count, 'a scan takes more than 50 kB of memory');

@@ -1,18 +1,93 @@
 // What shuts somebody out of a page.
 
+import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {createRequire} from 'node:module';
 
+import {openPage, picture} from './browser.js';
+
 const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-/** What axe finds wrong, one line each. */
-export async function complaints(page) {
+/** What axe finds wrong, one line each. @param {Object} [options]  of axe, such as the rules that count */
+export async function complaints(page, options = {}) {
   if (!await page.evaluate(() => 'axe' in globalThis)) {
     await page.evaluate(axe);
   }
-  const {violations} = await page.evaluate(() => globalThis.axe.run({resultTypes: ['violations']}));
+  const {violations} = await page.evaluate((given) => globalThis.axe.run({resultTypes: ['violations'], ...given}), options);
   return violations.map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target).join(', ')}`);
 }
 
+/** Which texts are too faint in the other colour scheme. @param {'light' | 'dark'} usual  what is taken again */
+async function faintInOther(page, usual) {
+  await page.emulateMedia({colorScheme: usual === 'dark' ? 'light' : 'dark'});
+  const found = await complaints(page, {runOnly: ['color-contrast']});
+  await page.emulateMedia({colorScheme: usual});
+  return found;
+}
+
+/**
+ * Which texts are too faint where Windows paints its own colours over. Axe takes the colours of before: it looks at
+ * -webkit-text-fill-color, which is not told as it is painted.
+ */
+const faintInForcedColours = (page) => page.evaluate(() => {
+  const numbers = (colour) => colour.match(/[\d.]+/g).map(Number);
+  const light = (colour) => numbers(colour).slice(0, 3).map((value) => value / 255)
+      .map((value) => value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)
+      .reduce((sum, value, channel) => sum + value * [0.2126, 0.7152, 0.0722][channel], 0);
+  const alpha = (colour) => numbers(colour)[3] ?? 1;
+  const behind = (element) => {
+    const colour = getComputedStyle(element).backgroundColor;
+    return alpha(colour) === 1 || !element.parentElement ? colour : behind(element.parentElement);
+  };
+  const contrast = (one, other) => (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
+  const isText = (element) => [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent.trim() !== '');
+  return [...document.body.querySelectorAll('*:not(script, noscript, option)')]
+      .filter((element) => isText(element) && element.checkVisibility({checkVisibilityCSS: true, checkOpacity: true}) &&
+        !element.closest(':disabled, [aria-disabled=true], .unseen'))
+      .map((element) => ({element, ink: getComputedStyle(element).color, paper: behind(element)}))
+      .filter(({ink, paper}) => contrast(light(ink), light(paper)) < 4.5)
+      .map(({element, ink, paper}) => `${element.id || element.className || element.dataset.text || element.tagName}: ${ink} on ${paper}`);
+});
+
+/** What is wrong with the words of another language: they have the colours of the first. */
+export const badWords = (page) => complaints(page, {rules: {'color-contrast': {enabled: false}}});
+
 /** By how much the page is wider than the screen, pixels. */
 export const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+
+/** All can be read where Windows paints its own colours over, and what is chosen be told. */
+async function lookInForcedColours(page, name) {
+  await page.emulateMedia({forcedColors: 'active'});
+  assert.deepEqual(await faintInForcedColours(page), [], name);
+  assert.doesNotMatch(await page.locator('#live').evaluate((live) => getComputedStyle(live).backgroundColor), /rgba/, 'the picture shines through');
+  const outlineOf = (selector) => page.locator(selector).first().evaluate((element) => getComputedStyle(element).outlineStyle);
+  assert.deepEqual(await Promise.all(['.choice:has(:checked)', '.choice:not(:has(:checked))', '.places [aria-current]'].map(outlineOf)),
+      ['solid', 'none', 'solid']);
+  await picture(page, `${name}-forced`);
+  await page.emulateMedia({forcedColors: 'none'});
+}
+
+/** The screens on which the page is looked at, and the colour scheme that each is set to. */
+export const looks = /** @type {const} */ ([['phone', 'dark'], ['desktop', 'light']]);
+
+/**
+ * Goes through states of the page on one screen: none may shut anybody out, in either colour scheme.
+ *
+ * @param {import('playwright-core').Browser} browser
+ * @param {string} url
+ * @param {Record<string, (page: import('playwright-core').Page) => unknown>} states  each with how to get there
+ * @param {'phone' | 'desktop'} screen
+ * @param {'light' | 'dark'} colorScheme
+ */
+export async function walk(browser, url, states, screen, colorScheme) {
+  const {page} = await openPage(browser, url, {screen, colorScheme});
+  for (const [name, reach] of Object.entries(states)) {
+    await reach(page);
+    assert.deepEqual(await complaints(page), [], name);
+    assert.deepEqual(await faintInOther(page, colorScheme), [], `${name}, not ${colorScheme}`);
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `${name}-${screen}-${colorScheme}`);
+    await lookInForcedColours(page, `${name}-${screen}`);
+  }
+  await page.context().close();
+}

@@ -1,10 +1,12 @@
 // WiFi and updates, from the page to the files in which the appliance's root finds what it is asked for. The test is root.
 
 import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
 import {mkdir, mkdtemp, readdir, readFile, rename, rm, stat, writeFile} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
+import {promisify} from 'node:util';
 
 import {complaints, overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
@@ -68,6 +70,26 @@ async function look(page, name) {
   await picture(page, name);
 }
 
+/** What a reader of QR codes sees in the one that is shown, in the colours of the screen. */
+async function readCode(page, wifi) {
+  const folder = await mkdtemp(join(tmpdir(), 'octurn-code-'));
+  const file = join(folder, 'code.png');
+  await wifi.locator('#wifi-code svg').screenshot({path: file});
+  const {stdout} = await promisify(execFile)('zbarimg', ['--quiet', '--raw', file]);
+  await rm(folder, {recursive: true});
+  return stdout;
+}
+
+/** Which network is chosen can be told where Windows paints its own colours over. */
+async function lookInForcedColours(page, wifi, screen) {
+  await page.emulateMedia({forcedColors: 'active'});
+  const outlines = await wifi.locator('.network').evaluateAll((labels) =>
+    labels.map((label) => `${label.querySelector('.network-name').textContent} ${getComputedStyle(label).outlineStyle}`));
+  assert.deepEqual(outlines.filter((outline) => !outline.endsWith(' none')), ['Guests solid']);
+  await picture(page, `wifi-${screen}-forced`);
+  await page.emulateMedia({forcedColors: 'none'});
+}
+
 const firstSection = (page) => page.evaluate(() => document.getElementById('main').firstElementChild.id);
 
 async function joinWifi(appliance, browser, screen, colorScheme) {
@@ -80,23 +102,26 @@ async function joinWifi(appliance, browser, screen, colorScheme) {
   assert.deepEqual(await wifi.locator('.network-name').allInnerTexts(),
       ['Home', 'Café am Eck', 'Guests', 'The neighbours with a long name', 'Another, by its name']);
   await look(page, `wifi-hotspot-${screen}`);
+  assert.equal(await readCode(page, wifi), 'WIFI:T:nopass;S:Octurn-1A2B;;\n');
 
   await wifi.getByRole('radio', {name: /^Guests open, 2 of 4/}).check();
   assert.ok(await wifi.getByLabel('Password', {exact: true}).isHidden());
+  await lookInForcedColours(page, wifi, screen);
   await wifi.getByRole('radio', {name: /^Home with a password, 4 of 4/}).check();
   assert.equal(await wifi.getByLabel('Country').inputValue(), 'DE');
   await wifi.getByLabel('Password', {exact: true}).fill('short');
   await wifi.getByRole('button', {name: 'Join'}).click();
   assert.ok(await wifi.getByLabel('Password', {exact: true}).evaluate((field) => field.matches(':user-invalid')));
   assert.equal(await appliance.hasRequests(), false);
-  await wifi.getByLabel('Password', {exact: true}).fill('open sesame');
+  await wifi.getByLabel('Password', {exact: true}).fill('open;"sesame"');
   await wifi.getByRole('button', {name: 'Show the password'}).click();
   assert.equal(await wifi.getByLabel('Password', {exact: true}).getAttribute('type'), 'text');
   await look(page, `wifi-chosen-${screen}`);
   await wifi.getByRole('button', {name: 'Join'}).click();
   await wifi.getByText('Joining “Home”…').waitFor();
   assert.match(await wifi.locator('#wifi-joining').innerText(), /Put this device into “Home”, too, and open http:\/\/.+\.local/);
-  assert.equal(String(await appliance.take('wifi')), 'wifi_name = Home\nwifi_password = open sesame\nwifi_country = DE\n');
+  assert.equal(await readCode(page, wifi), String.raw`WIFI:T:WPA;S:Home;P:open\;\"sesame\";;` + '\n');
+  assert.equal(String(await appliance.take('wifi')), 'wifi_name = Home\nwifi_password = open;"sesame"\nwifi_country = DE\n');
   await look(page, `wifi-joining-${screen}`);
 
   await appliance.answer('wifi', {state: 'hotspot', name: 'Home', country: 'DE', hotspot: 'Octurn-1A2B', error: 'The password is wrong.'});

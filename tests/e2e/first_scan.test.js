@@ -12,20 +12,46 @@ const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
   return {colours: new Set(pixels).size, share: pixels.filter((pixel) => pixel >>> 24 > 0).length / pixels.length};
 });
 
-/** Which share of the view in 3D has the warm colour of the model, in front of a ground that is blue all over. */
-async function modelShare(page) {
+/**
+ * The rows of the view in 3D that show something of the model, from above: each row's longest piece in the warm colour of the model,
+ * in front of a ground that is blue all over.
+ *
+ * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view, in that colour
+ */
+async function modelSeen(page) {
   const png = await page.locator('#view').screenshot();
   return page.evaluate(async (base64) => {
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
-    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    const {width, height} = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext('2d');
     context.drawImage(bitmap, 0, 0);
-    const {data} = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const {data} = context.getImageData(0, 0, width, height);
+    const rows = [];
     let warm = 0;
-    for (let i = 0; i < data.length; i += 4) {
-      warm += data[i] > 60 && data[i] > data[i + 2] ? 1 : 0;
+    for (let y = 0; y < height; ++y) {
+      let longest = {y, first: 0, end: 0};
+      for (let x = 0, first = 0; x < width; ++x) {
+        const i = 4 * (y * width + x);
+        const isWarm = data[i] > 60 && data[i] > data[i + 2];
+        warm += isWarm ? 1 : 0;
+        first = isWarm ? first : x + 1;
+        longest = x + 1 - first > longest.end - longest.first ? {y, first, end: x + 1} : longest;
+      }
+      if (longest.end > longest.first) {
+        rows.push(longest);
+      }
     }
-    return 4 * warm / data.length;
+    return {share: warm / (width * height), rows};
   }, png.toString('base64'));
+}
+
+const modelShare = async (page) => (await modelSeen(page)).share;
+
+/** Clicks on the model, at a share of what is seen of it, from above: how high the view is depends on the texts beside it. */
+async function clickModel(page, share) {
+  const {rows} = await modelSeen(page);
+  const {y, first, end} = rows[Math.floor(share * rows.length)];
+  await page.locator('#view').click({position: {x: (first + end) / 2, y}});
 }
 
 /** Has the page note each number of snapshots that it shows. */
@@ -89,9 +115,8 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await picture(page, 'finished');
 
   await page.getByRole('button', {name: 'Measure between two points'}).click();
-  const {width, height} = await page.locator('#view').boundingBox();
-  for (const [up, text] of [[0.45, 'Click another one.'], [0.52, /^\d+\.\d mm, along X, Y and Z/]]) {
-    await page.locator('#view').click({position: {x: 0.5 * width, y: up * height}});
+  for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d mm, along X, Y and Z/]]) {
+    await clickModel(page, place);
     await page.locator('#measured').filter({hasText: text}).waitFor();
   }
   const distance = parseFloat(await page.locator('#measured').innerText());
@@ -102,9 +127,11 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(left < 0.9 * share, `less of the model is left than ${share}, not ${left} of the view`);
   await picture(page, 'measured');
 
+  await page.getByRole('button', {name: 'Cut the model open'}).click();
+  await page.locator('#cut-height').waitFor({state: 'hidden'});
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
   await page.getByText('Click the side that it shall lie on.').waitFor();
-  await page.locator('#view').click({position: {x: 0.5 * width, y: 0.56 * height}});
+  await clickModel(page, 0.5);  // on the chest
   await page.getByText('Click the side that it shall lie on.').waitFor({state: 'hidden'});
   const halfHeight = async () => {
     await page.getByRole('button', {name: 'Cut the model open'}).click();

@@ -80,9 +80,9 @@ TEST(Memory, OfASolidStaysBelowItsLimitWithTheSameBytes) {
   const Outcome free = outcome_of(command(folder.path(), "0.5", {"--method", "solid"}));
   ASSERT_EQ(free.status, 0) << free.errors;
   const Outcome tight = outcome_of(command(
-      folder.path(), "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "44"}));
+      folder.path(), "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "48"}));
   EXPECT_EQ(tight.status, 0) << tight.errors;
-  EXPECT_LT(tight.peak_bytes, 44 * mb);
+  EXPECT_LT(tight.peak_bytes, 48 * mb);
   EXPECT_GT(free.peak_bytes, 44 * mb);
   EXPECT_EQ(tight.model, free.model);
 }
@@ -144,7 +144,7 @@ void write_chamber_scan(const fs::path& folder) {
   write_room_scan(folder, chamber, poses);
 }
 
-// A floor is one layer of a tile's voxels, which is drawn and simplified at once, with both sides.
+// A floor fills layers of columns, each of which is drawn and simplified at once, with both sides.
 TEST(Memory, OfTheShellOfASpaceStaysBelowItsLimitWithTheSameBytes) {
   const TemporaryFolder folder;
   write_chamber_scan(folder.path());
@@ -153,11 +153,20 @@ TEST(Memory, OfTheShellOfASpaceStaysBelowItsLimitWithTheSameBytes) {
   for (const char* const threads : {"1", "2"}) {
     const Outcome tight =
         outcome_of(command(folder.path(), "5",
-                           {"--method", "solid", "--threads", threads, "--memory-limit-mb", "58"}));
+                           {"--method", "solid", "--threads", threads, "--memory-limit-mb", "48"}));
     EXPECT_EQ(tight.status, 0) << tight.errors;
-    EXPECT_LT(tight.peak_bytes, 58 * mb);
+    EXPECT_LT(tight.peak_bytes, 48 * mb);
     EXPECT_EQ(tight.model, free.model);
   }
+}
+
+TEST(Memory, OfManySmallTilesIsThatOfTheirBricks) {
+  const TemporaryFolder folder;
+  write_room_scan(folder.path(), small_room(), 8);
+  const Outcome tiles = outcome_of(command(
+      folder.path(), "4", {"--root-size-mm", "64", "--threads", "1", "--memory-limit-mb", "32"}));
+  EXPECT_EQ(tiles.status, 0) << tiles.errors;
+  EXPECT_LT(tiles.peak_bytes, 32 * mb);
 }
 
 TEST(Memory, SaysHowMuchTheShellOfATileNeeds) {

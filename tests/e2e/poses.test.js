@@ -70,6 +70,18 @@ async function clicksOfPairs({scan, object_from_platform}) {
   }
 }
 
+/** Clicks a point until that shows: a click is lost as long as the points are not drawn yet. */
+async function clickAt(page, x, y, shown) {
+  for (let clicks = 1; await shown.count() === 0; ++clicks) {
+    await page.mouse.click(x, y);
+    await shown.waitFor({timeout: 5000 * clicks}).catch((error) => {
+      if (clicks === 8) {
+        throw error;
+      }
+    });
+  }
+}
+
 /** Degrees between two poses of 4 x 4 numbers. */
 function degreesBetween(one, other) {
   const trace = [0, 1, 2].reduce((sum, row) => sum + [0, 1, 2].reduce((part, column) => part + one[row][column] * other[row][column], 0), 0);
@@ -141,11 +153,10 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
     await page.mouse.up();
   };
   for (const [index, [before, side]] of pairs.entries()) {
-    await page.mouse.click(left + before[0], top + before[1]);
-    await text.filter({hasText: /the same point of side 2/}).waitFor();
+    await clickAt(page, left + before[0], top + before[1], text.filter({hasText: /the same point of side 2/}));
     await turn(drag);
-    await page.mouse.click(left + side[0], top + side[1]);
-    await text.filter({hasText: index < 2 ? `Pair ${index + 2} of 3` : 'Three pairs are set.'}).waitFor();
+    const next = index < 2 ? `Pair ${index + 2} of 3` : 'Three pairs are set.';
+    await clickAt(page, left + side[0], top + side[1], text.filter({hasText: next}));
     await turn(-drag);
   }
   await text.filter({hasText: 'Three pairs are set.'}).waitFor();

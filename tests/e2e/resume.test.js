@@ -62,8 +62,11 @@ test('a scan whose sensor fails pauses, says why, and can be ended with what it 
   await chooseQuickScan(page, 4);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.locator('#phase').getByText('Trying stop 2 of 4 again').waitFor();
+  await page.locator('#left').getByText(/^gives up in \d+ s$/).waitFor();
   await page.getByText('Scan paused', {exact: true}).waitFor();
-  assert.match(await page.locator('#trouble').innerText(), /no frame at 90[^]*resume the scan/);
+  const trouble = await page.locator('#trouble').innerText();
+  assert.match(trouble, /no frame at 90 degrees\.[^]*resume the scan/);
+  assert.ok(!trouble.includes(turn), `a path is nothing to a reader: ${trouble}`);
   await picture(page, 'paused');
 
   await page.getByRole('button', {name: 'End scan'}).click();

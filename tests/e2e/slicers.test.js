@@ -48,6 +48,9 @@ async function expectNothingToMend(file) {
   assert.match((await run('prusa-slicer', ['--info', file])).stdout, /manifold = yes/);
 }
 
+/** What prusa-slicer logs now and then about the order of lines that it has laid itself, whatever the model. */
+const ofItsOwnLines = /^.*\[error\] +Reversing even wall line.*$/gm;
+
 /** What a slicer run on a file said, and how many lines of G-code move while they print. */
 async function slice(program, args, gcode) {
   const {stdout, stderr} = await run(program, args, {maxBuffer: 1 << 28});
@@ -68,7 +71,7 @@ test('prusa-slicer and CuraEngine slice a solid model without complaint', async 
   const gcode = `${file}.gcode`;
   const prusa = await slice('prusa-slicer',
       ['--export-gcode', '--layer-height', '0.3', '--perimeters', '1', '--fill-density', '0', '-o', gcode, file], gcode);
-  assert.doesNotMatch(prusa.said, /repair|manifold|open edge|error/i);
+  assert.doesNotMatch(prusa.said.replaceAll(ofItsOwnLines, ''), /repair|manifold|open edge|error/i);
   assert.ok(prusa.moves > 10000, `${prusa.moves} moves`);
 
   const cura = await slice('CuraEngine', ['slice', ...curaSettings(), '-o', gcode, '-l', file], gcode);

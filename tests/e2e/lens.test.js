@@ -1,0 +1,96 @@
+// The lens of a camera with lasers, on the page: from a board that is waved before the simulated camera to a scan that is
+// taken with what was found.
+
+import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
+import {test} from 'node:test';
+
+import {complaints, overflow} from './access.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
+import {ask, scan, scanFolders, startScanner} from './scanner.js';
+
+const rig = ['--simulate-laser', '--simulate-lens', '--simulate-speed', '4'];
+const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, width: 820, height: 616};
+// As --simulate-lens says.
+const truth = {fx: 1.012 * told.fx, fy: 1.010 * told.fy, cx: told.cx + 0.006 * told.width, cy: told.cy - 0.006 * told.height, k1: -0.06, k2: 0.02};
+const draft = {snapshots: 4, leaf_size_mm: 4, calibrate: 'told'};
+
+/** No depth is measured by such a rig: the page asks once, to know. */
+const isAsked = (fault) => fault.includes('404');
+
+/** @param {Record<string, number>} lens */
+function expectTruth(lens) {
+  for (const [key, limit] of Object.entries({fx: 0.7, fy: 0.7, cx: 0.5, cy: 0.5, k1: 0.003, k2: 0.012})) {
+    assert.ok(Math.abs(lens[key] - truth[key]) < limit, `${key}: ${lens[key]}, not ${truth[key]}`);
+  }
+}
+
+async function lensOfNewestScan(scanner) {
+  const folders = (await scanFolders(scanner)).sort();
+  return JSON.parse(await readFile(`${folders.at(-1)}/scan.json`, 'utf8')).sensor;
+}
+
+test('the lens is found from a board, kept, used by a scan, and taken back', async (t) => {
+  const scanner = await startScanner(t, {rig});
+  const browser = await openBrowser(t);
+  const {page, faults} = await openPage(browser, scanner.url);
+  await goTo(page, 'Calibrate');
+  await page.getByRole('heading', {name: 'The camera’s lens'}).waitFor();
+  await page.getByText('As the settings tell it; not found for this camera yet.').waitFor();
+  await picture(page, 'lens-before');
+  const board = await fetch(await page.getByRole('link', {name: 'A4'}).evaluate((link) => link.href));
+  assert.equal(board.headers.get('content-type'), 'application/pdf');
+  assert.match(await board.text(), /^%PDF-1\.4/);
+
+  await page.getByRole('button', {name: 'Show the board'}).click();
+  await page.getByText(/[3-9] of 12 pictures taken/).waitFor();
+  await picture(page, 'lens-looking');
+  assert.deepEqual(await complaints(page), []);
+  await page.getByText('The lens is known').waitFor();
+  await picture(page, 'lens-found');
+  assert.deepEqual(await complaints(page), []);
+  const {run} = await ask(scanner, 'calibration');
+  expectTruth(run.report.lens);
+
+  await page.getByRole('button', {name: 'Keep it'}).click();
+  await page.getByText(/for camera simulated-laser; corners lie within 0\.\d\d pixels/).waitFor();
+  const {lens} = await ask(scanner, 'calibration');
+  expectTruth(lens.kept);
+  await scan(scanner, draft);
+  expectTruth(await lensOfNewestScan(scanner));
+
+  await page.getByRole('button', {name: 'Back to the settings’ lens'}).click();
+  await page.getByText('As the settings tell it; not found for this camera yet.').waitFor();
+  assert.deepEqual(faults.filter((fault) => !isAsked(fault)), []);
+});
+
+test('a look at the board is cancelled, or solved too early and refused in words', async (t) => {
+  const scanner = await startScanner(t, {rig});
+  const browser = await openBrowser(t);
+  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`, {screen: 'phone', colorScheme: 'dark'});
+  await page.getByRole('button', {name: 'Show the board'}).click();
+  await page.getByText(/[1-9] of 12 pictures taken/).waitFor();
+  await page.locator('#lens-cancel').click();
+  await page.locator('#lens-outcome').getByText('Cancelled').waitFor();
+  assert.ok(await overflow(page) <= 0);
+
+  await page.getByRole('button', {name: 'Show the board'}).click();
+  await page.getByRole('button', {name: 'That is enough'}).click();
+  await page.getByText('The lens is not known').waitFor();
+  await page.getByText(/% of the picture only: a lens distorts most at the edges|only a tilted one tells the focal length/).waitFor();
+  await picture(page, 'lens-refused');
+  assert.ok(await overflow(page) <= 0);
+  assert.deepEqual(await complaints(page), []);
+  assert.equal((await ask(scanner, 'calibration')).lens.kept, null);
+  assert.deepEqual(faults.filter((fault) => !isAsked(fault)), []);
+});
+
+test('a rig with a depth sensor has no such card', async (t) => {
+  const scanner = await startScanner(t);
+  const {page} = await openPage(await openBrowser(t), `${scanner.url}#calibrate`);
+  await page.getByText('Not done for this sensor.').waitFor();
+  assert.equal(await page.locator('#lens').isVisible(), false);
+  assert.equal((await ask(scanner, 'calibration')).lens, null);
+  const refused = await fetch(`${scanner.url}api/v1/calibration`, {method: 'PATCH', headers: {'Content-Type': 'application/json'}, body: '{"lens": "keep"}'});
+  assert.equal(refused.status, 404);
+});

@@ -19,8 +19,8 @@ class CompletedRequests {
   void add(libcamera::Request* request);
   void disconnect();
 
-  /// Waits until there is a request.
-  Outcome wait(const std::stop_token& stop, std::chrono::steady_clock::duration longest);
+  /// Waits until there is a request; `late` if there is none at the deadline.
+  Outcome wait(const std::stop_token& stop, std::chrono::steady_clock::time_point deadline);
 
   /// All that are there, the oldest first.
   std::vector<libcamera::Request*> take();

@@ -106,24 +106,26 @@ class LibcameraCamera final : public Camera {
  private:
   enum class Kind { grey, colour };
 
-  /// The newest picture that is there.
+  /// The newest picture that is there. A camera whose pictures are all damaged is as silent as one
+  /// that sends none.
   std::optional<TimedPicture> read_newest(const std::stop_token& stop, Kind kind) {
-    for (;;) {
-      switch (completed_.wait(stop, longest_silence)) {
+    const auto deadline = steady_clock::now() + longest_silence;
+    do {
+      switch (completed_.wait(stop, deadline)) {
         case CompletedRequests::Outcome::stopped:
           return std::nullopt;
         case CompletedRequests::Outcome::disconnected:
           throw Error(ErrorCode::sensor_lost, "camera: " + name_ + " is gone", again);
         case CompletedRequests::Outcome::late:
-          throw Error(ErrorCode::sensor_silent,
-                      "camera: " + name_ + " has sent no picture for 2 seconds", again);
         case CompletedRequests::Outcome::completed:
           break;
       }
       if (auto picture = newest(completed_.take(), kind)) {
         return picture;
       }
-    }
+    } while (steady_clock::now() < deadline);
+    throw Error(ErrorCode::sensor_silent,
+                "camera: " + name_ + " has sent no whole picture for 2 seconds", again);
   }
 
   void expect(bool holds, const std::string& otherwise, const char* hint = again) const {

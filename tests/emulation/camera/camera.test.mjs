@@ -48,6 +48,7 @@ test('pictures come through USB, uvcvideo and libcamera, and what goes wrong is 
   const camera = await UvcCamera.listen(lens, picture);
   const said = await run(camera, (text) => {
     camera.isSilent = text === 'be silent' || (camera.isSilent && !text.startsWith('error'));
+    camera.isDamaged = text === 'be damaged' || (camera.isDamaged && !text.startsWith('error'));
     if (text === 'unplug') {
       camera.unplug();
     }
@@ -56,12 +57,12 @@ test('pictures come through USB, uvcvideo and libcamera, and what goes wrong is 
 
   const [size, ...rest] = said;
   assert.match(size, /^error sensor-other: Camera of a test: it makes no pictures of 640 x 616 .*it has 820 x 616\./);
-  for (const what of ['sensor-silent', 'sensor-lost']) {
+  for (const [what, error] of [['be silent', 'sensor-silent'], ['be damaged', 'sensor-silent'], ['unplug', 'sensor-lost']]) {
     assert.match(rest.shift(), /^camera Camera of a test, serial .*1d6b:0102$/);
     const pictures = rest.splice(0, 8).map((text) => Number(/^picture (\d+) of 820 x 616, 0 pixels wrong, begun in order$/.exec(text)?.[1] ?? NaN));
     assert.ok(pictures.every((number, i) => i === 0 || number > pictures[i - 1]), pictures.join(' '));
-    assert.equal(rest.shift(), what === 'sensor-lost' ? 'unplug' : 'be silent');
-    assert.match(rest.shift(), new RegExp(`^error ${what}: camera: Camera of a test .*`));
+    assert.equal(rest.shift(), what);
+    assert.match(rest.shift(), new RegExp(`^error ${error}: camera: Camera of a test .*`));
   }
   assert.deepEqual(rest, ['ended well']);
   // By hand, 10 ms in units of 100 us, and the least gain that libcamera knows: the default.

@@ -99,6 +99,7 @@ int main(int /*count*/, char** arguments) {
   small.width = 640;
   check(module, small, "");
   check(module, wish, "be silent");
+  check(module, wish, "be damaged");
   check(module, wish, "unplug");
   return 0;
 }

@@ -42,11 +42,15 @@ export class UvcCamera {
   #waiting = [];  // transfers of the picture endpoint: {id, length}
   #picture = null;  // what of the picture is not sent yet
   #number = 0;  // of pictures
+  #begun = 0;  // when the picture was exposed, ms
   #due = 0;  // the next picture, ms
   #timer = null;
 
   /** Whether it sends no more pictures. */
   #isSilent = false;
+
+  /** Whether it says of each picture that it is damaged. */
+  isDamaged = false;
 
   /** What the host has set, by entity and number. @type {Map<string, number>} */
   values = new Map();
@@ -255,12 +259,24 @@ export class UvcCamera {
       const part = this.#picture.subarray(0, Math.min(transfer.length, payloadBytes) - 2);
       this.#picture = this.#picture.length > part.length ? this.#picture.subarray(part.length) : null;
       const isLast = this.#picture === null;
-      this.#bulk(transfer, status.success, Buffer.concat([Buffer.from([2, 0x80 | (isLast ? 2 : 0) | this.#number & 1]), part]));
+      if (isLast) {
+        this.#rest();
+      }
+      const [endOfHeader, damaged, last] = [0x80, this.isDamaged ? 0x40 : 0, isLast ? 2 : 0];
+      this.#bulk(transfer, status.success, Buffer.concat([Buffer.from([2, endOfHeader | damaged | last | this.#number & 1]), part]));
     }
   }
 
+  /** The emulated machine has at least as long for a picture as it took to receive it: where it receives as fast as it can, it does
+   * nothing else. */
+  #rest() {
+    const now = performance.now();
+    this.#due = Math.max(this.#due, now + (now - this.#begun));
+  }
+
   #expose() {
-    this.#due = Math.max(this.#due, performance.now()) + 1000 / this.lens.picturesPerSecond;
+    this.#begun = performance.now();
+    this.#due = Math.max(this.#due, this.#begun) + 1000 / this.lens.picturesPerSecond;
     const grey = this.look(++this.#number);
     this.#picture = Buffer.alloc(pictureBytes(this.lens), 128);  // no colour
     for (let i = 0; i < grey.length; ++i) {

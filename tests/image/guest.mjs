@@ -8,6 +8,8 @@ import {createServer} from 'node:net';
 import {setTimeout as sleep} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
+import {wakeUp} from '../emulation/wake_up.mjs';
+
 /** What differs between QEMU's machines: its options, the name of the console that is QEMU's standard output, and the seconds
  * within which its page answers, where these are more than 3. */
 const machines = {
@@ -95,6 +97,7 @@ export class Guest {
         '-device', 'usb-storage,drive=stick'] : []),
       ...more,
     ], {stdio: 'pipe'});
+    wakeUp(guest.#qemu);
     const end = () => guest.#qemu.kill('SIGKILL');
     process.once('exit', end);
     guest.#qemu.once('exit', () => process.off('exit', end));

@@ -7,6 +7,7 @@ import {once} from 'node:events';
 import {createInterface} from 'node:readline';
 import {test} from 'node:test';
 
+import {wakeUp} from '../wake_up.mjs';
 import {UvcCamera} from './uvc_camera.mjs';
 
 const {OCTURN_CAMERA: results} = process.env;
@@ -30,6 +31,7 @@ async function run(camera, hear) {
     '-accel', 'tcg', '-icount', 'shift=3', '-m', '512', '-nodefaults', '-display', 'none', '-monitor', 'none', '-serial', 'stdio', '-no-reboot',
     '-kernel', `${results}/kernel`, '-initrd', `${results}/initrd`, '-append', 'console=ttyS0 loglevel=3 panic=-1',
     '-device', 'usb-ehci', ...camera.options], {stdio: ['ignore', 'pipe', 'inherit']});
+  wakeUp(machine);
   const said = [];
   createInterface({input: machine.stdout}).on('line', (line) => {
     const [, text] = /check: (.*?)\r?$/.exec(line) ?? [];

@@ -9,6 +9,7 @@ import {before, test} from 'node:test';
 
 import {UvcCamera} from '../camera/uvc_camera.mjs';
 import {GpioRegisters, traceOptions} from '../pi3/registers.mjs';
+import {wakeUp} from '../wake_up.mjs';
 
 const {OCTURN_LASER: folder, OCTURN_DEBIAN: debian} = process.env;
 const lens = {width: 320, height: 240, picturesPerSecond: 1};
@@ -39,6 +40,7 @@ async function boot() {
     '-serial', 'null', '-serial', 'stdio', ...traceOptions, ...camera.options,
     '-kernel', `${debian}/kernel`, '-dtb', `${debian}/pi3.dtb`, '-initrd', `${folder}/initrd.gz`,
     '-append', 'console=ttyS1,115200 panic=-1 rdinit=/init quiet loglevel=3'], {stdio: ['ignore', 'pipe', 'pipe']});
+  wakeUp(qemu);
   const end = () => qemu.kill('SIGKILL');
   process.once('exit', end);
   const registers = new GpioRegisters([left, right, step]);

@@ -9,6 +9,7 @@ import {mkdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {basename} from 'node:path';
 import {before, test} from 'node:test';
 
+import {wakeUp} from '../wake_up.mjs';
 import {TwinKinect} from './kinect.mjs';
 import {writeScanFolder} from './scan_folder.mjs';
 import {GpioWitness, stepsPerTurn, Turntable} from './turntable.mjs';
@@ -38,6 +39,7 @@ async function boot(turns, turntable, prepare) {
     '-append', `console=ttyS1,115200 panic=-1 rdinit=/init quiet loglevel=3 kinect_port=${kinect.port} turns=${list}`,
     ...gpio.options,
   ], {stdio: 'ignore'});
+  wakeUp(qemu);
   const end = () => qemu.kill('SIGKILL');
   process.once('exit', end);
   try {

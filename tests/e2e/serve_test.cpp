@@ -22,6 +22,14 @@ using namespace std::chrono_literals;
 
 bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
 
+/// As the list has it: without the places of what the verdict found, which may be many.
+json as_listed(json scan) {
+  for (json& reason : scan["model"]["quality"]["reasons"]) {
+    reason.erase("places_mm");
+  }
+  return scan;
+}
+
 class ServeByMethod : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
@@ -43,7 +51,7 @@ TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   EXPECT_EQ(open_edges(model.body), 0);
   EXPECT_TRUE(daemon.get("/Scan.stl").body == model.body);
   EXPECT_EQ(daemon.status()["newest"], done["id"]);
-  EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], done);
+  EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], as_listed(done));
 
   // The command gives the same bytes from the scan that was stored.
   Program again({octurn_program(), "reconstruct", folder.path() / "data" / "scans" / done["id"],

@@ -5,6 +5,7 @@
 #include "calibrate/checked_stop.hpp"
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/median.hpp"
+#include "mesh/places.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/quality.hpp"
 
 namespace octurn {

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 

@@ -10,6 +10,7 @@
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "octurn/sensor_map.hpp"
 #include "scan/board_watch.hpp"
 #include "scan/rig.hpp"

@@ -4,7 +4,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "octurn/colours.hpp"
+#include "octurn/model.hpp"
 #include "scan/model_scan.hpp"
 
 namespace octurn {

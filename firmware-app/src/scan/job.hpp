@@ -9,7 +9,7 @@
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"

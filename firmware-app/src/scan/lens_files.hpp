@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "scan/laser_settings.hpp"
 
 namespace octurn {

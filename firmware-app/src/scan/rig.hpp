@@ -7,7 +7,7 @@
 #include <string>
 
 #include "camera/lasers.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "scan/laser_settings.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "turntable/stepper.hpp"

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "octurn/calibrate.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "scan/job.hpp"
 

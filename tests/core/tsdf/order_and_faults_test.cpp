@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/tsdf/rendered.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/packed_weight.hpp"
 #include "tsdf/solid_reconstructor.hpp"

@@ -27,9 +27,8 @@ std::optional<std::string> read_regular_file(const std::filesystem::path& file,
 class AtomicFile {
  public:
   /// @param permissions  of the file, before the process's umask
-  /// @throws Error "write-failed"  if the folder cannot be written to, or `target` exists and is
-  /// not
-  ///                               a regular file
+  /// @throws Error "write-failed"  if the folder cannot be written to, or `target` is something
+  ///                               else than a regular file
   explicit AtomicFile(std::filesystem::path target, unsigned permissions = 0666);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

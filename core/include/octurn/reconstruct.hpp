@@ -20,8 +20,7 @@ inline constexpr int max_levels = 16;
 enum class Method {
   /// Voxel octree intersection (Bennett 2014): neighbouring samples make triangles, every octree
   /// leaf that a triangle meets is occupied, marching tetrahedra draw the surface of the leaves.
-  /// The
-  /// mesh is closed and hollow, at least a leaf thick, and includes outliers.
+  /// The mesh is closed and hollow, at least a leaf thick, and includes outliers.
   intersection,
   /// Truncated signed distances (Curless and Levoy 1996): conditioned depth is integrated into a
   /// TSDF, holes are filled by Laplace's equation, one connected component is kept, marching cubes

@@ -95,8 +95,7 @@ void write_tile(const ReconstructOptions& options, const TilePlan& plan, std::si
 /// @param files  in any order
 /// @throws Error "scan-missing"    with the number of a missing tile
 /// @throws Error "scan-malformed"  if a file is not a tile, is damaged, or belongs to another plan
-/// or
-///                                 other settings than the first; or if two have the same number
+///                                 or other settings than the first; or if two have the same number
 SurfaceCount join_tiles(std::span<const std::filesystem::path> files, const FacetSink& sink,
                         const std::stop_token& stop = {});
 

@@ -20,7 +20,7 @@ class EarlyModel {
   EarlyModel(const EarlyModel&) = delete;
   EarlyModel& operator=(const EarlyModel&) = delete;
 
-  /// @param reconstructor  which nobody else may use until the model is finished or given up
+  /// @param reconstructor  reserved for this until `finish` or `give_up`
   /// @throws Error "write-failed"  if the folder cannot be written to
   void begin(Reconstructor& reconstructor, SnapshotSource snapshots,
              const std::filesystem::path& file);

@@ -127,7 +127,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                    " without a stop: nobody saw that side of the object",
          .hint = "Scan a whole turn.",
          .parameters = {{"gap_deg", degrees_from_radians(scan.widest_gap)}},
-         .places = model.unseen_places});
+         .places = model.places.unseen});
   } else if (model.unseen_share > look_unseen) {
     judgement.add(model.unseen_share > bad_unseen ? Verdict::bad : Verdict::look,
                   {.code = "little-seen",
@@ -136,7 +136,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                    .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
                            "object another way, and scan it again.",
                    .parameters = {{"unseen_share", model.unseen_share}},
-                   .places = model.unseen_places});
+                   .places = model.places.unseen});
   }
 }
 

@@ -143,7 +143,7 @@ TEST(Judge, TellsOfAPartThatWasSeenAndIsNotInTheModel) {
   ScanFigures scan = right_scan();
   add_seen_limb(scan);
   ModelReport model = right_model();
-  model.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
+  model.places.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
   const Quality quality = judge(scan, model);
   EXPECT_EQ(quality.verdict, Verdict::look);
   ASSERT_EQ(codes(quality), Codes{"part-missing"});
@@ -178,7 +178,7 @@ TEST(Judge, MissesAPartThatOnlyTheUndersidesScanSaw) {
   std::vector<ScanFigures> poses(2, right_scan());
   add_seen_limb(poses[1]);
   ModelReport model = right_model();
-  model.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
+  model.places.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
   const Quality quality = judge(poses, model);
   ASSERT_EQ(codes(quality), Codes{"part-missing"});
   EXPECT_EQ(quality.reasons[0].detail.find("side 2: a part of the object, 60.0 mm"), 0U);

@@ -20,6 +20,14 @@ namespace octurn {
 
 class SurfaceCells;
 
+/// Coarse geometry of a model, for `judge`.
+struct ModelPlaces {
+  /// Metres, object's frame: where the surface above the base was made by hole filling.
+  std::vector<Eigen::Vector3d> unseen = {};
+  /// The cells of a grid that the surface passes through; null: no surface.
+  std::shared_ptr<const SurfaceCells> surface = {};
+};
+
 /// Connected components that were seen but left out of a model.
 struct DroppedParts {
   std::uint64_t count = 0;
@@ -34,10 +42,7 @@ struct ModelReport {
   std::uint64_t parts = 0;  ///< connected components; 0: not counted
   double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
   double unseen_share = 0;  ///< the same without the base, the facets in z = 0
-  /// Metres, object's frame: where the surface above the base was made by hole filling.
-  std::vector<Eigen::Vector3d> unseen_places = {};
-  /// The cells of a grid that the surface passes through, for `judge`; none: no surface.
-  std::shared_ptr<const SurfaceCells> surface = {};
+  ModelPlaces places = {};
   /// Whether every directed edge is met by its opposite, corners compared bit by bit.
   bool watertight = false;
   double volume = 0.0;  ///< cubic metres; right only if watertight

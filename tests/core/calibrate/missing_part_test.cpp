@@ -46,7 +46,7 @@ ModelReport post_model(double height) {
     surface.add({turned(1), turned(2), turned(3)});
   }
   return {.leaves = static_cast<std::uint64_t>(volume / 1e-9),
-          .surface = std::make_shared<SurfaceCells>(std::move(surface)),
+          .places = {.surface = std::make_shared<SurfaceCells>(std::move(surface))},
           .volume = volume};
 }
 

@@ -1,12 +1,37 @@
-#include <algorithm>
 #include <span>
 
+#include "mesh/mesh_check.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/stl.hpp"
-#include "octurn/units.hpp"
+#include "octurn/tiles.hpp"
 
 namespace octurn {
+namespace {
+
+/// Streams a surface to `sink`, and measures it on the way.
+/// @param surface  streams all facets to the sink that it is called with, and counts them
+template <typename Surface>
+ModelReport measured(const Surface& surface, const FacetSink& sink) {
+  MeshCheck check;
+  const SurfaceCount count = surface([&](std::span<const Facet> facets) {
+    check.add(facets);
+    sink(facets);
+  });
+  expect_facets(count);
+  return make_report(count, check);
+}
+
+template <typename Surface>
+ModelReport write_stl(const Surface& surface, const std::filesystem::path& file) {
+  StlFile stl(file);
+  const ModelReport report =
+      measured(surface, [&](std::span<const Facet> facets) { stl.write(facets); });
+  stl.commit();
+  return report;
+}
+
+}  // namespace
 
 void expect_facets(const SurfaceCount& count) {
   if (count.facets == 0) {
@@ -16,32 +41,11 @@ void expect_facets(const SurfaceCount& count) {
   }
 }
 
-ModelReport report_of(const SurfaceCount& count, const MeshCheck& check) {
-  const Eigen::Vector3d size_mm = check.bounds_mm().max - check.bounds_mm().min;
-  const double volume = m3_from_mm3(check.volume_mm3());
-  return {.leaves = count.leaves,
-          .triangles = count.facets,
-          .bytes = stl_bytes(count.facets),
-          .parts = count.parts,
-          .filled_share = check.filled_share(),
-          .unseen_share = check.unseen_share(),
-          .places = {.unseen = check.unseen_places(), .surface = check.surface()},
-          .watertight = check.closed(),
-          .volume = volume,
-          .dropped = {.count = count.dropped_parts,
-                      .volume = volume * static_cast<double>(count.dropped_leaves) /
-                                static_cast<double>(std::max<std::uint64_t>(count.leaves, 1))},
-          .size = {metres_from_mm(size_mm.x()), metres_from_mm(size_mm.y()),
-                   metres_from_mm(size_mm.z())},
-          .bottom = metres_from_mm(check.bounds_mm().min.z())};
-}
-
-std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
-                                        const SnapshotSource& snapshots, const FacetSink& sink,
-                                        const std::stop_token& stop) try {
-  const SurfaceCount count = reconstructor.surface(snapshots, sink, stop);
-  expect_facets(count);
-  return count;
+std::optional<ModelReport> write_model(Reconstructor& reconstructor,
+                                       const SnapshotSource& snapshots, const FacetSink& sink,
+                                       const std::stop_token& stop) try {
+  return measured(
+      [&](const FacetSink& take) { return reconstructor.surface(snapshots, take, stop); }, sink);
 } catch (const Stopped&) {
   return std::nullopt;
 }
@@ -49,19 +53,16 @@ std::optional<SurfaceCount> write_model(Reconstructor& reconstructor,
 std::optional<ModelReport> write_model(Reconstructor& reconstructor,
                                        const SnapshotSource& snapshots,
                                        const std::filesystem::path& file,
-                                       const std::stop_token& stop) {
-  StlFile stl(file);
-  MeshCheck check;
-  const auto checked = [&](std::span<const Facet> facets) {
-    check.add(facets);
-    stl.write(facets);
-  };
-  const auto count = write_model(reconstructor, snapshots, checked, stop);
-  if (!count) {
-    return std::nullopt;
-  }
-  stl.commit();
-  return report_of(*count, check);
+                                       const std::stop_token& stop) try {
+  return write_stl(
+      [&](const FacetSink& take) { return reconstructor.surface(snapshots, take, stop); }, file);
+} catch (const Stopped&) {
+  return std::nullopt;
+}
+
+ModelReport join_tiles(std::span<const std::filesystem::path> files,
+                       const std::filesystem::path& model, const std::stop_token& stop) {
+  return write_stl([&](const FacetSink& take) { return join_tiles(files, take, stop); }, model);
 }
 
 }  // namespace octurn

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/colours.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 
 // The interface between the program and its simulator of a camera with line lasers, which is a

@@ -6,7 +6,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "support/ball_scan.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <span>
+
 #include "app/few_snapshots.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/run_scan.hpp"
 #include "support/ball_scan.hpp"
@@ -25,18 +28,19 @@ ReconstructOptions fine_options(std::size_t limit_mb) {
 TEST(FittingReconstruction, BecomesCoarserAsLongAsTheModelDoesNotFit) {
   FittingReconstruction reconstruction(fine_options(24));
   const SnapshotSource snapshots = ball_scan(6);
-  MeshCheck check;
+  std::optional<ModelReport> report;
   const auto make = [&] {
     (*reconstruction).add(snapshots);
-    (*reconstruction).surface(snapshots, [&](std::span<const Facet> some) { check.add(some); });
+    report = write_model(*reconstruction, snapshots, [](std::span<const Facet>) {}, {});
   };
   const Error error = error_thrown_by(make);
   ASSERT_EQ(error.code(), ErrorCode::memory_limit);
   EXPECT_EQ(error.parameters(), (Parameters{{"limit_mb", 24.0}}));
   reconstruction.make_coarser(error);
   make();
-  EXPECT_TRUE(check.closed());
-  EXPECT_NEAR(check.bounds_mm().max.x() - check.bounds_mm().min.x(), 100, 2);  // the ball's width
+  ASSERT_TRUE(report);
+  EXPECT_TRUE(report->watertight);
+  EXPECT_NEAR(report->size.x(), 0.1, 0.002);  // the ball's width
   Quality quality;
   reconstruction.tell(quality);
   ASSERT_EQ(quality.reasons.size(), 1U);

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "config.hpp"
 #include "support/temporary_folder.hpp"
@@ -26,7 +27,9 @@ std::string refusal_of(const json& content) {
 
 TEST(LaserSettings, HavePlanesThroughThePlatformsAxisAndTheLasers) {
   const LaserSettings settings;
-  for (const Laser& laser : laser_camera(settings).lasers) {
+  const std::vector<Laser> lasers = laser_camera(settings).lasers;
+  ASSERT_EQ(lasers.size(), 2U);
+  for (const Laser& laser : lasers) {
     const auto off = [&](const Eigen::Vector3d& point) {
       return laser.normal.dot(point) - laser.distance;
     };

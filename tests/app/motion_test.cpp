@@ -32,7 +32,9 @@ TEST(SpeedProfile, TurnsAShortMoveRoundInTheMiddle) {
 }
 
 TEST(SpeedProfile, IsNeverFasterThanTheTopSpeed) {
-  for (const double time : step_times({.start_steps_per_second = 900}, 800)) {
+  const std::vector<double> times = step_times({.start_steps_per_second = 900}, 800);
+  ASSERT_EQ(times.size(), 800U);
+  for (const double time : times) {
     EXPECT_GE(time, 1.0 / 800);
   }
 }

@@ -74,6 +74,7 @@ TEST(PulseTrain, KeepsEachLevelLongEnoughForTheDriver) {
   std::mt19937 random(1);
   const auto delays = [&](std::size_t) { return Duration(random() % 2'000'000); };
   const PulseChanges line = changes_of(fast, 2000, delays);
+  ASSERT_EQ(line.changes.size(), 4000U);
   for (std::size_t i = 1; i < line.changes.size(); ++i) {
     // 1 us: datasheet of the A4988
     EXPECT_GE(line.changes[i].due - line.changes[i - 1].due, 1us) << i;

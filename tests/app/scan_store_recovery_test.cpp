@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/leave_behind.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/job_file.hpp"
 #include "scan/scan_store.hpp"

@@ -64,7 +64,9 @@ TEST(SensorPattern, IsAnotherForEachSeedAndNoneWithoutAShare) {
 }
 
 TEST(SceneOfAWall, IsFlatAndSquareAtItsDistance) {
-  for (const float inverse_depth : Scene::of_wall(0.8).lit_at(0)) {
+  const InverseDepth wall = Scene::of_wall(0.8).lit_at(0);
+  ASSERT_FALSE(wall.empty());
+  for (const float inverse_depth : wall) {
     ASSERT_NEAR(inverse_depth, 1 / 0.8, 1e-5);
   }
 }

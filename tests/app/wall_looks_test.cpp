@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "scan/sensor_map_files.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "support/temporary_folder.hpp"

@@ -9,7 +9,7 @@
 #include "bench/ball_snapshots.hpp"
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/stl.hpp"
 #include "support/temporary_folder.hpp"
 

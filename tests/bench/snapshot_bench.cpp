@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "depth/back_project.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
 
 // What happens to each snapshot before its triangles are made, at the size of a Kinect v1's image.

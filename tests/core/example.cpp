@@ -1,4 +1,4 @@
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
 
 // example SCAN_FOLDER OUTPUT.stl

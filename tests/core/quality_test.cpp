@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
+#include "mesh/surface_cells.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -121,6 +124,12 @@ TEST(Judge, TellsOfPartsThatWereDropped) {
   EXPECT_EQ(judge(right_scan(), model).verdict, Verdict::good);
 }
 
+std::shared_ptr<const SurfaceCells> surface_at(const Eigen::Vector3d& point) {
+  SurfaceCells surface;
+  surface.add(point);
+  return std::make_shared<SurfaceCells>(std::move(surface));
+}
+
 /// As a sensor sees a limb of 6 cm, 2 cm wide, above the model.
 void add_seen_limb(ScanFigures& scan) {
   for (double z = 0.1; z < 0.16; z += 0.005) {
@@ -134,7 +143,7 @@ TEST(Judge, TellsOfAPartThatWasSeenAndIsNotInTheModel) {
   ScanFigures scan = right_scan();
   add_seen_limb(scan);
   ModelReport model = right_model();
-  model.places.surface.add(Eigen::Vector3d(0, 0, 0.05));
+  model.places.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
   const Quality quality = judge(scan, model);
   EXPECT_EQ(quality.verdict, Verdict::look);
   ASSERT_EQ(codes(quality), Codes{"part-missing"});
@@ -169,7 +178,7 @@ TEST(Judge, MissesAPartThatOnlyTheUndersidesScanSaw) {
   std::vector<ScanFigures> poses(2, right_scan());
   add_seen_limb(poses[1]);
   ModelReport model = right_model();
-  model.places.surface.add(Eigen::Vector3d(0, 0, 0.05));
+  model.places.surface = surface_at(Eigen::Vector3d(0, 0, 0.05));
   const Quality quality = judge(poses, model);
   ASSERT_EQ(codes(quality), Codes{"part-missing"});
   EXPECT_EQ(quality.reasons[0].detail.find("side 2: a part of the object, 60.0 mm"), 0U);

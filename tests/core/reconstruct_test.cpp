@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/mesh/surface.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_report.hpp"
 #include "support/ball_scan.hpp"
 #include "support/thrown_error.hpp"
 

@@ -10,7 +10,7 @@
 #include "core/tsdf/random_field.hpp"
 #include "core/tsdf/rendered.hpp"
 #include "mesh/stream_simplifier.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/reconstruct.hpp"
 #include "support/temporary_folder.hpp"
 #include "tsdf/hole_filled_sdf.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "support/ball_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -47,14 +47,14 @@ TEST(WriteModel, IsThatOfTheStreamedFacets) {
   std::vector<Facet> streamed;
 
   write_model(*reconstructor, snapshots, folder.path() / "Scan.stl", {});
-  const auto count = write_model(*reconstructor, snapshots,
-                                 [&](std::span<const Facet> facets) {
-                                   streamed.insert(streamed.end(), facets.begin(), facets.end());
-                                 },
-                                 {});
+  const auto report = write_model(*reconstructor, snapshots,
+                                  [&](std::span<const Facet> facets) {
+                                    streamed.insert(streamed.end(), facets.begin(), facets.end());
+                                  },
+                                  {});
 
-  ASSERT_TRUE(count);
-  EXPECT_EQ(count->facets, streamed.size());
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->triangles, streamed.size());
   EXPECT_EQ(content_of(folder.path() / "Scan.stl"), stl_text(streamed));
 }
 

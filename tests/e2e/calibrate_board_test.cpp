@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/lens/board_picture.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/calibrate/rendered_turn.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"

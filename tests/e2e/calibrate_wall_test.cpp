@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/register/laid_down.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "support/program.hpp"

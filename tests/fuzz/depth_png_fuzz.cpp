@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
+#include "octurn/png.hpp"
 
 // Whatever the bytes, they are refused by an Error, or they are a depth image or a camera's picture
 // that comes back the same from an encoder and decoder.

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"

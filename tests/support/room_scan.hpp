@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/tiles.hpp"

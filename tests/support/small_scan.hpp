@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 
 namespace octurn {

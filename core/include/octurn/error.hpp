@@ -11,7 +11,7 @@
 namespace octurn {
 
 /// Every kind of error that the library and the program report. Other programs know them by the
-/// words that `to_string` gives, "disk-full" for `disk_full`: a word never changes its meaning.
+/// words of `to_string`, such as "disk-full" for `disk_full`: a word never changes its meaning.
 enum class ErrorCode {
   // Settings, requests and their bodies
   bad_config,
@@ -83,23 +83,23 @@ enum class ErrorCode {
   not_an_appliance,
   not_root,
   update_failed,
-  unknown,  ///< of a file that a newer version has written
+  unknown,  ///< read from a file that a newer version wrote
 };
 
 /// The word for programs, such as "scan-malformed".
 std::string_view to_string(ErrorCode code);
 
-/// The code of a word; nothing if there is none.
+/// The code whose word that is, if there is one.
 std::optional<ErrorCode> to_error_code(std::string_view word);
 
-/// The values in a message for people, by name: with these a page says the same in any language.
-/// A name ends with its unit, "disagreement_mm"; a share is 0 to 1.
+/// The values in a message by name, from which a translated message is made. A name ends with its
+/// unit, as in "disagreement_mm"; a share is 0 to 1.
 using Parameters = std::map<std::string, std::variant<double, std::string>>;
 
-/// What went wrong outside this program: a file, a device, a disk, a setting.
+/// An error outside this program: of a file, a device, a disk, a setting.
 ///
-/// `what()` is one line with the values in it; `hint()` says what a person can do about it, or is
-/// empty. `parameters()` has those values again, where somebody words them otherwise.
+/// `what()` is one line that includes the values; `hint()` says what a person can do about it, or
+/// is empty; `parameters()` has the values again, for translations.
 class Error : public std::runtime_error {
  public:
   explicit Error(ErrorCode code, const std::string& message, std::string hint = {},

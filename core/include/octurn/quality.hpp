@@ -12,19 +12,19 @@
 
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
 
-/// Whether a model shows its object.
+/// Whether a model is a faithful copy of its object.
 enum class Verdict {
-  good,  ///< as far as the depth images tell
-  look,  ///< but for what its reasons say
-  bad,   ///< not
+  good,  ///< the depth images show no fault
+  look,  ///< usable, with faults that a person should look at
+  bad,   ///< unusable
 };
 
-/// The verdict's name in reports: "good", "look", "bad".
+/// The verdict's name in reports, "good", "look", "bad".
 std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
@@ -34,13 +34,14 @@ struct QualityReason {
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
-  Parameters parameters = {};  ///< the values in `detail`; their names tell what it says
-  /// Metres, model's frame: where that is, at most `Places::max_count`; none if it is everywhere.
+  Parameters parameters = {};  ///< the values in `detail`, for translations
+  /// Metres, object's frame: where the fault is, at most 300 points; empty if it has no place.
   std::vector<Eigen::Vector3d> places = {};
 
   bool operator==(const QualityReason&) const = default;
 };
 
+/// The verdict on a model, and why.
 struct Quality {
   Verdict verdict = Verdict::good;
   std::vector<QualityReason> reasons = {};  ///< in the order of `QualityReason::code`; none if good
@@ -48,49 +49,49 @@ struct Quality {
   bool operator==(const Quality&) const = default;
 };
 
-/// What the depth images of a scan say about the pose and the box that a model is made with.
+/// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
   std::size_t stops = 0;
-  double object_pixels = 0;  ///< readings inside the box that a stop has, on average
-  double distance = 0;       ///< metres, of these readings from the sensor, on average
-  double widest_gap = 0;     ///< radians, the largest turn from one stop to the next
-  /// Pixels of a depth image, on average, at which the box cuts through a surface: at its sides
-  /// towards -x, +x, -y, +y, and at its top.
+  double object_pixels = 0;  ///< mean number of readings inside the box at a stop
+  double distance = 0;       ///< metres: mean distance of these readings from the sensor
+  double widest_gap = 0;     ///< radians: largest angle between neighbouring stops
+  /// Mean number of pixels at a stop where the box cuts through a surface: at its sides towards -x,
+  /// +x, -y, +y, and at its top.
   std::array<double, 5> cut_pixels = {};
   std::array<std::vector<Eigen::Vector3d>, 5> cut_places = {};  ///< metres, object's frame
-  /// Metres: how high the platform's surface is seen above z = 0; nothing if it is not seen.
+  /// Metres: measured z of the platform's surface; nothing if it is not seen.
   std::optional<double> platform_height = {};
-  double disagreement = 0;  ///< metres: median distance between what two stops saw of the object
-  std::vector<Eigen::Vector3d> disagreeing_places =
-      {};  ///< metres: where it is far more than noise
-  /// Of each stop: the share of what it saw of the object that is empty space as others saw it.
+  double disagreement = 0;  ///< metres: median distance between the surfaces that two stops saw
+  /// Metres, object's frame: where that distance is far larger than noise.
+  std::vector<Eigen::Vector3d> disagreeing_places = {};
+  /// For each stop: the share of its readings of the object that other stops see to be free space.
   std::vector<double> contradicted = {};
-  /// Metres: where that is, at the stop with the largest share.
+  /// Metres, object's frame: these readings, at the stop with the largest share.
   std::vector<Eigen::Vector3d> contradicted_places = {};
-  /// Metres, object's frame: where several stops saw the object, coarsely.
+  /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
 };
 
-/// Checks the depth images of a scan while they are read for its model.
+/// Measures the depth images of a scan while they are read for its model.
 class ScanCheck {
  public:
   /// @param clip   metres, object's frame: the box that the model is clipped to
-  /// @param stops  of the scan
+  /// @param stops  number of stops of the scan
   ScanCheck(const Box& clip, std::size_t stops);
   ~ScanCheck();
   ScanCheck(const ScanCheck&) = delete;
   ScanCheck& operator=(const ScanCheck&) = delete;
 
-  /// Adds a snapshot with the pose that the model is made with, in place of one of the same index.
-  /// Keeps some 100 kB of it. Called by several threads at once for different stops, in any order.
-  /// @param stop  below the number of stops
+  /// Adds a snapshot with the model's pose; replaces an earlier one of the same stop. Keeps about
+  /// 100 kB of it. May be called by several threads at once for different stops, in any order.
+  /// @param stop  index, below the number of stops
   /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
   void add(std::size_t stop, const Snapshot& snapshot);
 
-  /// Compares the stops that were added. The same for any number of threads.
+  /// Compares the stops that were added. Deterministic for any number of threads.
   ScanFigures figures(int threads = 1) const;
 
-  /// One stop, as far as it is needed.
+  /// The samples that are kept of one stop.
   struct Stop;
 
  private:
@@ -105,8 +106,8 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
               std::span<const CalibrationFinding> findings = {});
 
 /// Judges a finished model of several poses.
-/// @param poses     what the depth images of each say, places in the object's frame; at least one
-/// @param findings  of the first one's calibration
+/// @param poses     the figures of each pose, places in the object's frame; at least one
+/// @param findings  of the calibration from the first pose's depth images
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings = {});
 

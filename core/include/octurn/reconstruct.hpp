@@ -13,18 +13,19 @@
 
 namespace octurn {
 
-/// Largest number of times that the root cube is halved.
+/// Maximum number of octree levels below the root cube.
 inline constexpr int max_levels = 16;
 
 /// How snapshots become a mesh.
 enum class Method {
   /// Voxel octree intersection (Bennett 2014): neighbouring samples make triangles, every octree
-  /// leaf that one meets is occupied, marching tetrahedra draw the surface of the leaves. The mesh
-  /// is closed and hollow, at least a leaf thick, outliers included.
+  /// leaf that a triangle meets is occupied, marching tetrahedra draw the surface of the leaves.
+  /// The mesh is closed and hollow, at least a leaf thick, and includes outliers.
   intersection,
   /// Truncated signed distances (Curless and Levoy 1996): conditioned depth is integrated into a
   /// TSDF, holes are filled by Laplace's equation, one connected component is kept, marching cubes
-  /// and edge collapse (QEM) draw it. The mesh is one closed solid on a flat base.
+  /// draw its isosurface and edge collapse (QEM) simplifies it. The mesh is one closed solid on a
+  /// flat base.
   solid,
 };
 
@@ -37,52 +38,53 @@ std::optional<Method> method_named(std::string_view name);
 /// Which connected components the method `solid` keeps.
 enum class Parts {
   main,  ///< the object
-  all,   ///< all that stand on the platform
+  all,   ///< every one that stands on the platform
 };
 
 /// The choice's name in settings: "main", "all".
 std::string_view to_string(Parts parts);
 
-/// Options of the method `solid`, beside the error that its simplifier may make.
+/// Options of the method `solid`, besides `ReconstructOptions::target_error`.
 struct SolidOptions {
-  /// Metres, how far before and behind a surface distances to it count; at least 2.5 voxels. 3
-  /// sigma of the sensor's noise: the default is a Kinect v1's at 0.65 m.
+  /// Metres: signed distances are integrated up to this far before and behind the surface. At least
+  /// 2.5 voxels, and 3 sigma of the sensor's noise: the default is a Kinect v1's at 0.65 m.
   double truncation = 0.0035;
 
-  /// Of several poses one is kept: what was turned over is one object.
+  /// With several poses `main` is used in any case: what was turned over is one object.
   Parts parts = Parts::main;
 };
 
-/// Options of both methods, but where one is named.
+/// Options of both methods, except where one is named.
 struct ReconstructOptions {
   Method method = Method::intersection;
 
-  /// Metres. Leaves (voxels for `solid`) are the root cube halved until their side is at or below
-  /// it.
+  /// Metres: maximum side of the leaves (voxels for `solid`), which is the root cube's side halved
+  /// as often as needed.
   double leaf_size = 0.001;
 
-  /// Metres, side of the root cube, which stands on the platform: x, y from -side/2 to side/2, z
-  /// from 0 to side.
+  /// Metres: side of the root cube, which stands on the platform: x, y in [-side/2, side/2], z in
+  /// [0, side].
   double root_size = 1.0;
 
-  /// `intersection` only: square metres. A triangle with a longer side, squared, is dropped, as it
-  /// bridges a gap between surfaces.
+  /// `intersection` only: square metres. A triangle with a squared side above it bridges two
+  /// surfaces and is dropped.
   double threshold = 0.0001;
 
-  /// Metres, object's frame. Samples outside make no surface.
+  /// Metres, object's frame. Samples outside are dropped.
   Box clip = {};
 
-  /// How the object lay in each of several poses, by `Snapshot::pose`; empty for one pose, in which
-  /// the object's frame is the platform's. Of a pose, samples outside its own clip box make no
-  /// surface either, nor do those of its platform.
+  /// Placement of the object in each of several poses, indexed by `Snapshot::pose`; empty for one
+  /// pose, in which the object's frame is the platform's. Samples outside the clip box of their own
+  /// pose are dropped, too, and so are samples of its platform.
   std::vector<Placement> placements = {};
 
-  /// `intersection` only: the level whose nodes the surface is drawn of, 0 for the root. The level
-  /// of the leaves if absent.
+  /// `intersection` only: the octree level from which the surface is drawn, 0 for the root; the
+  /// leaves' level if absent.
   std::optional<int> level = {};
 
-  /// `solid` only: metres, the root mean square distance that a vertex may have from the planes of
-  /// the triangles that it replaces; from a single one it may be farther. 0 keeps all triangles.
+  /// `solid` only: metres. Edges are collapsed while the root mean square distance of the new
+  /// vertex from the planes of the triangles that it replaces is at most this; its distance from a
+  /// single plane may be larger. 0 keeps all triangles.
   double target_error = 0.00004;
 
   SolidOptions solid = {};
@@ -90,46 +92,45 @@ struct ReconstructOptions {
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;
 
-  /// Bytes that the reconstruction and the program around it may take; 0 is no limit. The model's
-  /// bytes do not depend on it.
+  /// Memory of the whole process, bytes; 0 is no limit. The model's bytes do not depend on it.
   std::size_t memory_limit = 0;
 
-  /// Bytes of the limit that the program takes, with its libraries: the caller knows them.
+  /// The part of `memory_limit` that the caller's program and its libraries take, bytes.
   std::size_t program_memory = 0;
 };
 
-/// `SolidOptions::truncation` of scans by laser line, metres. Their points have a sigma of 0.05 to
-/// 0.2 mm, but lines are a millimetre or two apart, and behind the surface the field must be known
-/// for as far to tell inside from outside.
+/// `SolidOptions::truncation` of scans by laser line, metres. It follows from the spacing of the
+/// lines, one or two millimetres, and not from the noise, 0.05 to 0.2 mm: with a thinner band
+/// behind the surface inside cannot be told from outside between two lines.
 inline constexpr double laser_truncation = 0.002;
 
-/// What memory a model takes.
+/// The memory that a model needs.
 struct MemoryNeed {
   std::size_t bytes = 0;         ///< of the whole process
-  double fitting_leaf_size = 0;  ///< metres: the options', doubled until it fits in their limit
+  double fitting_leaf_size = 0;  ///< metres: the options', doubled until the model fits their limit
 };
 
-/// What the method `solid` takes, as far as clip box and leaves tell, for an object of 10 cm.
+/// Estimates the memory of the method `solid` from clip box and leaf size, for an object of 10 cm.
 /// @throws Error "bad-settings"  that says which option is out of its range
 MemoryNeed expected_memory(const ReconstructOptions& options);
 
 /// The size of a surface.
 struct SurfaceCount {
-  std::uint64_t leaves = 0;  ///< occupied leaves, or voxels inside
+  std::uint64_t leaves = 0;  ///< occupied leaves; of the method `solid`, voxels inside
   std::uint64_t facets = 0;
   std::uint64_t parts = 0;           ///< connected components; 0: not counted
   std::uint64_t dropped_parts = 0;   ///< components that are not in the model
   std::uint64_t dropped_leaves = 0;  ///< their voxels
 };
 
-/// A reconstruction in progress: snapshots are added, then its surface is asked for. Not
-/// thread-safe; a call forks and joins the threads of the options inside itself.
+/// A reconstruction in progress: snapshots are added, then the surface is drawn. Not thread-safe;
+/// each call runs and joins its own threads, as many as the options say.
 ///
 /// Deterministic: the same snapshots in the same order give the same bytes on x86-64 and arm64, for
 /// any number of threads and any memory limit.
 ///
-/// Each call looks at its stop token in every phase, and throws `Stopped` within a fraction of a
-/// second's work after a stop was requested. The reconstruction is then incomplete: it can only be
+/// Each call checks its stop token in every phase, and throws `Stopped` within a fraction of a
+/// second of work after a stop was requested. The reconstruction is then incomplete and must be
 /// destroyed.
 class Reconstructor {
  public:
@@ -139,37 +140,37 @@ class Reconstructor {
   Reconstructor& operator=(const Reconstructor&) = delete;
 
   /// Adds one snapshot.
-  /// @throws Error "memory-limit"   if not even one layer of what was observed fits
+  /// @throws Error "memory-limit"   if not even one layer of the observed volume fits
   /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
   virtual void add(const Snapshot& snapshot, const std::stop_token& stop = {}) = 0;
 
   /// Adds all snapshots of a source, on as many threads as the options say.
-  /// @throws  as above, and what the source throws
+  /// @throws  as above, and whatever the source throws
   virtual void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;
 
-  /// Streams the surface of all that was added.
+  /// Streams the surface of all snapshots.
   ///
-  /// @param snapshots  those that were added; read again where the volume exceeds the memory limit
-  ///                   and is built slab by slab
-  /// @param sink       called by one thread at a time; what it throws ends the call
+  /// @param snapshots  those that were added; read again if the volume exceeds the memory limit and
+  ///                   is built slab by slab
+  /// @param sink       called by one thread at a time; an exception that it throws ends the call
   /// @throws Error "memory-limit"  if more memory is needed
   virtual SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
                                const std::stop_token& stop = {}) = 0;
 
-  /// Counts what `surface` would give. @throws  as `surface`
+  /// Counts the leaves and facets of `surface`. @throws  as `surface`
   virtual SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;
 
-  /// Streams a coarse surface of what was added so far: of the first level whose nodes are at or
-  /// below `leaf_size` (metres), or of the finest above it that has no more than `max_facets`.
-  /// Where the volume is built in slabs, it shows the one in memory.
+  /// Streams a coarse surface of the snapshots added so far, with leaves of at most `leaf_size`
+  /// (metres), or larger ones if there would be more than `max_facets`. If the volume is built slab
+  /// by slab, only the slab in memory is shown.
   virtual void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
                        const std::stop_token& stop = {}) const = 0;
 };
 
-/// A reconstruction by the method that the options name.
+/// A reconstruction by the options' method.
 ///
 /// @throws Error "bad-settings"  that says which option is out of its range
-/// @throws Error "memory-limit"  that says what limit would do
+/// @throws Error "memory-limit"  that says which limit would be enough
 std::unique_ptr<Reconstructor> make_reconstructor(const ReconstructOptions& options);
 
 }  // namespace octurn

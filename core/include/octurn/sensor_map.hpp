@@ -12,76 +12,79 @@
 
 namespace octurn {
 
-/// What a depth sensor reads too much at each pixel, in inverse depth: a fixed pattern of its
-/// lenses and its projector, which stays however many frames are averaged. It changes a little with
-/// distance: at inverse depth q a pixel errs by what lies linearly between `near` and `far`.
+/// The systematic error of a depth sensor at each pixel, measured less true, in inverse depth: a
+/// fixed pattern of its lenses and its projector, which averaging of frames does not remove. It
+/// changes a little with distance: at inverse depth q the error is interpolated linearly between
+/// `near` and `far`.
 ///
-/// docs/sensor-map.md has the file, and how a map is made.
+/// docs/sensor-map.md describes the file, and how a map is made.
 struct SensorMap {
   int width = 0;                  ///< pixels, of the sensor's frames
   int height = 0;                 ///< pixels
-  double near_inverse_depth = 0;  ///< 1/m, at which `near` holds
-  double far_inverse_depth = 0;   ///< 1/m, at which `far` holds; less than the other
+  double near_inverse_depth = 0;  ///< 1/m, of `near`
+  double far_inverse_depth = 0;   ///< 1/m, of `far`; less than the other
   std::vector<float> near = {};   ///< 1/m, width x height, row by row from the top left
-  std::vector<float> far = {};    ///< the same; empty if the map is alike at every distance
-  std::string serial = {};        ///< of the sensor; empty if it tells none
-  std::string made = {};          ///< UTC, as in ISO 8601; empty if nobody said
-  double before = 0;  ///< 1/m: root mean square of the walls' residuals, of 4 x 4 pixels
+  std::vector<float> far = {};    ///< the same; empty if the error is the same at every distance
+  std::string serial = {};        ///< of the sensor; empty if unknown
+  std::string made = {};          ///< UTC, ISO 8601; empty if unknown
+  double before = 0;  ///< 1/m: rms distance of the walls from planes, over blocks of 4 x 4 pixels
   double after = 0;   ///< the same with this map
 };
 
-/// A step of a Kinect v1's disparity in inverse depth, 1/m (z = 345.489 m / disparity). People know
-/// a depth sensor's errors in it.
+/// A step of a Kinect v1's disparity in inverse depth, 1/m (z = 345.489 m / disparity): the usual
+/// unit of its errors.
 inline constexpr double disparity_unit = 1 / 345.489;
 
-/// The frame without the sensor's own error. 0 stays 0; depths are rounded to the depth unit.
+/// Subtracts the sensor's systematic error. 0 (no reading) stays 0; depths are rounded to the depth
+/// unit.
 ///
 /// @param depth_unit  metres
 /// @throws std::invalid_argument  if the map is of another size
 DepthFrame corrected(DepthFrame frame, const SensorMap& map, double depth_unit);
 
-/// A map as a PNG of 16-bit greyscale, and back. Errors are rounded to 1e-5 1/m.
-///
-/// @param name  of the file, for messages
-/// @throws Error "scan-malformed"  if it is no such file, damaged, or cut short
+/// Encodes a map as 16-bit greyscale PNG. Errors are rounded to 1e-5 1/m.
 std::vector<std::byte> encode_sensor_map(const SensorMap& map);
+
+/// @param name  of the file, for messages
+/// @throws Error "scan-malformed"  if it is another kind of file, damaged, or cut short
 SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> png);
 
-/// The same from a file. @throws Error "scan-malformed"  also if there is none
+/// @throws Error "scan-malformed"  as `decode_sensor_map`, or if there is no such file
 SensorMap read_sensor_map(const std::filesystem::path& file);
 
 /// Writes a map whole or not at all. @throws Error "disk-full", "write-failed"
 void write_sensor_map(const std::filesystem::path& file, const SensorMap& map);
 
-/// What `wall.json` says (format "octurn-wall", version 1): frames of a sensor that looks at a
-/// wall.
+/// The content of `wall.json` (format "octurn-wall", version 1): depth frames of a flat wall.
 struct Wall {
   std::string sensor_name = {};
-  std::string sensor_serial = {};  ///< empty if it tells none
+  std::string sensor_serial = {};  ///< empty if unknown
   Intrinsics intrinsics = {};
   std::vector<std::string> frames = {};  ///< the depth images, relative to the folder
 };
 
-/// Reads and checks the text of a `wall.json`. @throws Error "recording-malformed"  that names the
-/// key
+/// Parses and checks the text of a `wall.json`.
+/// @throws Error "recording-malformed"  with the key
 Wall parse_wall(std::string_view text);
 
-/// The same from `folder/wall.json`. @throws Error "recording-malformed"  also if there is no such
-/// file
+/// Reads `folder/wall.json`.
+/// @throws Error "recording-malformed"  also if there is no such file
 Wall read_wall(const std::filesystem::path& folder);
 
+/// @param frame  index in `Wall::frames`
 /// @throws Error "recording-malformed"  if there is no such file
-/// @throws Error "snapshot-malformed"  if it is no depth image of the wall's size
+/// @throws Error "snapshot-malformed"   if it is not a depth image of the sensor's size
 DepthFrame read_wall_frame(const std::filesystem::path& folder, const Wall& wall,
                            std::size_t frame);
 
 /// Writes `folder/wall.json`, whole or not at all. @throws Error "disk-full", "write-failed"
 void write_wall(const std::filesystem::path& folder, const Wall& wall);
 
-/// The file of the wall's frame of that index: "frames/000.png".
+/// The file of the frame with that index, such as "frames/000.png".
 std::string wall_frame_file(int index);
 
-/// The mean of the frames of one look at a wall. It takes 6 bytes a pixel, however many they are.
+/// The mean of depth frames of one wall, taken from one place. Takes 6 bytes a pixel for any number
+/// of frames.
 class WallView {
  public:
   explicit WallView(const Intrinsics& intrinsics);
@@ -102,26 +105,26 @@ class WallView {
   std::vector<std::uint16_t> readings_;
 };
 
-/// What a look at a wall tells.
+/// Measurements on one view of a wall.
 struct WallReport {
   double distance = 0;  ///< metres, of the wall along the optical axis
   double slant = 0;     ///< radians, between the optical axis and the wall's normal
   double coverage = 0;  ///< share of the pixels that have a reading
-  double before = 0;    ///< 1/m, root mean square of the residuals of 4 x 4 pixels to a plane
+  double before = 0;    ///< 1/m: rms distance from a plane, over blocks of 4 x 4 pixels
   double after = 0;     ///< the same with the map
 };
 
-/// A sensor's map, as walls tell.
+/// A sensor's map, as fitted to views of walls.
 struct SensorMapReport {
   bool accepted = false;
-  std::string reason = {};  ///< why not, for people; empty if accepted
+  std::string reason = {};  ///< why it was refused, for people; empty if accepted
   SensorMap map = {};       ///< if accepted; without serial and time
   std::vector<WallReport> walls = {};
 };
 
-/// Finds what a sensor reads too much at each pixel from looks at flat walls. A plane is linear in
-/// u and v where depth is inverse (Khoshelham and Elberink 2012); what is left of a look is the
-/// sensor's. One look makes a map for all distances, two or more one that changes with distance.
+/// Fits a sensor's map to views of flat walls. The inverse depth of a plane is linear in u and v
+/// (Khoshelham and Elberink 2012); the residuals of that fit are the sensor's error. One view gives
+/// a map for all distances, two or more one that changes with distance.
 ///
 /// @param views  at least one, all of one sensor
 /// @throws std::invalid_argument  if there is none, or their intrinsics differ

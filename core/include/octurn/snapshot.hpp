@@ -49,11 +49,11 @@ struct Intrinsics {
   bool operator==(const Intrinsics&) const = default;
 };
 
-/// How the frames of one still scene become one depth image (Bennett 2014, the three filters).
+/// How the frames of one still scene are merged into one depth image (Bennett 2014).
 enum class DepthFilter {
   basic,            ///< the first frame, unchanged
-  average,          ///< at each pixel the mean of the valid readings
-  average_discard,  ///< the same, but a pixel without a reading in any frame has none
+  average,          ///< at each pixel the mean of the readings
+  average_discard,  ///< the same, but no reading where any frame has none
 };
 
 /// The filter's name in settings and files: "basic", "average", "average-discard".
@@ -84,43 +84,44 @@ bool is_rigid(const Eigen::Matrix4d& matrix);
 Eigen::Isometry3d object_from_sensor(const Eigen::Isometry3d& platform_from_sensor, double angle);
 
 /// The surface between a laser's line at one stop of the platform and its lines at the stops before
-/// and after: triangles between neighbouring rows of the picture and neighbouring lines.
+/// and after: triangles that join neighbouring rows of the picture and neighbouring lines.
 struct LineStrip {
   using Triangle = std::array<std::uint32_t, 3>;  ///< indices of points
 
-  std::vector<Eigen::Vector3f> points = {};  ///< metres, object's frame: the stop's own come first
-  std::size_t own_points = 0;
-  std::vector<Triangle> to_previous = {};  ///< as many stops see each triangle as have its corners:
-  std::vector<Triangle> to_next = {};      ///< it is the next one's `to_previous`
-  std::optional<Eigen::Vector3d> source = {};  ///< metres, object's frame: the laser, if it is told
+  std::vector<Eigen::Vector3f> points = {};  ///< metres, object's frame
+  std::size_t own_points = 0;  ///< the first points are of this stop's line, the others of its two
+                               ///< neighbours'
+  std::vector<Triangle> to_previous = {};
+  std::vector<Triangle> to_next = {};  ///< the same surface as `to_previous` of the next stop
+  std::optional<Eigen::Vector3d> source = {};  ///< metres, object's frame: the laser, if known
 };
 
-/// One stop of the platform: a filtered, unclipped depth image and the pose it was taken from; of a
-/// scan by laser line, strips of surface in place of the image.
+/// The measurement at one stop of the platform: a filtered, unclipped depth image and its pose. By
+/// laser line, strips of surface replace the image.
 struct Snapshot {
-  DepthFrame frame = {};  ///< of the intrinsics' size; empty if there are strips
+  DepthFrame frame = {};  ///< of the intrinsics' size; empty by laser line
   Intrinsics intrinsics = {};
-  /// Optical frame to the object's frame, metres (as `object_from_sensor` makes it).
+  /// Optical frame to the object's frame, metres; see the function of this name.
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();
-  int pose = 0;                        ///< of a scan of several poses, its index
-  std::vector<LineStrip> strips = {};  ///< one for each laser; empty of a depth sensor
+  int pose = 0;                        ///< index of the object's pose, 0 if there is only one
+  std::vector<LineStrip> strips = {};  ///< one for each laser; empty for a depth sensor
 };
 
-/// How the object lay on the platform in one of several poses.
+/// The object's pose on the platform, in one of several turns.
 struct Placement {
   /// Platform frame of the pose, at angle 0, to the object's frame, metres.
   Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
   Box clip = {};  ///< metres, platform frame of the pose
 };
 
-/// Snapshots that can be read, and read again, by several threads at once.
+/// Snapshots that several threads can read at once, any number of times.
 struct SnapshotSource {
   std::size_t count = 0;
-  std::function<Snapshot(std::size_t)> read = {};  ///< of an index below `count`
+  std::function<Snapshot(std::size_t)> read = {};  ///< takes an index below `count`
 };
 
-/// Thrown by a call whose stop token was requested to stop before the call had its result; also by
-/// a source or a sink, to lead out of a reconstruction. It is no `Error`: nothing went wrong.
+/// Thrown by a call whose stop token was requested to stop before it had a result. A source or a
+/// sink may throw it to end a reconstruction. It is not an `Error`: nothing went wrong.
 struct Stopped {};
 
 /// @throws Stopped  if a stop was requested

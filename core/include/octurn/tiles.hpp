@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "octurn/model.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
@@ -16,31 +17,31 @@
 
 namespace octurn {
 
-/// Spaces: scans whose snapshots each tell where the sensor was. There is no platform, and no end
-/// to the space at the root cube: it is tiled by root cubes, each reconstructed on its own where
-/// something is seen, and their surface is one, and closed.
+/// Spaces larger than a root cube, from scans in which each snapshot has the sensor's pose. There
+/// is no platform. Space is tiled by root cubes; each tile in which something is seen is
+/// reconstructed on its own, and the surfaces join to one closed surface.
 ///
-/// By the method `solid`, what was seen becomes a closed shell: nobody knows what lies behind it.
+/// The method `solid` makes a closed shell of every surface, as inside cannot be told from outside.
 
-/// Whether each shot of a scan tells its own pose.
+/// Whether each shot of a scan has its own pose.
 bool has_free_poses(const Scan& scan);
 
-/// The clip box of a scan with free poses that tells none: around all that it can hold, metres.
+/// The clip box of a scan with free poses that has none: larger than any scan, metres.
 inline const Box everywhere{.min = Eigen::Vector3d::Constant(-1e6),
                             .max = Eigen::Vector3d::Constant(1e6)};
 
-/// The thickness of shells by the method `solid`, metres: two voxels.
+/// The thickness of the shells of the method `solid`, metres: two voxels.
 double shell_thickness(const ReconstructOptions& options);
 
-/// A reconstruction of a space by the method that the options name. It needs no `placements`.
-/// @param spool  folder on whose disk finished tiles wait for the surface, as a file without a
-///               name; empty: that of temporary files
+/// A reconstruction of a space by the options' method. `placements` must be empty.
+/// @param spool  a folder; finished tiles are kept in an unnamed file on its disk until the surface
+///               is drawn. Empty: the folder of temporary files
 /// @throws       as `make_reconstructor`
 std::unique_ptr<Reconstructor> make_tiled_reconstructor(const ReconstructOptions& options,
                                                         const std::filesystem::path& spool = {});
 
-/// Which of the root cubes that tile space: (0, 0, 0) is the root cube, (1, 0, 0) the same moved by
-/// its side along X. Sorted by z, then y, then x.
+/// The index of a tile: (0, 0, 0) is the root cube, (1, 0, 0) the cube beside it along X. Sorted by
+/// z, then y, then x.
 struct TileIndex {
   int x = 0;
   int y = 0;
@@ -54,47 +55,53 @@ struct TileIndex {
 /// A tile in which something is seen.
 struct Tile {
   TileIndex index = {};
-  std::vector<std::size_t> snapshots = {};  ///< that it takes, sorted
-  std::size_t bytes = 0;                    ///< of memory for its leaves or voxels, at most
+  std::vector<std::size_t> snapshots = {};  ///< indices of those that see something in it, sorted
+  std::size_t bytes = 0;                    ///< upper bound of its leaves' or voxels' memory
 };
 
-/// The tiles of a scan, sorted by their indices; a tile's number is its place in them.
+/// The tiles of a scan. A tile's number is its position in `tiles`.
 struct TilePlan {
-  std::vector<Tile> tiles = {};
+  std::vector<Tile> tiles = {};               ///< sorted by their indices
   std::vector<std::uint64_t> snapshots = {};  ///< a checksum of each depth image and its pose
 };
 
 /// Finds the tiles in which the snapshots see something.
-/// @throws  as `make_reconstructor`, and what the source throws
+/// @throws  as `make_reconstructor`, and whatever the source throws
 TilePlan plan_tiles(const ReconstructOptions& options, const SnapshotSource& snapshots,
                     const std::stop_token& stop = {});
 
-/// Writes a plan into a file, whole or not at all, for processes that make a tile each.
+/// Writes a plan into a file, whole or not at all, for processes that each make one tile.
 /// @throws Error "disk-full", "write-failed"
 void write_plan(const TilePlan& plan, const ReconstructOptions& options,
                 const std::filesystem::path& file);
 
 /// @throws Error "scan-missing"    if there is no such file
-/// @throws Error "scan-malformed"  if it is no plan, or was made with other options
+/// @throws Error "scan-malformed"  if it is not a plan, or was made with other options
 TilePlan read_plan(const std::filesystem::path& file, const ReconstructOptions& options);
 
-/// Bytes that the process which makes one tile takes.
+/// Memory of a process that makes one tile, bytes.
 std::size_t tile_memory(const ReconstructOptions& options, const Tile& tile);
 
 /// Reconstructs one tile, and writes it into a file that appears whole or not at all.
-/// @throws Error "scan-malformed"  if a snapshot is another one than the plan's
-/// @throws                     as `make_reconstructor`, and what the source throws
+/// @param number  of the tile in the plan
+/// @throws Error "scan-malformed"  if a snapshot differs from the plan's
+/// @throws  as `make_reconstructor`, and whatever the source throws
 void write_tile(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
                 const SnapshotSource& snapshots, const std::filesystem::path& file,
                 const std::stop_token& stop = {});
 
-/// Streams the surface of a space whose tiles were written into files, in any order: the same
-/// facets in the same order as `Reconstructor::surface`.
-/// @throws Error "scan-missing"    that says the number of a tile that none of the files is
-/// @throws Error "scan-malformed"  if one is no tile, is damaged or cut short, or is of another
-/// plan
-///                                 or other settings than the first; or if two are one tile
+/// Streams the surface of a space whose tiles were written into files: the same facets in the same
+/// order as `Reconstructor::surface` has them.
+/// @param files  in any order
+/// @throws Error "scan-missing"    with the number of a missing tile
+/// @throws Error "scan-malformed"  if a file is not a tile, is damaged, or belongs to another plan
+///                                 or other settings than the first; or if two have the same number
 SurfaceCount join_tiles(std::span<const std::filesystem::path> files, const FacetSink& sink,
                         const std::stop_token& stop = {});
+
+/// Writes that surface as binary STL, which appears whole or not at all.
+/// @throws  as above; Error "empty" if there is no surface, "disk-full", "write-failed"
+ModelReport join_tiles(std::span<const std::filesystem::path> files,
+                       const std::filesystem::path& model, const std::stop_token& stop = {});
 
 }  // namespace octurn

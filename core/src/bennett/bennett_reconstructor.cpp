@@ -43,7 +43,7 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
   return options;
 }
 
-/// As many threads as asked for, or as the memory limit leaves room for.
+/// The threads of the options, or as many as fit in the memory limit.
 int thread_count(const ReconstructOptions& options) {
   if (options.memory_limit == 0) {
     return options.threads;
@@ -52,8 +52,8 @@ int thread_count(const ReconstructOptions& options) {
   return std::min(options.threads, static_cast<int>(room / thread_bytes));
 }
 
-/// The bytes that each octree may take: one is merged to, and each thread but one has its own. The
-/// list of the pseudo-voxels of a layer takes up to as much again.
+/// Maximum bytes of each octree: the merged one, and one for each further thread. The list of a
+/// layer's pseudo-voxels takes up to as much again.
 std::size_t octree_bytes(const ReconstructOptions& options) {
   if (options.memory_limit == 0) {
     return std::numeric_limits<std::size_t>::max();
@@ -67,7 +67,7 @@ Octree octree_for(const ReconstructOptions& options) {
   return {options.root_size, options.level.value_or(leaf_level), octree_bytes(options)};
 }
 
-/// Leaves that a slab needs: its own, and the lowest of the layer after it.
+/// The leaves that the surface of a slab depends on: its own, and the lowest of the layer above it.
 LeafLayers leaf_layers(const BrickLayers& slab) {
   return {.low = slab.low * Brick::side, .high = slab.end * Brick::side};
 }
@@ -121,7 +121,7 @@ void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
   }
 }
 
-/// Does what fills the octree, again each time that the budget is spent, after the slab has shrunk.
+/// Calls `fill`; whenever the budget is spent, shrinks the slab and calls it again.
 template <typename Fill>
 void BennettReconstructor::within_budget(Octree& octree, BrickLayers& slab, Fill fill) const {
   for (bool done = false; !done;) {

@@ -10,10 +10,10 @@ namespace octurn {
 /// Voxel octree intersection (Bennett 2014): world_points -> clip -> triangulate -> snap ->
 /// voxelize_triangle, then marching_tetrahedra.
 ///
-/// Where the octree exceeds the memory limit it keeps a slab: as many of its lowest layers as fit.
-/// The surface is then made slab by slab, and for each the snapshots are read again. Neither slabs
-/// nor threads change a byte of it. `Reconstructor` documents the members; with one slab, `count`
-/// is quick.
+/// If the octree exceeds the memory limit, it holds a slab: as many of its lowest layers as fit.
+/// The surface is then made slab by slab, and the snapshots are read again for each. Slabs and
+/// threads change no byte of the surface. `Reconstructor` documents the members; `count` is quick
+/// if there is one slab.
 class BennettReconstructor final : public Reconstructor {
  public:
   explicit BennettReconstructor(const ReconstructOptions& options);

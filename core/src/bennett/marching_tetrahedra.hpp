@@ -22,13 +22,13 @@ inline BrickLayers all_layers(const Octree& octree) {
 /// middle. The surface is closed and manifold by construction. Its vertices lie on multiples of
 /// half a leaf, so they are bit-equal in neighbouring facets.
 ///
-/// The order of facets depends on the leaves alone: layers of bricks from the bottom up, in each
-/// the bricks in Morton order. So the surfaces of successive slabs, one after the other, are the
-/// surface of the whole, and an octree needs to hold only the slab, and the lowest leaves of the
-/// layer after it.
+/// The order of facets depends on the leaves alone: layers of bricks from the bottom up, and in
+/// each layer the bricks in Morton order. The surfaces of successive slabs, concatenated, are
+/// therefore the surface of the whole, and the octree needs to hold only the slab and the lowest
+/// leaves of the layer above it.
 ///
 /// @param layers   the slab, layers of bricks
-/// @param threads  that make facets
+/// @param threads  number of threads that make facets
 /// @param sink     called by one thread at a time; millimetres; what it throws ends the call
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink);
@@ -39,14 +39,13 @@ struct BrickFrame {
   double leaf_side = 0;
 };
 
-/// Streams the surface of one layer of pseudo-voxels: facets as those of an octree, row by row.
+/// Streams the surface of one layer of pseudo-voxels, row by row.
 /// @param layer   of bricks
-/// @param bricks  with leaves: those of that layer, then those of the layer above
+/// @param bricks  those that have leaves: of that layer, then of the layer above
 void draw_layer(const BrickFrame& frame, int layer, std::vector<PlacedBrick> bricks,
                 const FacetSink& sink);
 
-/// Streams the surface of the finest level, that of the leaves included, that has no more than
-/// `max_facets`.
+/// Streams the surface of the finest level that has no more than `max_facets`.
 void coarse_surface(Octree octree, std::uint64_t max_facets, const FacetSink& sink);
 
 /// Counts the facets of `marching_tetrahedra` without making them.

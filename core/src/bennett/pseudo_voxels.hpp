@@ -25,7 +25,7 @@ struct PseudoVoxelBrick {
 
 class CornerBricks;
 
-/// The pseudo-voxel bricks of one layer that have any leaf in them.
+/// The pseudo-voxel bricks of one layer that have at least one occupied corner.
 class PseudoVoxelLayer {
  public:
   /// @param bricks  those of the layer, then those of the layer above; each must outlive this

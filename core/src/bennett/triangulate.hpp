@@ -21,9 +21,8 @@ inline bool near(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float thres
 }  // namespace detail
 
 /// Joins neighbouring samples to triangles: (i, i+1, i+w) and (i+1, i+w+1, i+w) for each sample i
-/// but those of the last row and column (Bennett 2014). Dropped are triangles with a corner that is
-/// `no_point`, or with a side whose square exceeds `threshold`: such a side bridges the gap between
-/// a surface and one behind it.
+/// except those of the last row and column (Bennett 2014). A triangle is dropped if a corner is
+/// `no_point`, or if a squared side exceeds `threshold`: it would bridge a depth discontinuity.
 ///
 /// @param threshold  square metres
 /// @param sink  called with the three corners of each triangle, row by row

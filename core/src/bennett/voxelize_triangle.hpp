@@ -23,7 +23,7 @@ class SnapGrid {
   explicit SnapGrid(double root_side) : units_per_metre_(units_per_side / root_side) {}
 
   /// The grid point nearest to `point` (metres, object's frame); nothing if it is `no_point`, or
-  /// further outside the root than the root is wide.
+  /// further from the root than the root is wide.
   std::optional<SnapPoint> snap(const Eigen::Vector3f& point) const {
     // Counted from one side of the root below its lowest corner, so that the cast rounds down.
     const double x = static_cast<double>(point.x()) * units_per_metre_ + 1.5 * units_per_side;
@@ -50,20 +50,20 @@ struct LeafLayers {
   int high = (1 << Octree::max_levels) - 1;
 };
 
-/// Sets the leaves of those layers that a triangle meets, faces included. Parts of the triangle
-/// outside the root meet none.
+/// Sets the leaves of those layers that a triangle intersects; leaves are closed boxes. Parts of
+/// the triangle outside the root are ignored.
 ///
-/// Exact: all arithmetic is on integers. So the leaves depend neither on the processor nor on the
-/// order of triangles and corners, and the nodes of a coarser level are those found directly.
-/// The test is that of Schwarz and Seidel 2010 (Fast parallel surface and solid voxelization on
-/// GPUs, section 3.1): box against box, box against plane, and the projections of both along the
-/// three axes. Most triangles are as small as a leaf and need only the first.
+/// Exact: all arithmetic is on integers. The leaves therefore depend neither on the processor nor
+/// on the order of triangles and corners, and a coarser level has the nodes that voxelizing at that
+/// level would set. The test is that of Schwarz and Seidel 2010 (Fast parallel surface and solid
+/// voxelization on GPUs, section 3.1): box against box, box against plane, and the projections of
+/// both along the three axes. Most triangles are as small as a leaf and need only the first.
 ///
-/// @throws OutOfBudget  with some of the leaves set; calling again with more room sets them all
+/// @throws OutOfBudget  with some of the leaves set; calling again with more memory sets all
 void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,
                        const LeafLayers& layers = {});
 
-/// The same for corners whose half-units are of another size.
+/// The same for corners in half-units of another size.
 /// @param leaf_bits  a leaf's side is 2^leaf_bits half-units; with the octree's levels at most
 ///                   `SnapGrid::bits`
 void voxelize_triangle(Octree& octree, const SnapPoint& a, const SnapPoint& b, const SnapPoint& c,

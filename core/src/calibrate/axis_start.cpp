@@ -20,8 +20,8 @@ struct Outline {
   double near = std::numeric_limits<double>::max();
 };
 
-/// How much the stops agree about the object with a pose: the residuals' weights, of which a
-/// reading that nothing is near has none.
+/// Agreement of the stops with a pose: the sum of the residuals' weights. A reading without a
+/// surface near adds none.
 double agreement(const TurnViews& turn, const Isometry3d& pose, int threads) {
   const std::vector<double> as_told(turn.angles.size(), 0.0);
   std::vector<double> of_stops(turn.views.size());

@@ -27,7 +27,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Limits beyond which a solution is refused.
+// A solution beyond one of these limits is refused.
 constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
 constexpr std::size_t min_pairs = 6;       // three, in both directions
 constexpr std::size_t min_plane_inliers = 500;
@@ -49,8 +49,8 @@ constexpr double settled_sigmas = 0.1;
 // and on tables that real sensors saw 0.27 to 0.82.
 constexpr double max_unevenness = 0.2;
 
-// Sigmas of the plane as a prior of the axis's direction: one that leaves the object in charge, and
-// one for a platform that is square to its shaft.
+// Sigmas of the plane as a prior of the axis's direction: a loose one, for which the object
+// decides, and one for a platform that is square to its shaft.
 constexpr double loose_direction_deg = 0.2;
 constexpr double tight_direction_deg = 0.02;
 constexpr double wobble_sigmas = 5;
@@ -86,7 +86,7 @@ bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
   return direction_off(solution, plane) > wobble_sigmas / std::sqrt(information);
 }
 
-/// Adds that the platform tilts as it turns, if it does.
+/// Adds the finding "wobble" if the platform tilts as it turns.
 void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& wobble) {
   if (wobble && wobble->angle >
                     std::max(radians_from_degrees(min_wobble_deg), wobble_sigmas * wobble->sigma)) {
@@ -99,7 +99,7 @@ void add_wobble(CalibrationReport& report, const std::optional<PlatformWobble>& 
   }
 }
 
-/// What the platform's surface says beside where it lies.
+/// Findings from the platform's surface.
 struct SurfaceFindings {
   std::optional<SensorStep> bump = {};    ///< of the sensor
   std::optional<double> unevenness = {};  ///< units of disparity; nothing if too little is seen
@@ -122,7 +122,7 @@ SurfaceFindings look_at_surface(CalibrationReport& report, const TurnReader& rea
   return surface;
 }
 
-/// Adds that flattening the sensor would help, if the platform looks uneven.
+/// Adds the finding "no-map" if the platform looks uneven.
 /// @param unevenness  units of disparity
 void add_no_map(CalibrationReport& report, double unevenness) {
   report.findings.push_back(
@@ -140,7 +140,7 @@ bool all_stand_as_told(const CalibrationReport& report) {
   });
 }
 
-/// Adds that the focal length is wrong, if it is. @param told  pixels
+/// Adds the finding "focal-length" if it is wrong. @param told  pixels
 void add_focal_length(CalibrationReport& report, const std::optional<FocalLength>& solved,
                       double told) {
   if (auto wrong = solved ? find_wrong_focal_length(*solved, told) : std::nullopt) {
@@ -148,7 +148,7 @@ void add_focal_length(CalibrationReport& report, const std::optional<FocalLength
   }
 }
 
-/// Solves the axis and looks for what a new pose does not cure.
+/// Solves the axis, and looks for faults that a new pose does not cure.
 std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
                                   const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
                                   int threads) {
@@ -173,7 +173,7 @@ std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& vi
                     radians_from_degrees(tight_direction_deg), threads);
 }
 
-/// Tells how far a solution is from the told pose.
+/// Sets the distances of a solution from the told pose.
 void compare(CalibrationReport& report, const Eigen::Isometry3d& told) {
   const Eigen::Isometry3d solved_from_told = report.platform_from_sensor * told.inverse();
   const Vector3d origin = solved_from_told.translation();

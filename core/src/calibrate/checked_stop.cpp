@@ -89,7 +89,7 @@ std::size_t side_between(const Box& box, const Vector3d& outside) {
 
 constexpr std::array<std::array<int, 2>, 4> next_to = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
-/// The points that a depth image reads, in the object's frame.
+/// The points of a depth image, in the object's frame.
 class Points {
  public:
   explicit Points(const Snapshot& snapshot) : snapshot_(snapshot) {}
@@ -130,7 +130,7 @@ void add_cuts(const Points& points, const Box& clip, const Vector3d& inside, int
   }
 }
 
-/// Whether most of the pixels around one lie beside it on a surface.
+/// Whether most of the eight neighbours of a pixel lie on its surface.
 bool is_of_a_surface(const Points& points, int u, int v, double z) {
   int beside = -1;  // itself
   for (int row = -1; row <= 1; ++row) {
@@ -172,7 +172,7 @@ ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
   keep_each_once(seen);
 }
 
-/// Adds what a line shows. It is compared with no other stop: they see other lines.
+/// Adds the points of a line. They are not compared with other stops, which see other lines.
 void ScanCheck::Stop::add_line(const LineStrip& strip, const Box& clip) {
   const Eigen::Isometry3d sensor_from_object = object_from_sensor.inverse();
   std::optional<Vector3d> before;  // the point in the row above

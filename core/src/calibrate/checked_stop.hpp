@@ -12,7 +12,7 @@
 
 namespace octurn {
 
-/// What `ScanCheck` keeps of a snapshot.
+/// The samples of a snapshot that `ScanCheck` keeps.
 struct ScanCheck::Stop {
   Stop(const Snapshot& snapshot, const Box& clip);
 
@@ -20,8 +20,8 @@ struct ScanCheck::Stop {
   static constexpr double highest = 0.03;  ///< metres, of `heights`; as far down, too
   static constexpr double height_step = 0.001;
 
-  /// Metres along z that are empty in front of all pixels beside the one that sees a point; 0 if
-  /// one of them has no reading.
+  /// Metres along z: depth up to which the pixels around a point's pixel see free space; 0 if one
+  /// of them has no reading.
   /// @param point  metres, optical frame
   double empty_depth(const Eigen::Vector3d& point) const;
 
@@ -48,7 +48,7 @@ struct ScanCheck::Stop {
   void add_height(const Eigen::Vector3d& point, std::size_t count);
 };
 
-/// What comparing the stops gives.
+/// Result of comparing the stops.
 struct StopComparison {
   double disagreement = 0;  ///< metres: the median of the distances
   /// As in `ScanFigures`.
@@ -57,7 +57,7 @@ struct StopComparison {
   std::vector<Eigen::Vector3d> contradicted_places = {};
 };
 
-/// Compares what each stop saw of the object with what the stops some way around it saw.
+/// Compares each stop's readings of the object with the surfaces that neighbouring stops saw.
 StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads);
 
 }  // namespace octurn

@@ -5,6 +5,7 @@
 #include "calibrate/checked_stop.hpp"
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/median.hpp"
+#include "mesh/places.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Stops that are compared. Near ones tell little of a wrong axis, far ones see other surfaces.
+// Angles between compared stops. Near stops hardly show a wrong axis, far ones see other surfaces.
 constexpr double min_apart_deg = 20;
 constexpr double max_apart_deg = 50;
 constexpr double max_neighbour_deg = 100;  // where there are no stops so near
@@ -42,7 +43,7 @@ std::vector<std::size_t> find_partners(const std::vector<const ScanCheck::Stop*>
   return partners;
 }
 
-/// How one stop's readings compare with the others'.
+/// Comparison of one stop's readings with the others'.
 struct Comparison {
   std::vector<float> distances = {};
   std::vector<Vector3d> disagreeing = {};  // points of the object's frame

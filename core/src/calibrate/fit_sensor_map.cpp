@@ -10,16 +10,16 @@
 namespace octurn {
 namespace {
 
-// When walls make no map. Units are steps of a Kinect's disparity.
+// Limits beyond which walls are refused. Units are steps of a Kinect's disparity.
 constexpr double max_rough = 1;           // units, what the map leaves of the blocks
 constexpr double max_disagreement = 1.5;  // units, between what two walls say
 
-/// What is smoothed away: speckle, which belongs to the wall. Share of the picture's width, 13 of
-/// 640 pixels. A sensor's own pattern is 50 pixels wide or wider.
+/// Sigma of the smoothing that removes speckle, which belongs to the wall: share of the picture's
+/// width, 13 of 640 pixels. A sensor's own pattern is at least 50 pixels wide.
 constexpr double smoothing = 0.02;
 
-/// How surely the pattern changes with distance, (1/m)^2: the larger, the more walls must differ in
-/// inverse depth before what they disagree about counts as change and not as noise.
+/// Ridge on the slope of the pattern over inverse depth, (1/m)^2: the larger it is, the more walls
+/// must differ in inverse depth before their differences count as change and not as noise.
 constexpr double caution = 0.01;
 constexpr double min_difference = 0.02;  // 1/m, of two walls that are told apart
 
@@ -45,7 +45,7 @@ FlatWall to_flat_wall(const WallBlocks& wall, const WallPlane& plane) {
   return flat;
 }
 
-/// Root mean square of the residuals less what `error` says of each block, 1/m.
+/// Root mean square of the residuals less `error` of each block, 1/m.
 template <typename Error>
 double rms(const BlockValues& residuals, Error error) {
   double sum = 0;
@@ -72,7 +72,7 @@ struct BlockMap {
   }
 };
 
-/// At each block a line through what the walls say, over inverse depth: least squares, with
+/// Fits a line over inverse depth to the walls' residuals at each block: least squares, with
 /// `caution` as a ridge on its slope.
 BlockMap combine(const std::vector<FlatWall>& walls) {
   BlockMap map{.near_inverse_depth = 0, .far_inverse_depth = 1e9};

@@ -23,14 +23,14 @@ constexpr std::array schedule = {ResidualLimits{.max_distance = 0.01, .cauchy_sc
                                  ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002}};
 constexpr std::size_t min_residuals = 60;
 constexpr double direction_sigma_deg = 0.05;  // between the plane's normal and the axis
-// Metres: what edges and grazing angles make residuals wrong by, all around an object. It is as
-// large as what a focal length 1 % off does to a flat box.
+// Metres: systematic error of the residuals at edges and grazing angles, all around an object. A
+// focal length 1 % off changes those of a flat box by as much.
 constexpr double systematic_error = 3e-5;
 constexpr double max_change = 0.2;  // in one iteration: more is no focal length
 constexpr double min_error = 0.01;
 constexpr double min_sigmas = 5;
 
-/// How the platform frame's points move as what is seen becomes wider, and the plane stays z = 0.
+/// Derivative of points in the platform frame by the focal factor s, with the plane kept at z = 0.
 class Widening {
  public:
   Widening(const PlatformPlane& plane, const Isometry3d& platform_from_sensor)
@@ -60,7 +60,7 @@ class Widening {
   double rise_ = 0;
 };
 
-/// A normal of a surface that becomes wider. Not of length one.
+/// The normal of a surface stretched by the factor. Not of length one.
 Vector3d widened_normal(const Vector3d& normal, double factor) {
   return {normal.x() / factor, normal.y() / factor, normal.z()};
 }

@@ -9,32 +9,32 @@
 
 namespace octurn {
 
-/// The sensor's focal length as a turn tells it.
+/// The sensor's focal length as solved from a turn.
 struct FocalLength {
   double ratio = 1;  ///< of the true one to the told one
   double sigma = 0;  ///< of the ratio
 };
 
-/// Finds the focal length with which the stops agree best.
+/// Finds the focal length with the smallest residuals between stops.
 ///
-/// A focal length that is too large makes everything narrower by a factor and no nearer. It shows
-/// in two ways as the object turns: what was across comes along the optical axis, and the platform,
-/// which is seen askew, is tilted against the axis that it turns about. With points D P, D =
-/// diag(s, s, 1), a residual N . (X_i - X_j) changes with s by M . Y'_i - n . Y'_j, where Y' = R D'
-/// P + w' x Y + (0, 0, t'): w' and t' keep the plane, whose normal is (n_x / s, n_y / s, n_z), at z
-/// = 0. Gauss-Newton over s, and over the axis as `solve_axis` does it.
+/// A focal length that is too large shrinks everything across the optical axis, but not along it.
+/// It shows in two ways: as the object turns, lengths across the axis turn into lengths along it,
+/// and the platform, which is seen at an angle, is tilted against its turning axis. With points D
+/// P, D = diag(s, s, 1), a residual N . (X_i - X_j) changes with s by M . Y'_i - n . Y'_j, where Y'
+/// = R D' P + w' x Y + (0, 0, t'): w' and t' keep the plane, whose normal is (n_x / s, n_y / s,
+/// n_z), at z = 0. Gauss-Newton over s, and over the axis as `solve_axis` does it.
 ///
-/// A fixed pattern in the sensor's disparity bends the plane as a wrong focal length tilts it: this
-/// is to be trusted only where a map has corrected it.
+/// A fixed pattern in the sensor's disparity has nearly the same effect on the plane: the result
+/// can be trusted only if a `SensorMap` was applied.
 ///
-/// @param turn   changed: seen with the focal length that is found
-/// @param plane  that the platform is with the told one
+/// @param turn   changed: scaled to the focal length that is found
+/// @param plane  of the platform, with the told focal length
 /// @param platform_from_sensor  solved with the told one
-/// @return nothing if too little of the object was seen twice
+/// @return nothing if too few readings of the object have a partner
 std::optional<FocalLength> solve_focal_length(TurnViews& turn, PlatformPlane plane,
                                               Eigen::Isometry3d platform_from_sensor, int threads);
 
-/// What a focal length says: that it is wrong, if it is by more than 1 % and five sigma.
+/// The finding "focal-length", if it is wrong by more than 1 % and five sigma.
 /// @param told  pixels
 std::optional<CalibrationFinding> find_wrong_focal_length(const FocalLength& solved, double told);
 

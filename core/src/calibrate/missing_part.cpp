@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "calibrate/seen_cells.hpp"
+#include "mesh/places.hpp"
+#include "mesh/surface_cells.hpp"
 
 namespace octurn {
 namespace {
@@ -30,7 +32,7 @@ std::set<ObjectCell> find_bare_cells(const ScanFigures& scan, const ModelReport&
   const double gap = max_gap * scale + voxels_of_gap * voxel_side(model);
   std::set<ObjectCell> bare;
   for (const Vector3d& point : scan.seen) {
-    if (!model.places.surface.has_near(point, gap)) {
+    if (!model.places.surface || !model.places.surface->has_near(point, gap)) {
       bare.insert(to_object_cell(point));
     }
   }

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// Least squares over the residuals of a turn: the normal equations, and what weighs them.
+/// Weighted least squares over the residuals of a turn.
 template <int unknowns>
 struct NormalEquations {
   using Vector = Eigen::Matrix<double, unknowns, 1>;
@@ -21,7 +21,7 @@ struct NormalEquations {
   double squares = 0;
   std::size_t count = 0;
 
-  /// @param row  how the residual changes with each unknown
+  /// @param row  derivatives of the residual by the unknowns
   void add(const Vector& row, double residual, double its_weight) {
     matrix += its_weight * row * row.transpose();
     right -= its_weight * residual * row;
@@ -55,7 +55,7 @@ struct NormalEquations {
   }
 };
 
-/// How a residual changes with the axis: rotation about x and y, translation along x and y.
+/// Derivatives of a residual by the axis: rotation about x and y, translation along x and y.
 inline Eigen::Vector4d axis_row(const StopResidual& residual) {
   const Eigen::Vector3d turning =
       residual.point_from.cross(residual.normal_from) - residual.point_to.cross(residual.normal_to);
@@ -63,7 +63,7 @@ inline Eigen::Vector4d axis_row(const StopResidual& residual) {
   return {turning.x(), turning.y(), moving.x(), moving.y()};
 }
 
-/// Over all stops. Their sums are added in their order, so that threads change no bit.
+/// Sums over all stops, added in the order of the stops, so that threads change no bit.
 /// @param row_of  gives a residual's row
 template <int unknowns, typename RowOf>
 NormalEquations<unknowns> normal_equations(const TurnViews& turn, const Eigen::Isometry3d& pose,

@@ -22,8 +22,8 @@ using Readings = std::vector<SurfaceReading>;
 constexpr double min_object_pixels = 120;  // 2 cm at 0.7 m
 constexpr double readings_wanted = 2000;
 constexpr int max_step = 6;  // pixels
-// Pixels that share one error of the difference of two looks, some 7 x 7: errors of longer range
-// are fixed, and cancel.
+// Pixels with correlated errors in the difference of two depth images, some 7 x 7: errors of longer
+// range are fixed, and cancel.
 constexpr double correlated_pixels = 50;
 constexpr double min_agreement = 0.7;    // cosine between the two normals
 constexpr double min_found_again = 0.3;  // of the readings: else there is another object, or none
@@ -38,7 +38,7 @@ constexpr double min_shift = 0.001;  // metres
 constexpr double min_turn_deg = 0.6;
 constexpr double certain_sigmas = 3;
 
-/// What is compared in one iteration.
+/// Limits of one iteration.
 struct Limits {
   double max_distance = 0;  ///< metres: what is farther off is another surface
   double cauchy_scale = 0;  ///< metres

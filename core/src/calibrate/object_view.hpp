@@ -16,10 +16,10 @@ struct SurfaceReading {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of length one, towards the sensor
 };
 
-/// What one stop saw of the object: a rectangle of its depth image.
+/// The rectangle of a stop's depth image that shows the object.
 class ObjectView {
  public:
-  /// Which readings are the object's: high enough above the platform and near enough to its axis.
+  /// Readings of the object are high enough above the platform and near enough to its axis.
   struct Mask {
     PlatformPlane plane = {};
     Eigen::Vector3d axis_point = Eigen::Vector3d::Zero();  ///< metres, optical frame
@@ -30,17 +30,17 @@ class ObjectView {
   /// @throws std::invalid_argument  if the image has another size than the intrinsics say
   ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask);
 
-  /// Pixels that are the object's.
+  /// Number of the object's pixels.
   int pixels() const { return window_.pixels; }
 
-  /// The reading nearest to where a point is seen.
-  /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
+  /// The reading at the pixel to which a point projects.
+  /// @return nothing without a reading, near a depth edge, or at a grazing angle
   std::optional<SurfaceReading> look_up(const Eigen::Vector3d& point) const;
 
-  /// Makes everything wider by a factor, and no nearer: as with a focal length that much shorter.
+  /// Divides the focal length by a factor: everything becomes wider, and no nearer.
   void widen(double factor);
 
-  /// The object's readings, of pixels `step` apart.
+  /// The object's readings at every `step`-th pixel.
   std::vector<SurfaceReading> readings(int step) const;
 
  private:

@@ -13,8 +13,7 @@ constexpr std::size_t block = 8;                        // samples to a side, of
 constexpr std::size_t min_samples = block * block / 2;  // in a block
 constexpr std::size_t min_blocks = 6;
 
-/// The mean over all stops of what a sample that sees the plane differs from it, units of
-/// disparity.
+/// For each sample on the plane its mean distance from it over all stops, units of disparity.
 double mean_difference(const PlatformSamples& samples, const PlatformPlane& plane,
                        std::size_t sample) {
   const double expected = plane.normal.dot(samples.rays[sample]) / plane.offset;

@@ -25,21 +25,21 @@ struct PlatformSamples {
   std::vector<std::vector<float>> depths = {};  ///< of each stop, metres along z; 0: no reading
 };
 
-/// Fits the platform's plane: RANSAC among planes that are nearly level as told, then least squares
-/// with Cauchy weights. Where several planes have much support, the lowest is the platform: the lid
-/// of a flat box may be the larger one. Least squares take only pixels that see nothing else
-/// at any stop, nor beside them: the object's foot and the rim would tilt the plane.
+/// Fits the platform's plane: RANSAC among planes that are nearly level in the told pose, then
+/// least squares with Cauchy weights. If several planes have much support, the lowest is the
+/// platform: the lid of a flat box may be larger. Least squares use only pixels that, with their
+/// neighbours, see the platform at every stop: the object's foot and the rim would tilt the plane.
 ///
 /// @param platform_from_sensor as told
 /// @return nothing if no nearly level plane has any support
 std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
                                                 const Eigen::Isometry3d& platform_from_sensor);
 
-/// For each pixel of the grid, whether it and its eight neighbours see the plane, and nothing above
-/// it at any stop.
+/// For each pixel of the grid, whether it and its eight neighbours see the plane, and never
+/// anything above it.
 std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane);
 
-/// The least-squares part of it: a plane that is nearly right, fitted again.
+/// Only the least squares of `fit_platform_plane`, from a plane that is nearly right.
 PlatformPlane refine_platform_plane(const PlatformSamples& samples,
                                     const Eigen::Isometry3d& platform_from_sensor,
                                     const PlatformPlane& nearly);

@@ -13,7 +13,7 @@ struct PlatformWobble {
   double sigma = 0;  ///< standard deviation, from how the stops differ
 };
 
-/// Such a surface tilts another way at each stop: its normal goes round with the platform.
+/// Measures the wobble: the tilt's direction turns with the platform.
 ///
 /// @param planes  of the stops
 /// @param angles  radians, of the stops

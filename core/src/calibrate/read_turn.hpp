@@ -9,8 +9,9 @@
 
 namespace octurn {
 
-/// Reads the depth images of a turn, each once. A few stops tell the platform's plane, and with it
-/// which readings of all stops are the object's; those alone are kept, and a coarse grid of all.
+/// Reads the depth images of a turn, each once. The platform's plane is found from a few stops, and
+/// with it the object's readings at all stops. Only these are kept, and a coarse grid of all
+/// readings.
 class TurnReader {
  public:
   TurnReader(const CalibrationTurn& turn, int threads);
@@ -20,8 +21,8 @@ class TurnReader {
   /// @throws std::invalid_argument  if a depth image has another size than the intrinsics say
   const std::optional<PlatformPlane>& find_platform();
 
-  /// Reads the object at all stops, and fits the plane to all of them. After `find_platform` found
-  /// one. @throws  as `find_platform`
+  /// Reads the object at all stops, and fits the plane to all of them. `find_platform` must have
+  /// found a plane. @throws  as `find_platform`
   TurnViews read_views();
 
   const PlatformPlane& plane() const { return *plane_; }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "calibrate/checked_stop.hpp"
+#include "mesh/places.hpp"
 #include "octurn/quality.hpp"
 
 namespace octurn {

@@ -11,7 +11,7 @@ namespace octurn {
 /// A cell of a grid in the object's frame, by its number along x, y and z from the origin.
 using ObjectCell = std::array<std::int16_t, 3>;
 
-/// Metres, a cell's side: what two stops see of one surface differs by less.
+/// Metres: side of a cell. Two stops see one surface within less.
 inline constexpr double object_cell_side = 0.005;
 
 /// @param point  metres, object's frame

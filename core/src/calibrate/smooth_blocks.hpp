@@ -12,9 +12,9 @@ struct BlockValues {
   std::vector<double> weights = {};  ///< the same: 1 where the value is known, else 0
 };
 
-/// Smooths known values with a Gaussian window of unknown ones left out, then adds what the window
-/// took away, smoothed again ("twicing", Tukey 1977): long waves keep their height, short ones go.
-/// Unknown values far from known ones are filled by diffusion (Laplace's equation).
+/// Smooths known values with a Gaussian window, then adds the smoothed residuals ("twicing", Tukey
+/// 1977): long waves keep their amplitude, short ones vanish. Unknown values have no weight; far
+/// from known ones they are filled by diffusion (Laplace's equation).
 ///
 /// @param sigma  of the window, cells
 /// @return columns x rows values; 0 if none is known

@@ -10,20 +10,20 @@
 
 namespace octurn {
 
-/// What is said of a turn whose platform stood still.
+/// The verdict on a turn whose platform stood still.
 struct StillTurn {
   std::string reason = {};  ///< why its pose is refused
-  /// In place of those of a turn; none if an object of revolution may have turned.
+  /// Replace those of the turn; none if an object of revolution may have turned.
   std::vector<CalibrationFinding> findings = {};
 };
 
-/// Finds a platform that stood still: every stop of the turn shows what the first one shows, and no
-/// object of revolution explains that. One does if the pose could be solved, and what the first
-/// stop shows, turned by the angle of any other, lies where it sees nothing further away.
+/// Detects a platform that stood still: every stop of the turn shows the same as the first, and the
+/// object is not one of revolution. It is one of revolution if the pose could be solved, and the
+/// readings of the first stop, turned by the angle of any other stop, lie nowhere in free space.
 /// @return nothing if the platform turned
 /// @param levelled   platform_from_sensor with the surface at z = 0, roughly
 /// @param solved     platform_from_sensor as solved
-/// @param is_solved  whether that would be accepted
+/// @param is_solved  whether `solved` would be accepted
 std::optional<StillTurn> find_still_turn(const PlatformSamples& samples,
                                          const CalibrationTurn& turn,
                                          const Eigen::Isometry3d& levelled,

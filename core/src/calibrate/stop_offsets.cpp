@@ -244,7 +244,7 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
     if (all.sensitivity < min_sensitivity) {
       return std::nullopt;
     }
-    // The first stop is where the angles are counted from.
+    // Angles are measured from the first stop.
     const auto free = static_cast<Eigen::Index>(stops) - 1;
     const Eigen::MatrixXd normal_matrix = all.normal_matrix.bottomRightCorner(free, free);
     const Eigen::LDLT<Eigen::MatrixXd> factors(normal_matrix);

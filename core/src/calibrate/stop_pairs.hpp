@@ -11,9 +11,8 @@ struct StopPair {
   std::size_t to = 0;
 };
 
-/// Both directions of the pairs of stops that are about 15, 30, 45 or 75 degrees apart, of few
-/// stops also 90; where there are none, of neighbours that are less than 100 degrees apart. In the
-/// order of `from`.
+/// Both directions of the pairs of stops that are about 15, 30, 45 or 75 degrees apart, with few
+/// stops also 90; if there are none, neighbours less than 100 degrees apart. Sorted by `from`.
 /// @param angles  of the stops, radians
 std::vector<StopPair> make_stop_pairs(const std::vector<double>& angles);
 

@@ -14,13 +14,14 @@ struct StopPlane {
   double height = 0;            ///< metres, at the platform's middle
 };
 
-/// Measures the plane at each stop, from the pixels that see it at all of them: what a sensor's
-/// fixed error makes wrong is the same at each, and cancels. The change from the mean is fitted in
-/// inverse depth, in which a plane is linear.
+/// Measures the plane at each stop from the pixels that see it at every stop. The sensor's fixed
+/// error is the same at each stop, and cancels. The change from the mean is fitted in inverse
+/// depth, in which a plane is linear.
 ///
-/// @param is_plane  as `find_plane_pixels` tells
+/// @param is_plane  of `find_plane_pixels`
 /// @param levelled  platform_from_sensor, in which `plane` is z = 0
-/// @return of each stop; empty if there are fewer than six, or too little of the platform is seen
+/// @return one for each stop; empty if there are fewer than six, or too little of the platform is
+///         seen
 std::vector<StopPlane> measure_stop_planes(const PlatformSamples& samples,
                                            const PlatformPlane& plane,
                                            const std::vector<bool>& is_plane,

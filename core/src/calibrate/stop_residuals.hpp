@@ -8,18 +8,18 @@
 
 namespace octurn {
 
-/// The object as all stops saw it.
+/// The object's readings at all stops.
 struct TurnViews {
   std::vector<double> angles = {};  ///< of the stops, radians
   std::vector<ObjectView> views = {};
   std::vector<std::vector<SurfaceReading>> readings = {};
   std::vector<StopPair> pairs = {};
-  /// Residuals for each that is independent of the others: the sensor's errors are alike in
-  /// neighbouring pixels, and a reading is compared with several stops.
+  /// Residuals per independent one: the sensor's errors are correlated in neighbouring pixels, and
+  /// a reading is compared with several stops.
   double correlation = 1;
 };
 
-/// How a reading of one stop misses the surface that another saw, in the object's frame.
+/// Distance of a reading of one stop from the surface that another stop saw.
 struct StopResidual {
   std::size_t from = 0;
   std::size_t to = 0;
@@ -30,7 +30,7 @@ struct StopResidual {
   Eigen::Vector3d normal_to = Eigen::Vector3d::Zero();
 };
 
-/// What is compared, and how much a residual counts.
+/// Limits of the comparison, and the weights of residuals.
 struct ResidualLimits {
   double max_distance = 0.02;   ///< metres: what is farther off is another surface
   double cauchy_scale = 0.004;  ///< metres

@@ -11,26 +11,26 @@ namespace octurn {
 
 /// A motion of the object on the platform between two stops.
 struct ObjectStep {
-  std::size_t stop = 0;                             ///< the first at which it stood elsewhere
+  std::size_t stop = 0;                             ///< the first after the motion
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< metres, platform frame at angle 0
   double sigma = 0;                                 ///< metres, of the shift
-  double explained = 0;       ///< of the sum of squares of all residuals, that the shift explains
+  double explained = 0;       ///< share of the sum of squares of all residuals
   double turn_explained = 0;  ///< the same of the best turn about the axis at a stop
 };
 
-/// Finds the stop from which on a shift of the object explains most of how the stops disagree.
+/// Finds the stop at which a shift of the object explains most of the residuals.
 ///
-/// At a stop whose object stands by s elsewhere, a residual N . (X_from - X_to) grows by N . s if
-/// that is `from`, and falls by it if that is `to`. The normal equations of all stops' shifts and
-/// turns are summed once; each hypothesis "by s from stop k on" is a projection of them on two
-/// unknowns, and two more for an axis that the step has pulled aside.
-/// @return nothing if too little of the object was seen twice
+/// A shift s of the object at one stop changes a residual N . (X_from - X_to) by N . s if that stop
+/// is `from`, and by -N . s if it is `to`. The normal equations of all stops' shifts and turns are
+/// summed once. Each hypothesis "shifted by s from stop k on" is a projection of them on two
+/// unknowns, and two more for the axis, which the shift has biased.
+/// @return nothing if too few readings of the object have a partner
 std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
                                             const Eigen::Isometry3d& platform_from_sensor,
                                             int threads);
 
-/// What a step says: that the object moved, if it is large, certain, and no turn explains it as
-/// well.
+/// The finding "moved" of the object, if the step is large, certain, and no turn explains the
+/// residuals as well.
 std::optional<CalibrationFinding> find_move(const ObjectStep& step);
 
 }  // namespace octurn

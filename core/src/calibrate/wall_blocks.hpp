@@ -41,8 +41,8 @@ struct WallPlane {
   double slant() const;
 };
 
-/// Fits a plane by least squares with Cauchy weights, whose scale falls to three steps of a
-/// Kinect's disparity: what hangs on the wall has no say. Blocks without readings neither.
+/// Fits a plane to the blocks with readings by least squares with Cauchy weights, whose scale falls
+/// to three steps of a Kinect's disparity: things that hang on the wall have no influence.
 WallPlane fit_wall_plane(const WallBlocks& wall);
 
 }  // namespace octurn

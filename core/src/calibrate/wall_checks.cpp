@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-// What is no wall. Units are steps of a Kinect's disparity.
+// Limits of a flat wall. Units are steps of a Kinect's disparity.
 constexpr double min_coverage = 0.9;
 constexpr double max_slant_deg = 20;
 constexpr double max_distance = 2;    // metres: the map is for objects at 0.5 to 1 m

@@ -7,12 +7,12 @@
 
 namespace octurn {
 
-/// Why that is no view of a flat wall, for people; empty if it is one.
+/// Why a view does not show a flat wall, for people; empty if it does.
 /// @param residuals  of the blocks, to the plane, 1/m
 std::string refuse_wall(const WallBlocks& wall, const WallPlane& plane,
                         const BlockValues& residuals);
 
-/// Leaves out blocks that lie off an accepted wall, such as a nail's.
+/// Removes blocks that lie off an accepted wall, such as a nail.
 void drop_outliers(BlockValues& residuals);
 
 }  // namespace octurn

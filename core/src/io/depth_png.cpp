@@ -1,6 +1,5 @@
-#include "octurn/depth_png.hpp"
-
 #include "io/grey_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 namespace {

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "octurn/depth_png.hpp"
 #include "octurn/file.hpp"
 
 namespace octurn {
@@ -176,13 +175,6 @@ RawPng decode(const PngSource& source, std::string_view keyword, ExpectHeader ex
   return image;
 }
 
-/// ITU-R BT.601, rounded.
-std::uint8_t luminance(const std::byte* rgb) {
-  const auto channel = [&](std::size_t i) { return std::to_integer<unsigned>(rgb[i]); };
-  return static_cast<std::uint8_t>((299 * channel(0) + 587 * channel(1) + 114 * channel(2) + 500) /
-                                   1000);
-}
-
 }  // namespace
 
 GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
@@ -240,7 +232,10 @@ std::vector<std::uint8_t> decode_luminance_png(
     std::memcpy(samples.data(), raw.pixels.data(), samples.size());
   } else {
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      samples[i] = luminance(&raw.pixels[3 * i]);
+      const auto channel = [&](std::size_t k) {
+        return std::to_integer<std::uint8_t>(raw.pixels[3 * i + k]);
+      };
+      samples[i] = luminance({channel(0), channel(1), channel(2)});
     }
   }
   return samples;

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "octurn/colours.hpp"
 #include "octurn/error.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 
@@ -48,7 +48,7 @@ struct PngSource {
 GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
                           const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
 
-/// Decodes an 8-bit PNG, greyscale or RGB, to luminance: 0.299 R + 0.587 G + 0.114 B.
+/// Decodes an 8-bit PNG, greyscale or RGB, to luminance.
 /// @param expect_size  as above
 /// @throws Error "source.malformed"  as above
 std::vector<std::uint8_t> decode_luminance_png(

@@ -9,10 +9,10 @@
 #include "io/laser_json.hpp"
 #include "io/pose_json.hpp"
 #include "io/sensor_json.hpp"
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/png.hpp"
 #include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
 

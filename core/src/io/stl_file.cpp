@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "octurn/stl.hpp"
 
 namespace octurn {
@@ -34,18 +35,21 @@ std::string stl_text(std::span<const Facet> facets) {
   return text;
 }
 
-StlFile::StlFile(std::filesystem::path target) : file_(std::move(target)) {
-  file_.write(stl_header(0));
+StlFile::StlFile(std::filesystem::path target)
+    : file_(std::make_unique<AtomicFile>(std::move(target))) {
+  file_->write(stl_header(0));
 }
 
+StlFile::~StlFile() = default;
+
 void StlFile::write(std::span<const Facet> facets) {
-  file_.write(std::as_bytes(facets));
+  file_->write(std::as_bytes(facets));
   facets_ += facets.size();
 }
 
 void StlFile::commit() {
-  file_.write_at(0, stl_header(facets_));
-  file_.commit();
+  file_->write_at(0, stl_header(facets_));
+  file_->commit();
 }
 
 }  // namespace octurn

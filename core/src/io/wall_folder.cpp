@@ -1,9 +1,9 @@
 #include <nlohmann/json.hpp>
 
 #include "io/sensor_json.hpp"
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/png.hpp"
 #include "octurn/sensor_map.hpp"
 
 namespace octurn {

@@ -8,8 +8,8 @@
 #include "io/radial_distortion.hpp"
 #include "io/sensor_json.hpp"
 #include "laser/draw_triangle.hpp"
-#include "octurn/colours.hpp"
 #include "octurn/error.hpp"
+#include "octurn/model.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

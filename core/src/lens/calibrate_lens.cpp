@@ -7,7 +7,7 @@
 
 #include "io/radial_distortion.hpp"
 #include "lens/lens_solver.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -6,7 +6,7 @@
 #include "lens/board_lattice.hpp"
 #include "lens/corner_features.hpp"
 #include "lens/grey_image.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 

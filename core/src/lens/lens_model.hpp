@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 

@@ -51,8 +51,8 @@ class Bvh4 {
  public:
   using BoxAt = std::function<Aabb(std::uint32_t)>;
 
-  /// O(boxes). @param box  asked for each several times: to keep them would take more than this
-  /// does
+  /// O(boxes). @param box  called several times for each: to store the boxes would take more memory
+  ///                       than the hierarchy
   Bvh4(std::size_t count, const BoxAt& box);
 
   /// Calls `visit(thread, i, j)` once for each pair of different boxes that overlap.
@@ -84,7 +84,7 @@ class Bvh4 {
   using NodePair = std::array<std::size_t, 2>;
   using NodePairs = std::vector<NodePair>;
 
-  /// The highest level with enough nodes for so many threads.
+  /// The highest level that has enough nodes for so many threads.
   std::size_t split_level(int threads) const {
     std::size_t level = levels_.size() - 1;
     while (threads > 1 && level > 0 &&
@@ -94,8 +94,8 @@ class Bvh4 {
     return level;
   }
 
-  /// Visits the pairs that overlap below two nodes of one level, or below one with itself: of the
-  /// children of nodes of level `end`.
+  /// Visits the overlapping pairs of children below two nodes of one level, or below one node, down
+  /// to the level `end`.
   template <typename Visit>
   void traverse_pair(std::size_t level, const NodePair& nodes, std::size_t end,
                      const Visit& visit) const {

@@ -5,16 +5,16 @@
 
 namespace octurn {
 
-/// An edge collapse that could be made. Where to is found anew from the quadrics of both ends, when
-/// it is made: a list of a window's collapses is long.
+/// A candidate edge collapse. The new vertex's position is not stored, as the list is long: it is
+/// computed again from the quadrics of both ends when the edge is collapsed.
 struct Collapse {
   double cost = 0;  ///< mean square distance, mm^2
   std::uint32_t kept = 0;
   std::uint32_t removed = 0;
 };
 
-/// The cheapest first, without those that come twice. Of equal cost that of the lower vertices:
-/// the order does not depend on that before.
+/// Sorts by cost and removes duplicates. Equal costs are sorted by vertex index, so that the result
+/// does not depend on the order before.
 void sort_by_cost(std::vector<Collapse>& collapses);
 
 }  // namespace octurn

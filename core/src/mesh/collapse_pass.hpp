@@ -15,18 +15,19 @@
 
 namespace octurn {
 
-/// One pass of edge collapse over all edges up to one cost, the cheapest first. Refers to the mesh
-/// and changes it.
+/// One pass of edge collapse over all edges up to a maximum cost, the cheapest first. Changes the
+/// mesh that it refers to.
 ///
-/// Several threads make the collapses that one would make. Two depend on each other's order only
-/// if an end of one is an end of the other, or its neighbour. Each thread takes those between
-/// vertices of its own strip, in their order, and leaves what has a neighbour in another strip, or
-/// beside what it left. Those that are left, few and along the borders, come next, in strips the
-/// other way; what is left then is for one thread. So each collapse finds its neighbourhood as in
-/// one sequence (the conflicts of Blelloch, Fineman, Gibbons and Shun 2012, by place).
+/// Several threads make the same collapses as one thread would. The order of two collapses matters
+/// only if an end of one is an end of the other, or a neighbour of it. Each thread collapses the
+/// edges within its own strip of vertices, in order. It defers an edge with a neighbour in another
+/// strip, or beside a deferred edge. The deferred edges, few and along the borders, are done next
+/// with strips across another axis, and what is deferred again by one thread. Each collapse
+/// therefore finds its neighbourhood as in the sequential order (the conflicts of Blelloch,
+/// Fineman, Gibbons and Shun 2012, here by location).
 class CollapsePass {
  public:
-  /// @param dirty  one per vertex: not 0 where a triangle around has changed since the last pass
+  /// @param dirty  one per vertex: not 0 if a triangle around it changed since the last pass
   CollapsePass(IndexedMesh& mesh, std::span<const char> locked, const CollapseLimits& limits,
                std::vector<char> dirty, ThreadTeam& team)
       : mesh_(mesh),
@@ -38,9 +39,10 @@ class CollapsePass {
         is_dirty_(mesh.vertices.size(), 0),
         is_stale_(mesh.vertices.size(), 0) {}
 
-  /// @param already_tried  cost up to which the last pass tried every edge: where nothing has
-  ///                       changed since, it would be refused again
-  /// @param tilings        each of as many strips as the team has threads, or fewer; none for one
+  /// @param already_tried  cost up to which the last pass tried every edge: where no triangle
+  ///                       changed since, these would be refused again
+  /// @param tilings        divisions into at most as many strips as the team has threads; none for
+  ///                       one
   /// @returns how many edges were collapsed
   std::size_t run(double max_cost, double already_tried, std::span<const VertexStrips> tilings);
 

@@ -11,8 +11,8 @@
 
 namespace octurn {
 
-/// A triangle mesh with shared vertices, and what edge collapse needs to know of the surface that
-/// it came from.
+/// A triangle mesh with shared vertices, and for each the quadric of the original surface, which
+/// edge collapse needs.
 struct IndexedMesh {
   std::vector<MeshVertex> vertices = {};
   std::vector<Quadric> quadrics = {};  ///< one per vertex; apart, so that positions stay in cache
@@ -29,7 +29,7 @@ constexpr std::uint32_t removed_vertex = std::numeric_limits<std::uint32_t>::max
 /// Removes the vertices that neither a triangle nor `also_used` refers to; the others keep their
 /// order. O(vertices + triangles).
 ///
-/// @returns for each vertex before its index now, or `removed_vertex`
+/// @returns for each old vertex its new index, or `removed_vertex`
 std::vector<std::uint32_t> compact(IndexedMesh& mesh, std::span<const std::uint32_t> also_used);
 
 }  // namespace octurn

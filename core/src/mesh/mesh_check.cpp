@@ -1,11 +1,13 @@
+#include "mesh/mesh_check.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 
-#include "octurn/mesh_report.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -71,6 +73,27 @@ void MeshCheck::add(std::span<const Facet> facets) {
     }
     six_volumes_ += points[0].dot(points[1].cross(points[2]));
   }
+}
+
+ModelReport make_report(const SurfaceCount& count, const MeshCheck& check) {
+  const Eigen::Vector3d size_mm = check.bounds_mm().max - check.bounds_mm().min;
+  const double volume = m3_from_mm3(check.volume_mm3());
+  return {.leaves = count.leaves,
+          .triangles = count.facets,
+          .bytes = stl_bytes(count.facets),
+          .parts = count.parts,
+          .filled_share = check.filled_share(),
+          .unseen_share = check.unseen_share(),
+          .places = {.unseen = check.unseen_places(),
+                     .surface = std::make_shared<SurfaceCells>(check.surface())},
+          .watertight = check.closed(),
+          .volume = volume,
+          .dropped = {.count = count.dropped_parts,
+                      .volume = volume * static_cast<double>(count.dropped_leaves) /
+                                static_cast<double>(std::max<std::uint64_t>(count.leaves, 1))},
+          .size = {metres_from_mm(size_mm.x()), metres_from_mm(size_mm.y()),
+                   metres_from_mm(size_mm.z())},
+          .bottom = metres_from_mm(check.bounds_mm().min.z())};
 }
 
 }  // namespace octurn

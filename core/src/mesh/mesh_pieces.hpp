@@ -8,8 +8,8 @@
 
 namespace octurn {
 
-/// Consecutive pieces of a mesh, kept until it is their turn to be streamed. Their vertices are
-/// numbered from the piece before them on.
+/// Consecutive pieces of a mesh, kept until they can be streamed in order. Vertex numbers begin
+/// with the piece before them.
 class MeshPieces {
  public:
   void add(const MeshPiece& piece) {

@@ -1,5 +1,6 @@
+#include "mesh/places.hpp"
+
 #include "mesh/spread_points.hpp"
-#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 

@@ -33,7 +33,8 @@ struct Quadric {
     return std::max(sum / area, 0.0);  // rounding can bring it below
   }
 
-  /// The point of the smallest sum. Where the planes leave a direction free, it stays near `guess`.
+  /// The point of the smallest sum. In directions that the planes do not determine it stays near
+  /// `guess`.
   Vector3 optimum(const Vector3& guess) const;
 
   /// The same among the points of the platform, z = 0.

@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// Hands on points of a triangle that are at most `pitch` apart; of a small one its middle.
+/// Calls `take` for points of a triangle at most `pitch` apart; for a small one, for its middle.
 /// @param corners  metres
 /// @param pitch    metres
 template <typename Take>

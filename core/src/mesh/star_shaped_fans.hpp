@@ -17,7 +17,7 @@ namespace octurn {
 /// the vertex in full turns. If its winding number is 1, the projections are sectors that do not
 /// overlap: the fan is star-shaped. What is disjoint in projection is disjoint.
 ///
-/// Conservative: a vertex is left out where rounding could matter. O(vertices + triangles).
+/// Conservative: 0 if rounding could matter. O(vertices + triangles).
 ///
 /// @param vertices  positions, millimetres
 /// @returns one per vertex: 1 if its fan is star-shaped, otherwise 0

@@ -12,26 +12,25 @@
 
 namespace octurn {
 
-/// Simplifies a manifold mesh while it streams by from below, in bounded memory. It is closed, or
-/// open where all vertices are `fixed`.
+/// Simplifies a manifold mesh that is streamed from below, in bounded memory. The mesh is closed,
+/// except for borders whose vertices are all `fixed`.
 ///
 /// A window moves up through the mesh. In each window edges are collapsed (`qem_simplify`), and
-/// what lies well below its upper end is emitted; the rest waits for the next window. Where a
+/// triangles well below its upper end are emitted; the rest stays for the next window. If a
 /// collapse makes the surface intersect itself, the window is simplified again with the vertices
-/// around there locked. So the result is closed, manifold and of the same genus as what was added;
-/// and if that has no self-intersection, neither has the result.
+/// around that place locked. The result is closed, manifold and of the same genus as the input; it
+/// has no self-intersection if the input has none.
 ///
-/// Deterministic, for any number of threads. The result depends on the order of the pieces, and on
-/// their sizes only through where windows end: not at all for a mesh of one window. Not
-/// thread-safe.
+/// Deterministic for any number of threads. The result depends on the order of the pieces, and on
+/// their sizes only through the ends of the windows. Not thread-safe.
 class StreamSimplifier {
  public:
-  /// @param target_error  millimetres, above 0: RMS distance of each vertex to the planes of the
-  ///                      triangles that it stands for, weighted by area; no bound of the largest
-  ///                      distance (see `qem_simplify`)
-  /// @param margin        millimetres below the upper end of a window that wait for the next
-  /// @param sink          takes the facets, from below, in spans that are valid during the call
-  /// @param stop          looked at in each pass over a window: then `add` and `finish` throw
+  /// @param target_error  millimetres, above 0: limit of each vertex's RMS distance, weighted by
+  ///                      area, from the planes of the triangles that it replaces (see
+  ///                      `qem_simplify`)
+  /// @param margin        millimetres below the upper end of a window that stay for the next
+  /// @param sink          receives the facets, from below
+  /// @param stop          checked in each pass over a window: then `add` and `finish` throw
   ///                      `Stopped`
   /// @param team          the threads that share a window's work; must outlive this
   StreamSimplifier(double target_error, double margin, FacetSink sink, std::stop_token stop = {},
@@ -40,7 +39,7 @@ class StreamSimplifier {
   /// Adds the next piece; z rises from piece to piece. Simplifies and emits when a window is full.
   void add(const MeshPiece& piece);
 
-  /// Simplifies and emits the rest. Nothing may be added after.
+  /// Simplifies and emits the rest. No piece may be added afterwards.
   void finish();
 
  private:

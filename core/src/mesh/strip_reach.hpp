@@ -11,14 +11,14 @@
 
 namespace octurn {
 
-/// What the edges at a vertex reach.
+/// Where the neighbours of a vertex lie.
 enum class Reach : char {
-  unknown,  ///< nobody has asked yet
-  within,   ///< only vertices of its own strip, beside none of which a collapse was left
+  unknown,  ///< not determined yet
+  within,   ///< all in its own strip, and none beside a deferred collapse
   beyond,
 };
 
-/// Tells one thread which vertices of its strip it may collapse while others work at theirs.
+/// Tells one thread which vertices of its strip it may collapse while other threads work on theirs.
 class StripReach {
  public:
   /// @param triangles  as the collapses change them
@@ -34,8 +34,8 @@ class StripReach {
 
   bool has(std::uint32_t vertex) const { return strips_[vertex] == strip_; }
 
-  /// A collapse within the strip never joins a vertex to one that is beyond: what is within stays
-  /// so until something beside it is left.
+  /// A collapse within the strip never joins a vertex to one beyond it: `within` stays true until a
+  /// collapse beside the vertex is deferred.
   bool is_within(std::uint32_t vertex) {
     if (!has(vertex)) {
       return false;
@@ -51,7 +51,7 @@ class StripReach {
     return reach_[vertex] == Reach::within;
   }
 
-  /// A collapse at this vertex was left: those after it that depend on it must be, too.
+  /// A collapse at this vertex was deferred: later ones that depend on it must be, too.
   void leave_around(std::uint32_t vertex) {
     if (!has(vertex)) {
       return;

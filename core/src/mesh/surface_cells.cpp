@@ -1,9 +1,10 @@
+#include "mesh/surface_cells.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "mesh/spread_points.hpp"
-#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {

@@ -19,8 +19,8 @@ inline std::size_t local_index(const MeshTriangle& triangle, std::uint32_t verte
 /// Triangles at each vertex of a mesh, as compressed rows (CSR).
 class TriangleAdjacency {
  public:
-  /// O(vertices + triangles); each thread looks through all triangles for those of its vertices.
-  /// @param left_out  one per vertex: not 0 where nobody will ask; empty: nowhere
+  /// O(vertices + triangles); each thread reads all triangles and keeps those of its vertices.
+  /// @param left_out  one per vertex: not 0 if its triangles are not needed; empty: all are needed
   TriangleAdjacency(std::span<const MeshTriangle> triangles, std::size_t vertex_count,
                     ThreadTeam& team = ThreadTeam::alone(), std::span<const char> left_out = {})
       : first_(vertex_count + 1, 0) {

@@ -15,13 +15,12 @@ struct Sector {
   Vector3 normal = cross(first, second);
 };
 
-/// Whether two triangles meet nowhere but in the vertices and the side that they share.
+/// Whether two triangles intersect only in the vertices or the side that they share.
 ///
-/// Conservative: "no" also where that hangs on rounding. Triangles without a common vertex must be
+/// Conservative: false if the answer depends on rounding. Triangles without a common vertex must be
 /// 1e-7 mm apart along a separating axis; those with one must diverge by an angle of 1e-9.
-/// Positions are single precision numbers, 1e-5 mm apart where models are, so that real gaps are
-/// wider. A triangle without area, or twice the same one, is never disjoint from what it shares
-/// vertices with.
+/// Positions are single precision numbers, 1e-5 mm apart at the size of a model, so that real gaps
+/// are wider. A triangle without area is never disjoint from one that shares vertices with it.
 ///
 /// @param vertices  positions, millimetres
 bool are_disjoint(std::span<const std::array<float, 3>> vertices, const MeshTriangle& a,

@@ -7,8 +7,8 @@ namespace octurn {
 /// Vectors whose operations round in one fixed order, so that models are bit-equal on every
 /// processor.
 ///
-/// Not Eigen's: its sums associate by the length and by what the processor vectorises. `Number` may
-/// be an Eigen array, which evaluates several vectors at once.
+/// Not Eigen's vectors: the order of Eigen's sums depends on the length and on the processor's
+/// vector units. `Number` may be an Eigen array, which evaluates several vectors at once.
 using Vector3 = std::array<double, 3>;
 
 inline Vector3 to_vector3(const std::array<float, 3>& position) {

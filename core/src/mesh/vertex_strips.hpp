@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// Of each vertex the strip that it lies in: 0, 1, ...
+/// For each vertex the index of its strip.
 using VertexStrips = std::vector<std::uint16_t>;
 
 /// Divides vertices into strips across an axis, about as many vertices in each.

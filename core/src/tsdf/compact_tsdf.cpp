@@ -8,13 +8,13 @@
 namespace octurn {
 namespace {
 
-/// A surface is observed from this weight on: a tenth of that of one good reading.
+/// Minimum weight of an observed surface: a tenth of the weight of one good reading.
 constexpr float min_weight = 0.1F;
 
-/// A voxel is free if enough rays passed through it, and they outweigh the surface: as many
-/// readings of weight one as rays that ended on a surface.
-/// @param votes  of rays that passed through the voxel
-/// @param min_votes  that make it free space
+/// A voxel is free if it has enough votes, and more than its surface weight times the votes of one
+/// ray.
+/// @param votes      of the rays that passed through the voxel
+/// @param min_votes  minimum for free space
 VoxelState to_state(const TsdfBrick& brick, std::size_t sample, int votes, int min_votes) {
   const float w = unpack(brick.weight[sample]);
   const bool is_surface = w >= min_weight;
@@ -28,7 +28,7 @@ VoxelState to_state(const TsdfBrick& brick, std::size_t sample, int votes, int m
   return brick.distance[sample] < 0 && w > 0 ? VoxelState::occluded : VoxelState::unknown;
 }
 
-/// Whether any snapshot observed a surface in a brick, and did not only see through a part of it.
+/// Whether any snapshot observed a surface in a brick. A brick may have only votes of free space.
 bool has_surface(const TsdfBrick& brick) {
   return std::ranges::any_of(brick.weight, [](PackedWeight weight) { return weight != 0; });
 }

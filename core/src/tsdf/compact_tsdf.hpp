@@ -13,12 +13,12 @@
 
 namespace octurn {
 
-/// What all snapshots together say of a voxel.
+/// State of a voxel after all snapshots.
 enum class VoxelState : std::uint8_t {
-  unknown,   ///< no snapshot says anything
-  occluded,  ///< behind an observed surface, with too little weight to be one
+  unknown,   ///< no snapshot saw it
+  occluded,  ///< behind an observed surface, with too little weight to count as observed
   free,      ///< some ray passed through
-  observed,  ///< within the truncation of a surface that was observed well enough
+  observed,  ///< within the truncation of a surface, with enough weight
 };
 
 /// 8 x 8 x 8 samples in the order of `TsdfBrick`: signed distances, and the states in two bits
@@ -37,12 +37,12 @@ struct CompactBrick {
   }
 };
 
-/// A finished TSDF without its weights, and without bricks in which no surface was observed: less
-/// than half the size of a `TsdfVolume`, so that a volume
-/// which was integrated in slabs fits in memory as a whole.
+/// A finished TSDF without its weights, and without bricks in which no surface was observed. It has
+/// less than half the size of a `TsdfVolume`, so that a volume that was integrated slab by slab
+/// fits in memory as a whole.
 class CompactTsdf {
  public:
-  /// @param min_votes  of rays that passed through a voxel (`votes_of_any_ray`), for it to be free
+  /// @param min_votes  of rays that passed through a voxel (`votes_of_any_ray`) to call it free
   explicit CompactTsdf(const VoxelGrid& grid, int min_votes = 1);
 
   const VoxelGrid& grid() const { return grid_; }
@@ -56,7 +56,7 @@ class CompactTsdf {
     return bricks_.find(grid_.brick_index(brick));
   }
 
-  /// Whether enough snapshots saw through a whole block.
+  /// Whether enough rays passed through all of a block.
   bool is_free(const Index3& block) const { return free_[grid_.block_index(block)] != 0; }
 
   std::size_t bytes() const { return bricks_.bytes() + free_.capacity(); }

@@ -11,7 +11,7 @@ namespace {
 
 using Row = std::span<const std::uint64_t>;
 
-/// Adds those of 64 cubes along x that the surface crosses.
+/// Adds the cubes that the surface crosses, of 64 along x.
 /// @param rows   of voxels that they lie between
 /// @param width  of the mask, voxels
 /// @param size   of a layer of the mask, voxels

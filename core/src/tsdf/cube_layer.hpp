@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// Those cubes between two layers of a mask's voxels that its surface crosses.
+/// The cubes between two layers of a mask's voxels that its surface crosses.
 struct CubeLayer {
   struct Cube {
     int x = 0;  ///< of the lowest corner
@@ -21,7 +21,8 @@ struct CubeLayer {
   std::vector<std::uint8_t> ambiguous = {};
 };
 
-/// The cubes between the layers z and z + 1 of a mask, outside of which nothing is inside.
+/// The cubes between the layers z and z + 1 of a mask. Voxels outside the mask are outside the
+/// object.
 CubeLayer mixed_cubes(const VoxelMask& inside, int z);
 
 }  // namespace octurn

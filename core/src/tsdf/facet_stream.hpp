@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// Streams a mesh's triangles as facets, all of them.
+/// Streams all triangles of a mesh as facets.
 class FacetStream {
  public:
   explicit FacetStream(const FacetSink& sink) : sink_(sink) {}

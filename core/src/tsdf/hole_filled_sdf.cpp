@@ -11,12 +11,12 @@ namespace {
 
 constexpr int brick_side = VoxelGrid::brick_side;
 
-// Observed surfaces are cut only this far below another pose's platform, as poses are known to some
-// tenths of a millimetre.
+// An observed surface is cut only this far below the platform of another pose, because poses are
+// accurate to some tenths of a millimetre.
 constexpr double observed_slack = 0.001;  // metres
 
-// Below this height above its platform a pose hardly observes the object: its readings mix foot and
-// platform.
+// Up to this height above its platform a pose hardly observes the object: readings there mix the
+// object's foot with the platform.
 constexpr double unseen_foot = 0.004;  // metres
 
 }  // namespace
@@ -81,7 +81,7 @@ float HoleFilledSdf::filled_at(const Index3& voxel) const {
                    weight(2, voxel.z - low_.z));
 }
 
-/// @param brick  the one that the voxel lies in, or null
+/// @param brick  that holds the voxel, or null
 VoxelState HoleFilledSdf::state_at(const Index3& voxel, const CompactBrick* brick) const {
   if (brick != nullptr) {
     return brick->state(VoxelGrid::sample_index(voxel));
@@ -100,7 +100,7 @@ const CompactBrick* HoleFilledSdf::brick_at(const Index3& voxel) const {
   return known_.find({(voxel.x >> 3) - low.x, (voxel.y >> 3) - low.y, (voxel.z >> 3) - low.z});
 }
 
-/// The value of a voxel, cut by nothing.
+/// The value of a voxel before any cut at a platform.
 HoleFilledSdf::Value HoleFilledSdf::sample(const Index3& voxel) const {
   const CompactBrick* const brick = brick_at(voxel);
   switch (state_at(voxel, brick)) {
@@ -156,8 +156,8 @@ HoleFilledSdf::Value HoleFilledSdf::fill_foot(const Index3& voxel, Value value) 
   return value;
 }
 
-/// The intersection with the half-spaces above the platforms of several poses. What was observed
-/// is cut only well below them: a foot is flat where nothing saw it.
+/// The intersection with the half-spaces above the platforms of several poses. Observed voxels are
+/// cut only well below them, so that the base is flat only where nothing was observed.
 HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value value) const {
   const float slack = ticks(observed_slack);
   for (const PlatformCut& platform : platforms_) {
@@ -169,7 +169,8 @@ HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value 
   return value;
 }
 
-/// Where all voxels of a box lie. Below a platform nothing is inside, whatever was observed.
+/// The position of a whole box of voxels relative to the platforms. Nothing below a platform is
+/// inside.
 HoleFilledSdf::Place HoleFilledSdf::place_of(const Index3& low, const Index3& size) const {
   Place place = Place::above;
   for (const PlatformCut& platform : platforms_) {

@@ -13,13 +13,13 @@
 
 namespace octurn {
 
-/// A signed distance field that is defined everywhere: the holes of a TSDF, which no snapshot
-/// observed, are filled smoothly.
+/// A signed distance field that is defined everywhere: the unobserved voxels of a TSDF are filled
+/// smoothly.
 ///
-/// The distances of blocks of voxels are filled by Laplace's equation (`laplace_fill`) and
-/// interpolated trilinearly at unknown and occluded voxels. Below the base layer each layer repeats
-/// it, and the field is cut at the platform's plane, so that the model gets a flat base. Of several
-/// poses, what no pose saw right above a platform repeats what is above it there.
+/// Laplace's equation fills the distances of blocks of voxels (`laplace_fill`), which are
+/// interpolated trilinearly at unknown and occluded voxels. Layers below the base layer repeat it,
+/// and the field is cut at the platform's plane, so that the model has a flat base. With several
+/// poses, voxels right above a platform that no pose observed repeat the value above them.
 class HoleFilledSdf {
  public:
   /// @param known       must outlive this
@@ -28,8 +28,8 @@ class HoleFilledSdf {
   HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {},
                 ThreadTeam& team = ThreadTeam::alone());
 
-  /// Of an object that was seen in several poses: all layers count, and the field is cut at each
-  /// pose's platform where nothing saw the object's foot.
+  /// For several poses: all layers count, and the field is cut at each pose's platform where the
+  /// object's foot was not observed.
   /// @param platforms  of the poses, at least one
   HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
                 const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
@@ -39,7 +39,7 @@ class HoleFilledSdf {
   /// Whether the plane between the voxels -1 and 0 along z is the platform's.
   static constexpr bool has_platform = true;
 
-  /// The half-open box of voxels outside which nothing is inside: all bricks, and one around them.
+  /// The half-open box of voxels that encloses the object: all bricks, and one around them.
   const Index3& low() const { return low_; }
   const Index3& end() const { return end_; }
 
@@ -59,10 +59,10 @@ class HoleFilledSdf {
   /// The value at the centre of a voxel of that box, or of one below it.
   Value at(const Index3& voxel) const;
 
-  /// Whether a ray passed through a voxel of that box, or ended behind it.
+  /// Whether a ray passed through a voxel of that box, or ended right behind it.
   bool is_seen_empty(const Index3& voxel) const;
 
-  /// The voxels of that box with a negative distance, but for those on its sides and top.
+  /// The voxels of that box with a negative distance, except those on its sides and top.
   /// @throws Stopped
   VoxelMask inside(const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone()) const;
 

@@ -129,7 +129,7 @@ VoxelMask HoleFilledSdf::inside(const std::stop_token& stop, ThreadTeam& team) c
     }
   });
   clear_border(mask);
-  if (!platforms_.empty() && size.z > 0) {  // a lowest layer is no foot
+  if (!platforms_.empty() && size.z > 0) {  // the lowest layer must be outside
     for (int y = 0; y < size.y; ++y) {
       std::ranges::fill(mask.row(y, 0), 0U);
     }

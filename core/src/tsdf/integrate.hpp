@@ -11,12 +11,12 @@ namespace octurn {
 
 /// Integrates one snapshot into the layers that a TSDF volume holds.
 ///
-/// A sample within the truncation of its pixel's tangent plane takes its distance to it, by a
-/// weighted running mean (Curless and Levoy 1996, eq. 3-4); a sample further in front of it counts
-/// as seen through. The order of the snapshots changes nothing but rounding: of weights to 1/4096
-/// of their sum, of distances to a tick. The volume is descended as a hierarchy of cubes, each
-/// compared with the minimum and maximum depth of the pixels that it covers, so that only voxels
-/// near the surface are sampled.
+/// A voxel within the truncation of its pixel's tangent plane averages its distance to that plane,
+/// by a weighted running mean (Curless and Levoy 1996, eq. 3-4). A voxel further in front of the
+/// plane gets a vote for free space. The order of the snapshots changes only the rounding: of
+/// weights to 1/4096 of their sum, of distances to a tick. The volume is traversed as a hierarchy
+/// of cubes. Each is compared with the minimum and maximum depth of the pixels that it covers, so
+/// that only voxels near the surface are sampled.
 ///
 /// Deterministic: the same bits on x86-64 and arm64. O(pixels * truncation / voxel side).
 ///
@@ -25,8 +25,8 @@ namespace octurn {
 /// @throws Stopped  between two bricks
 void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::stop_token& stop = {});
 
-/// The same of several snapshots, in their order, by a team: each of its threads takes a cube of
-/// bricks and integrates all of them there, so that their number changes no bit.
+/// Integrates several snapshots, in their order, by a team of threads. A thread takes a cube of
+/// bricks and integrates all snapshots there, so that the number of threads changes no bit.
 /// @param volume  that holds all its bricks (`TsdfVolume::holds_all`)
 void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths,
                ThreadTeam& team, const std::stop_token& stop = {});

@@ -2,7 +2,7 @@
 
 namespace octurn {
 
-// What a reading says of the samples along its ray. Lengths are in truncations.
+// How a reading affects the voxels along its ray. Lengths are in truncations.
 
 /// A sample within one truncation of the reading's tangent plane is integrated unless it lies
 /// further than this behind the reading, along the ray: where a ray grazes a surface, the way to

@@ -9,18 +9,18 @@
 
 namespace octurn {
 
-/// The facets of a surface that was counted, until it is asked for: whole, or none where they do
-/// not fit.
+/// The facets of a surface that was counted, kept until the surface is drawn: all of them, or none
+/// if they do not fit.
 class KeptFacets {
  public:
   explicit KeptFacets(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Gives up what it has where one more piece does not fit.
+  /// Adds a piece; drops everything if it does not fit.
   void add(std::span<const Facet> facets);
 
   bool is_whole() const { return is_whole_; }
 
-  /// Hands them out in the pieces that they came in. @throws Stopped  between two of them
+  /// Passes on the pieces that were added. @throws Stopped  between two of them
   void stream(const FacetSink& sink, const std::stop_token& stop) const;
 
  private:

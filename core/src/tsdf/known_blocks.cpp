@@ -43,8 +43,8 @@ bool is_below_platform(const Knowledge& known, const Index3& block) {
       known.platforms, [&](const PlatformCut& platform) { return platform.height(voxel) < 0; });
 }
 
-/// The mean distance of a block's known samples from the base layer up. An occluded sample counts,
-/// however small its weight: it says that there is something to fill.
+/// The mean distance of a block's known voxels from the base layer up. Occluded voxels count,
+/// however small their weight: they show that there is something to fill.
 /// @param position  of the brick
 RunningMean mean_known_distance(const Knowledge& known, const CompactBrick& brick,
                                 const Index3& position, const Index3& block) {

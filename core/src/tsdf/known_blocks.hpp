@@ -20,14 +20,14 @@ struct KnownBlocks {
   PartialGrid distances = {};
 };
 
-/// A block is known if a quarter of its voxels is, or a ray passed through all of it. Blocks of the
-/// grid's border are free.
+/// A block is known if a quarter of its voxels are known, or if rays passed through all of it.
+/// Blocks in the grid's border are free.
 ///
-/// Below the platform of one pose, what another pose saw to be free is unknown: a foot that neither
-/// saw stood right on that platform, and free space under it would be extended into the foot.
+/// Free space of one pose below the platform of another counts as unknown: a foot that neither pose
+/// saw stood on that platform, and the fill would extend the free space into it.
 ///
 /// @param base_layer  the lowest layer of voxels that counts
-/// @param platforms   of several poses
+/// @param platforms   of several poses; empty for one
 /// @throws Stopped
 KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
                          std::span<const PlatformCut> platforms = {},

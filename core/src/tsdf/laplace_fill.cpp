@@ -30,8 +30,8 @@ void relax(PartialGrid& grid, int x, int y, int z) {
 constexpr int rows_at_once = 4;
 
 /// Relaxes a layer in lexicographic order, forwards (`step` 1) or backwards (-1). Some rows are
-/// done at once, each one value behind the row before it, which changes no value: all that precede
-/// one in that order are relaxed before it, and none that follow.
+/// relaxed at once, each one value behind the row before it. The values are those of a plain loop:
+/// every value is still relaxed after its predecessors and before its successors.
 void relax_layer(PartialGrid& grid, int z, int step) {
   const auto at = [step](int i, int size) { return step > 0 ? i : size - 1 - i; };
   const Index3& size = grid.size;

@@ -23,14 +23,15 @@ struct PartialGrid {
 };
 
 /// Fills the unknown values by Laplace's equation: each becomes nearly the mean of its six
-/// neighbours, the value beyond a side of the grid being that within. Known values stay.
+/// neighbours. The boundary condition is Neumann's: beyond the grid values repeat. Known values
+/// stay.
 ///
 /// Cascadic multigrid (Bornemann and Deuflhard 1996): each coarser grid, solved first, gives the
 /// next finer one its first guess, which ten symmetric Gauss-Seidel sweeps smooth. A coarse value
-/// is known where any of its eight finer ones is, and is their minimum: so a thin shell of inside
+/// is known if any of its eight finer ones is, and is their minimum, so that a thin shell of inside
 /// (negative) values stays closed.
 ///
-/// Deterministic, O(values). Where nothing is known, the values stay as they are.
+/// Deterministic, O(values). If no value is known, none changes.
 /// @throws Stopped  between two layers
 PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop = {});
 

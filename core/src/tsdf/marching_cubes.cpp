@@ -21,7 +21,7 @@ constexpr double min_gap_mm = 0.036;
 /// from its ends.
 constexpr float ambiguous_margin = 0.3F;
 
-constexpr int layers_at_once = 4;  // that a thread draws: it looks once more at the one below
+constexpr int layers_at_once = 4;  // drawn by a thread, which also reads the layer below them
 
 constexpr CubeRange all_cubes{
     .low = {-1, -1, -1},
@@ -45,9 +45,9 @@ class MarchingCubes {
         std::min(min_gap_mm / (std::numbers::sqrt2 * mm_from_metres(field.voxel_side())), 0.3));
   }
 
-  /// Draws the layers of cubes from `first` to below `end`. Vertices are numbered on from those of
-  /// the layer below the first.
-  /// @returns how many that has
+  /// Draws the layers of cubes from `first` to below `end`. Vertex numbers continue those of the
+  /// layer below `first`.
+  /// @returns the number of that layer's vertices
   std::uint32_t run(int first, int end, const MeshSink& sink, const std::stop_token& stop) {
     CubeLayer below = first > -1 ? mixed_cubes(inside_, first - 1) : CubeLayer{};
     CubeLayer here = mixed_cubes(inside_, first);
@@ -74,7 +74,7 @@ class MarchingCubes {
   }
 
  private:
-  /// The edges along x and y above the cubes become those below the next.
+  /// The upper x and y edges of this layer of cubes become the lower ones of the next.
   void move_up() {
     std::swap(indices_[0], indices_[3]);
     std::swap(indices_[1], indices_[4]);
@@ -98,7 +98,7 @@ class MarchingCubes {
            on_side(2, voxel.z, range_.low.z, range_.end.z);
   }
 
-  /// Begins with the vertices of a layer of cubes, of which those on its lower side are another's.
+  /// Makes the vertices of a layer of cubes; those on its lower side belong to the layer below.
   void number_vertices(const CubeLayer& layer, int z) {
     vertex_count_ = 0;
     for (const CubeLayer::Cube& cube : layer.mixed) {
@@ -141,7 +141,7 @@ class MarchingCubes {
   }
 
   struct EdgePlace {
-    Index3 voxel = {};  // that the edge begins at
+    Index3 voxel = {};  // where the edge begins
     std::size_t axis = 0;
     bool is_above = false;  // on the upper side of its layer of cubes
   };
@@ -218,7 +218,7 @@ class MarchingCubes {
   std::vector<MeshTriangle> triangles_ = {};
 };
 
-/// What one thread draws.
+/// The piece that one thread draws.
 struct Part {
   MarchingCubes<HoleFilledSdf> cubes;
   MeshPieces pieces = {};

@@ -16,19 +16,20 @@ namespace octurn {
 /// Closed and manifold for every pattern of signs (see `marching_cubes_cases`), free of
 /// self-intersections, and with no two vertices so close that slicers meld them.
 ///
-/// @param inside  empty on the sides of its box, but for its lowest layer
+/// @param inside  the outermost voxels of its box are outside, except in its lowest layer
 /// @throws Stopped  between two layers
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
-/// Cubes between eight voxels each, by their lowest corner in a mask; half-open.
+/// A half-open range of cubes, each between eight voxels, by their lowest corners in a mask.
 struct CubeRange {
   Index3 low = {};
   Index3 end = {};
 };
 
-/// The surface of a shell in some of the cubes of its mask, open where others go on. Vertices there
-/// are `fixed`, and are those of the others if the mask holds two voxels more on each side.
+/// The surface of a shell in some of the cubes of its mask, open at the border to the others.
+/// Vertices on that border are `fixed`. The other side makes the same ones if the mask has two more
+/// voxels on each side.
 void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,
                     const MeshSink& sink, const std::stop_token& stop = {});
 

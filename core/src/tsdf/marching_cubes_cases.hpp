@@ -15,7 +15,7 @@ using CubeEdge = std::uint8_t;
 /// The axis, 0 to 2, that an edge lies along.
 constexpr std::size_t edge_axis(CubeEdge edge) { return edge / 4U; }
 
-/// The corner of a cube, told by its lowest one, that an edge begins at.
+/// The corner at which an edge begins, given the cube's lowest corner.
 constexpr Index3 find_start(CubeEdge edge, const Index3& cube) {
   const int u = edge % 2;
   const int v = edge / 2 % 2;
@@ -44,9 +44,9 @@ struct CubeSurface {
 };
 
 /// Marching Cubes (Lorensen and Cline 1987) for all 256 patterns, made from a rule for the signs on
-/// a face: two inside corners across its diagonal are apart. So cubes agree on the faces they
-/// share, and as no triangle has a side across a face that is not on the face's own lines, the
-/// surface is closed and manifold whatever the signs.
+/// a face: two inside corners on its diagonal are not connected. Neighbouring cubes therefore agree
+/// on the face that they share. No other triangle side lies in a face, so the surface is closed and
+/// manifold for all signs.
 extern const std::array<CubeSurface, 256> marching_cubes_cases;
 
 /// Whether the triangles of a pattern can cut each other, where its crossings lie near corners.

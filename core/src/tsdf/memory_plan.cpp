@@ -29,7 +29,7 @@ constexpr std::size_t unlimited_facets_bytes = 128 * mebibyte;
 constexpr double usual_side = 0.1;  // metres
 constexpr double bricks_by_slope = 1.5;
 
-/// When the surface is made, the threads' snapshots are gone, and its window takes no more.
+/// The snapshots of the threads are freed before the surface is made, whose window takes no more.
 std::size_t fixed_overhead(const ReconstructOptions& options) {
   static_assert(surface_bytes <= thread_bytes);
   return options.program_memory + static_cast<std::size_t>(options.threads) * thread_bytes;
@@ -40,7 +40,7 @@ std::size_t table_bytes(const VoxelGrid& grid) {
   return 2 * (grid.brick_count() * sizeof(std::uint32_t) + grid.block_count());
 }
 
-/// What the options need for any model at all.
+/// The memory that the options need for the smallest model, bytes.
 std::size_t min_bytes(const ReconstructOptions& options) {
   return fixed_overhead(options) +
          std::max(min_volume_bytes, table_bytes(make_solid_grid(options)));
@@ -59,7 +59,7 @@ std::size_t usual_bytes(const ReconstructOptions& options) {
                                           static_cast<std::size_t>(surface));
 }
 
-/// The options' leaf size, doubled until what it needs is within the limit.
+/// The options' leaf size, doubled until the memory that it needs is within the limit.
 double fitting_leaf(ReconstructOptions options,
                     std::size_t (*needed_bytes)(const ReconstructOptions&)) {
   while (options.memory_limit != 0 && 2 * options.leaf_size <= options.root_size &&
@@ -69,7 +69,7 @@ double fitting_leaf(ReconstructOptions options,
   return options.leaf_size;
 }
 
-/// @throws Error "memory-limit"  that says what would fit
+/// @throws Error "memory-limit"  with the memory that is enough, or a leaf size that fits
 void expect_memory(const ReconstructOptions& options) {
   const std::size_t needed = min_bytes(options);
   if (options.memory_limit == 0 || needed <= options.memory_limit) {

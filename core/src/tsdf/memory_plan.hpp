@@ -14,22 +14,22 @@ namespace octurn {
 /// @throws Error "bad-settings", "memory-limit"
 ReconstructOptions checked_solid_options(ReconstructOptions options);
 
-/// Bytes that the volume and the compact TSDF may take together.
+/// Maximum bytes of the volume and the compact TSDF together.
 /// @param options  checked
 std::size_t volume_budget(const ReconstructOptions& options);
 
-/// Bytes that a slab of the volume may take, so that its compact form fits beside it.
+/// Maximum bytes of a slab of the volume, so that its compact form fits beside it.
 /// @param known  the slabs that are finished
 std::size_t slab_budget(const ReconstructOptions& options, const CompactTsdf& known);
 
-/// Bytes of the mask of an SDF's box, and half as much to find its components.
+/// Bytes of the mask of an SDF's box, plus half as much to find its components.
 std::size_t mask_bytes(const HoleFilledSdf& sdf);
 
-/// Expects room for so many bytes beside the program. @throws Error "memory-limit"
+/// @throws Error "memory-limit"  if so many bytes beside the program exceed the limit
 void expect_room(const ReconstructOptions& options, std::size_t bytes);
 
-/// Bytes that the facets of a finished surface may take, so that they need not be made again.
-/// @param taken  while the surface is made, beside what it always takes
+/// Maximum bytes of the facets of a counted surface, kept so that they need not be made again.
+/// @param taken  bytes that this surface takes beside those that every one takes
 std::size_t facets_budget(const ReconstructOptions& options, std::size_t taken);
 
 /// @throws Error "memory-limit"

@@ -99,7 +99,7 @@ NodeClass NodeClassifier::classify(const Octants& bounds, std::size_t octant) co
     return NodeClass::outside;
   }
   if (far < depth.min_free - free_margin * truncation_) {
-    // What makes no surface, the platform or the room, mostly lies behind what does.
+    // Readings that make no surface, of the platform or the room, mostly lie behind those that do.
     return depth.max_free <= depth.max_surface ? NodeClass::free_to_surface : NodeClass::free;
   }
   const bool near_surface = near <= depth.max_surface + max_behind * truncation_ &&

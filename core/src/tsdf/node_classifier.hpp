@@ -7,12 +7,12 @@
 
 namespace octurn {
 
-/// What a snapshot says of a cube of voxels.
+/// Class of a cube of voxels in one snapshot.
 enum class NodeClass {
-  outside,          ///< nothing: outside the view, or behind all surfaces
-  free,             ///< each ray passed through
-  free_to_surface,  ///< the same, and each ended on a surface
-  partial,          ///< free in part, and no surface near
+  outside,          ///< not seen: outside the view, or behind all surfaces
+  free,             ///< all rays passed through
+  free_to_surface,  ///< all rays passed through, and ended on a surface
+  partial,          ///< partly free, without a surface near
   near_surface,     ///< a surface may lie within the truncation
 };
 

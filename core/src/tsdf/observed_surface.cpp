@@ -18,12 +18,12 @@ namespace {
 constexpr int brick_side = VoxelGrid::brick_side;
 constexpr float unknown = std::numeric_limits<float>::infinity();
 
-// A crossing keeps this share of an edge from its ends, so that no triangle has no area.
+// A crossing keeps this share of an edge from its ends, so that every triangle has an area.
 constexpr float end_margin = 0.05F;
 
-/// What the voxels of a coarse sample say together.
+/// Counts of the voxels of a coarse sample.
 struct SampleSum {
-  int near = 0;  // a surface: observed, or right behind it
+  int near = 0;  // observed, or right behind an observed surface
   int free = 0;
   float distance = 0;  // of those near one, ticks
 

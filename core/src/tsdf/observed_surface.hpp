@@ -8,12 +8,11 @@
 
 namespace octurn {
 
-/// The surface of what was observed so far, by marching cubes: smooth, and open where nothing was
-/// seen.
+/// Draws the surface observed so far by marching cubes, open where nothing was observed.
 ///
-/// A coarse sample is the mean of the voxels that it covers and that were observed or lie right
-/// behind what was, if these are a quarter of it; or it is free, if rays passed through half of it.
-/// A cube with a corner that is neither has no surface.
+/// A coarse sample is the mean of the voxels in it that are observed or right behind an observed
+/// surface, if they are at least a quarter; it is free if rays passed through at least half. A cube
+/// with a corner that is neither has no surface.
 ///
 /// @param base_layer  the lowest layer of voxels whose samples count
 /// @param side        of a coarse sample, voxels; at least 1

@@ -9,9 +9,9 @@ namespace octurn {
 /// A sum of weights in 16 bits: a floating-point number of five bits of exponent and eleven of
 /// mantissa, from 2^-16 to 2^16, or 0.
 ///
-/// No scan reaches its end, and each sum is rounded to 1/4096 of itself, however large it is: so
-/// the mean that it weighs depends neither on how near the sensor stands nor, but for rounding, on
-/// the order of what was added.
+/// No scan reaches the maximum, and every sum is rounded to 1/4096 of itself. The weighted mean
+/// therefore does not depend on the sensor's distance and, except for rounding, not on the order of
+/// the snapshots.
 using PackedWeight = std::uint16_t;
 
 namespace packed_weight {

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// The half-space below the platform of one of several poses, in which nothing of the object is.
+/// The half-space below the platform of one of several poses. It holds nothing of the object.
 class PlatformCut {
  public:
   PlatformCut(const VoxelGrid& grid, const Placement& placement);

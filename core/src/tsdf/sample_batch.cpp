@@ -79,8 +79,8 @@ void BlockSampler::append_rows(const Index3& voxel, SampleBatch& batch) const {
   }
 }
 
-/// Finds each sample's pixel. Samples outside the image get a pixel at its edge, which says
-/// nothing.
+/// Finds each sample's pixel. Samples outside the image get a pixel at its edge, which has no
+/// reading.
 OCTURN_VECTOR_LEVELS
 void BlockSampler::project(SampleBatch& batch) const {
   const auto [fx, fy, cx, cy, last_u, last_v, width] = camera_;
@@ -93,7 +93,8 @@ void BlockSampler::project(SampleBatch& batch) const {
   }
 }
 
-/// Gathers what the pixels say. A pixel without a surface has a plane at distance 0.
+/// Gathers the pixels' planes, weights and depths. A pixel without a surface has a plane at
+/// distance 0.
 void BlockSampler::gather(SampleBatch& batch) const {
   for (std::size_t i = 0; i < batch.count; i += 4) {
     const DepthObservation& a = depth_.at(batch.pixel[i]);
@@ -112,7 +113,7 @@ void BlockSampler::gather(SampleBatch& batch) const {
   }
 }
 
-/// Decides which samples are near a surface, and through which the ray passed.
+/// Marks the samples that are near a surface, and those through which the ray passed.
 OCTURN_VECTOR_LEVELS
 void BlockSampler::classify(SampleBatch& batch) const {
   int near = 0;

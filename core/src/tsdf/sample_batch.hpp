@@ -9,8 +9,8 @@
 
 namespace octurn {
 
-/// The voxels of one block and what a snapshot says of them, as a structure of arrays. Samples come
-/// in fours, and loops over them have no branches, so that compilers vectorise them.
+/// The voxels of one block as samples of a snapshot, as a structure of arrays. Samples come in
+/// fours, and loops over them have no branches, so that compilers vectorise them.
 struct SampleBatch {
   template <typename Value>
   using Each = std::array<Value, TsdfBrick::samples>;
@@ -28,7 +28,7 @@ struct SampleBatch {
   int free_count;
 };
 
-/// Samples a snapshot at the voxels of blocks, and averages what it says into bricks.
+/// Samples a snapshot at the voxels of blocks, and averages the distances into bricks.
 class BlockSampler {
  public:
   /// @param depth  must outlive this

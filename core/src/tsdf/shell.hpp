@@ -12,9 +12,9 @@
 
 namespace octurn {
 
-/// The shell that the method `solid` makes of a space: what was seen, from its surface to a
-/// thickness behind it. Nobody knows what lies behind a wall, so the shell ends there, and where
-/// nothing was observed there is none.
+/// The shell that the method `solid` makes of a space: it reaches from the observed surface to a
+/// thickness behind it, because the other side of a wall is unknown. Where nothing was observed
+/// there is no shell.
 
 /// 8 x 8 x 8 voxels in the order of `TsdfBrick`: distances to the shell's surface in ticks,
 /// negative inside; `not_observed` where nothing was.
@@ -23,9 +23,8 @@ struct ShellBrick {
   std::array<std::int16_t, TsdfBrick::samples> distance = {};
 };
 
-/// Ticks of a voxel's side. The truncation is four voxels, and the shell two voxels thick: behind a
-/// surface voxels have to be observed on both sides of the shell's back, and their weight falls to
-/// zero at the truncation.
+/// Ticks of a voxel's side. The truncation is four voxels and the shell two voxels thick: voxels on
+/// both sides of the shell's back must be observed, and weights fall to zero at the truncation.
 inline constexpr int shell_voxel_ticks = VoxelGrid::ticks / 4;
 inline constexpr int shell_thickness_voxels = 2;
 
@@ -35,8 +34,8 @@ VoxelGrid make_shell_grid(const ReconstructOptions& options);
 /// The shell in a brick of a TSDF. @return whether any voxel is inside, or next to one that may be
 bool make_shell(const CompactBrick& from, ShellBrick& shell);
 
-/// The depth at which a whole window of readings weighs one, metres: for what a hand-held sensor
-/// sees of a room. A surface needs a tenth of that.
+/// Metres: depth at which a whole window of readings has the weight 1, for a hand-held sensor in a
+/// room. An observed surface needs a tenth of that weight.
 inline constexpr double shell_reference_depth = 3.0;
 
 }  // namespace octurn

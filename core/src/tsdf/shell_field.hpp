@@ -11,8 +11,8 @@
 
 namespace octurn {
 
-/// The signed distances of a box of bricks of a shell; outside where there is none. Voxels are
-/// counted as in a `TileLattice`.
+/// The signed distances of a box of bricks of a shell; missing bricks are outside. Voxels are
+/// indexed as in a `TileLattice`.
 class ShellField {
  public:
   static constexpr bool has_platform = false;

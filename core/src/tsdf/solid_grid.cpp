@@ -17,7 +17,7 @@ VoxelGrid make_solid_grid(const ReconstructOptions& options) {
   const int levels = checked_levels(options);
   const double voxel_side = options.root_size / (1 << levels);
   const double distance = std::max(options.solid.truncation, min_truncation_voxels * voxel_side);
-  // Of several poses, room for the surface of a foot that is seen from below.
+  // With several poses the surface of the foot may be seen from below: it needs room.
   const int below = options.placements.empty()
                         ? 0
                         : static_cast<int>(std::ceil(foot_room * distance /

@@ -5,7 +5,7 @@
 
 namespace octurn {
 
-/// The voxels of the method `solid`, with the truncation that they need.
+/// The voxel grid of the method `solid`, with its truncation.
 VoxelGrid make_solid_grid(const ReconstructOptions& options);
 
 }  // namespace octurn

@@ -27,11 +27,12 @@
 namespace octurn {
 namespace {
 
-// With fewer snapshots each one's rays open space alone, as there is hardly another to agree with.
+// With fewer snapshots, one snapshot's rays are enough for free space: hardly another sees the
+// same.
 constexpr std::size_t few_snapshots = 4;
 
-// Of several poses three snapshots have to agree: what errs would open the inside, which no other
-// pose closes.
+// With several poses three snapshots have to agree on free space: a wrong ray would open the
+// inside, and no other pose would close it.
 constexpr int min_votes_of_poses = 2 * votes_of_surface_ray + votes_of_any_ray;
 
 // The lowest layers of the clip box hold some of the platform's noise: the base layer is the first
@@ -41,7 +42,7 @@ constexpr double base_margin = 0.001;  // metres
 /// The simplifier's margin below the upper end of its window.
 constexpr double margin_voxels = 8;
 
-/// The times that voxels can be merged, eight in one, until their side would exceed `leaf_size`.
+/// How often voxels can be merged, eight to one, before their side exceeds `leaf_size`.
 int halvings_to(double leaf_size, const VoxelGrid& grid) {
   int halvings = 0;
   while (halvings < grid.levels() && grid.voxel_side() * (2 << halvings) <= leaf_size) {
@@ -80,8 +81,8 @@ void SolidReconstructor::add(const SnapshotSource& snapshots, const std::stop_to
   throw_memory_limit(options_);
 }
 
-/// Integrates all snapshots into the slab from a layer on, with fewer threads where the memory that
-/// they take leaves too little for it.
+/// Integrates all snapshots into the slab from a layer on, with fewer threads if their memory
+/// leaves too little for the slab.
 /// @param known  the slabs below
 void SolidReconstructor::fill_slab(const CompactTsdf& known, int low,
                                    const SnapshotSource& snapshots, const std::stop_token& stop) {
@@ -157,7 +158,7 @@ SurfaceCount SolidReconstructor::make_surface(const CompactTsdf& known, const Ho
   return count;
 }
 
-/// Votes that make free space.
+/// Minimum votes for free space.
 int SolidReconstructor::min_votes() const {
   if (!options_.placements.empty()) {
     return min_votes_of_poses;
@@ -165,7 +166,7 @@ int SolidReconstructor::min_votes() const {
   return added_ < few_snapshots ? votes_of_any_ray : votes_of_surface_ray;
 }
 
-/// Integrates all slabs, reading the snapshots again for each but the one in memory.
+/// Integrates all slabs, reading the snapshots again for each except the one in memory.
 CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
                                                 const std::stop_token& stop) {
   CompactTsdf known(volume_.grid(), min_votes());
@@ -189,7 +190,7 @@ CompactTsdf SolidReconstructor::integrate_slabs(const SnapshotSource& snapshots,
   return known;
 }
 
-/// The lowest layer of voxels whose samples count: of several poses all do.
+/// The lowest layer of voxels whose samples count: with several poses, the lowest of all.
 int SolidReconstructor::base_layer() const {
   if (!options_.placements.empty()) {
     return volume_.grid().low().z * VoxelGrid::brick_side;
@@ -227,7 +228,7 @@ HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known, const std
   return {known, std::move(platforms), stop, team};
 }
 
-/// What the model is made of. Of several poses nothing stands on the lowest layer.
+/// The components that the model keeps. With several poses none counts as standing.
 StandingParts SolidReconstructor::keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop,
                                              ThreadTeam& team) const {
   if (options_.placements.empty()) {

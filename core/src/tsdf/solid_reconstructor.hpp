@@ -19,21 +19,20 @@ namespace octurn {
 /// Reconstruction of one closed solid by a truncated signed distance function.
 ///
 /// Each snapshot is conditioned (`ConditionedDepth`; strips of lines: `strip_views`) and integrated
-/// (`integrate`) into a `TsdfVolume`, in the order of the scan; each voxel's distance and state are
-/// kept
-/// (`CompactTsdf`). Then holes are filled (`HoleFilledSdf`), what stands on the platform is kept
-/// (`standing_parts`) without spurs and cavities (`VoxelMask`), marching cubes draw its surface
-/// (`marching_cubes`) and edges are collapsed (`StreamSimplifier`), all of it streamed.
+/// (`integrate`) into a `TsdfVolume`, in the order of the scan; `CompactTsdf` keeps each voxel's
+/// distance and state. Then holes are filled (`HoleFilledSdf`), the components that stand on the
+/// platform are kept (`standing_parts`) without spurs and cavities (`VoxelMask`), marching cubes
+/// draw their surface (`marching_cubes`) and edges are collapsed (`StreamSimplifier`), all of it
+/// streamed.
 ///
-/// Where the volume does not fit in the memory limit it holds a slab, and the snapshots are read
-/// again for each further one. Neither slabs nor threads change a byte of the surface.
+/// If the volume does not fit in the memory limit, it holds a slab, and the snapshots are read
+/// again for each further slab. Slabs and threads change no byte of the surface.
 ///
-/// Of an object in several poses each snapshot is conditioned by its pose's clip box and platform,
-/// the largest component is kept, and its foot is flat only where nothing saw it.
+/// With several poses of the object each snapshot is conditioned by its pose's clip box and
+/// platform, the largest component is kept, and the base is flat only where it was not observed.
 ///
-/// Facets in holes have the attribute `filled_in`. The contract of the members is
-/// `Reconstructor`'s; `count` makes the surface, and keeps it for `surface` where the memory limit
-/// leaves room for it.
+/// Facets that fill holes have the attribute `filled_in`. `Reconstructor` documents the members;
+/// `count` makes the surface, and keeps it for `surface` if the memory limit allows.
 class SolidReconstructor final : public Reconstructor {
  public:
   explicit SolidReconstructor(const ReconstructOptions& options);

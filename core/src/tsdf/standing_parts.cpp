@@ -45,8 +45,8 @@ bool stands(const VoxelMask& mask) {
   return false;
 }
 
-/// The sole of each column: its lowest voxel, if that belongs to a component that ends just above
-/// the platform; else `no_foot`.
+/// For each column its lowest voxel, if that belongs to a component that ends just above the
+/// platform; else `no_foot`.
 std::vector<int> find_soles(const VoxelMask& mask, const HoleFilledSdf& sdf,
                             const std::stop_token& stop) {
   ConnectedComponents components(mask, ConnectedComponents::Of::voxels, stop);
@@ -97,7 +97,7 @@ Columns spread(const Columns& columns, const Index3& size, int reach, char value
   return result;
 }
 
-/// The columns with a sole below which no ray passed.
+/// The columns with such a lowest voxel below which no ray passed.
 Columns hidden_columns(const VoxelMask& mask, const HoleFilledSdf& sdf,
                        const std::vector<int>& soles) {
   const Index3& low = mask.low();
@@ -115,7 +115,7 @@ Columns hidden_columns(const VoxelMask& mask, const HoleFilledSdf& sdf,
   return hidden;
 }
 
-/// Extends components that end just above the platform down to it, below their soles.
+/// Extends components that end just above the platform down to it, in these columns.
 void add_feet(VoxelMask& mask, const HoleFilledSdf& sdf, const std::stop_token& stop) {
   const std::vector<int> soles = find_soles(mask, sdf, stop);
   const Index3& size = mask.size();

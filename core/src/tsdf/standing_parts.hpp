@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// The part of an SDF's inside that stands on the platform.
+/// The components of an SDF's inside that stand on the platform.
 struct StandingParts {
   VoxelMask mask;
   DroppedComponents dropped = {};
@@ -18,9 +18,9 @@ struct StandingParts {
 
 /// The connected components of the inside that the model keeps.
 ///
-/// A component that ends just above the platform stands on it, as the space right below an overhang
-/// is hardly seen. If nothing reaches the platform, such a component is extended down to it in the
-/// columns through which no ray passed.
+/// A component that ends just above the platform counts as standing, because the space right below
+/// an overhang is hardly seen. If no component reaches the platform, such a component is extended
+/// down to it in the columns through which no ray passed.
 /// @throws Stopped
 StandingParts standing_parts(const HoleFilledSdf& sdf, Parts parts,
                              const std::stop_token& stop = {},

@@ -23,8 +23,8 @@ struct TsdfBrick {
 
 /// A truncated signed distance function (Curless and Levoy 1996) as a dense table of bricks.
 ///
-/// A brick exists where some snapshot observed a surface within the truncation, or saw through a
-/// part of a block. Blocks count the votes of the snapshots that saw through the whole of them.
+/// A brick exists where a snapshot observed a surface within the truncation, or saw through a part
+/// of a block. A block counts the votes of the snapshots whose rays passed through all of it.
 ///
 /// Under a memory limit the volume holds a slab: as many layers of bricks as fit, from the slab's
 /// lowest layer up.
@@ -50,12 +50,12 @@ class TsdfVolume {
   }
   TsdfBrick* find(const Index3& brick) { return bricks_.find(grid_.brick_index(brick)); }
 
-  /// Whether all bricks of its layers would fit: then `make` drops no layers, and threads may call
-  /// it at once, for different bricks.
+  /// Whether all bricks of its layers would fit. Then `make` drops no layers, and several threads
+  /// may call it at once for different bricks.
   bool holds_all() const;
 
-  /// The same, made where it is missing. Where it does not fit, the volume drops its top layers;
-  /// null if the brick lies in one of them.
+  /// The brick at an index, made if it is missing. If it does not fit, the volume drops its top
+  /// layers; null if the brick was in one of them.
   /// @throws OutOfBudget  if only one layer is left
   TsdfBrick* make(const Index3& brick);
 

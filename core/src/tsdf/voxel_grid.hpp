@@ -25,9 +25,8 @@ class VoxelGrid {
   /// @param levels      times that the root cube is halved to get voxels
   /// @param clip        metres, platform frame
   /// @param truncation  metres
-  /// @param below       bricks below z = 0 that belong to the volume: a surface at z = 0 that is
-  /// seen
-  ///                    from below needs some
+  /// @param below       bricks below z = 0 that belong to the volume, for a surface at z = 0 that
+  ///                    is seen from below
   VoxelGrid(double root_side, int levels, const Box& clip, double truncation, int below = 0);
 
   double root_side() const { return root_side_; }

@@ -8,9 +8,8 @@
 
 namespace octurn {
 
-/// A pool of items in blocks that never move and are added one at a time, so that memory never
-/// doubles as a vector's does. An item has an index; index 0 is taken from the start and means
-/// "none".
+/// A pool of items in blocks that never move. Blocks are added one at a time, so that memory does
+/// not double as a vector's does. An item has an index; index 0 is reserved and means "none".
 template <typename Item>
 class BlockPool {
  public:
@@ -19,8 +18,8 @@ class BlockPool {
 
   BlockPool() { add(); }
 
-  /// Makes room for the table of so many items, so that no `add` moves it: then one thread may add
-  /// items while others use those that they have the index of.
+  /// Reserves the table for so many items, so that no `add` moves it: then one thread may add items
+  /// while others use items whose index they have.
   void reserve(std::size_t items) { blocks_.reserve(items / block_items + 2); }
 
   /// The index of a new item, equal to `Item{}`.
@@ -37,7 +36,7 @@ class BlockPool {
     return used_++;
   }
 
-  /// Frees an item, whose index `add` then gives out again.
+  /// Frees an item; `add` reuses its index.
   void remove(std::uint32_t index) { free_.push_back(index); }
 
   /// Whether the next `add` allocates a block.
@@ -48,7 +47,7 @@ class BlockPool {
     return (*blocks_[i / block_items])[i % block_items];
   }
 
-  /// Memory allocated, of removed items too.
+  /// Bytes allocated, including those of removed items.
   std::size_t bytes() const {
     return blocks_.size() * block_bytes + free_.capacity() * sizeof(std::uint32_t);
   }

@@ -16,13 +16,13 @@ class BrickMap {
  public:
   explicit BrickMap(std::size_t size) : indices_(size) { bricks_.reserve(size); }
 
-  /// The brick of that position in the table, if it exists.
+  /// The brick at a position of the table, or null.
   const Item* find(std::size_t at) const {
     return indices_[at] == 0 ? nullptr : &bricks_[indices_[at]];
   }
   Item* find(std::size_t at) { return indices_[at] == 0 ? nullptr : &bricks_[indices_[at]]; }
 
-  /// A new brick, where there is none.
+  /// Adds a brick at a position that has none.
   Item& add(std::size_t at) {
     indices_[at] = bricks_.add();
     return bricks_[indices_[at]];
@@ -39,7 +39,7 @@ class BrickMap {
   /// Whether the next `add` allocates `BlockPool<Item>::block_bytes`.
   bool is_full() const { return bricks_.is_full(); }
 
-  /// Of the bricks, without the table.
+  /// Bytes of the bricks, without the table.
   std::size_t brick_bytes() const { return bricks_.bytes(); }
 
   std::size_t bytes() const {

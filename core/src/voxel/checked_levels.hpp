@@ -4,9 +4,8 @@
 
 namespace octurn {
 
-/// The number of times that the root cube is halved down to the leaves, if the options that both
-/// methods have are in their ranges.
-/// @throws Error "bad-settings"  that says which option is out of its range
+/// Checks the options that both methods have, and returns the leaves' level.
+/// @throws Error "bad-settings"  that names the option that is out of range
 int checked_levels(const ReconstructOptions& options);
 
 }  // namespace octurn

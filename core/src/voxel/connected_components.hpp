@@ -27,10 +27,10 @@ class ConnectedComponents {
   /// @throws Stopped
   ConnectedComponents(const VoxelMask& mask, Of of, const std::stop_token& stop);
 
-  /// The run that stands for the component of a run.
+  /// The representative run of a run's component.
   std::uint32_t root(std::uint32_t run);
 
-  /// Of the run that stands for a component, that component's voxels; 0 of all others.
+  /// The number of voxels of a component, by its representative run; 0 for other runs.
   std::vector<std::uint64_t> volumes();
 
   /// The number of runs.

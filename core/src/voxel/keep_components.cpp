@@ -10,8 +10,8 @@
 namespace octurn {
 namespace {
 
-// Factor of the volume of a component that stands on the platform: the object is the one that
-// stands, even below something larger. Not more, or a speck on the platform would win over a ball
+// A component that stands on the platform counts with this factor of its volume: the object stands,
+// even below something larger. With a larger factor a speck on the platform would win over a ball
 // whose foot is hardly seen.
 constexpr std::uint64_t base_weight = 8;
 

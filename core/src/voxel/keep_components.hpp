@@ -7,19 +7,20 @@
 
 namespace octurn {
 
-/// The connected components (voxels that share faces) that a mask lost, and their voxels.
+/// The number of connected components (6-neighbours) that were removed from a mask, and of their
+/// voxels.
 struct DroppedComponents {
   std::uint64_t count = 0;
   std::uint64_t voxels = 0;
 };
 
-/// Keeps one connected component: the largest, where those that stand count eightfold.
-/// @param standing_layers  a component stands that reaches into so many of the box's lowest layers
+/// Keeps the largest connected component; the size of a standing one counts eightfold.
+/// @param standing_layers  a component stands if it reaches into this many lowest layers of the box
 /// @throws Stopped
 DroppedComponents keep_main_component(VoxelMask& mask, int standing_layers = 1,
                                       const std::stop_token& stop = {});
 
-/// Keeps that component and all others that stand and have at least so many voxels.
+/// Keeps that component, and every other one that stands and has at least `min_voxels`.
 /// @throws Stopped
 DroppedComponents keep_standing_components(VoxelMask& mask, int standing_layers,
                                            std::uint64_t min_voxels,

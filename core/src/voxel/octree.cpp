@@ -121,7 +121,7 @@ void Octree::merge(const Octree& other) {
   merge(root_, other, other.root_, height_);
 }
 
-/// Adds what is below a node of another octree to that in the same place here.
+/// Merges the subtree of another octree's node into the node at the same place.
 void Octree::merge(std::uint32_t to, const Octree& other, std::uint32_t from, int height) {
   if (height == 0) {
     for (std::size_t z = 0; z < Brick::side; ++z) {

@@ -14,7 +14,7 @@ void assign(std::span<std::uint64_t> row, int first, int end, bool value);
 
 /// A set of voxels in a box of a grid, as a bitmap in rows along x.
 ///
-/// What takes a stop token throws `Stopped` between two layers, and is then left incomplete.
+/// Members that take a stop token throw `Stopped` between two layers; the mask is then incomplete.
 class VoxelMask {
  public:
   /// An empty mask of the half-open box from `low` to `end`.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "rig/laser_simulation.hpp"
 #include "simulator/white_noise.hpp"
 

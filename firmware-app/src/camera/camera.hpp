@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/colours.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "camera/grey_picture.hpp"
-#include "octurn/colours.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

@@ -26,10 +26,6 @@ std::size_t bytes_per_pixel(PixelLayout layout) {
   return 3;
 }
 
-std::uint8_t luminance(int red, int green, int blue) {
-  return static_cast<std::uint8_t>((299 * red + 587 * green + 114 * blue + 500) / 1000);
-}
-
 std::uint8_t luminance_at(const std::uint8_t* pixel, PixelLayout layout) {
   switch (layout) {
     case PixelLayout::grey:
@@ -42,11 +38,11 @@ std::uint8_t luminance_at(const std::uint8_t* pixel, PixelLayout layout) {
     case PixelLayout::uyvy:
       return pixel[1];
     case PixelLayout::rgb_bytes:
-      return luminance(pixel[0], pixel[1], pixel[2]);
+      return luminance({pixel[0], pixel[1], pixel[2]});
     case PixelLayout::bgr_bytes:
       break;
   }
-  return luminance(pixel[2], pixel[1], pixel[0]);
+  return luminance({pixel[2], pixel[1], pixel[0]});
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

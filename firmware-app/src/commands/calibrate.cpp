@@ -1,13 +1,13 @@
 #include "octurn/calibrate.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/follow_calibration.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
@@ -102,20 +102,9 @@ bool calibrate_from(const std::filesystem::path& folder, const CalibrateArgument
   return accepted;
 }
 
-/// Shows progress until the turn has ended; a signal cancels it.
-CalibrationRun follow(Scanner& scanner, const std::stop_token& stop) {
-  using namespace std::chrono_literals;
-  ProgressBar bar;
-  while (scanner.status().busy()) {
-    const CalibrationRun run = **scanner.calibration_run();
-    bar.show(run.stop, run.stops,
-             run.phase == CalibrationRun::Phase::solving ? "solving" : "turning");
-    if (stop.stop_requested()) {
-      scanner.cancel_calibration();
-    }
-    scanner.wait_until_done(100ms);
-  }
-  return **scanner.calibration_run();
+void show_turn(ProgressBar& bar, const CalibrationRun& run) {
+  bar.show(run.stop, run.stops,
+           run.phase == CalibrationRun::Phase::solving ? "solving" : "turning");
 }
 
 bool calibrate_rig(const CalibrateArguments& arguments) {
@@ -129,7 +118,7 @@ bool calibrate_rig(const CalibrateArguments& arguments) {
   settings.snapshots = arguments.stops;
   scanner.expect_ready();
   scanner.calibrate(settings);  // nothing else goes on here
-  const CalibrationRun run = follow(scanner, signal.token());
+  const CalibrationRun run = follow_calibration(scanner, signal.token(), show_turn);
   if (run.failure) {
     throw to_error(*run.failure);
   }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -8,10 +7,11 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "octurn/calibrate.hpp"
-#include "octurn/depth_png.hpp"
+#include "commands/follow_calibration.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/lens.hpp"
+#include "octurn/png.hpp"
 #include "progress_bar.hpp"
 #include "scan/board_pdf.hpp"
 #include "scan/data_folder.hpp"
@@ -105,7 +105,7 @@ LensReport report_from(const std::filesystem::path& folder) {
   return calibrate_lens(views, size.width, size.height);
 }
 
-/// What to do with the board, for who reads a progress bar.
+/// What a person should do with the board, beside the progress bar.
 std::string_view to_words(BoardAdvice advice) {
   constexpr std::array<std::string_view, 5> words{"show the board", "hold it still", "tilt it",
                                                   "show it at the picture's edges",
@@ -113,20 +113,10 @@ std::string_view to_words(BoardAdvice advice) {
   return words[static_cast<std::size_t>(advice)];
 }
 
-CalibrationRun follow(Scanner& scanner, const std::stop_token& stop) {
-  using namespace std::chrono_literals;
-  ProgressBar bar;
-  while (scanner.status().busy()) {
-    const CalibrationRun run = **scanner.calibration_run();
-    if (run.look) {
-      bar.show(std::min(run.stop, run.stops), run.stops, to_words(run.look->advice));
-    }
-    if (stop.stop_requested()) {
-      scanner.cancel_calibration();
-    }
-    scanner.wait_until_done(100ms);
+void show_advice(ProgressBar& bar, const CalibrationRun& run) {
+  if (run.look) {
+    bar.show(std::min(run.stop, run.stops), run.stops, to_words(run.look->advice));
   }
-  return **scanner.calibration_run();
 }
 
 LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
@@ -137,7 +127,7 @@ LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
   Scanner scanner(rig, config.limits, store);
   scanner.expect_ready();
   scanner.look_at_board();  // nothing else goes on here
-  const CalibrationRun run = follow(scanner, signal.token());
+  const CalibrationRun run = follow_calibration(scanner, signal.token(), show_advice);
   if (run.failure) {
     throw to_error(*run.failure);
   }

@@ -5,9 +5,9 @@
 #include <system_error>
 
 #include "commands/model_commands.hpp"
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/tiles.hpp"
 #include "progress_bar.hpp"

@@ -11,7 +11,7 @@
 #include "commands/commands.hpp"
 #include "commands/reconstruct_input.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/tiles.hpp"
@@ -180,8 +180,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   if (!is_tiled) {
     scan_checks.emplace(options.placements, options.clip, scan.shots.size());
   }
-  MeshCheck check;
-  std::optional<SurfaceCount> count;
+  std::optional<ModelReport> report;
   Times times;
   {
     ProgressBar bar;
@@ -195,12 +194,9 @@ void reconstruct(const ReconstructArguments& arguments) try {
     bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
     ModelOutput output(coloured ? coloured->stl() : arguments.output,
                        [&] { return reconstruction->count(snapshots, stop).facets; });
-    const auto checked = [&](std::span<const Facet> facets) {
-      check.add(facets);
-      output.write(facets);
-    };
-    count = write_model(*reconstruction, snapshots, checked, stop);
-    if (!count) {
+    const auto write = [&](std::span<const Facet> facets) { output.write(facets); };
+    report = write_model(*reconstruction, snapshots, write, stop);
+    if (!report) {
       throw Stopped{};
     }
     output.commit();
@@ -209,15 +205,14 @@ void reconstruct(const ReconstructArguments& arguments) try {
     }
     times = {.snapshots = seen - start, .surface = Clock::now() - seen};
   }
-  const ModelReport report = report_of(*count, check);
   std::optional<Quality> quality;
   if (scan_checks) {
-    quality = judge(scan_checks->figures(options.threads), report, findings);
+    quality = judge(scan_checks->figures(options.threads), *report, findings);
     if (quality->verdict != Verdict::good) {
       std::cerr << to_text(*quality);
     }
   }
-  print(arguments, to_json(report, quality, settings, times));
+  print(arguments, to_json(*report, quality, settings, times));
 } catch (const Stopped&) {
   throw_stopped("no model was written");
 }

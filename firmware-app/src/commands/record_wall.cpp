@@ -1,5 +1,5 @@
 #include "commands/commands.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/sensor_map.hpp"
 #include "progress_bar.hpp"
 #include "sensor/new_folder.hpp"

@@ -2,13 +2,11 @@
 
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "commands/model_commands.hpp"
 #include "commands/reconstruct_input.hpp"
 #include "octurn/error.hpp"
-#include "octurn/mesh_report.hpp"
-#include "octurn/stl.hpp"
+#include "octurn/model.hpp"
 #include "octurn/units.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
@@ -79,22 +77,13 @@ void join(const JoinArguments& arguments) try {
   return_freed_memory();
   const SignalStop signal;
   expect_writable(arguments.output);
-  StlFile stl(arguments.output);
-  MeshCheck check;
-  const SurfaceCount count = join_tiles(
-      arguments.tiles,
-      [&](std::span<const Facet> facets) {
-        check.add(facets);
-        stl.write(facets);
-      },
-      signal.token());
-  expect_facets(count);
-  stl.commit();
+  const ModelReport report = join_tiles(arguments.tiles, arguments.output, signal.token());
   if (arguments.json) {
-    write_standard_output(
-        Json{{"leaves", count.leaves}, {"triangles", count.facets}, {"watertight", check.closed()}}
-            .dump() +
-        "\n");
+    write_standard_output(Json{{"leaves", report.leaves},
+                               {"triangles", report.triangles},
+                               {"watertight", report.watertight}}
+                              .dump() +
+                          "\n");
   }
 } catch (const Stopped&) {
   throw_stopped("no model was written");

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "mesh/facet_file.hpp"
-#include "octurn/colours.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

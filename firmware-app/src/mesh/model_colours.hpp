@@ -7,7 +7,7 @@
 
 #include "mesh/facet_file.hpp"
 #include "mesh/vertex_table.hpp"
-#include "octurn/colours.hpp"
+#include "octurn/model.hpp"
 
 namespace octurn {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 namespace {

@@ -6,18 +6,18 @@
 
 namespace octurn {
 
-/// What a board is printed on.
+/// The paper that a board is printed on.
 enum class Paper { a4, letter };
 
-/// "a4", "letter"; nothing if it is neither.
+/// The paper named "a4" or "letter"; nothing for other names.
 std::optional<Paper> paper_named(std::string_view name);
 
 /// The side of a printed board's squares, millimetres.
 inline constexpr int board_square_mm = 15;
 
-/// A board of black squares for `find_board`, 12 by 17 of them, of letter paper 12 by 16, as a PDF
-/// of one page. A ruler of 100 mm stands below and one beside it: a printer that scales the page,
-/// or one side of it, shows there. All lengths are exact at 100 %.
+/// A chessboard for `find_board`, 12 by 17 squares (12 by 16 on letter paper), as a PDF of one
+/// page. Rulers of 100 mm below and beside it show whether the printer scaled the page, or one side
+/// of it. All lengths are exact at 100 %.
 std::string board_pdf(Paper paper);
 
 }  // namespace octurn

@@ -4,20 +4,20 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 
-/// What the person with a board is to do next.
+/// What the person who holds a board should do next.
 enum class BoardAdvice {
-  show,        ///< it is not seen
+  show,        ///< no board is seen
   hold_still,  ///< it moves
-  tilt,        ///< it was taken so already, and never tilted far enough
-  reach,       ///< it was taken so already, and a part of the picture has never shown it
-  turn,        ///< it was taken so already: any other way will do
+  tilt,        ///< this place was taken already; boards were never tilted far enough
+  reach,       ///< this place was taken already; a part of the picture has never shown a board
+  turn,        ///< this place was taken already: any other place will do
 };
 
-/// What somebody who holds a board is shown.
+/// Feedback for the person who holds a board.
 struct BoardLook {
   BoardAdvice advice = BoardAdvice::show;
   /// Of the last picture, as shares of its width and height.
@@ -30,11 +30,10 @@ struct BoardLook {
 /// A look as the API has it.
 nlohmann::json to_json(const BoardLook& look);
 
-/// Takes views of a board that is held before a camera: each time that it stands still in a new
-/// place.
+/// Takes a view of a board that is held before a camera whenever it stands still in a new place.
 class BoardWatch {
  public:
-  /// @param lens  about that of the camera, to see how a board is tilted
+  /// @param lens  an estimate of the camera's, from which the boards' tilt is computed
   explicit BoardWatch(const Intrinsics& lens);
 
   /// Looks at the next picture, of the lens's size. @return whether its view was taken
@@ -43,11 +42,11 @@ class BoardWatch {
   const BoardLook& look() const { return look_; }
   const std::vector<BoardView>& views() const { return views_; }
 
-  /// Whether nothing is missing, or so much was taken that more does not help.
+  /// Whether all views that are wanted were taken, or so many that more do not help.
   bool is_complete() const;
 
  private:
-  /// How a board is held.
+  /// Position and orientation of a board.
   struct Hold {
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // pixels, of what is seen
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();

@@ -11,24 +11,24 @@
 
 namespace octurn {
 
-/// What a build works on.
+/// The input of a build.
 struct BuildInput {
   const Job& job;                       ///< of the scan
-  const std::filesystem::path& folder;  ///< of the same, or of its poses; nothing in it is changed
+  const std::filesystem::path& folder;  ///< of the scan, or of all its poses merged; read only
   const BuildSettings& settings;
-  /// Of several poses: what was found as they were scanned. Of one turn it is found here.
+  /// Of several poses: the findings of their scans. Of one turn they are read from `folder`.
   std::optional<std::vector<CalibrationFinding>> findings = {};
 };
 
-/// What was found as a scan was taken: by its own calibration, and by its last look.
+/// The findings of a scan: of its own calibration, and of its last look.
 /// @param folder  of the scan. @throws Error  as `read_scan`
 std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder);
 
-/// Told on any thread what a build is doing, and how many snapshots it has read.
+/// Called on any thread with the phase of a build and the number of snapshots read.
 using BuildProgress = std::function<void(Phase phase, int snapshots_done)>;
 
-/// Builds a model from the stored snapshots of a scan and judges it. The pose is the told one, or
-/// that which the scan has solved, or else one that is solved now.
+/// Builds a model from the stored snapshots of a scan, and judges it. The sensor's pose is the told
+/// one, the one that the scan solved, or one that is solved here, by the settings.
 ///
 /// @param file  of the model, which appears whole or not at all
 /// @return a build without number and time; nothing if stopped first

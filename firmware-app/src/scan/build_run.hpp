@@ -10,40 +10,40 @@
 
 namespace octurn {
 
-/// What is to be built from a stored scan.
+/// A request to build a model from a stored scan.
 struct BuildOrder {
   BuildSettings settings = {};
-  bool becomes_model = false;  ///< it is chosen as the scan's model as soon as it is there
+  bool becomes_model = false;  ///< once built, it is chosen as the scan's model
 };
 
 /// A build's job on a cluster.
 struct ClusterJob {
-  std::string id = {};      ///< its number there; empty before it has one
-  std::string detail = {};  ///< what it waits for, or what is wrong with the cluster; or empty
+  std::string id = {};      ///< its number on the cluster; empty before it is submitted
+  std::string detail = {};  ///< why it waits, or the cluster's fault; or empty
 };
 
-/// A build that waits or goes on, or what became of the last one.
+/// The state of the build that waits or runs, or of the last one.
 struct BuildRun {
   enum class State { waiting, running, finished, failed, cancelled };
 
   std::string scan = {};  ///< its id
-  int number = 1;         ///< that the build will have
+  int number = 1;         ///< of the build
   State state = State::waiting;
   Phase phase = Phase::starting;
   std::string created = {};  ///< UTC, as in ISO 8601
-  int snapshots_done = 0;    ///< that were read so far
+  int snapshots_done = 0;    ///< read so far
   int snapshots = 0;
   BuildSettings settings = {};
   std::optional<Failure> failure = {};         ///< why there is no model
-  std::optional<ClusterJob> cluster_job = {};  ///< of one that is built elsewhere
+  std::optional<ClusterJob> cluster_job = {};  ///< if a cluster builds it
 
   bool has_ended() const { return state != State::waiting && state != State::running; }
 };
 
-/// Why a build ended for a scan, which has precedence.
+/// The failure of a build that a scan interrupted, as scans have precedence.
 Failure displaced_by_scan();
 
-/// "build 2 of scan 20261122-081500": what a log calls it.
+/// Its name in logs: "build 2 of scan 20261122-081500".
 std::string describe(const BuildRun& run);
 
 /// "waiting", "running", "finished", "failed", "cancelled".

@@ -12,25 +12,25 @@
 
 namespace octurn {
 
-/// What a stored scan is built with: every setting that needs no new capture.
+/// The settings of a build: those of a scan that need no new capture.
 struct BuildSettings {
-  ScanSettings scan = {};         ///< of which those of the model count
-  std::optional<int> level = {};  ///< surface of this coarser level; intersection
-  /// Taken as told, optical frame to platform frame, metres; nothing: as the scan was told.
+  ScanSettings scan = {};         ///< only those of the model are used
+  std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
+  /// The told pose, optical frame to platform frame, metres; nothing: that of the scan.
   std::optional<Eigen::Isometry3d> platform_from_sensor = {};
 };
 
-/// Every one of these settings, with its key, unit and range.
+/// All these settings, each with its key, unit and range.
 std::vector<Field> fields(BuildSettings& settings);
 
 nlohmann::json to_json(const BuildSettings& settings);
 
-/// Reads the settings of a build to come; a key that is not given is as in `defaults`.
-/// @throws Error "bad-settings"  that names the key, its value and what is allowed; also for a key
-///                               that is none
+/// Reads the settings of a new build; a missing key has the value of `defaults`.
+/// @throws Error "bad-settings"  with the key, its value and the allowed range; also for an unknown
+///                               key
 BuildSettings build_settings_from(const nlohmann::json& object, const BuildSettings& defaults);
 
-/// Reads the settings of a build that was made. @throws Error  as above, of the value's code
+/// Reads the settings of a stored build. @throws Error  as above, with the value's code
 BuildSettings stored_build_settings_from(const JsonValue& object);
 
 }  // namespace octurn

@@ -12,18 +12,18 @@
 
 namespace octurn {
 
-/// All that a build works on: what the worker makes a model of, or a job on a cluster.
+/// The complete input of a build, for the worker or for a job on a cluster.
 struct BuildTask {
   BuildRun run = {};
   bool becomes_model = false;
   Job job = {};                         ///< of the scan
-  std::filesystem::path folder = {};    ///< the scan folder: its own, or that of all its poses
-  std::vector<std::string> poses = {};  ///< ids of the scans of other poses that are in it
-  /// What was found as these were scanned; of one turn it is found as it is built.
+  std::filesystem::path folder = {};    ///< the scan's own folder, or that of all its poses merged
+  std::vector<std::string> poses = {};  ///< ids of the scans of other poses in that folder
+  /// The findings of these scans; of one turn they are read when it is built.
   std::optional<std::vector<CalibrationFinding>> findings = {};
 };
 
-/// What a build of a stored scan works on: the poses are those of the model that is chosen.
+/// Makes the task of a build of a stored scan. It has the poses of the chosen model.
 /// @throws Error "no-such-scan", "no-model"
 BuildTask make_task(const ScanStore& store, const BuildRun& run, bool becomes_model);
 
@@ -34,12 +34,12 @@ std::optional<Build> build_model(const BuildTask& task, const Limits& limits,
                                  const std::filesystem::path& file, const std::stop_token& stop,
                                  const BuildProgress& progress);
 
-/// Makes a build that is kept the scan's model, if the task asks for it or there is none.
+/// Chooses a finished build as the scan's model, if the task asks for it or the scan has no model.
 /// @throws Error  as `ScanStore::choose_build`
 void choose_built(ScanStore& store, const BuildTask& task);
 
-/// A task, and the limits of who makes it, as `folder/task.json`, which appears whole or not at
-/// all. @throws Error "disk-full", "write-failed"
+/// Writes a task and the builder's limits as `folder/task.json`, whole or not at all. @throws Error
+/// "disk-full", "write-failed"
 void write_task(const std::filesystem::path& folder, const BuildTask& task, const Limits& limits);
 
 struct StoredTask {

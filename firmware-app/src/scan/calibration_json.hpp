@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// What `octurn calibrate --json` prints: millimetres and degrees.
+/// The JSON of `octurn calibrate --json`: millimetres and degrees.
 /// @param angles  of the stops as told, radians
 nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles);
 
@@ -20,10 +20,10 @@ nlohmann::json to_json(const CalibrationReport& report, const std::vector<double
 /// A scan's calibration as the API and `job.json` have it.
 nlohmann::json to_json(const ScanCalibration& calibration);
 
-/// What was found, as the API and the files have it.
+/// Findings, as in the API and the files.
 nlohmann::json to_json(const std::vector<CalibrationFinding>& findings);
 
-/// The findings of such JSON. @throws Error  of the value's code
+/// Reads findings from that JSON. @throws Error  with the value's code
 std::vector<CalibrationFinding> to_findings(const JsonValue& list);
 
 /// The calibration of a `job.json`. @throws Error  of the value's code

@@ -11,36 +11,37 @@
 
 namespace octurn {
 
-/// What a person changes of the pose in force; what is absent stays.
+/// A person's change of the pose in force; absent members stay.
 struct PoseChange {
   bool is_settings_pose = false;  ///< back to the settings' pose, without a scale
   std::optional<Eigen::Isometry3d> platform_from_sensor = {};
-  /// Of the depths. A pose that is not given grows with it: the platform stays where it is seen.
+  /// Factor of the depths. Without a new pose the old one is scaled with it, so that the platform
+  /// stays where it is seen.
   std::optional<double> scale = {};
 };
 
-/// The pose of the sensor that is in force over the settings', and those before it, in
-/// `DATA/calibration.json`; `calibration.last.json` is a copy, read where that is damaged. Any
-/// thread may call anything.
+/// The sensor's pose in force, which overrides that of the settings, and the poses before it, in
+/// `DATA/calibration.json`; `calibration.last.json` is a copy, read if that file is damaged.
+/// Thread-safe.
 class CalibrationStore {
  public:
   static constexpr std::size_t max_history = 10;  ///< records beside the one in force
 
-  /// Reads the file; one that is damaged is named in the log.
-  /// @param data  that this process has locked
+  /// Reads the file; the log names a damaged one.
+  /// @param data  the data folder, which this process has locked
   explicit CalibrationStore(std::filesystem::path data);
 
-  /// The record in force, then those before it, the newest first. Touches no disk.
-  /// @param told  settings whose pose is in force where no other is
+  /// The record in force, then those before it, the newest first. Reads no disk.
+  /// @param told  settings whose pose is in force if there is no record
   std::vector<PoseRecord> records(const ScanSettings& told) const;
 
-  /// The settings of a scan to come, with the pose and the scale in force. Touches no disk.
+  /// Settings for a new scan, with the pose and the scale in force. Reads no disk.
   ScanSettings in_force(ScanSettings told) const;
 
   /// Puts a pose into force. @throws Error "disk-full", "write-failed"
   void set(const PoseRecord& record);
 
-  /// The same with what a person wants. @param told  as above
+  /// Applies a person's change. @param told  as above
   void change(const PoseChange& change, const ScanSettings& told);
 
   /// Puts the pose before the one in force back into force.
@@ -53,12 +54,12 @@ class CalibrationStore {
   void write(std::vector<PoseRecord> records);
 
   std::filesystem::path data_;
-  std::mutex writing_;        // held by who changes the records; taken before mutex_
+  std::mutex writing_;        // serialises changes of the records; locked before mutex_
   mutable std::mutex mutex_;  // guards records_, and is never held while the disk is used
   std::vector<PoseRecord> records_;
 };
 
-/// What is wrong with the calibration of a data folder; nothing if it is whole, or there is none.
+/// The fault of a data folder's calibration file; nothing if it is intact or absent.
 std::optional<std::string> find_damaged_calibration(const std::filesystem::path& data);
 
 }  // namespace octurn

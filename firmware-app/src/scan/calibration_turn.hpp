@@ -10,6 +10,7 @@
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "octurn/sensor_map.hpp"
 #include "scan/board_watch.hpp"
 #include "scan/rig.hpp"
@@ -17,16 +18,16 @@
 
 namespace octurn {
 
-/// Stops of a turn that is made for the sensor's pose: with fewer the object is seen from too few
-/// sides, more take memory for their depth images, 0.6 MB each.
+/// Stops of a turn that measures the sensor's pose. With fewer the object is seen from too few
+/// sides; each one more takes 0.6 MB for its depth image.
 inline constexpr int min_calibration_stops = 4;
 inline constexpr int max_calibration_stops = 72;
 inline constexpr int default_calibration_stops = 24;
 
-/// What all stops saw within 1 mm of the object's plane y = 0: metres, x and z.
+/// The points of all stops within 1 mm of the plane y = 0 of the object's frame: x and z, metres.
 using Slice = std::vector<Eigen::Vector2d>;
 
-/// What a turn told of the sensor's pose.
+/// The sensor's pose as solved from a turn.
 struct TurnReport {
   CalibrationReport calibration = {};
   std::vector<double> angles = {};  ///< of the stops as told, radians
@@ -34,7 +35,7 @@ struct TurnReport {
   Slice after = {};                 ///< with the solved one; empty if that is refused
 };
 
-/// A measurement of the rig, as it goes on.
+/// The progress and result of a measurement of the rig.
 struct CalibrationRun {
   enum class Kind { turn, wall, lens };
   enum class State { running, done, refused, failed, cancelled };
@@ -43,13 +44,13 @@ struct CalibrationRun {
   Kind kind = Kind::turn;
   State state = State::running;
   Phase phase = Phase::turning;
-  int stop = 0;  ///< that are done; of a wall, frames; of a lens, views of a board
+  int stop = 0;  ///< number done: stops; frames of a wall; views of a board
   int stops = 0;
   std::optional<TurnReport> report = {};     ///< of a turn
   std::optional<SensorMapReport> wall = {};  ///< of a wall; its map has no pixels here
   std::optional<BoardLook> look = {};        ///< of a lens, while a board is looked at
   std::optional<LensReport> lens = {};       ///< of a lens
-  std::string camera = {};                   ///< of a lens: the serial number of whose it is
+  std::string camera = {};                   ///< of a lens: the camera's serial number
   std::optional<Failure> failure = {};
 };
 

@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// The options of a model whose snapshots are checked, and whose pose may be solved: what is held
-/// of each snapshot for that is left to them.
+/// Options for a model whose snapshots are also checked, and whose pose may be solved: the memory
+/// that this takes is added to `program_memory`.
 ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
                                    std::size_t snapshots);
 
@@ -25,7 +25,7 @@ class PoseChecks {
   /// @param stop  below the number of stops. @throws  as `ScanCheck::add`; called as that is
   void add(std::size_t stop, const Snapshot& snapshot);
 
-  /// Of each pose, places in the object's frame.
+  /// The figures of each pose, places in the object's frame.
   std::vector<ScanFigures> figures(int threads) const;
 
  private:
@@ -33,7 +33,7 @@ class PoseChecks {
   std::vector<std::unique_ptr<ScanCheck>> checks_;
 };
 
-/// The same snapshots; `checks` look at each that is read, and have to outlive them.
+/// The same snapshots; each one that is read is added to `checks`, which must outlive them.
 SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
 
 }  // namespace octurn

@@ -4,7 +4,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "octurn/colours.hpp"
+#include "octurn/model.hpp"
 #include "scan/model_scan.hpp"
 
 namespace octurn {
@@ -13,11 +13,10 @@ namespace octurn {
 /// of a `VertexTable`.
 std::filesystem::path colours_file(const std::filesystem::path& model);
 
-/// Refuses a scan that is none by laser line. @throws Error "scan-malformed"
+/// Refuses a scan that is not by laser line. @throws Error "scan-malformed"
 void expect_pictures(const Scan& scan);
 
-/// Makes that file from the pictures of the scan that the model was made of. It appears whole or
-/// not at all.
+/// Makes that file, whole or not at all, from the pictures of the model's scan.
 /// @param memory_limit  bytes, of this process; 0: none
 /// @throws Error "memory-limit"  if the model has so many triangles that it might take more; as
 ///                               `vertex_colours`, and "disk-full", "write-failed"; Stopped
@@ -25,7 +24,7 @@ void colour_model(const std::filesystem::path& model, const ModelScan& of, std::
                   const std::stop_token& stop);
 
 /// Reads that file.
-/// @throws Error "read-failed"  if it is not there, or not whole
+/// @throws Error "read-failed"  if it is missing or incomplete
 std::vector<Rgb> read_colours(const std::filesystem::path& model);
 
 }  // namespace octurn

@@ -20,10 +20,10 @@
 
 namespace octurn {
 
-/// Read the sensor once, for who looks at the picture.
+/// Read the sensor once, for the preview.
 struct CameraCommand {};
 
-/// Have the rig checked.
+/// Check the rig.
 struct DeviceCheckCommand {
   /// Returns soon after its token has a stop request.
   std::packaged_task<void(Rig& rig, const std::stop_token& stop)> check = {};
@@ -67,7 +67,7 @@ struct WallCommand {
 /// Look at a board for the lens of a camera with lasers.
 struct LensCommand {};
 
-/// What the worker can be asked to do, the least urgent first.
+/// The worker's commands, the least urgent first.
 using Command =
     std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand, ScanCommand,
                  ResumeCommand, CalibrateCommand, WallCommand, LensCommand>;
@@ -75,9 +75,9 @@ using Command =
 /// Why a scan is stopped.
 enum class ScanStop { end, pause };
 
-/// The one command that waits, and the one that is carried out. A scan, or a measurement of the
-/// rig, ends whatever else is carried out and takes the place of what waits; a build takes the
-/// place of what is less urgent and waits. Any thread may call anything.
+/// The one command that waits, and the one that the worker carries out. A scan, or a measurement of
+/// the rig, stops any other command that is carried out and replaces the one that waits; a build
+/// replaces a less urgent one that waits. Thread-safe.
 class CommandSlot {
  public:
   using Clock = std::chrono::steady_clock;
@@ -87,30 +87,30 @@ class CommandSlot {
     std::stop_source stop = {};
   };
 
-  /// Puts a scan there, or a measurement of the rig, which is like one. @return false if one
-  /// waits or runs, or this has ended
+  /// Puts a scan or a measurement of the rig into the slot. @return false if one waits or runs
+  /// already, or after `end`
   bool offer_scan(Command scan);
 
   /// The same for a build. @return false also if another one waits or is carried out
   bool offer_build(BuildCommand build);
 
-  /// The same for a model. One at a time waits for the end of the model before it.
-  /// @param stop      that ends it
-  /// @param patience  with the model before it
-  /// @return false also if a build, or another model for too long, waits or is made
+  /// The same for a model. One at a time waits until the model before it is done.
+  /// @param stop      ends it
+  /// @param patience  how long to wait for the model before it
+  /// @return false also if a build waits or runs, or the model before it takes too long
   bool offer_rebuild(RebuildCommand rebuild, std::stop_source stop, Clock::duration patience);
 
   /// Waits for a free place. @return false if a scan, a build or a model waits or is made
   bool offer_check(DeviceCheckCommand check);
 
-  /// Has the camera read until then.
+  /// Has the sensor read until that time.
   void want_camera(Clock::time_point until);
 
   /// Asks the scan that waits or runs to stop.
   void stop_scan(ScanStop why);
-  /// Why the scan that was stopped last was.
+  /// Why the last scan was stopped.
   ScanStop scan_stop() const;
-  /// The same for a build. @return whether it waits still, so that it will never begin
+  /// The same for a build. @return whether it still waited, and will never begin
   bool stop_build();
 
   /// Whether a scan waits or runs.
@@ -119,19 +119,19 @@ class CommandSlot {
   /// Whether a scan, a build or a model waits or is made.
   bool is_occupied() const;
 
-  /// Asks what is carried out to stop, and takes no more.
+  /// Asks the command that is carried out to stop, and accepts no more.
   void end();
   bool has_ended() const;
 
   // For the worker.
 
-  /// Waits for a command, and takes it. @return nothing if none came for so long, or this has ended
+  /// Waits for a command, and takes it. @return nothing after `patience`, or after `end`
   std::optional<Taken> take(Clock::duration patience);
 
   /// The command that was taken is done.
   void finish();
 
-  /// Waits until a command waits or what is carried out is stopped, but no longer than `patience`.
+  /// Waits until a command arrives or the current one is asked to stop, for at most `patience`.
   void wait_for_command(Clock::duration patience);
 
  private:

@@ -10,11 +10,11 @@ namespace octurn {
 /// The number of pixels that have a depth.
 std::ptrdiff_t readings_in(const DepthFrame& frame);
 
-/// A sensor that is well sees about as much at every stop: what turns is a part of the picture.
+/// Checks that a stop has about as many readings as the first: only a part of the picture turns.
 /// @param readings  at a stop
 /// @param first     at the scan's first stop
 /// @param sensor    its name
-/// @throws Error "sensor-blind"  if there are none, or far fewer
+/// @throws Error "sensor-blind"  if there are none, or far fewer than at the first stop
 void expect_coverage(std::ptrdiff_t readings, std::ptrdiff_t first, const std::string& sensor);
 
 }  // namespace octurn

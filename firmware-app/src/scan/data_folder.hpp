@@ -11,10 +11,10 @@
 
 namespace octurn {
 
-/// What a scan with these settings takes on the disk at most.
+/// Maximum bytes of a scan with these settings on the disk.
 std::uint64_t max_scan_bytes(const ScanSettings& settings);
 
-/// What a model takes on the disk at most, but for the finest.
+/// Bytes of a model on the disk; only the finest models take more.
 std::uint64_t max_model_bytes();
 
 /// @param what  is to be written, such as "a model"
@@ -25,25 +25,25 @@ void expect_room(const std::filesystem::path& data, std::uint64_t available, std
 /// The folder, or the nearest one above it that exists.
 std::filesystem::path existing_part(std::filesystem::path folder);
 
-/// What may still be written into a folder, or where it would be made. @throws Error "data-failed"
+/// Free bytes on the disk of a folder, or of where it would be made. @throws Error "data-failed"
 std::uint64_t free_bytes_in(const std::filesystem::path& folder);
 
-/// Whether a program works in that folder of scans just now.
+/// Whether another process has locked that folder of scans.
 bool is_in_use(const std::filesystem::path& data);
 
-/// Takes a folder of scans for this process, as long as the result is open. Works on a disk that
-/// became read-only, whose scans can still be served.
+/// Locks a folder of scans for this process, as long as the result is open. Works on a disk that
+/// became read-only, so that its scans can still be served.
 /// @throws Error "data-in-use" if another process has it, "data-failed"
 FileDescriptor lock_data_folder(const std::filesystem::path& data);
 
-/// The names in a folder; those that could be read, if the disk fails meanwhile.
+/// The names in a folder; if the disk fails, those that could be read.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 
-/// Removes what begins with a dot: temporary files, and folders that were not finished.
+/// Removes entries that begin with a dot: temporary files, and unfinished folders.
 void clear_unfinished(const std::filesystem::path& folder);
 
-/// Removes what `write_file` began and did not finish of the JSON files beside the scans. What else
-/// begins with a dot there stays: the folder may be somebody's home.
+/// Removes temporary files that `write_file` left of the JSON files beside the scans. Other hidden
+/// files stay: the folder may be somebody's home.
 void clear_unfinished_json(const std::filesystem::path& data);
 
 /// @throws Error "disk-full" or "data-failed", always

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// The finished scans of a store, the newest first, with what their snapshots take on the disk.
-/// Looks at the last twenty, and their folders, only.
+/// The finished ones of the last twenty scans of a store, the newest first, with the bytes that
+/// their snapshots take on the disk.
 std::vector<EarlierScan> earlier_scans(const ScanStore& store);
 
 }  // namespace octurn

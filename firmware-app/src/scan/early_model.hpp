@@ -5,14 +5,14 @@
 #include <optional>
 #include <stop_token>
 
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/stl.hpp"
 
 namespace octurn {
 
-/// A model that is made on a thread of its own, while it is found out whether it is wanted. Its
-/// file gets its name only if it is.
+/// A model that a thread of its own makes before it is known whether the model is wanted: its file
+/// gets its name only in `finish`.
 class EarlyModel {
  public:
   EarlyModel() = default;
@@ -20,25 +20,24 @@ class EarlyModel {
   EarlyModel(const EarlyModel&) = delete;
   EarlyModel& operator=(const EarlyModel&) = delete;
 
-  /// @param reconstructor  which nobody else may use until the model is finished or given up
+  /// @param reconstructor  reserved for this until `finish` or `give_up`
   /// @throws Error "write-failed"  if the folder cannot be written to
   void begin(Reconstructor& reconstructor, SnapshotSource snapshots,
              const std::filesystem::path& file);
 
-  bool has_begun() const { return count_.valid(); }
+  bool has_begun() const { return report_.valid(); }
 
-  /// Waits for it, and writes it. @return nothing if stopped first
+  /// Waits for the model, and gives its file its name. @return nothing if stopped first
   /// @throws Error  as `write_model`
   std::optional<ModelReport> finish(const std::stop_token& stop);
 
-  /// Ends it at once, if it has begun.
+  /// Stops the thread, if it was started, and removes the file.
   void give_up();
 
  private:
   std::stop_source stop_;
   std::optional<StlFile> file_;
-  MeshCheck check_;
-  std::future<std::optional<SurfaceCount>> count_;
+  std::future<std::optional<ModelReport>> report_;
 };
 
 }  // namespace octurn

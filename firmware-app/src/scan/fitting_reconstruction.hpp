@@ -10,26 +10,27 @@
 
 namespace octurn {
 
-/// The reason's code: the model is coarser than was asked for, as it did not fit into the memory.
+/// Code of the reason that the model is coarser than requested because it exceeded the memory.
 inline constexpr std::string_view coarser_code = "coarser";
 
-/// The reconstruction of a scan, which logs that it may not fit into the memory, and becomes
-/// coarser where it does not: what a turn took minutes for is not lost.
+/// The reconstruction of a running scan. It logs if the model may exceed the memory limit, and is
+/// made coarser if it does, so that the snapshots of a turn are not lost.
 class FittingReconstruction {
  public:
-  /// @throws  as `make_reconstructor`: what cannot fit is refused before the platform turns
+  /// @throws  as `make_reconstructor`, so that impossible options are refused before the platform
+  ///         turns
   explicit FittingReconstruction(const ReconstructOptions& options);
 
   Reconstructor& operator*() { return *reconstruction_; }
   const ReconstructOptions& options() const { return options_; }
 
-  /// Gives up all that was added.
+  /// Drops all snapshots.
   void start_again();
 
-  /// Starts again a level coarser, if that is what an error asks for. @throws that error  if not
+  /// Starts again one level coarser after an error "memory-limit". @throws  any other error
   void make_coarser(const Error& error);
 
-  /// Tells a verdict that the leaves are not those that were asked for, if so.
+  /// Adds a reason to the verdict if the leaves are larger than requested.
   void tell(Quality& quality) const;
 
  private:

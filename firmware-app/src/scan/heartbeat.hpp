@@ -5,7 +5,7 @@
 
 namespace octurn {
 
-/// Tells that a thread still does its work. Any thread may read it.
+/// Shows that a thread is still working. Any thread may read it.
 class Heartbeat {
  public:
   using Clock = std::chrono::steady_clock;
@@ -13,7 +13,7 @@ class Heartbeat {
   /// Called by the thread between two of its waits.
   void beat() { last_ = Clock::now().time_since_epoch().count(); }
 
-  /// Before work whose duration has no bound, such as a reconstruction: alive until the next beat.
+  /// Called before work of unbounded duration, such as a reconstruction: alive until the next beat.
   void suspend() { last_ = Clock::duration::max().count(); }
 
   /// Whether the last beat is not older than `max_silence`.

@@ -9,7 +9,7 @@
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
@@ -27,14 +27,14 @@ enum class JobState {
   interrupted,  ///< the daemon ended while it ran
 };
 
-/// What a scan is doing.
+/// The current step of a scan.
 enum class Phase {
   starting,
   turning,
   capturing,
   calibrating,  ///< solving the sensor's pose from the snapshots
-  rebuilding,   ///< adding the stored snapshots with another pose than while the platform turned
-  registering,  ///< finding out how the object was turned over
+  rebuilding,   ///< adding the stored snapshots again, with the solved pose
+  registering,  ///< finding the object's pose after it was turned over
   building,
   done,
 };
@@ -49,7 +49,7 @@ std::string_view to_string(Phase phase);
 std::optional<JobState> job_state_named(std::string_view name);
 std::optional<Phase> phase_named(std::string_view name);
 
-/// Why a scan has no model whose daemon ended while it ran.
+/// The failure of a scan during which the daemon ended.
 Failure interruption();
 
 /// A finished model, and how long it took once the last snapshot was stored.
@@ -59,14 +59,14 @@ struct Model {
   std::optional<Quality> quality = {};  ///< none of a model that an earlier version has made
 };
 
-/// What a scan's own snapshots told of the sensor's pose.
+/// The sensor's pose as solved from a scan's own snapshots.
 struct ScanCalibration {
   bool accepted = false;
   bool confirms_told = false;             ///< the told pose is right, and stays
-  std::string reason = {};                ///< why what was solved is refused, or empty
+  std::string reason = {};                ///< why the solved pose was refused, or empty
   std::optional<SolvedPose> solved = {};  ///< if accepted
   std::vector<CalibrationFinding> findings = {};
-  int rebuilt = 0;  ///< snapshots of which the model is built again, so far
+  int rebuilt = 0;  ///< snapshots added again so far
 };
 
 ScanCalibration to_scan_calibration(const CalibrationReport& report);
@@ -79,20 +79,20 @@ struct Build {
   std::optional<ScanCalibration> calibration = {};  ///< if the pose was solved for it
   Model model = {};
   std::vector<std::string> poses = {};  ///< ids of the scans of other poses that are in it
-  int replaced = 0;  ///< of a build that a scan of another pose made: the one chosen before it
+  int replaced = 0;  ///< of a build for another pose: the build that was chosen before it
 };
 
-/// How a turn fits together with those before it.
+/// Result of registering a turn with those before it.
 struct PoseRegistration {
   bool accepted = false;
-  std::string reason = {};                             ///< why not, for people; empty if accepted
-  RegisteredPose pose = {};                            ///< of the turn, if accepted
+  std::string reason = {};   ///< why it was refused, for people; empty if accepted
+  RegisteredPose pose = {};  ///< of the turn, if accepted
   std::vector<RegistrationCandidate> candidates = {};  ///< to choose from, the best first
-  /// From which of them the pose was refined; nothing: from pairs of points, or it does not fit.
+  /// Index of the candidate that was refined; nothing: refined from pairs of points, or refused.
   std::optional<std::size_t> candidate = {};
 };
 
-/// What a scan is that has the object of another scan lie otherwise.
+/// Links a scan to an earlier scan of the same object in another pose.
 struct PoseOf {
   std::string scan = {};                              ///< id of the other one
   std::optional<PoseRegistration> registration = {};  ///< once all snapshots are taken
@@ -105,23 +105,23 @@ struct JobTimes {
   std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
   /// Of a running scan at a stop where a device fails: how long it still tries that stop again.
   std::optional<std::chrono::duration<double>> until_pause = {};
-  int late_pulses = 0;  ///< of the motor, which turned more slowly for it
+  int late_pulses = 0;  ///< of the motor, which slowed the turn
 };
 
 /// The builds of a scan.
 struct JobBuilds {
   std::vector<Build> all = {};  ///< in order of their numbers
-  int chosen = 0;               ///< whose model is the scan's; 0: what the scan itself made
+  int chosen = 0;               ///< number of the build whose model is shown; 0: the scan's own
   bool have_colours = false;    ///< if asked for: the scan's pictures do, of a scan by laser line
 };
 
-/// What a person wrote on a scan; empty if nobody did.
+/// A person's name and notes for a scan; empty if there are none.
 struct ScanLabel {
   std::string name = {};
   std::string notes = {};
 };
 
-/// One scan: what was asked for, and what has become of it.
+/// One scan: its settings, state and results.
 struct Job {
   std::string id = {};
   ScanLabel label = {};
@@ -130,9 +130,9 @@ struct Job {
   int snapshots_done = 0;
   JobTimes times = {};
   ScanSettings settings = {};
-  std::optional<Failure> failure = {};  ///< of a running scan: what is being tried again
+  std::optional<Failure> failure = {};  ///< of a running scan: the fault that is being retried
   std::optional<ScanCalibration> calibration = {};  ///< from the last stop on, unless told
-  std::optional<Model> model = {};                  ///< that the scan itself made
+  std::optional<Model> model = {};                  ///< made by the scan itself
   JobBuilds builds = {};
   std::optional<PoseOf> pose_of = {};  ///< of a scan of another pose
 };
@@ -140,11 +140,12 @@ struct Job {
 /// The build of that number; null if there is none.
 const Build* find_build(const Job& job, int number);
 
-/// The scan's model: that of the build that was chosen. Null if there is none.
+/// The model of the chosen build; null if there is none.
 const Model* chosen_model(const Job& job);
 
-/// A scan that ended with the program, or whose end could not be written down: it can go on.
-/// @param snapshots  that are stored
+/// Marks a scan as interrupted, because the program ended or its outcome could not be saved: it can
+/// be resumed.
+/// @param snapshots  number of stored ones
 Job to_interrupted(Job job, int snapshots);
 
 }  // namespace octurn

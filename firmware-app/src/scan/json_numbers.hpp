@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// Rounds to the thousandths that JSON has of seconds, millimetres and shares.
+/// Rounds to thousandths, as JSON has seconds, millimetres and shares.
 double to_thousandths(double value);
 
 /// The number of an optional key, from 0 to `max`; 0 if it is missing or null.

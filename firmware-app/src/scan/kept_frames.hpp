@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// Depth images that are read twice and need not be decoded twice: of each the rectangle with
-/// readings, as many as there is room for.
+/// A cache of decoded depth images, for those that are read twice. Keeps the rectangle with
+/// readings of as many images as fit.
 class KeptFrames {
  public:
   /// @param count  of the images. @param max_bytes  that they may take

@@ -14,7 +14,7 @@
 
 namespace octurn {
 
-/// What a rig looks with.
+/// The kind of sensor of a rig.
 enum class SensorKind {
   depth,       ///< a depth sensor
   laser_line,  ///< a camera with line lasers
@@ -54,14 +54,13 @@ std::vector<Field> fields(LaserSettings& settings);
 /// Those of one of its lasers.
 std::vector<Field> fields(LaserLine& line);
 
-/// Refuses a rig without a laser, and lines that two signals share or that are high while a
+/// Refuses a rig without a laser, and GPIO lines that two signals share or that are high while a
 /// Raspberry Pi boots.
-/// @param keys  in which the settings were given
+/// @param keys  the JSON of the settings, for messages
 void check_laser_settings(JsonObject& keys, const LaserSettings& settings);
 
-/// What a new scan by laser line is made with: lines 1.8 degrees apart, one picture each, and the
-/// space that camera and lasers of the drawing reach. The platform is seen finely enough to be cut
-/// off 2 mm above its surface.
+/// Defaults of a scan by laser line: lines 1.8 degrees apart, one picture each, and the space that
+/// camera and lasers of the drawing reach, from 2 mm above the platform, whose noise is less.
 void use_laser_capture_defaults(ScanSettings& settings);
 
 }  // namespace octurn

@@ -9,8 +9,8 @@
 
 namespace octurn {
 
-/// The latest of something, handed from the worker to any number of readers. A reader's copy stays
-/// as it was, however often it is replaced meanwhile.
+/// The latest value of something, published by the worker to any number of readers. A reader's
+/// snapshot of it does not change when the value is replaced.
 template <typename Value>
 class Latest {
  public:
@@ -28,7 +28,7 @@ class Latest {
     changed_.notify_all();
   }
 
-  /// Replaces the value by a copy that `change` has worked on; nothing comes in between.
+  /// Atomically replaces the value by a copy that `change` has modified.
   template <typename Change>
   void update(Change change) {
     {
@@ -40,8 +40,8 @@ class Latest {
     changed_.notify_all();
   }
 
-  /// Waits until the value is as wanted, but no longer than `patience`.
-  /// @return the latest value, wanted or not
+  /// Waits until the value satisfies the condition, for at most `patience`.
+  /// @return the latest value in either case
   template <typename Wanted>
   std::shared_ptr<const Value> wait(const std::stop_token& stop, std::chrono::milliseconds patience,
                                     Wanted wanted) const {

@@ -6,12 +6,12 @@
 #include <string>
 #include <string_view>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "scan/laser_settings.hpp"
 
 namespace octurn {
 
-/// A camera's lens as a printed board told it, among the files of this machine:
+/// A camera's lens, calibrated by a printed board and stored on this machine as
 /// `lenses/SERIAL.json`.
 struct KeptLens {
   std::string serial = {};  ///< of the camera
@@ -22,27 +22,27 @@ struct KeptLens {
   int views = 0;          ///< of the board
 };
 
-/// Where it is. What is no letter, digit, dot, dash or underscore in the serial number becomes an
-/// underscore. @param data  the data folder
+/// The path of a camera's file. Characters of the serial number other than letters, digits, dots,
+/// dashes and underscores become underscores. @param data  the data folder
 std::filesystem::path lens_of(const std::filesystem::path& data, std::string_view serial);
 
-/// Keeps what a report that was accepted tells, with the time of now.
+/// Stores the lens of an accepted report, with the current time.
 /// @param serial  of the camera; not empty
 /// @throws Error "disk-full", "write-failed"
 void keep_lens(const std::filesystem::path& data, std::string_view serial,
                const LensReport& report);
 
-/// Nothing if this machine has none. @throws Error "scan-malformed"  that names what is wrong
+/// Reads a camera's file; nothing if there is none. @throws Error "scan-malformed"  with the fault
 std::optional<KeptLens> find_lens(const std::filesystem::path& data, std::string_view serial);
 
 /// @throws Error "write-failed"
 void remove_lens(const std::filesystem::path& data, std::string_view serial);
 
-/// The lens that the settings tell.
+/// The lens of the settings.
 CameraLens told_lens(const LaserSettings& settings);
 
-/// The lens of a camera: the kept one if it is of pictures of the told one's size, else the told
-/// one. @throws Error "scan-malformed"
+/// The lens of a camera: the stored one if its pictures have the size of the settings, else that of
+/// the settings. @throws Error "scan-malformed"
 CameraLens lens_in_force(const std::filesystem::path& data, std::string_view serial,
                          const CameraLens& told);
 

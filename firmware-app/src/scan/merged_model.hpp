@@ -13,22 +13,22 @@
 
 namespace octurn {
 
-/// Turns that fit together.
+/// Registered turns.
 struct MergedTurns {
   const std::vector<StoredTurn>& turns;
   const Registration& registration;
-  const std::vector<std::string>& poses;  ///< ids of the scans of other poses that are among them
+  const std::vector<std::string>& poses;  ///< ids of the scans of other poses in them
 };
 
-/// The other poses of a scan that are merged, but for one and those after it.
+/// The merged other poses of a scan that come before a given one.
 /// @param without  id of its scan
 std::vector<std::string> merged_poses(const Job& first, const std::string& without);
 
-/// The settings of a model of all poses: as the last one was scanned, with the first one's box.
+/// The settings of a model of all poses: those of the last scan, with the first one's clip box.
 BuildSettings merged_settings(const Job& first, const Job& pose);
 
-/// What was found as the scans of several poses were taken; of the other ones the side is named.
-/// @param poses  ids of the other ones
+/// The findings of the scans of several poses; those of other poses than the first name the side.
+/// @param poses  ids of the other poses' scans
 /// @return nothing if there are none
 std::optional<std::vector<CalibrationFinding>> pose_findings(const ScanStore& store,
                                                              const Job& first,
@@ -42,11 +42,11 @@ std::optional<Build> build_merged(ScanStore& store, const Job& first, const Merg
                                   const BuildSettings& settings, int number, const Limits& limits,
                                   const std::stop_token& stop, const BuildProgress& progress);
 
-/// Registers the scan of another pose again, from where a person says that it lay, and builds the
-/// model of all poses anew, which becomes the scan's; the one before it goes.
+/// Registers the scan of another pose again, from a person's estimate, and builds the model of all
+/// poses again. It replaces the scan's merged model.
 /// @param run  of that build
 /// @return false if stopped first
-/// @throws Error "no-model"  if it does not fit in that way: all stays as it was
+/// @throws Error "no-model"  if the estimate does not fit: then nothing is changed
 bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
                 const Limits& limits, const std::stop_token& stop, const BuildProgress& progress);
 

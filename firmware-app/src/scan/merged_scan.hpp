@@ -16,29 +16,29 @@ namespace octurn {
 struct StoredTurn {
   std::filesystem::path folder = {};
   Scan scan = {};  ///< of this turn alone: its shots, rig and clip box, and no poses
-  /// How the object lay, if the folder tells it.
+  /// The object's pose, if the folder has it.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
-  /// The same, roughly, as a person says: it is refined from there.
+  /// A person's estimate of that pose, to be refined.
   std::optional<Eigen::Isometry3d> told_object_from_platform = {};
-  /// Its depth images, where they were read already.
+  /// Depth images that were read already.
   std::shared_ptr<const KeptFrames> kept = {};
-  /// What each stop saw in the clip box, once it is registered: metres, platform frame at angle 0.
+  /// Points inside the clip box, set by registration: metres, platform frame at angle 0.
   std::vector<Eigen::AlignedBox3d> extents = {};
 };
 
-/// The turns of scan folders, in their order. How the object lay is known of the first folder's
-/// alone: each folder has an object's frame of its own.
+/// The turns of scan folders, in their order. Only the first folder's object poses are known: each
+/// folder has an object's frame of its own.
 /// @throws Error "scan-malformed"  if a scan has no turns, or another sensor than the first; others
 ///                                 as `read_scan`
 std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& folders);
 
-/// Solves the pose of the sensor for each turn that has none, from its snapshots. What is not
-/// accepted, or merely confirms the told pose, leaves that. Turns of one rig share the mean of what
-/// they solve.
+/// Solves the sensor's pose for each turn without a solved one, from its snapshots. The told pose
+/// stays if the solution is refused or confirms it. Turns of one rig share the mean of their solved
+/// poses.
 void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
 
-/// Registers the turns, and keeps what they saw. @throws Error, Stopped  as `read_snapshot` and
-/// `register_turns`
+/// Registers the turns, and keeps some of their points. @throws Error, Stopped  as `read_snapshot`
+/// and `register_turns`
 Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop);
 

@@ -16,8 +16,8 @@
 
 namespace octurn {
 
-/// The bytes of a model from the thread that makes it to the one that sends it, at most
-/// `max_bytes` of them at a time. Either end may stop it; then no end waits for the other.
+/// A bounded queue of a model's bytes, from the thread that makes the model to the one that sends
+/// it. Either end may stop it; then neither waits for the other.
 class ModelPipe {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 20U;
@@ -29,16 +29,16 @@ class ModelPipe {
   void set_length(std::uint64_t bytes);
   /// Waits for room. @throws Stopped  if stopped
   void write(std::span<const std::byte> bytes);
-  /// All is written.
+  /// Called after the last byte.
   void close();
-  /// There will be no more, because of that.
+  /// Ends the model with a failure.
   void fail(Failure reason);
 
   // The end that sends it.
 
   /// Waits for the length. @throws Error "busy" if stopped before, or the reason of `fail`
   std::uint64_t length();
-  /// Waits for bytes; none at the end, or if stopped or failed.
+  /// Waits for bytes. @return none at the end, or if stopped or failed
   std::vector<std::byte> read();
 
  private:
@@ -52,8 +52,8 @@ class ModelPipe {
   std::optional<Failure> failure_;
 };
 
-/// A model that is made while it is sent: the sending end of a pipe. Gives the model up when it is
-/// destroyed.
+/// A model that is made while it is sent: the sending end of a pipe. Its destructor stops the
+/// model.
 class ModelStream {
  public:
   /// Waits until the model's size is known.
@@ -66,10 +66,10 @@ class ModelStream {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Has a stop request as soon as the model is not made to its end, as when a scan starts.
+  /// Has a stop request if the model will not be completed, as when a scan starts.
   std::stop_token stop() const { return pipe_->stop().get_token(); }
 
-  /// Hands the STL over, once. Ends early if `sink` returns false or the model is stopped.
+  /// Passes the STL to `sink`, once. Ends early if `sink` returns false or the model is stopped.
   void send(const std::function<bool(std::span<const std::byte>)>& sink);
 
  private:

@@ -8,9 +8,9 @@
 
 namespace octurn {
 
-/// A stored scan as the settings of a build want it, before its pose is solved.
-/// @throws Error "bad-settings"  if they have a pose, and the scan is of several; and as
-/// `read_scan`
+/// Reads a stored scan and applies a build's settings to it, before its pose is solved.
+/// @throws Error "bad-settings"  if the settings have a pose, and the scan has several; and as
+///                               `read_scan`
 Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings);
 
 /// A scan folder, and the scan in it.
@@ -19,9 +19,8 @@ struct ModelScan {
   Scan scan = {};
 };
 
-/// The scan that a model was made of, with the poses of the sensor and of the object that it was
-/// made with.
-/// @param build  that the model is of; 0: what the scan itself made
+/// The scan of a model, with the poses of sensor and object that the model was made with.
+/// @param build  number of the model's build; 0: the scan's own model
 /// @throws Error "no-model"  if there is no such build; and as `read_scan`
 ModelScan scan_of_model(const ScanStore& store, const Job& job, int build);
 

@@ -5,9 +5,9 @@
 
 namespace octurn {
 
-/// Where a scan stops: the whole microsteps nearest to equal parts of a turn, so that the turn sums
-/// exactly. Stop 0 is at angle 0, and the platform turns one way only, to a stop that is at or
-/// after `position`.
+/// The stops of a scan: whole microsteps nearest to equal parts of a turn, so that they sum to a
+/// turn exactly. Stop 0 is at angle 0. The platform turns in one direction only: the first stop is
+/// at or after `position`.
 ///
 /// @param first  the first stop that is still to be made
 std::vector<std::int64_t> stop_positions(std::int64_t position, int steps_per_turn, int stops,

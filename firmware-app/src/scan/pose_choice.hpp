@@ -10,10 +10,10 @@
 
 namespace octurn {
 
-/// How the object lay in the scan of another pose, as a person says.
+/// A person's estimate of the object's pose in the scan of another pose.
 struct PoseChoice {
   std::string pose = {};  ///< id of the scan
-  /// Platform frame at angle 0 to the object's frame, metres: roughly, to be refined from.
+  /// Platform frame at angle 0 to the object's frame, metres: the start of the refinement.
   Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
   std::optional<std::size_t> candidate = {};  ///< of its registration; nothing: from pairs
 };

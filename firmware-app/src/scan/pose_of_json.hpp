@@ -13,7 +13,7 @@ nlohmann::json to_json(const RegistrationCandidate& candidate);
 /// How a pose was registered, as the API and `job.json` have it: millimetres and degrees.
 nlohmann::json to_json(const PoseRegistration& registration);
 
-/// What a scan of another pose is, as `job.json` and the API have it.
+/// The link of a scan of another pose, as in `job.json` and the API.
 nlohmann::json to_json(const PoseOf& pose_of);
 
 /// The same of a `job.json`. @throws Error  of the value's code

@@ -7,12 +7,12 @@
 
 namespace octurn {
 
-/// In the folder of a scan of another pose: some of the points that it saw, and that were seen
-/// before, for people to look at.
+/// A file in the folder of a scan of another pose, for display: some points of this scan, and of
+/// the earlier ones.
 inline constexpr const char* pose_points_file = "pose-points.json";
 
-/// Writes `{"before_mm": [[x, y, z], ...], "pose_mm": [...]}`: what all turns but the last saw, in
-/// the object's frame, and what the last one saw, in its platform's frame at angle 0. Some 100 kB.
+/// Writes `{"before_mm": [[x, y, z], ...], "pose_mm": [...]}`: points of all turns except the last,
+/// in the object's frame, and of the last one, in its platform frame at angle 0. About 100 kB.
 ///
 /// @param points  of each turn, as `Registration` has them
 /// @throws Error "disk-full", "write-failed"

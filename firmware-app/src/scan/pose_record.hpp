@@ -11,26 +11,26 @@
 
 namespace octurn {
 
-/// Who told a pose of the sensor.
+/// Origin of a sensor's pose.
 enum class PoseOrigin {
-  drawing,   ///< nobody: the rig is taken to be built to the drawing
+  drawing,   ///< the default: the rig as drawn
   settings,  ///< octurn.json
   page,      ///< a person, by hand
-  turn,      ///< solved from a turn that was made for it
+  turn,      ///< solved from a calibration turn
   scan,      ///< solved from a scan
 };
 
 /// The origin's name in files: "default", "settings", "page", "turn", "scan".
 std::string_view to_string(PoseOrigin origin);
 
-/// How well a solved pose is known, and how far the one before was from it.
+/// Uncertainty of a solved pose, and its distance from the one before.
 struct PoseFigures {
   double shift = 0;            ///< metres
   double tilt = 0;             ///< radians
   double position_sigma = 0;   ///< metres
   double direction_sigma = 0;  ///< radians
-  double before = 0;           ///< metres that two stops disagreed about the object
-  double after = 0;            ///< metres that they disagree still
+  double before = 0;           ///< metres: as in `CalibrationReport`
+  double after = 0;            ///< metres: the same
 };
 
 /// A pose of the sensor that is in force, or was.

@@ -5,7 +5,7 @@
 
 #include "failure.hpp"
 #include "log.hpp"
-#include "octurn/mesh_report.hpp"
+#include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "scan/stored_scan.hpp"
@@ -26,9 +26,7 @@ void make_model(const std::filesystem::path& folder, ReconstructOptions options,
   pipe.set_length(stl_bytes(count.facets));
   pipe.write(stl_header(count.facets));
   const auto send = [&](std::span<const Facet> facets) { pipe.write(std::as_bytes(facets)); };
-  if (!write_model(*reconstruction, snapshots, send, stop)) {
-    throw Stopped{};
-  }
+  reconstruction->surface(snapshots, send, stop);
   pipe.close();
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "camera/lasers.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "scan/laser_settings.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "turntable/stepper.hpp"
@@ -28,7 +28,7 @@ struct RigOptions {
   double platform_angle_deg = 0;                ///< at the beginning
   /// Of a camera with line lasers, in place of a depth sensor.
   std::optional<LaserSettings> laser = {};
-  /// Open the devices. Tests put devices of their own in their place.
+  /// Functions that open the devices; tests replace them.
   std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> open_sensor =
       octurn::open_sensor;
   std::function<Stepper::SetLine(const StepperSettings&)> open_lines = open_gpio_lines;
@@ -51,7 +51,7 @@ class Rig {
   /// What the rig is told of its camera and lasers; null if it has a depth sensor.
   const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
 
-  /// From now on the rig is told another lens of its camera, which it has.
+  /// Replaces the told lens of the rig's camera.
   void use_lens(const CameraLens& lens);
 
   /// Opens the camera if it is closed, and with it the lines of its lasers.
@@ -59,14 +59,14 @@ class Rig {
   Camera& camera();
   Lasers& lasers();
 
-  /// Has the object of a simulated rig lie so, as `DepthSensor::lay_object` says.
+  /// Sets the pose of a simulated rig's object; see `DepthSensor::lay_object`.
   void lay_object(int pose);
 
   /// Closes the sensor, which switches its projector or its lasers off; the next use opens it
   /// again.
   void close_sensor();
 
-  /// Since when the sensor is open, and warms up; nothing while it is closed.
+  /// When the sensor was opened, and began to warm up; nothing while it is closed.
   std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
     return sensor_ || camera_ ? std::optional(sensor_since_) : std::nullopt;
   }

@@ -12,16 +12,16 @@ namespace octurn {
 
 /// Takes a turn of snapshots into a scan folder, and builds `folder/Scan.stl` from them.
 ///
-/// Each snapshot is on the disk before the platform moves on, and goes into the octree while it
-/// turns. What was stored stays, however the scan ends; a folder that holds some snapshots already
-/// is continued with the next, and its model is that of a scan that was never disturbed.
+/// Each snapshot is on the disk before the platform moves on, and is added to the reconstruction
+/// while the platform turns. Stored snapshots are kept however the scan ends. A folder with some
+/// snapshots is continued, and gives the same model as an uninterrupted scan.
 ///
 /// Unless the settings say `told`, the sensor's pose is solved from the snapshots at the last stop.
 /// A pose that is accepted and does not merely confirm the told one is stored beside it in
 /// scan.json, and the model is built again from the stored snapshots.
 ///
-/// After the last stop the platform turns on to the first one's angle, for one more look. It is in
-/// no model: scan.json keeps how the object moved meanwhile, and the verdict tells it.
+/// After the last stop the platform turns on to the first one's angle for one more depth image, the
+/// last look. It is in no model: scan.json and the verdict tell how the object moved meanwhile.
 ///
 /// @return the model, or nothing if stopped first
 /// @throws Error  if the sensor, the turntable or the disk fails, or there is no surface

@@ -9,8 +9,8 @@ namespace octurn {
 /// `notes.txt`, `sensor-map.png`, and PNGs in `snapshots/`.
 bool is_scan_file(std::string_view name);
 
-/// Writes what a scan was taken as, without what was made of it, to a zip archive: all that another
-/// Octurn needs to make the same model. The same scan gives the same bytes.
+/// Writes the captured data of a scan, without its models, to a zip archive, from which another
+/// Octurn makes the same model. The same scan gives the same bytes.
 /// @throws Error "disk-full", "write-failed", "read-failed"
 void write_scan_archive(const std::filesystem::path& scan, const std::filesystem::path& archive);
 

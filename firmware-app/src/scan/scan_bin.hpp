@@ -29,12 +29,12 @@ struct BinnedScan {
 /// thread at a time.
 class ScanBin {
  public:
-  /// Removes what is half removed, and reads what is there.
+  /// Completes interrupted removals, and reads the bin.
   /// @param load  reads the job of a scan's folder
   ScanBin(std::filesystem::path folder,
           const std::function<Job(const std::filesystem::path& folder)>& load);
 
-  /// What was deleted last comes first.
+  /// The last deleted scan first.
   std::vector<BinnedScan> list() const;
   std::optional<BinnedScan> find(std::string_view id) const;
   bool is_empty() const;

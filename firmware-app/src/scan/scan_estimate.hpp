@@ -8,31 +8,31 @@
 
 namespace octurn {
 
-/// What a scan to come takes.
+/// Expected time and disk space of a scan.
 struct ScanEstimate {
   std::chrono::duration<double> stop = {};   ///< turning there, and its snapshot
   std::chrono::duration<double> build = {};  ///< from the last snapshot to the model
   std::uint64_t bytes = 0;                   ///< on the disk
-  bool is_measured = false;                  ///< by earlier scans of this machine
+  bool is_measured = false;                  ///< from earlier scans of this machine
 
-  /// Of all: with one look more at the first stop, when all snapshots are there.
+  /// Of the whole scan, with the last look.
   std::chrono::duration<double> total(int snapshots) const {
     return stop * (snapshots + 1) + build;
   }
 };
 
-/// A finished scan, as far as it tells what another one takes.
+/// The figures of a finished scan from which another is estimated.
 struct EarlierScan {
   Job job = {};
   std::uint64_t snapshot_bytes = 0;  ///< on the disk, of all its snapshots
 };
 
-/// What a scan with those settings takes, by the earlier scans of this machine that are most like
-/// it: medians over the last five of these. A stop is told by scans with the same filter, and among
-/// them by those with about as many snapshots; a model by those with the same method, and among
-/// them by those with about as large leaves. The leaves of a surface, and with them its time and
-/// bytes, grow as the square of 1 / leaf size. Without an earlier scan: a stop takes 0.7 s and its
-/// pictures at 30 Hz, a model 1 s and a snapshot 0.1 s with leaves of 1 mm.
+/// Estimates a scan from the earlier scans of this machine that are most like it: medians over the
+/// last five of these. For a stop these are scans with the same filter, preferably with about as
+/// many snapshots; for a model scans with the same method, preferably with about as large leaves.
+/// The leaves of a surface, and with them its time and bytes, grow as the square of 1 / leaf size.
+/// Without an earlier scan, a stop takes 0.7 s plus its frames at 30 Hz, and a model with leaves of
+/// 1 mm takes 1 s plus 0.1 s for each snapshot.
 /// @param earlier  the newest first
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings);
 

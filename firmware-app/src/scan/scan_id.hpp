@@ -8,11 +8,11 @@
 
 namespace octurn {
 
-/// A time as scans are named by it, in steps of 20 us.
+/// The time in a scan's id, in steps of 20 us.
 using ScanTime = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::ratio<1, 50000>>>;
 
-/// Whether a text has the form of a scan's name in paths: "20261121-081500-3f2a". Nothing else may
-/// become part of a path.
+/// Whether a text has the form of a scan's id, "20261121-081500-3f2a". No other text may become
+/// part of a path.
 bool is_scan_id(std::string_view text);
 
 /// Date and time of day (UTC), and how far into the second. So ids sort by time.

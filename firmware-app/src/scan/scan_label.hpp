@@ -8,9 +8,9 @@
 
 namespace octurn {
 
-// A scan's label has files of its own, as a scan that runs writes `job.json`.
+// A scan's label has its own files, because a running scan writes `job.json`.
 
-/// What a person writes on a scan.
+/// A change of a scan's label.
 struct LabelChange {
   std::optional<std::string> name = {};   ///< one line of at most 100 characters; nothing: as it is
   std::optional<std::string> notes = {};  ///< at most 2000 characters; nothing: as they are
@@ -26,8 +26,8 @@ bool is_notes(const std::string& text);
 /// The label after the change.
 ScanLabel changed(ScanLabel label, const LabelChange& change);
 
-/// Reads a scan's `name.txt` and `notes.txt`. What is missing, cannot be read, or is too large to
-/// be one is empty: the scan itself is none the worse.
+/// Reads a scan's `name.txt` and `notes.txt`. One that is missing, unreadable or too large is
+/// empty.
 ScanLabel read_label(const std::filesystem::path& folder);
 
 /// Writes what changes, each file whole or not at all.

@@ -3,14 +3,14 @@
 #include <functional>
 
 #include "octurn/calibrate.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "scan/job.hpp"
 
 namespace octurn {
 
-/// Told what a scan is doing, on the thread that runs it; `on_added` on that which adds snapshots,
-/// while the platform turns.
+/// Callbacks of a scan, on its thread; `on_added` is called on the thread that adds snapshots while
+/// the platform turns.
 struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
   /// Before each move: where to, degrees.
@@ -19,12 +19,12 @@ struct ScanObserver {
   std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
-  /// What the snapshots tell of the sensor's pose, before anything is done about it.
+  /// The solved pose of the sensor, before it is used.
   std::function<void(const CalibrationReport& report)> on_calibrated =
       [](const CalibrationReport&) {};
-  /// Now and then while the model is built again: of how many snapshots by then.
+  /// From time to time while the model is built again, with the number of snapshots added.
   std::function<void(int snapshots)> on_rebuilt = [](int) {};
-  /// Now and then while a snapshot is still being added.
+  /// From time to time while a snapshot is being added.
   std::function<void()> on_wait = [] {};
 };
 

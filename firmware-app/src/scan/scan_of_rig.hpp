@@ -8,16 +8,16 @@
 
 namespace octurn {
 
-/// What is known of a new scan before a device is opened: of a rig with lasers, all that its
-/// pictures are read with; of another one nothing.
+/// The part of a new scan that is known before a device is opened: camera and lasers of a laser
+/// rig; nothing for a depth sensor.
 Scan scan_of_rig(const Rig& rig, const ScanSettings& settings);
 
 /// The options of a scan's model. @param scan  as above, or with the snapshots that it has so far
 ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,
                                    const Limits& limits);
 
-/// Completes a new scan by what all its snapshots have in common.
-/// @param folder  of the scan, with a map of its sensor or without
+/// Completes a new scan by the data that all its snapshots share.
+/// @param folder  of the scan, which may have a sensor map
 void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
                 Rig& rig);
 

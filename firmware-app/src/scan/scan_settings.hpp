@@ -16,13 +16,13 @@ namespace octurn {
 /// One for each processor.
 int available_threads();
 
-/// Half of the machine's memory, bytes, in whole MB: the rest is for the system and its buffers.
+/// Half of the machine's memory, bytes, rounded to whole MB: the rest is for the system.
 std::size_t half_of_memory();
 
-/// Which pose of the sensor a model is made with.
+/// The pose of the sensor with which a model is made.
 enum class PoseSource {
-  solved,  ///< the scan's solved pose, else one solved from its snapshots, if that is better
-  told,    ///< what the rig was told
+  solved,  ///< the scan's solved pose, else one solved from its snapshots if that is accepted
+  told,    ///< the told pose
 };
 
 /// The source's name in settings: "auto", "told".
@@ -32,18 +32,18 @@ std::string_view to_string(PoseSource source);
 inline constexpr double min_depth_scale = 0.97;
 inline constexpr double max_depth_scale = 1.03;
 
-/// What one scan is made with.
+/// The settings of a scan.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
   DepthFilter filter = DepthFilter::average;
-  int frames = 10;  ///< at each stop, for the filters that merge
+  int frames = 10;  ///< at each stop, for filters that merge frames
   Method method = Method::solid;
   double leaf_size = 0.001;   ///< metres
   double threshold = 0.0001;  ///< square metres, of a triangle's longest side; intersection
   double target_error = ReconstructOptions{}.target_error;  ///< metres; solid
   Parts parts = Parts::main;                                ///< solid
   double root_size = 1.0;                                   ///< metres
-  /// Metres, platform frame. Below 5 mm lies what a Kinect v1 sees of the platform, with its noise.
+  /// Metres, platform frame. Its bottom is at 5 mm, above the noise of a Kinect v1 on the platform.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
   PoseSource pose = PoseSource::solved;
   /// As the rig is told: optical frame to platform frame, metres.
@@ -51,53 +51,52 @@ struct ScanSettings {
   double depth_scale = 1;  ///< factor of the sensor's depths
 };
 
-/// What a reconstruction may use of this machine. No byte of a model depends on it.
+/// The resources that a reconstruction may use. No byte of a model depends on them.
 struct Limits {
   int threads = available_threads();
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
-/// What `octurn reconstruct` makes a model with.
+/// The settings of `octurn reconstruct`.
 struct ModelSettings {
   ScanSettings scan = {.method = Method::intersection};
-  std::optional<int> level = {};  ///< surface of this coarser level; intersection
+  std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
   Limits limits = {.memory_bytes = 0};
 };
 
 struct Field;
 
-/// Every setting of a scan, with its key, unit and range.
+/// All settings of a scan, each with its key, unit and range.
 std::vector<Field> fields(ScanSettings& settings);
-/// Those of `octurn scan`: all but where the sensor stands.
+/// Those of `octurn scan`: all except the sensor's pose.
 std::vector<Field> scan_fields(ScanSettings& settings);
-/// Those of them that need no new capture.
+/// Those that need no new capture.
 std::vector<Field> model_fields(ScanSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
 
-/// What a model of a scan by laser line has by default: finer than a depth sensor's.
+/// Sets the defaults of a model of a scan by laser line, which is finer than a depth sensor's.
 void use_laser_defaults(ScanSettings& settings);
 
-/// The settings of the reconstruction among them.
+/// The settings of the reconstruction.
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
 
-/// As the API and the files have them: lengths in millimetres, each key with its unit.
+/// The JSON of settings in the API and the files: lengths in millimetres, each key with its unit.
 nlohmann::json to_json(const ScanSettings& settings);
 
-/// Reads the settings of a scan to come; a key that is not given is as in `defaults`.
+/// Reads the settings of a new scan; a missing key has the value of `defaults`.
 ///
 /// @param name  of the object in messages; empty for the outermost
-/// @throws Error "bad-settings"  that names the key, its value and what is allowed; also for a key
-///                               that is none
+/// @throws Error "bad-settings"  with the key, its value and the allowed range; also for an unknown
+///                               key
 ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& defaults,
                            const std::string& name = "");
 
-/// Reads the settings of a scan that was made. It may have a clip box thinner than a leaf, which
-/// version 0.1 took.
-/// @throws Error  as above, of the value's code
+/// Reads the settings of a stored scan. Its clip box may be thinner than a leaf, as in version 0.1.
+/// @throws Error  as above, with the value's code
 ScanSettings stored_settings_from(const JsonValue& object);
 
-/// Refuses a leaf larger than the root. @param keys  in which the settings were given
+/// Refuses a leaf larger than the root. @param keys  the JSON of the settings, for messages
 void check_leaf(const JsonObject& keys, const ScanSettings& settings);
 
 /// Refuses a clip box thinner than a leaf. @param keys  as above

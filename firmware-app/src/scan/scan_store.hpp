@@ -20,32 +20,30 @@
 
 namespace octurn {
 
-/// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (what was
-/// asked for and what became of it), `name.txt` and `notes.txt` (what a person wrote on it), and
-/// `builds/<number>/` with the models that were built from it later. And `DATA/platform.json`,
-/// which tells where the platform stands.
+/// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (settings,
+/// state and results), `name.txt` and `notes.txt` (a person's label), and `builds/<number>/` with
+/// models that were built later. Also `DATA/platform.json` with the platform's angle.
 ///
-/// The files are read once, at the beginning, and then held: what is listed needs no disk. Each
-/// file appears whole or not at all. Any thread may call anything at any time.
+/// The files are read once, by the constructor, and then held in memory: listing scans needs no
+/// disk. Each file appears whole or not at all. Thread-safe.
 class ScanStore {
  public:
-  /// Takes hold of the folder, clears away what a dead process left unfinished, and takes the scans
-  /// that it was making as interrupted, also where that cannot be written down.
+  /// Locks the folder, removes unfinished files of a dead process, and marks the scans that it was
+  /// making as interrupted, even if that cannot be written.
   /// @throws Error "data-in-use" if another process holds it; if it cannot be made or read
   explicit ScanStore(std::filesystem::path data);
 
-  /// Makes the folder of a new scan, in state running. Its id comes after every other's, even where
-  /// the clock has gone back.
+  /// Makes the folder of a new scan, in state running. Its id sorts after all others, even if the
+  /// clock was set back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
   /// @param pose_of  of a scan of another pose
   Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {});
 
-  /// Writes `job.json`. Where that fails, the scan is what it was.
+  /// Writes `job.json`. If that fails, the scan does not change.
   /// @throws Error "no-such-scan", "disk-full", "write-failed"
   void save(const Job& job);
 
-  /// Takes a scan as interrupted whose end could not be saved: what the next start would make of
-  /// what is on the disk.
+  /// Marks a scan whose outcome could not be saved as interrupted, as the next start would.
   /// @throws Error "no-such-scan"
   Job interrupt(std::string_view id);
 
@@ -61,13 +59,13 @@ class ScanStore {
   /// The id of the scan that was begun last, whatever has become of it; empty if there is none.
   std::string newest_id() const;
 
-  /// The newest finished scan that is no other pose of one, if there is one.
+  /// The newest finished scan that is not another pose of one, if there is one.
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
   void label(std::string_view id, const LabelChange& change);
 
-  /// Removes a scan for good.
+  /// Removes a scan permanently.
   void remove(std::string_view id);
 
   /// The scans that were deleted, and can be restored for some days, unless their space is needed.
@@ -81,23 +79,23 @@ class ScanStore {
   /// @throws Error "no-such-scan", "data-failed"
   void restore(std::string_view id);
 
-  /// Removes what is in the bin for good.
+  /// Removes the scans in the bin permanently.
   void empty_bin();
 
-  /// Empties the bin, what was deleted first going first, until so much is free.
+  /// Removes scans from the bin, the first deleted first, until `needed` bytes are free.
   /// @param what  is to be written, such as "a model"
   /// @throws Error "disk-full"  if it is empty and that may still not fit
   void make_room(std::uint64_t needed, const std::string& what);
 
-  /// Makes a folder for a scan that comes from another Octurn, which the next start clears away.
+  /// Makes a temporary folder for a scan from another Octurn; the next start removes it.
   /// @throws Error "data-failed", "disk-full"
   std::filesystem::path begin_import();
 
-  /// Takes a whole scan folder in that `begin_import` has made: a scan that waits for its model.
+  /// Adds a filled folder of `begin_import` as a scan that waits for its model.
   /// @throws Error  if it cannot be read, "disk-full", "write-failed"
   Job adopt(const std::filesystem::path& beginning);
 
-  /// Makes the folder of a build to come, which the next start clears away if it stays unfinished.
+  /// Makes the folder of a new build; the next start removes it if it stays unfinished.
   /// @return where its `Scan.stl` belongs
   /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
   std::filesystem::path begin_build(std::string_view id, int number);
@@ -105,27 +103,27 @@ class ScanStore {
   /// The number that the next build of a scan has. @throws Error "no-such-scan"
   int next_build(std::string_view id) const;
 
-  /// Keeps a build whose model is where `begin_build` has said. It appears whole or not at all.
+  /// Adds a build whose model is at the path of `begin_build`. It appears whole or not at all.
   /// @throws Error "no-such-scan", "disk-full", "write-failed", "data-failed"
   void add_build(std::string_view id, const Build& build);
 
-  /// Makes the folder of a build that another process makes, with the number that this has.
-  /// @param run  whose number the build gets
+  /// Reserves the number and the folder of a build that another process makes.
+  /// @param run  its number is set
   /// @return the folder, which is a build as soon as its `build.json` is there
   /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
   std::filesystem::path reserve_build(BuildRun& run);
 
-  /// Takes in a build that another process has made in the folder that was reserved.
+  /// Adds a build that another process has made in its reserved folder.
   /// @throws Error "no-such-scan", "job-malformed", "read-failed"
   void take_build(std::string_view id, int number);
 
-  /// Removes such a folder, whose build will not come.
+  /// Removes the reserved folder of a build that will not be made.
   void release_build(std::string_view id, int number);
 
-  /// Removes what a build has begun and will not finish.
+  /// Removes the folder of a build that will not be finished.
   void drop_build(std::string_view id, int number);
 
-  /// Makes the model of a build the scan's; that of build 0 is what the scan itself made.
+  /// Chooses a build's model as the scan's; build 0 is the scan's own model.
   /// @throws Error "no-such-scan", "no-model"  if there is no such build, "disk-full",
   /// "write-failed"
   void choose_build(std::string_view id, int number);
@@ -133,13 +131,13 @@ class ScanStore {
   /// @throws Error "no-such-scan", "no-model"  if there is no such build, "busy"  if it is chosen
   void remove_build(std::string_view id, int number);
 
-  /// The scan folder that builds with these other poses are made from: that of the build which
-  /// merged them; without poses, the scan's own. @throws Error "no-model"  if there is none
+  /// The scan folder for builds with these other poses: that of the build that merged them; without
+  /// poses, the scan's own. @throws Error "no-model"  if there is none
   std::filesystem::path merged_scan(std::string_view id,
                                     const std::vector<std::string>& poses) const;
 
-  /// Removes the builds that have the object in that pose. If one of them is chosen, the model is
-  /// again what it was before. @throws  as `choose_build` and `remove_build`
+  /// Removes the builds that include that pose. If one of them is chosen, the model chosen before
+  /// it is restored. @throws  as `choose_build` and `remove_build`
   void withdraw_pose(std::string_view id, const std::string& pose);
 
   /// The data folder.
@@ -147,19 +145,19 @@ class ScanStore {
 
   /// @param id  that exists
   std::filesystem::path folder(std::string_view id) const;
-  /// The scan's model, which is that of the build that was chosen.
+  /// The path of the scan's model, that of the chosen build.
   std::filesystem::path model_file(std::string_view id) const;
-  /// The model of a build; of build 0, what the scan itself made.
+  /// The path of a build's model; build 0 is the scan's own.
   std::filesystem::path model_file(std::string_view id, int build) const;
 
-  /// Where the platform was when it was written down last, degrees; 0 if it never was.
+  /// The platform's last stored angle, degrees; 0 if there is none.
   double platform_angle_deg() const;
   void save_platform_angle_deg(double angle_deg) const;
 
   std::uint64_t free_bytes() const;
 
-  /// Another number after every scan that came, ended, was labelled, built again or removed: who
-  /// has listed the scans at the same number need not do it again. Not the same in another process.
+  /// A number that changes whenever a scan is added, ends, is labelled, built again or removed, so
+  /// that lists of scans can be cached. It is not comparable between processes.
   std::uint64_t revision() const;
 
  private:
@@ -176,7 +174,7 @@ class ScanStore {
   std::filesystem::path platform_;
   FileDescriptor lock_;  // locked while it is open
   ScanBin bin_;
-  std::mutex writing_;        // held by who writes a scan's files; taken before mutex_
+  std::mutex writing_;        // serialises writes of a scan's files; locked before mutex_
   mutable std::mutex mutex_;  // guards what follows, and is never held while the disk is used
   std::map<std::string, Job, std::greater<>> jobs_;
   std::uint64_t revision_;

@@ -21,7 +21,7 @@
 
 namespace octurn {
 
-/// Runs one scan at a time on a worker of its own. Any thread may call anything here.
+/// Runs one scan at a time on its own worker thread. Thread-safe.
 ///
 ///              start                  every snapshot taken, and the model built
 ///     (none) --------> running ------------------------------------------------> finished
@@ -42,7 +42,7 @@ namespace octurn {
 ///                       +-- ModelPipe: the bytes of a model <----------------------+  the scan
 class Scanner {
  public:
-  /// @param slurm  that builds the models of stored scans; nothing: they are built here
+  /// @param slurm  builds the models of stored scans; nothing: the worker builds them
   Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
           const std::optional<SlurmOptions>& slurm = {});
   ~Scanner();
@@ -53,9 +53,9 @@ class Scanner {
   /// @throws Error "disk-full", "data-failed"
   std::optional<Job> start(const ScanSettings& settings);
 
-  /// Starts a scan of the object of a finished scan, which a person has turned over. What it sees
-  /// is merged with what was seen before: the model of all poses becomes the finished scan's.
-  /// Nothing if a scan runs.
+  /// Starts a scan of the object of a finished scan in another pose, after a person turned it over.
+  /// Both are merged, and the model of all poses becomes that of the finished scan. Nothing if a
+  /// scan runs.
   /// @param id  of the finished scan
   /// @throws Error "no-such-scan", "no-model"  if it is not finished, or is itself of another pose;
   ///               "disk-full", "data-failed"
@@ -64,27 +64,27 @@ class Scanner {
   /// The scans of other poses of that scan as they are now, the oldest first.
   std::vector<Job> poses(std::string_view id) const;
 
-  /// One of them, as it is stored.
+  /// One of these scans, as stored.
   /// @param number  from 1
   /// @throws Error "no-such-scan", "not-found"  if there is no such pose
   Job find_pose(std::string_view id, int number) const;
 
-  /// Takes a pose back: the model is again what it was before, and the scan of the pose is removed.
+  /// Removes a pose: its scan is deleted, and the model before it is restored.
   /// @param number  of the pose, from 1
   /// @throws Error "no-such-scan", "not-found"  if there is no such pose; "busy"  if it is being
   ///               scanned, or a later one was merged with it
   void remove_pose(std::string_view id, int number);
 
-  /// Has the worker register a scan of another pose again, from where a person says that it lay,
-  /// and build the model of all poses anew: a build, which ends as failed if it does not fit.
+  /// Has the worker register a scan of another pose again, from a person's estimate, and build the
+  /// model of all poses again. It is a build, and fails if the estimate does not fit.
   /// @param number  of the pose, from 1
   /// @return nothing while a scan runs or a build goes on
   /// @throws Error  as `remove_pose` and `build`
   std::optional<BuildRun> choose_pose(std::string_view id, int number, const PoseChoice& choice);
 
-  /// Goes on with a scan that was paused or interrupted, at the stop where that was, unless one
-  /// runs: nothing then. Also with one that was cancelled, as long as no other was started: its
-  /// object may be on the platform still.
+  /// Continues a paused or interrupted scan at the stop where it ended. Nothing if a scan runs. A
+  /// cancelled scan can be resumed, too, until another one is started: its object may still be on
+  /// the platform.
   /// @throws Error "no-such-scan", "not-paused", "disk-full", "write-failed"
   std::optional<Job> resume(std::string_view id);
 
@@ -99,16 +99,14 @@ class Scanner {
   /// @return false if it has ended already
   bool cancel(std::string_view id);
 
-  /// Moves a scan that does not run into the bin, with its other poses. One of another pose is
-  /// taken back.
+  /// Moves a scan that does not run into the bin, with its other poses. A scan of another pose is
+  /// removed from its scan.
   /// @throws Error "no-such-scan", "busy"
   void remove(std::string_view id);
 
-  /// Takes a scan in that another Octurn has taken, and has its model built: here, unless a scan
-  /// runs.
-  /// @param fill   fills the folder that it is given with a whole scan folder; what it throws comes
-  ///               out here
-  /// @param bytes  that this may take
+  /// Imports a scan of another Octurn, and has its model built unless a scan runs.
+  /// @param fill   fills a folder with a whole scan folder; its exceptions are passed on
+  /// @param bytes  maximum size of that folder
   /// @throws Error "disk-full", "data-failed"
   Job adopt(const std::function<void(const std::filesystem::path& folder)>& fill,
             std::uint64_t bytes);
@@ -116,7 +114,7 @@ class Scanner {
   /// Brings a scan back from the bin. @throws Error "no-such-scan"
   void restore(std::string_view id);
 
-  /// Removes the scans in the bin for good.
+  /// Removes the scans in the bin permanently.
   void empty_bin() { store_.empty_bin(); }
 
   /// @throws Error "no-such-scan"
@@ -130,33 +128,32 @@ class Scanner {
 
   Status status() const { return board_.status(); }
 
-  /// The same without the times of a running scan; the same object until something changes.
+  /// The same without the times of a running scan; the same object until a scan changes.
   std::shared_ptr<const Status> latest_status() const { return board_.latest_status().get(); }
 
-  /// Waits until no scan runs and no turn goes on, but no longer than `patience`.
+  /// Waits until no scan and no measurement runs, for at most `patience`.
   Status wait_until_done(std::chrono::milliseconds patience) const;
 
-  /// The depth image of now, or, during a scan or while a model is made, the last one.
-  /// @throws Error  why there is none
+  /// The current depth image; during a scan or while a model is made, the last one.
+  /// @throws Error  if there is none, with the reason
   std::shared_ptr<const CameraFrame> camera_frame();
 
-  /// Looks, unless a scan runs, whether a device that failed works again.
+  /// Checks whether a device that failed works again, unless a scan runs.
   /// @throws Error "sensor-...", "turntable-..."  if it does not
   void expect_ready();
 
   /// Measures the sensor's pose with a turn, and puts it into force if it is accepted.
   /// @param settings  with the pose in force; `snapshots` are the stops
-  /// @return false if a scan, or another turn, goes on
+  /// @return false if a scan or another measurement runs
   bool calibrate(const ScanSettings& settings);
 
-  /// Has the sensor look at a wall, and makes the map of its own error of that and the looks
-  /// before.
-  /// @return false if a scan, or another measurement, goes on
+  /// Reads depth frames of a wall, and fits the sensor's map to this and the earlier views.
+  /// @return false if a scan or another measurement runs
   bool look_at_wall(int frames);
 
-  /// Has the camera look at a board that somebody holds before it, and solves its lens. What is
-  /// found is in the run, and `keep_lens` puts it into force.
-  /// @return false if a scan, or another measurement, goes on
+  /// Takes pictures of a board that somebody holds before the camera, and solves its lens. The
+  /// result is in the run; `keep_lens` puts it into force.
+  /// @return false if a scan or another measurement runs
   bool look_at_board();
 
   /// Has the lens solved from the views of the board so far. @return false if none are taken

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
 #include "scan/build_run.hpp"
 #include "scan/calibration_turn.hpp"

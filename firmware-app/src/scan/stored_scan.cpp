@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "log.hpp"
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 namespace {

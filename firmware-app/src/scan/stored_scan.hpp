@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/take_pictures.hpp"
 

@@ -4,8 +4,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "octurn/colours.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
 #include "scan/take_depth_image.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/units.hpp"
 #include "scan/data_folder.hpp"
 #include "scan/sensor_map_files.hpp"

@@ -10,10 +10,10 @@
 #include <system_error>
 #include <utility>
 
-#include "octurn/depth_png.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/png.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -10,7 +10,7 @@
 #include "core/bennett/plain_octree.hpp"
 #include "core/bennett/soup.hpp"
 #include "core/mesh/surface.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 
 namespace octurn {
 namespace {

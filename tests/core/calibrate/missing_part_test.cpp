@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
+#include <utility>
 
 #include "calibrate/seen_cells.hpp"
+#include "mesh/surface_cells.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -29,20 +32,22 @@ ScanFigures post_seen(double height, double distance = 0.65) {
 /// A model of that post, as high as one wants, of voxels of a millimetre.
 ModelReport post_model(double height) {
   const double volume = 0.04 * 0.04 * height;
-  ModelReport model{.leaves = static_cast<std::uint64_t>(volume / 1e-9), .volume = volume};
+  SurfaceCells surface;
   for (const double side : {-0.02, 0.02}) {
     const std::array<Vector3d, 4> face = {Vector3d(side, -0.02, 0), Vector3d(side, 0.02, 0),
                                           Vector3d(side, -0.02, height),
                                           Vector3d(side, 0.02, height)};
-    model.places.surface.add({face[0], face[1], face[2]});
-    model.places.surface.add({face[1], face[2], face[3]});
+    surface.add({face[0], face[1], face[2]});
+    surface.add({face[1], face[2], face[3]});
     const auto turned = [&](std::size_t i) {
       return Vector3d(face[i].y(), face[i].x(), face[i].z());
     };
-    model.places.surface.add({turned(0), turned(1), turned(2)});
-    model.places.surface.add({turned(1), turned(2), turned(3)});
+    surface.add({turned(0), turned(1), turned(2)});
+    surface.add({turned(1), turned(2), turned(3)});
   }
-  return model;
+  return {.leaves = static_cast<std::uint64_t>(volume / 1e-9),
+          .places = {.surface = std::make_shared<SurfaceCells>(std::move(surface))},
+          .volume = volume};
 }
 
 TEST(MissingPart, IsNoneOfAModelOfAllThatWasSeen) {

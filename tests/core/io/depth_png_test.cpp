@@ -1,11 +1,10 @@
-#include "octurn/depth_png.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <stdexcept>
 #include <string>
 
+#include "octurn/png.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/io/scan_json.hpp"
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/sensor_map.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/sensor_map.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

@@ -87,7 +87,10 @@ TEST(FindLine, LeavesOutGlowAndSpecks) {
     return line(u, 30.5, 200) + glow + speck;
   });
 
-  for (const LineSample& sample : find_line(no_light, lit, {})) {
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  EXPECT_EQ(samples.size(), static_cast<std::size_t>(height - 2));
+  for (const LineSample& sample : samples) {
     EXPECT_NEAR(sample.u, 30.5, 0.1) << "row " << sample.row;
   }
 }
@@ -97,7 +100,10 @@ TEST(FindLine, LeavesOutGlare) {
     return line(u, 30.5, 150) + (v > 20 && v < 40 && u > 60 && u < 72 ? 255 : 0);
   });
 
-  for (const LineSample& sample : find_line(no_light, lit, {})) {
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  EXPECT_EQ(samples.size(), static_cast<std::size_t>(height - 2));
+  for (const LineSample& sample : samples) {
     EXPECT_NEAR(sample.u, 30.5, 0.1) << "row " << sample.row;
   }
 }

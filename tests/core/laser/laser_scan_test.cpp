@@ -6,7 +6,7 @@
 
 #include "core/laser/lit_scene.hpp"
 #include "core/mesh/surface.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/register.hpp"
 #include "support/thrown_error.hpp"

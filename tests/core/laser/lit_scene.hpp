@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "support/random.hpp"

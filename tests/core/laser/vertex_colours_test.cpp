@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/laser/lit_scene.hpp"
-#include "octurn/colours.hpp"
+#include "octurn/model.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 #include "support/random.hpp"
 
 namespace octurn {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "board_picture.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 namespace {

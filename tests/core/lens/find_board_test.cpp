@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "board_picture.hpp"
-#include "octurn/calibrate.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 namespace {

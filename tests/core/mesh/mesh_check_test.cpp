@@ -1,10 +1,10 @@
+#include "mesh/mesh_check.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <utility>
 #include <vector>
-
-#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {

@@ -1,9 +1,9 @@
+#include "mesh/places.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
-
-#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {

@@ -75,7 +75,9 @@ TEST(StreamSimplifier, KeepsASphereManifoldThroughSeveralWindows) {
 }
 
 TEST(StreamSimplifier, TurnsNoFacetOver) {
-  for (const Facet& facet : simplified(sphere(20, 60), 0.1, 1)) {
+  const std::vector<Facet> facets = simplified(sphere(20, 60), 0.1, 1);
+  ASSERT_GT(facets.size(), 100U);
+  for (const Facet& facet : facets) {
     const auto corners = facet.corners;
     const auto normal = facet.normal;
     const Eigen::Vector3f centre =

@@ -1,11 +1,11 @@
+#include "mesh/surface_cells.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <random>
 #include <vector>
-
-#include "octurn/mesh_report.hpp"
 
 namespace octurn {
 namespace {

@@ -12,7 +12,7 @@
 #include "bennett/marching_tetrahedra.hpp"
 #include "bennett/triangulate.hpp"
 #include "depth/back_project.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/units.hpp"
 #include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"

@@ -134,7 +134,9 @@ TEST(MarchingCubes, OfAKeptPartIsOnePart) {
 TEST(MarchingCubes, KeepsVerticesApart) {
   const CompactTsdf field = random_field(7, 0.4);
   const HoleFilledSdf filled(field, 3);
-  for (const Facet& facet : surface_of(filled.inside(), filled)) {
+  const std::vector<Facet> facets = surface_of(filled.inside(), filled);
+  ASSERT_GT(facets.size(), 1000U);
+  for (const Facet& facet : facets) {
     const auto corners = facet.corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Vector3f a(corners[i].data());

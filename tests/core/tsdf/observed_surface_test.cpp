@@ -84,7 +84,9 @@ TEST(ObservedSurface, LiesWhereTheDistancesAreZeroOnSamplesOfAnySide) {
 
 TEST(ObservedSurface, FacesOutwards) {
   const CompactTsdf known = ball_seen_in([](const Eigen::Vector3d&) { return true; });
-  for (const Facet& facet : observed_surface(known, 0, 2)) {
+  const std::vector<Facet> facets = observed_surface(known, 0, 2);
+  ASSERT_GT(facets.size(), 100U);
+  for (const Facet& facet : facets) {
     const auto normal = facet.normal;
     const auto corners =
         facet.corners;  // a copy: in the facet they lie where STL has them, unaligned

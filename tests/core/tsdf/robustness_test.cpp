@@ -13,7 +13,7 @@
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/simulated_scan.hpp"
 #include "core/tsdf/surface_errors.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -7,7 +7,7 @@
 
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/rendered.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "octurn/reconstruct.hpp"
 
 namespace octurn {

@@ -9,7 +9,7 @@
 
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/rendered.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

@@ -9,7 +9,8 @@
 
 #include "core/mesh/surface.hpp"
 #include "core/tsdf/rendered.hpp"
-#include "octurn/mesh_report.hpp"
+#include "mesh/mesh_check.hpp"
+#include "octurn/model.hpp"
 #include "octurn/units.hpp"
 #include "support/random.hpp"
 #include "tsdf/integrate.hpp"
@@ -79,7 +80,7 @@ TEST(StandingParts, AreTheObjectAndWhatIsLeftOutIsCounted) {
   EXPECT_EQ(topology_of(made.facets).euler, 2);
   EXPECT_EQ(made.count.parts, 1U);
   EXPECT_EQ(made.count.dropped_parts, make(two_blocks(8), Parts::all).count.dropped_parts + 1);
-  const ModelReport report = report_of(made.count, check(made));
+  const ModelReport report = make_report(made.count, check(made));
   EXPECT_NEAR(cm3_from_m3(report.volume), 6 * 4 * 5, 6 * 4 * 5 * 0.03);
   EXPECT_NEAR(cm3_from_m3(report.dropped.volume), 2 * 3 * 2.5, 2 * 3 * 2.5 * 0.1);
 }

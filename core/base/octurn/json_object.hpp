@@ -12,11 +12,11 @@
 
 namespace octurn {
 
-/// A value of an untrusted JSON document, with its path. Every message names the path, the value
-/// and what it must be: `"sensor.width" is 0: must be a whole number from 2 to 8192`.
+/// A value of an untrusted JSON document, with its path. Every message has the path, the value and
+/// the rule: `"sensor.width" is 0: must be a whole number from 2 to 8192`.
 class JsonValue {
  public:
-  /// @param value  has to outlive this
+  /// @param value  must outlive this
   /// @param name   its path, "sensor.width" or "snapshots[1]"; empty for the whole document
   /// @param code   of the errors that this value throws, such as "bad-settings"
   JsonValue(const nlohmann::json& value, std::string name, ErrorCode code);
@@ -25,19 +25,19 @@ class JsonValue {
   const std::string& name() const { return name_; }
   ErrorCode code() const { return code_; }
 
-  /// The value as a C++ type. @throws Error  if it is of another kind or out of its range
+  /// The value as a C++ type. @throws Error  if it has another type or is out of range
   double number() const;
   double number(double min, double max) const;
   int whole_number(int min, int max) const;
   bool flag() const;
   std::string text() const;
 
-  /// An array's elements, named "name[0]" and so on. @throws Error  if it is no array
+  /// An array's elements, named "name[0]" and so on. @throws Error  if it is not an array
   std::vector<JsonValue> elements() const;
-  /// An array's elements. @throws Error  if it is no array of `count`
+  /// The same. @throws Error  if it is not an array of `count` elements
   std::vector<JsonValue> elements(std::size_t count) const;
 
-  /// Throws the Error of a value that is not allowed. @param must  completes "... must be"
+  /// Throws an Error that refuses the value. @param must  completes "... must be"
   [[noreturn]] void refuse(const std::string& must) const;
 
  private:
@@ -46,11 +46,11 @@ class JsonValue {
   ErrorCode code_;
 };
 
-/// An untrusted JSON object, read key by key. It remembers the keys that were read, so that a
-/// misspelt one can be refused at the end.
+/// An untrusted JSON object. It remembers the keys that were read, so that `refuse_unread` finds
+/// misspelt ones.
 class JsonObject {
  public:
-  /// @throws Error  if it is no object
+  /// @throws Error  if it is not an object
   explicit JsonObject(JsonValue object);
   JsonObject(const nlohmann::json& object, ErrorCode code, std::string name);
 
@@ -60,19 +60,20 @@ class JsonObject {
   /// The value of an optional key.
   std::optional<JsonValue> value(std::string_view key);
 
-  /// An optional key's value as a C++ type. @throws Error  if it is of another kind or out of range
+  /// An optional key's value as a C++ type. @throws Error  if it has another type or is out of
+  /// range
   std::optional<double> number(std::string_view key, double min, double max);
   std::optional<int> whole_number(std::string_view key, int min, int max);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
 
-  /// The JSON of an optional key; null if it is not there.
+  /// The JSON of an optional key; null if it is absent.
   const nlohmann::json* find(std::string_view key);
 
   /// @throws Error  if the object has a key that was not read
   void refuse_unread() const;
 
-  /// Throws the Error of a key's value. @param must  completes "... must be"
+  /// Throws an Error that refuses a key's value. @param must  completes "... must be"
   [[noreturn]] void refuse(std::string_view key, const nlohmann::json& value,
                            const std::string& must) const;
 
@@ -83,19 +84,19 @@ class JsonObject {
   std::set<std::string, std::less<>> read_ = {};
 };
 
-/// Maximum nesting of arrays and objects. Copying, comparing and writing a value recurse by its
-/// depth, on stacks as small as 100 KB.
+/// Maximum nesting of arrays and objects. Copying, comparing and writing a value recurse to its
+/// depth, and some threads have a stack of 100 KB.
 inline constexpr int max_json_depth = 32;
 
 /// Maximum size of a document, bytes: room for 40,000 snapshots with poses. The parsed values take
 /// up to 16 times as much.
 inline constexpr std::size_t max_json_bytes = std::size_t{16} << 20U;
 
-/// Parses an untrusted JSON text. Every reader of JSON in the program uses it.
+/// Parses an untrusted JSON text. All JSON that the library and the program read goes through it.
 ///
 /// @param code  of the errors
 /// @param what  the text's name in messages: "the body"
-/// @throws Error  of that code, if the text is not JSON, too deep or too large
+/// @throws Error  of that code, if the text is not JSON, nested too deeply or too large
 nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what);
 
 }  // namespace octurn

@@ -11,25 +11,24 @@
 
 namespace octurn {
 
-/// Reads a whole file. Never waits for a writer, as opening a FIFO would, and never holds more than
-/// `max_bytes`.
+/// Reads a whole regular file of at most `max_bytes`. Never blocks, as opening a FIFO would.
 ///
 /// @return nothing if there is no such file
-/// @throws Error "file-too-large"  if it has more
-/// @throws Error "read-failed"     if it is no regular file, or the disk does not give it
+/// @throws Error "file-too-large"  if it has more bytes
+/// @throws Error "read-failed"     if it is not a regular file, or cannot be read
 std::optional<std::string> read_regular_file(const std::filesystem::path& file,
                                              std::size_t max_bytes);
 
-/// A file that appears whole or not at all: written under a temporary name beside `target`, and
-/// given its real name by `commit`. Destroyed before that, it leaves nothing behind.
+/// A file that appears whole or not at all: it is written under a temporary name beside `target`,
+/// and `commit` renames it. Without `commit` the destructor removes it.
 ///
-/// A file of more than 1 MiB bypasses the page cache where the file system allows it: that halves
+/// A file of more than 1 MiB bypasses the page cache where the file system allows it: this halves
 /// the CPU time and leaves the machine's memory to others.
 class AtomicFile {
  public:
-  /// @param permissions  of the file, less the process's umask
-  /// @throws Error "write-failed"  if the folder cannot be written to, or `target` is no regular
-  ///                               file
+  /// @param permissions  of the file, before the process's umask
+  /// @throws Error "write-failed"  if the folder cannot be written to, or `target` is something
+  ///                               else than a regular file
   explicit AtomicFile(std::filesystem::path target, unsigned permissions = 0666);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -54,7 +53,7 @@ class AtomicFile {
   std::filesystem::path target_;
   std::filesystem::path temporary_;
   int descriptor_ = -1;
-  std::unique_ptr<std::byte, void (*)(void*)> block_;  // bytes that follow those on the disk
+  std::unique_ptr<std::byte, void (*)(void*)> block_;  // the last bytes, not yet on the disk
   std::size_t filled_ = 0;
   std::uint64_t written_ = 0;
 };
@@ -63,13 +62,14 @@ class AtomicFile {
 void write_file(const std::filesystem::path& target, std::string_view content,
                 unsigned permissions = 0666);
 
-/// Makes the names in a folder survive a power cut. @throws Error "disk-full", "write-failed"
+/// Syncs a folder, so that the names in it survive a power cut. @throws Error "disk-full",
+/// "write-failed"
 void sync_folder(const std::filesystem::path& folder);
 
-/// A hidden name in the folder of `target`, for what will be renamed to it. Names of two processes
-/// differ, and so do those of two attempts.
+/// A hidden name in the folder of `target`, for a file that will be renamed to `target`. It differs
+/// for each process and each attempt.
 ///
-/// @param attempt  counted up by the caller until nothing of that name exists
+/// @param attempt  incremented by the caller until no file of that name exists
 std::filesystem::path temporary_name(const std::filesystem::path& target, int attempt);
 
 }  // namespace octurn

@@ -23,8 +23,8 @@ void CompletedRequests::disconnect() {
 CompletedRequests::Outcome CompletedRequests::wait(const std::stop_token& stop,
                                                    std::chrono::steady_clock::time_point deadline) {
   std::unique_lock lock(mutex_);
-  const bool changed = changed_.wait_until(lock, stop, deadline,
-                                         [this] { return is_disconnected_ || !requests_.empty(); });
+  const bool changed = changed_.wait_until(
+      lock, stop, deadline, [this] { return is_disconnected_ || !requests_.empty(); });
   if (stop.stop_requested()) {
     return Outcome::stopped;
   }

@@ -40,7 +40,8 @@ bool is_harmless(std::string_view warning) {
 /// The decoder tells the first of its warnings alone, which may be a harmless one.
 bool has_end(std::span<const std::uint8_t> bytes) {
   constexpr std::array<std::uint8_t, 2> end_of_image = {0xff, 0xd9};
-  return std::ranges::find_end(bytes, end_of_image).size() == end_of_image.size();
+  return std::find_end(bytes.begin(), bytes.end(), end_of_image.begin(), end_of_image.end()) !=
+         bytes.end();
 }
 
 /// A JPEG of the size, before its pixels are decoded.

@@ -49,6 +49,11 @@ Channels channels_of(PixelLayout layout) {
       return {luminance, alone(1), alone(2)};
     case PixelLayout::yvu420:
       return {luminance, alone(2), alone(1)};
+    case PixelLayout::yuv422:
+      return {luminance, Channel{.plane = 1, .halvings_x = 1, .part_of_row = 2},
+              Channel{.plane = 2, .halvings_x = 1, .part_of_row = 2}};
+    case PixelLayout::yuv444:
+      return {luminance, Channel{.plane = 1}, Channel{.plane = 2}};
     case PixelLayout::rgb_bytes:
       return {bytes(0), bytes(1), bytes(2)};
     case PixelLayout::bgr_bytes:

@@ -15,6 +15,8 @@ std::size_t bytes_per_pixel(PixelLayout layout) {
     case PixelLayout::nv21:
     case PixelLayout::yuv420:
     case PixelLayout::yvu420:
+    case PixelLayout::yuv422:
+    case PixelLayout::yuv444:
       return 1;
     case PixelLayout::yuyv:
     case PixelLayout::uyvy:
@@ -33,6 +35,8 @@ std::uint8_t luminance_at(const std::uint8_t* pixel, PixelLayout layout) {
     case PixelLayout::nv21:
     case PixelLayout::yuv420:
     case PixelLayout::yvu420:
+    case PixelLayout::yuv422:
+    case PixelLayout::yuv444:
     case PixelLayout::yuyv:
       return pixel[0];
     case PixelLayout::uyvy:

@@ -15,6 +15,8 @@ enum class PixelLayout {
   nv21,       ///< the same with V and U
   yuv420,     ///< a plane of luminance; one of U and one of V, each for 2 x 2 pixels
   yvu420,     ///< the same with V before U
+  yuv422,     ///< a plane of luminance; one of U and one of V, each for 2 pixels of a row
+  yuv444,     ///< three planes, each for every pixel
   yuyv,       ///< two bytes a pixel, the first is luminance, the others U and V of two pixels
   uyvy,       ///< two, the second is luminance
   rgb_bytes,  ///< three: red, green, blue in memory

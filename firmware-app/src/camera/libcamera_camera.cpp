@@ -11,12 +11,15 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera/camera_module.hpp"
 #include "camera/colour_picture.hpp"
 #include "camera/completed_requests.hpp"
+#include "camera/jpeg_picture.hpp"
 #include "camera/mapped_plane.hpp"
 #include "camera/pixel_formats.hpp"
 #include "octurn/error.hpp"
@@ -73,6 +76,39 @@ std::string name_of(const libcamera::Camera& camera) {
   return model ? std::string(*model) : camera.id();
 }
 
+enum class Kind { grey, colour };
+
+TimedPicture of_rows(std::span<const std::span<const std::uint8_t>> planes, const PixelRows& rows,
+                     Kind kind) {
+  TimedPicture picture{.picture = grey_picture(planes.front(), rows)};
+  if (kind == Kind::colour) {
+    picture.colours = colour_picture(planes, rows);
+  }
+  return picture;
+}
+
+/// @return nothing if the picture is damaged
+std::optional<TimedPicture> of_jpeg(std::span<const std::uint8_t> bytes, const CameraWish& wish,
+                                    Kind kind) {
+  if (kind == Kind::grey) {
+    std::optional<Picture> picture = grey_jpeg(bytes, wish.width, wish.height);
+    return picture ? std::optional(TimedPicture{.picture = std::move(*picture)}) : std::nullopt;
+  }
+  const auto jpeg = jpeg_planes(bytes, wish.width, wish.height);
+  if (!jpeg) {
+    return std::nullopt;
+  }
+  const std::vector<std::span<const std::uint8_t>> planes(jpeg->planes.begin(), jpeg->planes.end());
+  return of_rows(planes, jpeg->rows, kind);
+}
+
+/// What the camera wrote into a buffer's first plane.
+std::span<const std::uint8_t> written(std::span<const std::uint8_t> plane,
+                                      const libcamera::FrameBuffer& buffer) {
+  const std::size_t bytes = buffer.metadata().planes()[0].bytesused;
+  return plane.first(std::min(bytes, plane.size()));
+}
+
 class LibcameraCamera final : public Camera {
  public:
   explicit LibcameraCamera(const CameraWish& wish) : wish_(wish) {
@@ -104,8 +140,6 @@ class LibcameraCamera final : public Camera {
   }
 
  private:
-  enum class Kind { grey, colour };
-
   /// The newest picture that is there. A camera whose pictures are all damaged is as silent as one
   /// that sends none.
   std::optional<TimedPicture> read_newest(const std::stop_token& stop, Kind kind) {
@@ -138,13 +172,15 @@ class LibcameraCamera final : public Camera {
     const std::unique_ptr<libcamera::CameraConfiguration> configuration =
         camera_->generateConfiguration({libcamera::StreamRole::VideoRecording});
     expect(configuration != nullptr && !configuration->empty(), "has no stream of pictures");
-    const PixelLayout layout = choose_format(*configuration, wish_, *camera_, name_);
+    const auto layout = choose_format(*configuration, wish_, *camera_, name_);
     expect(camera_->configure(configuration.get()) == 0, "cannot be set up");
     libcamera::Stream* const stream = configuration->at(0).stream();
-    rows_ = {.layout = layout,
-             .width = wish_.width,
-             .height = wish_.height,
-             .stride = configuration->at(0).stride};
+    if (layout) {
+      rows_ = {.layout = *layout,
+               .width = wish_.width,
+               .height = wish_.height,
+               .stride = configuration->at(0).stride};
+    }
     buffers_ = std::make_unique<libcamera::FrameBufferAllocator>(camera_);
     expect(buffers_->allocate(stream) > 0, "has no memory for its pictures");
     for (const auto& buffer : buffers_->buffers(stream)) {
@@ -199,21 +235,21 @@ class LibcameraCamera final : public Camera {
     return picture;
   }
 
-  /// @return nothing if the driver says that the picture is damaged
+  /// @return nothing if the picture is damaged, as the driver says or as is seen
   std::optional<TimedPicture> picture_of(libcamera::Request& request, Kind kind) const {
     const libcamera::FrameBuffer& buffer = *request.buffers().begin()->second;
     if (buffer.metadata().status != libcamera::FrameMetadata::FrameSuccess) {
       return std::nullopt;
     }
     const MappedBuffer& mapped = mapped_[request.cookie()];
-    const auto planes = mapped.planes();
     mapped.begin_reading();
-    TimedPicture picture{.picture = grey_picture(planes.front(), rows_),
-                         .begin = begin_of(request)};
-    if (kind == Kind::colour) {
-      picture.colours = colour_picture(planes, rows_);
-    }
+    std::optional<TimedPicture> picture =
+        rows_ ? of_rows(mapped.planes(), *rows_, kind)
+              : of_jpeg(written(mapped.planes().front(), buffer), wish_, kind);
     mapped.end_reading();
+    if (picture) {
+      picture->begin = begin_of(request);
+    }
     return picture;
   }
 
@@ -234,7 +270,7 @@ class LibcameraCamera final : public Camera {
   libcamera::CameraManager manager_ = {};
   std::shared_ptr<libcamera::Camera> camera_ = {};
   std::string name_ = {};
-  PixelRows rows_ = {};
+  std::optional<PixelRows> rows_ = {};  // nothing: each picture is a JPEG
   std::unique_ptr<libcamera::FrameBufferAllocator> buffers_ = {};
   std::deque<MappedBuffer> mapped_ = {};                            // in the buffers' order
   std::vector<std::unique_ptr<libcamera::Request>> requests_ = {};  // cookie: index of its buffer

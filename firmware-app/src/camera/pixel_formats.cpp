@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "camera/frame_rate.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -32,6 +33,8 @@ const Readable readable = {{
     {libcamera::formats::RGB888, PixelLayout::bgr_bytes},
 }};
 
+const PixelFormat compressed = libcamera::formats::MJPEG;
+
 Readable readable_of(const libcamera::Camera& camera) {
   Readable formats = readable;
   const auto filter = camera.properties().get(libcamera::properties::draft::ColorFilterArrangement);
@@ -48,12 +51,16 @@ std::string size_text(const Size& size) {
 /// The sizes that a stream has in formats that are read, the largest first.
 std::vector<Size> sizes_of(const libcamera::StreamConfiguration& stream) {
   std::vector<Size> sizes;
-  for (const auto& [format, layout] : readable) {
+  const auto add = [&](const PixelFormat& format) {
     for (const Size& size : stream.formats().sizes(format)) {
       if (std::ranges::find(sizes, size) == sizes.end()) {
         sizes.push_back(size);
       }
     }
+  };
+  add(compressed);
+  for (const auto& [format, layout] : readable) {
+    add(format);
   }
   std::ranges::sort(sizes, [](const Size& a, const Size& b) {
     return std::size_t{a.width} * a.height > std::size_t{b.width} * b.height;
@@ -66,7 +73,7 @@ std::vector<Size> sizes_of(const libcamera::StreamConfiguration& stream) {
   const std::vector<Size> sizes = sizes_of(stream);
   if (sizes.empty()) {
     throw Error(ErrorCode::sensor_other, camera + ": none of its formats can be read",
-                "Use a camera that sends pictures without compression.");
+                "Use a camera that sends pictures without compression, or as MJPEG.");
   }
   std::string others;
   for (const Size& size : sizes) {
@@ -79,27 +86,53 @@ std::vector<Size> sizes_of(const libcamera::StreamConfiguration& stream) {
           others + ".");
 }
 
+/// Sets the stream to the format, if the camera makes pictures of the size in it.
+bool set_format(libcamera::CameraConfiguration& configuration, const PixelFormat& format,
+                const Size& size) {
+  libcamera::StreamConfiguration& stream = configuration.at(0);
+  const std::vector<PixelFormat> offered = stream.formats().pixelformats();
+  if (std::ranges::find(offered, format) == offered.end()) {
+    return false;
+  }
+  stream.pixelFormat = format;
+  stream.size = size;
+  stream.colorSpace = libcamera::ColorSpace::Sycc;  // all levels, and BT.601 as is computed with
+  // What is validated may be adjusted: to another size, or another format.
+  return configuration.validate() != libcamera::CameraConfiguration::Invalid &&
+         stream.size == size && stream.pixelFormat == format;
+}
+
+/// Whether the camera makes fewer pictures than a scan wants in a format, and more if compressed.
+bool is_too_slow(const PixelFormat& format, const Size& size, const libcamera::Camera& camera) {
+  constexpr double wanted_hz = 15;  // what a scan's length is told for
+  const auto devices = video_devices(camera.id());
+  const auto rate_hz = [&](const PixelFormat& of) {
+    return fastest_rate_hz(devices, of.fourcc(), size.width, size.height);
+  };
+  const double as_is_hz = rate_hz(format);
+  return as_is_hz < wanted_hz && rate_hz(compressed) > as_is_hz;
+}
+
 }  // namespace
 
-PixelLayout choose_format(libcamera::CameraConfiguration& configuration, const CameraWish& wish,
-                          const libcamera::Camera& camera, const std::string& name) {
-  libcamera::StreamConfiguration& stream = configuration.at(0);
-  const Size wanted(static_cast<unsigned>(wish.width), static_cast<unsigned>(wish.height));
-  const std::vector<PixelFormat> offered = stream.formats().pixelformats();
+std::optional<PixelLayout> choose_format(libcamera::CameraConfiguration& configuration,
+                                         const CameraWish& wish, const libcamera::Camera& camera,
+                                         const std::string& name) {
+  const Size size(static_cast<unsigned>(wish.width), static_cast<unsigned>(wish.height));
   for (const auto& [format, layout] : readable_of(camera)) {
-    if (std::ranges::find(offered, format) == offered.end()) {
-      continue;
-    }
-    stream.pixelFormat = format;
-    stream.size = wanted;
-    stream.colorSpace = libcamera::ColorSpace::Sycc;  // all levels, and BT.601 as is computed with
-    // What is validated may be adjusted: to another size, or another format.
-    if (configuration.validate() != libcamera::CameraConfiguration::Invalid &&
-        stream.size == wanted && stream.pixelFormat == format) {
-      return layout;
+    if (set_format(configuration, format, size)) {
+      if (is_too_slow(format, size, camera) && set_format(configuration, compressed, size)) {
+        return std::nullopt;
+      }
+      if (set_format(configuration, format, size)) {
+        return layout;
+      }
     }
   }
-  refuse(stream, wanted, name);
+  if (set_format(configuration, compressed, size)) {
+    return std::nullopt;
+  }
+  refuse(configuration.at(0), size, name);
 }
 
 }  // namespace octurn

@@ -4,7 +4,8 @@
 import {once} from 'node:events';
 import {createServer} from 'node:net';
 
-import {cameraTerminal, configuration, device, pictureBytes, pictureEndpoint, processingUnit, streamControl, string} from './uvc_descriptors.mjs';
+import {answerControl, request} from './uvc_controls.mjs';
+import {Mode, configuration, device, pictureBytes, pictureEndpoint, string} from './uvc_descriptors.mjs';
 
 const message = {
   hello: 0, connect: 1, disconnect: 2, reset: 3, interfaces: 4, endpoints: 5, setConfiguration: 6, getConfiguration: 7, configuration: 8,
@@ -21,18 +22,11 @@ const capabilities = 1 << 1 | 1 << 3 | 1 << 4 | 1 << 5 | 1 << 6;
 /** Bytes before a message: its type, its length, and its number, which is short in the first one. */
 const [firstHead, laterHead] = [12, 16];
 
-/** Requests of the video class. */
-const request = {set: 0x01, current: 0x81, min: 0x82, max: 0x83, resolution: 0x84, length: 0x85, info: 0x86, default: 0x87};
-
 /** As many as a transfer of uvcvideo has, 32 packets: so each begins with a header. */
 const payloadBytes = 32 * 512;
 
-/** Controls by entity and number: how many bytes, least, most, step, and the value at first. */
-const controls = new Map([
-  [`${cameraTerminal} 2`, {bytes: 1, min: 1, max: 8, resolution: 0b1001, default: 8}],  // mode of exposure: 1 manual, 8 by aperture
-  [`${cameraTerminal} 4`, {bytes: 4, min: 1, max: 5000, resolution: 1, default: 333}],  // exposure, in 100 us
-  [`${processingUnit} 4`, {bytes: 2, min: 0, max: 255, resolution: 1, default: 64}],  // gain
-]);
+/** Of the emulated machine after a picture, in ms. */
+const longestRest = 1500;
 
 export class UvcCamera {
   #server;
@@ -45,6 +39,8 @@ export class UvcCamera {
   #begun = 0;  // when the picture was exposed, ms
   #due = 0;  // the next picture, ms
   #timer = null;
+  #asked;  // mode that the host has tried last
+  #mode;  // that of pictures
 
   /** Whether it sends no more pictures. */
   #isSilent = false;
@@ -57,13 +53,14 @@ export class UvcCamera {
 
   /**
    * Waits for QEMU at a port of this machine's loopback.
-   * @param {{width: number, height: number, picturesPerSecond: number}} lens
-   * @param {(number: number) => Uint8Array} look  the luminance of the next picture, row by row
+   * @param {object} lens  its formats
+   * @param {(number: number, mode: Mode) => Uint8Array} look  the luminance of the next picture, row by row, or that as a JPEG
    */
   static async listen(lens, look) {
     const camera = new UvcCamera();
     camera.lens = lens;
     camera.look = look;
+    camera.#asked = camera.#mode = new Mode(lens);
     camera.#server = createServer((socket) => camera.#welcome(socket)).listen(0, '127.0.0.1');
     await once(camera.#server, 'listening');
     return camera;
@@ -216,24 +213,20 @@ export class UvcCamera {
   #class(code, selector, entity, number, data) {
     const streamingNumber = 1;
     if (number === streamingNumber) {
-      return code === request.length ? Buffer.from([34, 0]) : code === request.info ? Buffer.from([3]) : streamControl(this.lens, payloadBytes);
+      return this.#negotiate(code, selector, data);
     }
-    const key = `${entity} ${selector}`;
-    const control = controls.get(key);
-    if (!control) {
-      return null;
-    }
+    return answerControl(this.values, `${entity} ${selector}`, code, data);
+  }
+
+  /** The host asks for a mode, and commits to one. */
+  #negotiate(code, selector, data) {
+    const commit = 2;
     if (code === request.set) {
-      this.values.set(key, data.readUIntLE(0, control.bytes));
+      this.#asked = new Mode(this.lens, data[2], data[3]);
+      this.#mode = selector === commit ? this.#asked : this.#mode;
       return data;
     }
-    const values = {
-      [request.current]: this.values.get(key) ?? control.default, [request.min]: control.min, [request.max]: control.max,
-      [request.resolution]: control.resolution, [request.default]: control.default,
-    };
-    const answer = Buffer.alloc(control.bytes);
-    answer.writeUIntLE(values[code] ?? 0, 0, control.bytes);
-    return code === request.info ? Buffer.from([3]) : code === request.length ? Buffer.from([control.bytes, 0]) : answer;
+    return code === request.length ? Buffer.from([34, 0]) : code === request.info ? Buffer.from([3]) : this.#asked.control(payloadBytes);
   }
 
   /** The host ends the stream, of which uvcvideo tells a camera with a bulk endpoint by clearing its halt. QEMU's dwc2 does not cancel
@@ -241,6 +234,7 @@ export class UvcCamera {
   #end() {
     this.#waiting.splice(0).forEach((transfer) => this.#bulk(transfer, status.success, Buffer.alloc(0)));
     this.#picture = null;
+    this.#due = 0;
   }
 
   /** Sends what of the picture the transfers that wait have room for; the next picture when it is due. */
@@ -268,19 +262,23 @@ export class UvcCamera {
   }
 
   /** The emulated machine has at least as long for a picture as it took to receive it: where it receives as fast as it can, it does
-   * nothing else. */
+   * nothing else. But not as long as it takes for silence: where it waits, its clock is this machine's. */
   #rest() {
     const now = performance.now();
-    this.#due = Math.max(this.#due, now + (now - this.#begun));
+    this.#due = Math.max(this.#due, now + Math.min(now - this.#begun, longestRest));
   }
 
   #expose() {
     this.#begun = performance.now();
-    this.#due = Math.max(this.#due, this.#begun) + 1000 / this.lens.picturesPerSecond;
-    const grey = this.look(++this.#number);
-    this.#picture = Buffer.alloc(pictureBytes(this.lens), 128);  // no colour
-    for (let i = 0; i < grey.length; ++i) {
-      this.#picture[2 * i] = grey[i];
+    this.#due = Math.max(this.#due, this.#begun) + 1000 / this.#mode.picturesPerSecond;
+    const seen = this.look(++this.#number, this.#mode);
+    if (this.#mode.kind === 'mjpeg') {
+      this.#picture = Buffer.from(seen);
+      return;
+    }
+    this.#picture = Buffer.alloc(pictureBytes(this.#mode), 128);  // no colour
+    for (let i = 0; i < seen.length; ++i) {
+      this.#picture[2 * i] = seen[i];
     }
   }
 

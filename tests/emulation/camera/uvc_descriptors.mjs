@@ -1,4 +1,4 @@
-// The descriptors of a camera of USB Video Class 1.1 with one format, YUY2, one size, and a bulk endpoint; fixed exposure
+// The descriptors of a camera of USB Video Class 1.1 with the formats YUY2 and MJPEG, and a bulk endpoint; fixed exposure
 // and gain can be set, as of most cameras.
 
 /** Little-endian integers, each as [value, bytes]. */
@@ -30,8 +30,15 @@ const outputTerminal = 3;
 /** 100 ns from picture to picture. */
 const interval = ({picturesPerSecond}) => Math.round(1e7 / picturesPerSecond);
 
-/** Bytes of a picture. */
+/** Bytes of a picture at most, and of one that is not compressed. */
 export const pictureBytes = ({width, height}) => 2 * width * height;
+
+/**
+ * The formats of a camera, with their sizes. One that tells its size alone has that in YUY2.
+ * @typedef {{width: number, height: number, picturesPerSecond: number}} Size
+ * @param {Size | {formats: {kind: 'yuy2' | 'mjpeg', sizes: Size[]}[]}} lens
+ */
+export const formats = (lens) => lens.formats ?? [{kind: 'yuy2', sizes: [lens]}];
 
 export const device = () => descriptor([1, 1], [0x0200, 2], [0xef, 1], [2, 1], [1, 1], [64, 1], [0x1d6b, 2], [0x0102, 2], [0x0100, 2],
     [1, 1], [2, 1], [3, 1], [1, 1]);
@@ -50,19 +57,31 @@ function controlInterface() {
   ]);
 }
 
-function streamingInterface(lens) {
-  const bitsPerSecond = 8 * pictureBytes(lens) * lens.picturesPerSecond;
-  const yuy2 = [[0x32595559, 4], [0x00100000, 4], [0xaa000080, 4], [0x719b3800, 4]];
-  const rest = Buffer.concat([
-    descriptor([classSpecific, 1], [4, 1], [1, 1], [1, 1], ...yuy2, [16, 1], [1, 1], [0, 1], [0, 1], [0, 1], [0, 1]),
-    descriptor([classSpecific, 1], [5, 1], [1, 1], [0, 1], [lens.width, 2], [lens.height, 2], [bitsPerSecond, 4], [bitsPerSecond, 4],
-        [pictureBytes(lens), 4], [interval(lens), 4], [1, 1], [interval(lens), 4]),
+const yuy2 = [[0x32595559, 4], [0x00100000, 4], [0xaa000080, 4], [0x719b3800, 4]];
+
+/** @param {number} index  from 1 */
+function formatDescriptors({kind, sizes}, index) {
+  const isCompressed = kind === 'mjpeg';
+  const head = isCompressed ? [[6, 1], [index, 1], [sizes.length, 1], [0, 1]] : [[4, 1], [index, 1], [sizes.length, 1], ...yuy2, [16, 1]];
+  const frames = sizes.map((size, i) => {
+    const bitsPerSecond = 8 * pictureBytes(size) * size.picturesPerSecond;
+    return descriptor([classSpecific, 1], [isCompressed ? 7 : 5, 1], [i + 1, 1], [0, 1], [size.width, 2], [size.height, 2], [bitsPerSecond, 4],
+        [bitsPerSecond, 4], [pictureBytes(size), 4], [interval(size), 4], [1, 1], [interval(size), 4]);
+  });
+  return Buffer.concat([
+    descriptor([classSpecific, 1], ...head, [1, 1], [0, 1], [0, 1], [0, 1], [0, 1]),
+    ...frames,
     descriptor([classSpecific, 1], [13, 1], [1, 1], [1, 1], [4, 1]),
   ]);
+}
+
+function streamingInterface(lens) {
+  const all = formats(lens);
+  const rest = Buffer.concat(all.map((format, i) => formatDescriptors(format, i + 1)));
   return Buffer.concat([
     descriptor([4, 1], [1, 1], [0, 1], [1, 1], [video, 1], [streaming, 1], [0, 1], [0, 1]),
-    descriptor([classSpecific, 1], [1, 1], [1, 1], [14 + rest.length, 2], [pictureEndpoint, 1], [0, 1], [outputTerminal, 1], [0, 1], [0, 1],
-        [0, 1], [1, 1], [0, 1]),
+    descriptor([classSpecific, 1], [1, 1], [all.length, 1], [13 + all.length + rest.length, 2], [pictureEndpoint, 1], [0, 1],
+        [outputTerminal, 1], [0, 1], [0, 1], [0, 1], [1, 1], ...all.map(() => [0, 1])),
     rest,
     descriptor([5, 1], [pictureEndpoint, 1], [2, 1], [512, 2], [0, 1]),
   ]);
@@ -84,6 +103,18 @@ export function string(index) {
   return Buffer.concat([integers([text.length + 2, 1], [3, 1]), text]);
 }
 
-/** What the camera and the host agree about a stream. @param {number} payload  bytes of a transfer at most */
-export const streamControl = (lens, payload) => integers([1, 2], [1, 1], [1, 1], [interval(lens), 4], [0, 2], [0, 2], [0, 2], [0, 2], [0, 2],
-    [pictureBytes(lens), 4], [payload, 4], [48_000_000, 4], [0, 1], [0, 1], [0, 1], [0, 1]);
+/** What a host chooses of the formats, by their indices. */
+export class Mode {
+  constructor(lens, formatIndex = 1, sizeIndex = 1) {
+    const format = formats(lens)[formatIndex - 1] ?? formats(lens)[0];
+    const size = format.sizes[sizeIndex - 1] ?? format.sizes[0];
+    Object.assign(this, size, {kind: format.kind});
+    this.indices = [1 + formats(lens).indexOf(format), 1 + format.sizes.indexOf(size)];
+  }
+
+  /** As host and camera tell each other. @param {number} payload  bytes of a transfer at most */
+  control(payload) {
+    return integers([1, 2], ...this.indices.map((index) => [index, 1]), [interval(this), 4], [0, 2], [0, 2], [0, 2], [0, 2], [0, 2],
+        [pictureBytes(this), 4], [payload, 4], [48_000_000, 4], [0, 1], [0, 1], [0, 1], [0, 1]);
+  }
+}

@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 
+#include "io/plain_png.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/file.hpp"
 
@@ -145,10 +147,35 @@ struct RawPng {
   std::string text = {};  // of the keyword
 };
 
+/// A plain PNG; nothing if it is another, or damaged.
+/// @param expect_header  throws as in `decode`
+template <typename ExpectHeader>
+std::optional<RawPng> decode_plain(const PngSource& source, const ExpectHeader& expect_header) {
+  const auto png = find_plain_png(source.bytes);
+  if (!png) {
+    return std::nullopt;
+  }
+  RawPng image;
+  image.header.width = png->width;
+  image.header.height = png->height;
+  image.header.bit_depth = static_cast<std::uint8_t>(png->bit_depth);
+  image.header.color_type = static_cast<std::uint8_t>(png->colour_type);
+  expect_header(image.header);
+  auto pixels = unpack_plain_png(*png);
+  if (!pixels) {
+    return std::nullopt;
+  }
+  image.pixels = *std::move(pixels);
+  return image;
+}
+
 /// @param expect_header  throws if the pixels or their number are not what is wanted, before memory
 ///                       is taken for them
 template <typename ExpectHeader>
 RawPng decode(const PngSource& source, std::string_view keyword, ExpectHeader expect_header) {
+  if (auto plain = decode_plain(source, expect_header)) {
+    return *std::move(plain);
+  }
   const auto check = [&](int status) {
     if (status != 0) {
       source.refuse(std::string("not a whole PNG: ") + spng_strerror(status));

@@ -53,7 +53,7 @@ class Bvh4 {
 
   /// O(boxes). @param box  asked for each several times: to keep them would take more than this
   /// does
-  Bvh4(std::size_t count, const BoxAt& box);
+  Bvh4(std::size_t count, const BoxAt& box, ThreadTeam& team = ThreadTeam::alone());
 
   /// Calls `visit(thread, i, j)` once for each pair of different boxes that overlap.
   template <typename Visit>

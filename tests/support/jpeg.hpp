@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "octurn/depth_png.hpp"
+#include "octurn/png.hpp"
 
 namespace octurn {
 

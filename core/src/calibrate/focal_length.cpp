@@ -66,6 +66,7 @@ Vector3d widened_normal(const Vector3d& normal, double factor) {
 }
 
 void widen(TurnViews& turn, double factor) {
+  turn.looked_up.assign(turn.looked_up.size(), {});
   for (ObjectView& view : turn.views) {
     view.widen(factor);
   }

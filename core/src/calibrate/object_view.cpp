@@ -1,6 +1,7 @@
 #include "calibrate/object_view.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "depth/depth_limits.hpp"
 
@@ -16,6 +17,20 @@ constexpr double max_radius = 0.2;
 constexpr double max_step = 0.022;   // metres of depth among these: more is an edge
 constexpr double min_cosine = 0.25;  // between normal and ray
 
+/// The corners of a box around what a mask contains, metres, optical frame.
+std::array<Vector3d, 8> corners_of(const ObjectView::Mask& mask) {
+  const Vector3d& up = mask.plane.normal;
+  const Vector3d foot = mask.axis_point - mask.plane.height(mask.axis_point) * up;
+  const Vector3d right = max_radius * up.unitOrthogonal();
+  const Vector3d ahead = up.cross(right);
+  std::array<Vector3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = foot + ((i & 1U) != 0 ? max_height : mask.min_height) * up +
+                 ((i & 2U) != 0 ? 1 : -1) * right + ((i & 4U) != 0 ? 1 : -1) * ahead;
+  }
+  return corners;
+}
+
 }  // namespace
 
 bool ObjectView::Mask::contains(const Vector3d& point) const {
@@ -28,8 +43,8 @@ bool ObjectView::Mask::contains(const Vector3d& point) const {
 ObjectView::ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask)
     : intrinsics_(intrinsics), mask_(mask) {
   check_size(frame, intrinsics, "calibrate");
-  window_ =
-      find_object(frame, intrinsics, [&](const Vector3d& point) { return mask.contains(point); });
+  window_ = find_object(frame, intrinsics, seen_pixels(intrinsics, corners_of(mask)),
+                        [&](const Vector3d& point) { return mask.contains(point); });
   inverse_depth_.reserve(static_cast<std::size_t>(window_.width) *
                          static_cast<std::size_t>(window_.height));
   for (int v = window_.top; v < window_.top + window_.height; ++v) {
@@ -79,7 +94,12 @@ std::optional<SurfaceReading> ObjectView::read(int u, int v) const {
   return SurfaceReading{.point = ray / static_cast<double>(at(u, v)), .normal = *normal};
 }
 
-std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
+std::optional<SurfaceReading> ObjectView::read(std::size_t pixel) const {
+  const auto width = static_cast<std::size_t>(window_.width);
+  return read(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
+}
+
+std::optional<std::size_t> ObjectView::find_pixel(const Vector3d& point) const {
   if (!(point.z() > nearest_z)) {
     return std::nullopt;
   }
@@ -89,7 +109,15 @@ std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   if (!(u > 0 && v > 0 && u < window_.width && v < window_.height)) {
     return std::nullopt;
   }
-  return read(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
+  const int column = static_cast<int>(u + 0.5);
+  const int row = static_cast<int>(v + 0.5);
+  return column < window_.width && row < window_.height ? std::optional(index(column, row))
+                                                        : std::nullopt;
+}
+
+std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
+  const auto pixel = find_pixel(point);
+  return pixel ? read(*pixel) : std::nullopt;
 }
 
 void ObjectView::widen(double factor) {

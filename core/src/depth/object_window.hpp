@@ -7,6 +7,7 @@
 
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
+#include "depth/seen_pixels.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -23,17 +24,18 @@ struct ObjectWindow {
   int pixels = 0;  // that are the object's
 };
 
+/// @param within     the pixels that can see it
 /// @param is_object  of the point that a pixel sees, metres, optical frame
 template <typename IsObject>
 ObjectWindow find_object(const DepthFrame& frame, const Intrinsics& intrinsics,
-                         const IsObject& is_object) {
+                         const PixelRectangle& within, const IsObject& is_object) {
   int left = frame.width;
   int right = -1;
   int top = frame.height;
   int bottom = -1;
   int pixels = 0;
-  for (int v = 0; v < frame.height; ++v) {
-    for (int u = 0; u < frame.width; ++u) {
+  for (int v = within.top; v < within.bottom; ++v) {
+    for (int u = within.left; u < within.right; ++u) {
       const std::size_t pixel =
           static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
           static_cast<std::size_t>(u);

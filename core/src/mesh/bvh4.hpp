@@ -53,7 +53,7 @@ class Bvh4 {
 
   /// O(boxes). @param box  called several times for each: to store the boxes would take more memory
   ///                       than the hierarchy
-  Bvh4(std::size_t count, const BoxAt& box);
+  Bvh4(std::size_t count, const BoxAt& box, ThreadTeam& team = ThreadTeam::alone());
 
   /// Calls `visit(thread, i, j)` once for each pair of different boxes that overlap.
   template <typename Visit>

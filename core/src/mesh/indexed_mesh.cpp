@@ -2,27 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "mesh/triangle_chunks.hpp"
 #include "mesh/vector3.hpp"
 
 namespace octurn {
 namespace {
 
 /// Adds the planes of triangles to the quadrics of the vertices from `first` to `end`.
-void add_plane_quadrics_of(IndexedMesh& mesh, std::span<const MeshTriangle> triangles,
-                           std::size_t first, std::size_t end) {
+void add_plane_quadrics_of(IndexedMesh& mesh, const TriangleChunks& triangles, std::size_t first,
+                           std::size_t end) {
   const auto is_own = [&](std::uint32_t vertex) { return vertex - first < end - first; };
-  for (const MeshTriangle& triangle : triangles) {
+  triangles.for_each(first, end, [&](std::size_t, const MeshTriangle& triangle) {
     if (std::ranges::none_of(triangle, is_own)) {
-      continue;
+      return;
     }
     const Vector3 a = to_vector3(mesh.vertices[triangle[0]].position);
     const Vector3 normal = area_normal(a, to_vector3(mesh.vertices[triangle[1]].position),
                                        to_vector3(mesh.vertices[triangle[2]].position));
     const double twice_area = std::sqrt(dot(normal, normal));
     if (twice_area == 0) {
-      continue;  // of no plane
+      return;  // of no plane
     }
     const Vector3 unit{normal[0] / twice_area, normal[1] / twice_area, normal[2] / twice_area};
     const Quadric quadric = plane_quadric(unit, -dot(unit, a), twice_area / 2);
@@ -31,7 +31,7 @@ void add_plane_quadrics_of(IndexedMesh& mesh, std::span<const MeshTriangle> tria
         mesh.quadrics[corner] += quadric;
       }
     }
-  }
+  });
 }
 
 }  // namespace
@@ -39,16 +39,14 @@ void add_plane_quadrics_of(IndexedMesh& mesh, std::span<const MeshTriangle> tria
 void add_plane_quadrics(IndexedMesh& mesh, std::size_t first, ThreadTeam& team) {
   mesh.quadrics.resize(mesh.vertices.size());
   const std::span<const MeshTriangle> triangles = std::span(mesh.triangles).subspan(first);
-  std::uint32_t low = std::numeric_limits<std::uint32_t>::max();  // of the vertices
-  for (const MeshTriangle& triangle : triangles) {
-    low = std::min({low, triangle[0], triangle[1], triangle[2]});
-  }
   if (triangles.empty()) {
     return;
   }
+  const TriangleChunks chunks(triangles, team);
+  const std::uint32_t low = chunks.low();
   team.run([&](int thread) {
     const auto [from, to] = team.share(mesh.vertices.size() - low, thread);
-    add_plane_quadrics_of(mesh, triangles, low + from, low + to);
+    add_plane_quadrics_of(mesh, chunks, low + from, low + to);
   });
 }
 

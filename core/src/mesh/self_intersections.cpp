@@ -38,7 +38,7 @@ std::vector<Aabb> self_intersections(std::span<const std::array<float, 3>> verti
                                      std::size_t already_checked, ThreadTeam& team) {
   const std::vector<char> is_star_shaped = find_star_shaped_fans(vertices, triangles, team);
   const auto bounds = [&](std::uint32_t i) { return bounds_of(triangles[i], vertices); };
-  const Bvh4 bvh(triangles.size(), bounds);
+  const Bvh4 bvh(triangles.size(), bounds, team);
   std::vector<std::vector<Aabb>> found(static_cast<std::size_t>(team.size()));
   bvh.for_each_overlapping_pair(team, [&](int thread, std::uint32_t a, std::uint32_t b) {
     if (!share_star_shaped_fan(triangles[a], triangles[b], is_star_shaped) &&

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "mesh/triangle_chunks.hpp"
 #include "parallel/thread_team.hpp"
 
 namespace octurn {
@@ -19,7 +20,7 @@ inline std::size_t local_index(const MeshTriangle& triangle, std::uint32_t verte
 /// Triangles at each vertex of a mesh, as compressed rows (CSR).
 class TriangleAdjacency {
  public:
-  /// O(vertices + triangles); each thread reads all triangles and keeps those of its vertices.
+  /// O(vertices + triangles); each thread reads the chunks of triangles that reach its vertices.
   /// @param left_out  one per vertex: not 0 if its triangles are not needed; empty: all are needed
   TriangleAdjacency(std::span<const MeshTriangle> triangles, std::size_t vertex_count,
                     ThreadTeam& team = ThreadTeam::alone(), std::span<const char> left_out = {})
@@ -27,27 +28,32 @@ class TriangleAdjacency {
     const auto is_left_out = [&](std::uint32_t vertex) {
       return !left_out.empty() && left_out[vertex] != 0;
     };
+    const TriangleChunks chunks(triangles, team);
     team.run([&](int thread) {
       const auto [first, end] = team.share(vertex_count, thread);
-      for (const MeshTriangle& triangle : triangles) {
-        for (const std::uint32_t corner : triangle) {
-          if (corner - first < end - first && !is_left_out(corner)) {
-            ++first_[corner];
-          }
-        }
-      }
+      chunks.for_each(
+          first, end,
+          [&, low = first, count = end - first](std::size_t, const MeshTriangle& triangle) {
+            for (const std::uint32_t corner : triangle) {
+              if (corner - low < count && !is_left_out(corner)) {
+                ++first_[corner];
+              }
+            }
+          });
     });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     triangles_.resize(first_.back());
     team.run([&](int thread) {
       const auto [first, end] = team.share(vertex_count, thread);
-      for (std::size_t i = triangles.size(); i-- > 0;) {
-        for (const std::uint32_t corner : triangles[i]) {
-          if (corner - first < end - first && !is_left_out(corner)) {
-            triangles_[--first_[corner]] = static_cast<std::uint32_t>(i);
-          }
-        }
-      }
+      chunks.for_each_backwards(
+          first, end,
+          [&, low = first, count = end - first](std::size_t i, const MeshTriangle& triangle) {
+            for (const std::uint32_t corner : triangle) {
+              if (corner - low < count && !is_left_out(corner)) {
+                triangles_[--first_[corner]] = static_cast<std::uint32_t>(i);
+              }
+            }
+          });
     });
   }
 

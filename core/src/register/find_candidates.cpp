@@ -26,6 +26,11 @@ constexpr int iterations = 40;
 constexpr std::size_t max_shapes = 5;     // that a person can choose from
 constexpr std::size_t shapes_turned = 2;  // best ones, of which half turns are tried as well
 
+// A candidate that is contradicted by so much more than the best one is refined no further. Among
+// the rest are more than a person can choose from.
+constexpr double contradicted_far_more = 0.3;
+constexpr std::size_t min_refined = 10;
+
 // Between candidates that are contradicted by about as much, what both turns saw decides. A nearly
 // symmetric object's false poses reach no place that was seen empty, but they fit worse.
 constexpr double contradicted_alike = 0.10;
@@ -78,6 +83,16 @@ std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const T
   });
   std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
   return distinct(candidates, find_middle(points));
+}
+
+/// Drops what is contradicted too much to be refined. @param candidates  the least contradicted
+/// first
+void drop_contradicted(std::vector<PoseCandidate>& candidates) {
+  const auto end = std::ranges::find_if(candidates, [&](const PoseCandidate& candidate) {
+    return candidate.contradiction > candidates.front().contradiction + contradicted_far_more;
+  });
+  const auto count = std::max(static_cast<std::size_t>(end - candidates.begin()), min_refined);
+  candidates.resize(std::min(candidates.size(), count));
 }
 
 /// Moves those of the candidates, the least contradicted first, that are contradicted by about as
@@ -172,6 +187,7 @@ std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn&
   candidates.resize(std::min(candidates.size(), refined_poses));
   candidates =
       judged(std::move(candidates), target, turn, joined_points, joined_iterations, threads, stop);
+  drop_contradicted(candidates);
   candidates =
       judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
   order_by_fit(candidates);

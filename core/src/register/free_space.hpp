@@ -22,7 +22,7 @@ class FreeSpace {
 
   /// Whether a point lies in a voxel of empty space. @param point  metres
   bool is_free(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d at = (point - low_) / voxel_side;
+    const Eigen::Vector3d at = (point - low_) * (1 / voxel_side);
     return !is_inside(at, size_) || free_[index(at.cast<int>())] != 0;
   }
 

@@ -29,7 +29,7 @@ class NearestPoints {
 
   /// The nearest point, to within a voxel of 3 mm; null if all are far.
   const SurfacePoint* find(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d at = (point - low_) / voxel_side;
+    const Eigen::Vector3d at = (point - low_) * (1 / voxel_side);
     if (!is_inside(at, size_)) {
       return nullptr;
     }

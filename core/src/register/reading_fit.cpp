@@ -63,7 +63,8 @@ bool match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d&
   bool any = false;
   for (const StopView& view : other.stops) {
     const Vector3d to_eye = view.eye() - point;
-    if (normal.dot(to_eye) < min_cosine * to_eye.norm()) {
+    const double towards = normal.dot(to_eye);
+    if (towards <= 0 || towards < min_cosine * to_eye.norm()) {
       continue;
     }
     const auto surface = view.look_up(point);

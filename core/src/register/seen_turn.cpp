@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "octurn/snapshot.hpp"
 #include "parallel/fork_join.hpp"
@@ -64,21 +66,30 @@ std::vector<SurfacePoint> mean_points(const std::vector<std::vector<SurfacePoint
 SeenTurn read_turn(const RegistrationTurn& turn, int threads, const std::stop_token& stop) {
   Box object = turn.clip;
   object.min.z() = std::max(object.min.z(), platform_margin);
+  const auto inverse_depths =
+      std::make_shared<const std::vector<double>>(to_inverse_depths(turn.intrinsics.depth_unit));
   std::vector<std::optional<StopView>> views(turn.angles.size());
+  std::vector<FreeDepths> free(views.size());
   std::vector<std::vector<SurfacePoint>> readings(views.size());
   std::atomic<std::size_t> next = 0;
   fork_join(threads, [&](int) {
     for (std::size_t i = next++; i < views.size(); i = next++) {
       throw_if_stopped(stop);
-      views[i].emplace(turn.read(i), turn.intrinsics,
-                       object_from_sensor(turn.platform_from_sensor, turn.angles[i]), object);
+      const DepthFrame frame = turn.read(i);
+      views[i].emplace(frame, turn.intrinsics,
+                       object_from_sensor(turn.platform_from_sensor, turn.angles[i]), object,
+                       inverse_depths);
+      free[i] = find_free_depths(frame);
       readings[i] = views[i]->readings(views.size() < many_stops ? 1 : 2);
     }
   });
-  SeenTurn seen{.stops = {}, .points = mean_points(readings)};
+  SeenTurn seen{.points = mean_points(readings)};
+  std::vector<Eigen::Isometry3d> sensors_from_turn;
   for (auto& view : views) {
+    sensors_from_turn.push_back(view->sensor_from_turn());
     seen.stops.push_back(*std::move(view));
   }
+  seen.free_rays = FreeRays(turn.intrinsics, sensors_from_turn, std::move(free));
   return seen;
 }
 
@@ -106,14 +117,7 @@ bool contradicts(const SeenTurn& turn, const Vector3d& point) {
   if (point.z() < -max_below) {
     return true;
   }
-  int witnesses = 0;
-  for (const StopView& view : turn.stops) {
-    witnesses += view.saw_through(point) ? 1 : 0;
-    if (witnesses == min_witnesses) {
-      return true;
-    }
-  }
-  return false;
+  return turn.free_rays.pass(point, min_witnesses);
 }
 
 double contradicted_share(const SeenTurn& turn, const std::vector<SurfacePoint>& points,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "octurn/register.hpp"
+#include "register/free_rays.hpp"
 #include "register/stop_view.hpp"
 
 namespace octurn {
@@ -11,6 +12,7 @@ namespace octurn {
 /// What one turn saw of the object, in its own frame: the platform's at angle 0.
 struct SeenTurn {
   std::vector<StopView> stops = {};
+  FreeRays free_rays = {};  ///< of all stops
   /// Means of the readings in cells of 2 mm that several readings fell in, in a fixed order.
   std::vector<SurfacePoint> points = {};
 };

@@ -1,6 +1,7 @@
 #include "register/stop_view.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -14,61 +15,52 @@ using Eigen::Vector3d;
 // Metres of depth among the 5 x 5 pixels: more is an edge. At 0.65 m a face that is seen under 20
 // degrees falls by 13 mm over them, and the top of a low object is such a face.
 constexpr double max_step = 0.018;
-constexpr double min_cosine = 0.35;    // between normal and ray
-constexpr int block = 4;               // pixels along a side, of what is known of free space
-constexpr double free_margin = 0.006;  // metres that a surface must be behind a free point
-constexpr int half_block = block * block / 2;
+constexpr double min_cosine = 0.35;  // between normal and ray
 
 std::size_t index(int u, int v, int width) {
   return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
          static_cast<std::size_t>(u);
 }
 
-int blocks(int pixels) { return (pixels + block - 1) / block; }
-
 }  // namespace
 
+std::vector<double> to_inverse_depths(double depth_unit) {
+  std::vector<double> inverse_depths(std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1);
+  for (std::size_t depth = 1; depth < inverse_depths.size(); ++depth) {
+    inverse_depths[depth] = 1 / (static_cast<double>(depth) * depth_unit);
+  }
+  return inverse_depths;
+}
+
 StopView::StopView(const DepthFrame& frame, const Intrinsics& intrinsics,
-                   const Eigen::Isometry3d& turn_from_sensor, Box object)
+                   const Eigen::Isometry3d& turn_from_sensor, Box object,
+                   std::shared_ptr<const std::vector<double>> inverse_depths)
     : intrinsics_(intrinsics),
       sensor_from_turn_(turn_from_sensor.inverse()),
       turn_from_sensor_(turn_from_sensor.linear()),
       eye_(turn_from_sensor.translation()),
-      object_(std::move(object)) {
+      object_(std::move(object)),
+      inverse_depths_(std::move(inverse_depths)) {
   check_size(frame, intrinsics, "register_turns");
   keep_object(frame);
-  find_free_depths(frame);
 }
 
 /// Keeps the rectangle of the pixels that are the object's.
 void StopView::keep_object(const DepthFrame& frame) {
-  window_ = find_object(frame, intrinsics_, [&](const Vector3d& seen) {
-    return contains(object_, turn_from_sensor_ * seen + eye_);
-  });
+  std::array<Vector3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = sensor_from_turn_ * Vector3d(((i & 1U) != 0 ? object_.max : object_.min).x(),
+                                              ((i & 2U) != 0 ? object_.max : object_.min).y(),
+                                              ((i & 4U) != 0 ? object_.max : object_.min).z());
+  }
+  window_ = find_object(
+      frame, intrinsics_, seen_pixels(intrinsics_, corners),
+      [&](const Vector3d& seen) { return contains(object_, turn_from_sensor_ * seen + eye_); });
   depth_.reserve(index(0, window_.height, window_.width));
   for (int v = window_.top; v < window_.top + window_.height; ++v) {
     const auto row =
         frame.depth.begin() + static_cast<std::ptrdiff_t>(index(window_.left, v, frame.width));
     depth_.insert(depth_.end(), row, row + window_.width);
-  }
-}
-
-void StopView::find_free_depths(const DepthFrame& frame) {
-  for (int v = 0; v < frame.height; v += block) {
-    for (int u = 0; u < frame.width; u += block) {
-      std::uint16_t nearest = std::numeric_limits<std::uint16_t>::max();
-      int readings = 0;
-      for (int row = v; row < std::min(v + block, frame.height); ++row) {
-        for (int column = u; column < std::min(u + block, frame.width); ++column) {
-          const std::uint16_t depth = frame.depth[index(column, row, frame.width)];
-          if (depth > 0) {
-            nearest = std::min(nearest, depth);
-            ++readings;
-          }
-        }
-      }
-      free_.push_back(readings >= half_block ? nearest : std::uint16_t{0});
-    }
   }
 }
 
@@ -79,24 +71,24 @@ std::optional<SurfacePoint> StopView::read(int u, int v) const {
       v >= window_.height - normal_reach) {
     return std::nullopt;
   }
-  double nearest = depth(u, v);
-  double farthest = nearest;
+  std::uint16_t nearest = depth(u, v);
+  std::uint16_t farthest = nearest;
+  const std::vector<double>& inverse_depths = *inverse_depths_;
   InverseDepthSums sums;
   for (int dv = -normal_reach; dv <= normal_reach; ++dv) {
     for (int du = -normal_reach; du <= normal_reach; ++du) {
-      const double z = depth(u + du, v + dv);
-      if (z <= nearest_z) {
-        return std::nullopt;
-      }
-      nearest = std::min(nearest, z);
-      farthest = std::max(farthest, z);
-      const double inverse = 1 / z;
+      const std::uint16_t depth_here = depth(u + du, v + dv);
+      nearest = std::min(nearest, depth_here);
+      farthest = std::max(farthest, depth_here);
+      const double inverse = inverse_depths[depth_here];
       sums.sum += inverse;
       sums.sum_u += du * inverse;
       sums.sum_v += dv * inverse;
     }
   }
-  if (farthest - nearest > max_step) {
+  const double nearest_of_all = nearest * intrinsics_.depth_unit;
+  if (nearest_of_all <= nearest_z ||
+      farthest * intrinsics_.depth_unit - nearest_of_all > max_step) {
     return std::nullopt;
   }
   const Vector3d ray = to_ray(intrinsics_, window_.left + u, window_.top + v);
@@ -134,22 +126,6 @@ std::vector<SurfacePoint> StopView::readings(int step) const {
     }
   }
   return readings;
-}
-
-bool StopView::saw_through(const Vector3d& point) const {
-  const Vector3d seen = sensor_from_turn_ * point;
-  if (!(seen.z() > nearest_z)) {
-    return false;
-  }
-  const Eigen::Vector2d pixel = project(intrinsics_, seen);
-  const double u = pixel.x() + 0.5;
-  const double v = pixel.y() + 0.5;
-  if (!(u >= 0 && v >= 0 && u < intrinsics_.width && v < intrinsics_.height)) {
-    return false;
-  }
-  const std::uint16_t free = free_[index(static_cast<int>(u) / block, static_cast<int>(v) / block,
-                                         blocks(intrinsics_.width))];
-  return free > 0 && free * intrinsics_.depth_unit > seen.z() + free_margin;
 }
 
 }  // namespace octurn

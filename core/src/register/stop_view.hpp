@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,16 +17,22 @@ struct SurfacePoint {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// One stop of a turn: the rectangle of its depth image that shows the object, and for the whole
-/// image the depth up to which rays were free. Points are in the turn's frame, the platform's at
-/// angle 0.
+/// Of each reading the inverse depth, 1/m; 0 of none. A table, as each is asked for 25 times over.
+std::vector<double> to_inverse_depths(double depth_unit);
+
+/// One stop of a turn: the rectangle of its depth image that shows the object. Points are in the
+/// turn's frame, the platform's at angle 0.
 class StopView {
  public:
   /// @param turn_from_sensor  optical frame to the turn's frame
   /// @param object            metres, the turn's frame: the object's readings lie inside
+  /// @param inverse_depths    of the intrinsics' depth unit
   /// @throws std::invalid_argument  if the image has another size than the intrinsics say
   StopView(const DepthFrame& frame, const Intrinsics& intrinsics,
-           const Eigen::Isometry3d& turn_from_sensor, Box object);
+           const Eigen::Isometry3d& turn_from_sensor, Box object,
+           std::shared_ptr<const std::vector<double>> inverse_depths);
+
+  const Eigen::Isometry3d& sensor_from_turn() const { return sensor_from_turn_; }
 
   /// Where the sensor stood.
   const Eigen::Vector3d& eye() const { return eye_; }
@@ -41,17 +48,12 @@ class StopView {
   /// The object's readings, of pixels `step` apart.
   std::vector<SurfacePoint> readings(int step) const;
 
-  /// Whether the sensor saw something well behind a point, and nothing in front of that.
-  bool saw_through(const Eigen::Vector3d& point) const;
-
  private:
   void keep_object(const DepthFrame& frame);
-  void find_free_depths(const DepthFrame& frame);
   std::optional<SurfacePoint> read(int u, int v) const;
-  double depth(int u, int v) const {
+  std::uint16_t depth(int u, int v) const {
     return depth_[static_cast<std::size_t>(v) * static_cast<std::size_t>(window_.width) +
-                  static_cast<std::size_t>(u)] *
-           intrinsics_.depth_unit;
+                  static_cast<std::size_t>(u)];
   }
 
   Intrinsics intrinsics_;
@@ -61,7 +63,7 @@ class StopView {
   Box object_;
   ObjectWindow window_ = {};
   std::vector<std::uint16_t> depth_ = {};  // of the rectangle, row by row, in depth units
-  std::vector<std::uint16_t> free_ = {};   // of blocks of the image: the smallest; 0: unknown
+  std::shared_ptr<const std::vector<double>> inverse_depths_;
 };
 
 }  // namespace octurn

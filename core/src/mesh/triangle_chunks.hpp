@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "parallel/thread_team.hpp"
+
+namespace octurn {
+
+/// The triangles of a mesh in chunks, of which each knows between which numbers its vertices are. A
+/// thread that looks for the triangles of some vertices passes over most chunks, as triangles and
+/// vertices come in nearly the same order.
+class TriangleChunks {
+ public:
+  /// O(triangles); of one thread there is one chunk.
+  TriangleChunks(std::span<const MeshTriangle> triangles, ThreadTeam& team)
+      : triangles_(triangles),
+        side_(team.size() > 1 ? some_triangles : std::max<std::size_t>(triangles.size(), 1)),
+        ranges_((triangles.size() + side_ - 1) / side_) {
+    if (team.size() == 1) {
+      return;
+    }
+    team.run([&](int thread) {
+      const auto [first, end] = team.share(ranges_.size(), thread);
+      for (std::size_t chunk = first; chunk < end; ++chunk) {
+        ranges_[chunk] = find_range(
+            triangles_.subspan(chunk * side_, std::min(side_, triangles_.size() - chunk * side_)));
+      }
+    });
+  }
+
+  /// A number that no vertex is below.
+  std::uint32_t low() const {
+    std::uint32_t low = std::numeric_limits<std::uint32_t>::max();
+    for (const Range& range : ranges_) {
+      low = std::min(low, range.min);
+    }
+    return low;
+  }
+
+  /// Calls `visit(index, triangle)`, in their order, at least for all that have a vertex from
+  /// `first` to below `end`.
+  template <typename Visit>
+  void for_each(std::size_t first, std::size_t end, const Visit& visit) const {
+    for (std::size_t chunk = 0; chunk < ranges_.size(); ++chunk) {
+      if (ranges_[chunk].meets(first, end)) {
+        const std::size_t behind = std::min((chunk + 1) * side_, triangles_.size());
+        for (std::size_t i = chunk * side_; i < behind; ++i) {
+          visit(i, triangles_[i]);
+        }
+      }
+    }
+  }
+
+  /// The same, the last one first.
+  template <typename Visit>
+  void for_each_backwards(std::size_t first, std::size_t end, const Visit& visit) const {
+    for (std::size_t chunk = ranges_.size(); chunk-- > 0;) {
+      if (ranges_[chunk].meets(first, end)) {
+        for (std::size_t i = std::min((chunk + 1) * side_, triangles_.size());
+             i-- > chunk * side_;) {
+          visit(i, triangles_[i]);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t some_triangles = 256;
+
+  /// At first that of any vertex.
+  struct Range {
+    std::uint32_t min = 0;
+    std::uint32_t max = std::numeric_limits<std::uint32_t>::max();
+
+    bool meets(std::size_t first, std::size_t end) const { return min < end && max >= first; }
+  };
+
+  static Range find_range(std::span<const MeshTriangle> triangles) {
+    Range range{.min = std::numeric_limits<std::uint32_t>::max(), .max = 0};
+    for (const MeshTriangle& triangle : triangles) {
+      for (const std::uint32_t corner : triangle) {
+        range.min = std::min(range.min, corner);
+        range.max = std::max(range.max, corner);
+      }
+    }
+    return range;
+  }
+
+  std::span<const MeshTriangle> triangles_;
+  std::size_t side_;
+  std::vector<Range> ranges_;
+};
+
+}  // namespace octurn

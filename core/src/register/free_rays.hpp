@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+
+/// Of blocks of 4 x 4 pixels the smallest reading, in depth units; 0 where fewer than half of the
+/// pixels have one.
+using FreeDepths = std::vector<std::uint16_t>;
+
+/// @param frame  of the size that its intrinsics say
+FreeDepths find_free_depths(const DepthFrame& frame);
+
+/// How far the rays of all stops of a turn were free.
+class FreeRays {
+ public:
+  FreeRays() = default;
+
+  /// @param lens               of all stops
+  /// @param sensors_from_turn  optical frame of each stop from the turn's frame
+  /// @param depths             of each stop
+  FreeRays(const Intrinsics& lens, std::span<const Eigen::Isometry3d> sensors_from_turn,
+           std::vector<FreeDepths> depths);
+
+  /// Whether at least so many stops saw something well behind a point, and nothing in front of
+  /// that. @param point  metres, the turn's frame
+  bool pass(const Eigen::Vector3d& point, int min_stops) const;
+
+ private:
+  static constexpr std::size_t at_once = 8;
+  template <typename Value>
+  using Each = std::array<Value, at_once>;
+
+  /// The poses of some stops, entry by entry, so that they are multiplied at once.
+  struct Poses {
+    std::array<std::array<Each<double>, 4>, 3> rows = {};
+  };
+  /// Where these stops see a point: optical frame, metres.
+  struct Seen {
+    Each<double> x;
+    Each<double> y;
+    Each<double> z;
+  };
+
+  static void see(const Poses& poses, const Eigen::Vector3d& point, Seen& seen);
+  bool passes(std::size_t stop, double x, double y, double z) const;
+
+  Intrinsics lens_ = {};
+  std::vector<Poses> poses_ = {};
+  std::vector<FreeDepths> depths_ = {};
+};
+
+}  // namespace octurn

@@ -23,6 +23,9 @@ constexpr std::size_t length_bytes = 4;
 constexpr std::size_t type_bytes = 4;
 constexpr std::size_t sum_bytes = 4;
 
+/// Chunks that tell how pixels should look, and nothing of what they are.
+constexpr std::array<std::string_view, 4> of_looks{"gAMA", "cHRM", "sRGB", "pHYs"};
+
 std::uint32_t big_endian(Bytes bytes) {
   std::uint32_t value = 0;
   for (const std::byte byte : bytes.first(4)) {
@@ -205,7 +208,7 @@ std::optional<PlainPng> find_plain_png(Bytes bytes) {
       png.parts.push_back(chunk->content);
     } else if (chunk->type == "IEND" && chunk->content.empty() && bytes.empty()) {
       return png;
-    } else {
+    } else if (!png.parts.empty() || std::ranges::find(of_looks, chunk->type) == of_looks.end()) {
       return std::nullopt;
     }
   }

@@ -8,8 +8,8 @@
 
 namespace octurn {
 
-/// A PNG without anything that need not be there, as depth images and pictures are stored: a
-/// header, image data and the end; not interlaced; greyscale of 8 or 16 bits, or RGB of 8.
+/// A PNG as depth images and pictures are stored, without texts, palette, transparency or
+/// interlacing: greyscale of 8 or 16 bits, or RGB of 8.
 ///
 /// libspng reads every PNG, row by row, at four times the instructions: it asks zlib for one row at
 /// a time, and undoes Paeth's filter with branches.

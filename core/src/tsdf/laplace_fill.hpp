@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "parallel/thread_team.hpp"
 #include "voxel/index3.hpp"
 
 namespace octurn {
@@ -30,8 +31,10 @@ struct PartialGrid {
 /// is known where any of its eight finer ones is, and is their minimum: so a thin shell of inside
 /// (negative) values stays closed.
 ///
-/// Deterministic, O(values). Where nothing is known, the values stay as they are.
+/// Deterministic for any number of threads, O(values). Where nothing is known, the values stay as
+/// they are.
 /// @throws Stopped  between two layers
-PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop = {});
+PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop = {},
+                         ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

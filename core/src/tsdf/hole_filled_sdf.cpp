@@ -45,7 +45,7 @@ void HoleFilledSdf::fill(const std::stop_token& stop, ThreadTeam& team) {
   low_brick_ = blocks.low;
   low_ = {voxel(blocks.low.x, low.x), voxel(blocks.low.y, low.y), voxel(blocks.low.z, low.z)};
   end_ = {voxel(blocks.end.x, low.x), voxel(blocks.end.y, low.y), voxel(blocks.end.z, low.z)};
-  blocks_ = laplace_fill(std::move(blocks.distances), stop);
+  blocks_ = laplace_fill(std::move(blocks.distances), stop, team);
   lerp_weights_ = {lerp_weights(end_.x - low_.x, blocks_.size.x),
                    lerp_weights(end_.y - low_.y, blocks_.size.y),
                    lerp_weights(std::max(end_.z, base_layer_ + 1) - low_.z, blocks_.size.z)};

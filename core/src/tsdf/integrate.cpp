@@ -38,16 +38,32 @@ class TsdfIntegrator {
 
   /// Integrates into one of them.
   void run(int root) {
-    const Index3 roots = count_roots(grid_);
-    const Index3 brick{root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
-                       root / (roots.x * roots.y) * root_bricks};
+    const Index3 brick = lowest_brick(root);
     visit(brick, root_bricks, classifier_.classify(lowest_voxel(brick), root_bricks * brick_side));
+  }
+
+  /// Integrates into an eighth of one of them, as `run` does there.
+  void run_octant(int root, int octant) {
+    constexpr int half = root_bricks / 2;
+    const Index3 brick = lowest_brick(root);
+    NodeClass node = classifier_.classify(lowest_voxel(brick), root_bricks * brick_side);
+    if (node == NodeClass::partial || node == NodeClass::near_surface) {
+      node = classifier_.classify_octants(lowest_voxel(brick),
+                                          half * brick_side)[static_cast<std::size_t>(octant)];
+    }
+    visit(octant_of(brick, half, octant), half, node);
   }
 
  private:
   static Index3 count_roots(const VoxelGrid& grid) {
     const auto roots = [](int bricks) { return (bricks + root_bricks - 1) / root_bricks; };
     return {roots(grid.size().x), roots(grid.size().y), roots(grid.size().z)};
+  }
+
+  Index3 lowest_brick(int root) const {
+    const Index3 roots = count_roots(grid_);
+    return {root % roots.x * root_bricks, root / roots.x % roots.y * root_bricks,
+            root / (roots.x * roots.y) * root_bricks};
   }
 
   static Index3 lowest_voxel(const Index3& brick) {
@@ -188,7 +204,9 @@ void integrate(TsdfVolume& volume, const ConditionedDepth& depth, const std::sto
 
 void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> depths,
                ThreadTeam& team, const std::stop_token& stop) {
-  const int roots = TsdfIntegrator::root_count(volume.grid());
+  // The largest nodes are few, and an object lies in some of them: threads share their octants.
+  const int per_root = team.size() > 1 ? 8 : 1;
+  const int parts = per_root * TsdfIntegrator::root_count(volume.grid());
   std::atomic<int> next = 0;
   team.run([&](int) {
     std::vector<TsdfIntegrator> integrators;
@@ -196,9 +214,13 @@ void integrate(TsdfVolume& volume, std::span<const ConditionedDepth* const> dept
     for (const ConditionedDepth* depth : depths) {
       integrators.emplace_back(volume, *depth, stop);
     }
-    for (int root = next++; root < roots; root = next++) {
+    for (int part = next++; part < parts; part = next++) {
       for (TsdfIntegrator& integrator : integrators) {
-        integrator.run(root);
+        if (per_root == 1) {
+          integrator.run(part);
+        } else {
+          integrator.run_octant(part / per_root, part % per_root);
+        }
       }
     }
   });

@@ -1,6 +1,8 @@
 #include "tsdf/laplace_fill.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 #include <utility>
 
 #include "octurn/snapshot.hpp"
@@ -29,33 +31,75 @@ void relax(PartialGrid& grid, int x, int y, int z) {
 // Each value waits for the one before it: a row at a time would leave the processor idle.
 constexpr int rows_at_once = 4;
 
-/// Relaxes a layer in lexicographic order, forwards (`step` 1) or backwards (-1). Some rows are
-/// relaxed at once, each one value behind the row before it. The values are those of a plain loop:
-/// every value is still relaxed after its predecessors and before its successors.
-void relax_layer(PartialGrid& grid, int z, int step) {
+// Rows of a thread in each layer: with fewer, threads wait for each other more than they work.
+constexpr int min_rows = 2 * rows_at_once;
+
+/// Relaxes rows of a layer in lexicographic order, forwards (`step` 1) or backwards (-1): those
+/// from `begin` to below `end` in that order. Some rows are relaxed at once, each one value behind
+/// the row before it. The values are those of a plain loop: every value is still relaxed after its
+/// predecessors and before its successors.
+void relax_rows(PartialGrid& grid, int z, int step, int begin, int end) {
   const auto at = [step](int i, int size) { return step > 0 ? i : size - 1 - i; };
   const Index3& size = grid.size;
-  for (int first = 0; first < size.y; first += rows_at_once) {
-    const int rows = std::min(rows_at_once, size.y - first);
+  for (int first = begin; first < end; first += rows_at_once) {
+    const int rows = std::min(rows_at_once, end - first);
     for (int i = 0; i < size.x + rows - 1; ++i) {
-      const int end = std::min(rows, i + 1);
-      for (int row = std::max(0, i - size.x + 1); row < end; ++row) {
+      const int last = std::min(rows, i + 1);
+      for (int row = std::max(0, i - size.x + 1); row < last; ++row) {
         relax(grid, at(i - row, size.x), at(first + row, size.y), z);
       }
     }
   }
 }
 
-/// One Gauss-Seidel sweep forwards and one backwards.
-void gauss_seidel_sweep(PartialGrid& grid, const std::stop_token& stop) {
-  for (int z = 0; z < grid.size.z; ++z) {
+/// Layers that a thread has relaxed, in all sweeps together. Each in a cache line of its own.
+struct alignas(64) Progress {
+  std::atomic<int> layers = 0;
+};
+
+void wait_for(const Progress& progress, int layers, const std::stop_token& stop) {
+  while (progress.layers.load(std::memory_order_acquire) < layers) {
     throw_if_stopped(stop);
-    relax_layer(grid, z, 1);
+    std::this_thread::yield();
   }
-  for (int z = grid.size.z - 1; z >= 0; --z) {
-    throw_if_stopped(stop);
-    relax_layer(grid, z, -1);
+}
+
+/// Gauss-Seidel sweeps, each forwards and then backwards. Each thread has some rows of every layer,
+/// and relaxes them as soon as the thread whose rows precede them in the sweep has done its own of
+/// that layer: so each value is relaxed between the same ones as by one thread.
+void gauss_seidel_sweeps(PartialGrid& grid, const std::stop_token& stop, ThreadTeam& team) {
+  const Index3& size = grid.size;
+  const int threads = std::clamp(size.y / min_rows, 1, team.size());
+  std::vector<Progress> done(static_cast<std::size_t>(threads));
+  const auto work = [&](int thread) {
+    const int low = size.y * thread / threads;
+    const int end = size.y * (thread + 1) / threads;
+    Progress& own = done[static_cast<std::size_t>(thread)];
+    int layers = 0;
+    for (int sweep = 0; sweep < 2 * symmetric_sweeps; ++sweep) {
+      const int step = sweep % 2 == 0 ? 1 : -1;
+      const int before = thread - step;
+      for (int i = 0; i < size.z; ++i) {
+        throw_if_stopped(stop);
+        ++layers;
+        if (before >= 0 && before < threads) {
+          wait_for(done[static_cast<std::size_t>(before)], layers, stop);
+        }
+        relax_rows(grid, step > 0 ? i : size.z - 1 - i, step, step > 0 ? low : size.y - end,
+                   step > 0 ? end : size.y - low);
+        own.layers.store(layers, std::memory_order_release);
+      }
+    }
+  };
+  if (threads == 1) {
+    work(0);
+    return;
   }
+  team.run([&](int thread) {
+    if (thread < threads) {
+      work(thread);
+    }
+  });
 }
 
 /// Calls `visit(index in fine, index in coarse)` for each fine value.
@@ -91,20 +135,18 @@ PartialGrid restricted(const PartialGrid& fine) {
 
 }  // namespace
 
-PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop) {
+PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop, ThreadTeam& team) {
   throw_if_stopped(stop);
   if (grid.values.size() < 2 || std::ranges::all_of(grid.known, [](char k) { return k != 0; })) {
     return grid;
   }
-  const PartialGrid coarse = laplace_fill(restricted(grid), stop);
+  const PartialGrid coarse = laplace_fill(restricted(grid), stop, team);
   for_each_pair(grid, coarse, [&](std::size_t to, std::size_t from) {
     if (grid.known[to] == 0) {
       grid.values[to] = coarse.values[from];
     }
   });
-  for (int sweep = 0; sweep < symmetric_sweeps; ++sweep) {
-    gauss_seidel_sweep(grid, stop);
-  }
+  gauss_seidel_sweeps(grid, stop, team);
   return grid;
 }
 

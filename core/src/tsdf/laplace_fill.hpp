@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "parallel/thread_team.hpp"
 #include "voxel/index3.hpp"
 
 namespace octurn {
@@ -31,8 +32,9 @@ struct PartialGrid {
 /// is known if any of its eight finer ones is, and is their minimum, so that a thin shell of inside
 /// (negative) values stays closed.
 ///
-/// Deterministic, O(values). If no value is known, none changes.
+/// Deterministic for any number of threads, O(values). If no value is known, none changes.
 /// @throws Stopped  between two layers
-PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop = {});
+PartialGrid laplace_fill(PartialGrid grid, const std::stop_token& stop = {},
+                         ThreadTeam& team = ThreadTeam::alone());
 
 }  // namespace octurn

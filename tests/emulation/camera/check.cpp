@@ -106,9 +106,9 @@ int main(int count, char** arguments) {
     check(module, {.width = std::atoi(arguments[2]), .height = std::atoi(arguments[3])}, 8, "");
     return 0;
   }
-  const CameraWish plain{.width = 820, .height = 616};
-  const CameraWish compressed{.width = 1640, .height = 1232};
-  const CameraWish fast_if_compressed{.width = 1024, .height = 768};
+  const CameraWish plain{.width = 400, .height = 304};
+  const CameraWish compressed{.width = 800, .height = 600};
+  const CameraWish fast_if_compressed{.width = 512, .height = 384};
   check(module, {.width = 640, .height = 616}, 1, "");
   check(module, plain, 1, "be silent");
   check(module, plain, 1, "be damaged");

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -71,11 +72,15 @@ void take_until_it_fails(Camera& camera) {
   }
 }
 
+/// @param then  what is to go wrong after some pictures; empty: nothing
 void check(const CameraModule& module, const CameraWish& as, int block, const std::string& then) {
   try {
     const std::unique_ptr<Camera> camera = module.open(as);
     say("camera " + camera->name() + ", serial " + camera->serial());
     take(*camera, 8, block);
+    if (then.empty()) {
+      return;
+    }
     say(then);
     take_until_it_fails(*camera);
   } catch (const Error& error) {
@@ -87,7 +92,8 @@ void check(const CameraModule& module, const CameraWish& as, int block, const st
 }  // namespace
 }  // namespace octurn
 
-int main(int /*count*/, char** arguments) {
+// usage: check MODULE, or check MODULE WIDTH HEIGHT for pictures of blocks of this size alone
+int main(int count, char** arguments) {
   using namespace octurn;
   void* const loaded = ::dlopen(arguments[1], RTLD_NOW);
   const void* const found = loaded == nullptr ? nullptr : ::dlsym(loaded, "octurn_camera");
@@ -96,9 +102,13 @@ int main(int /*count*/, char** arguments) {
     return 1;
   }
   const auto& module = *static_cast<const CameraModule*>(found);
-  const CameraWish plain{.width = 820, .height = 616};
-  const CameraWish compressed{.width = 1640, .height = 1232};
-  const CameraWish fast_if_compressed{.width = 1024, .height = 768};
+  if (count == 4) {
+    check(module, {.width = std::atoi(arguments[2]), .height = std::atoi(arguments[3])}, 8, "");
+    return 0;
+  }
+  const CameraWish plain{.width = 400, .height = 304};
+  const CameraWish compressed{.width = 800, .height = 600};
+  const CameraWish fast_if_compressed{.width = 512, .height = 384};
   check(module, {.width = 640, .height = 616}, 1, "");
   check(module, plain, 1, "be silent");
   check(module, plain, 1, "be damaged");

@@ -1,0 +1,12 @@
+// frames.mjs FOLDER: makes the pictures of the virtual camera, each with blocks of its own.
+
+import {mkdirSync, writeFileSync} from 'node:fs';
+
+import {mjpeg} from '../camera/mjpeg.mjs';
+import {count, size} from './frame_size.mjs';
+
+const [, , folder] = process.argv;
+mkdirSync(folder, {recursive: true});
+for (let number = 0; number < count; ++number) {
+  writeFileSync(`${folder}/${number}.jpg`, mjpeg(size, (x, y) => number + x + 2 * y & 0xff));
+}

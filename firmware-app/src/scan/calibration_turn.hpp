@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stop_token>
@@ -14,6 +13,7 @@
 #include "scan/board_watch.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
+#include "scan/slice.hpp"
 
 namespace octurn {
 
@@ -23,15 +23,15 @@ inline constexpr int min_calibration_stops = 4;
 inline constexpr int max_calibration_stops = 72;
 inline constexpr int default_calibration_stops = 24;
 
-/// What all stops saw within 1 mm of the object's plane y = 0: metres, x and z.
-using Slice = std::vector<Eigen::Vector2d>;
-
 /// What a turn told of the sensor's pose.
 struct TurnReport {
   CalibrationReport calibration = {};
   std::vector<double> angles = {};  ///< of the stops as told, radians
   Slice before = {};                ///< with the told pose
   Slice after = {};                 ///< with the solved one; empty if that is refused
+  std::vector<Laser> told = {};     ///< of a rig with lasers: with the told planes
+  std::vector<Laser> lasers = {};   ///< the same, with the solved ones
+  bool replaces_told = false;       ///< accepted, and more than what the rig was told already
 };
 
 /// A measurement of the rig, as it goes on.

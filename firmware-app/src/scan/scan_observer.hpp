@@ -2,10 +2,10 @@
 
 #include <functional>
 
-#include "octurn/calibrate.hpp"
 #include "octurn/depth_png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "scan/job.hpp"
+#include "scan/solve_pose.hpp"
 
 namespace octurn {
 
@@ -19,9 +19,9 @@ struct ScanObserver {
   std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
-  /// What the snapshots tell of the sensor's pose, before anything is done about it.
-  std::function<void(const CalibrationReport& report)> on_calibrated =
-      [](const CalibrationReport&) {};
+  /// What the snapshots tell of the sensor's pose and the lasers' planes, before anything is done
+  /// about it.
+  std::function<void(const ScanSolution& solution)> on_calibrated = [](const ScanSolution&) {};
   /// Now and then while the model is built again: of how many snapshots by then.
   std::function<void(int snapshots)> on_rebuilt = [](int) {};
   /// Now and then while a snapshot is still being added.

@@ -25,6 +25,7 @@ import {json, sending} from './api.js';
  * @property {{angle_deg: number, off_deg: number}[]} stops
  * @property {{code: string, detail: string, hint: string, stop?: number, parameters?: import('./wording.js').Parameters}[]} findings
  * @property {{before: number[][], after: number[][]}} [slice_mm]
+ * @property {boolean} [confirms_told]  of a rig with lasers
  *
  * @typedef {{fx: number, fy: number, cx: number, cy: number, k1: number, k2: number}} Lens
  *

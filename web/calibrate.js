@@ -37,8 +37,8 @@ let lensCard = null;
 /** @param {Calibration} news */
 function see(news) {
   calibration = news;
-  // A camera measures no depth that a wall could flatten, and each scan with lasers finds out where they stand.
-  ['flatten', 'pose-by-turn', 'by-hand'].forEach((id) => show(element(id), !news.lens));
+  // A camera measures no depth that a wall could flatten, that a length could scale, or by which a hand could see what it does.
+  ['flatten', 'by-hand', 'known-length'].forEach((id) => show(element(id), !news.lens));
   if (news.lens) {
     lensCard ??= prepareLens(act);
     lensCard.then(() => showLens(calibration ?? news));

@@ -23,7 +23,7 @@ const isTold = ({source}) => source !== 'default';
 
 /** @param {Calibration} calibration */
 export function summaryOf(calibration) {
-  if (calibration.lens) {
+  if (calibration.lens && calibration.sigma_mm === null) {
     return {tone: 'idle', title: text('lens.rig'), text: text('lens.rig-about')};
   }
   if (!isTold(calibration)) {
@@ -56,11 +56,12 @@ export function progressOf(calibration, kind) {
 }
 
 /** @param {TurnReport} report */
-function acceptedText({shift_mm, tilt_deg, before_mm, after_mm}) {
+function acceptedText({shift_mm, tilt_deg, before_mm, after_mm, confirms_told}) {
   const [shift, tilt, before, after] = [shift_mm ?? 0, tilt_deg ?? 0, before_mm ?? 0, after_mm ?? 0];
   const values = {shift: millimetres(shift), tilt: degrees(tilt), before: millimetres(before), after: millimetres(after)};
-  const outcome = shift <= confirmed.shift_mm && tilt <= confirmed.tilt_deg ? 'confirmed' : 'moved';
-  return {title: text(`run.${outcome}`, values), detail: text(`run.${outcome}-about`, values)};
+  const outcome = confirms_told ?? (shift <= confirmed.shift_mm && tilt <= confirmed.tilt_deg) ? 'confirmed' : 'moved';
+  const title = confirms_told === false ? 'run.lasers' : `run.${outcome}`;  // the camera may stand where it was thought to stand
+  return {title: text(title, values), detail: text(`run.${outcome}-about`, values)};
 }
 
 /** @param {WallReport} report */

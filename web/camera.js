@@ -30,14 +30,14 @@ async function askForRig() {
   }
   toldAt = performance.now();
   try {
-    const [{platform_from_sensor: pose}, sensor] = await Promise.all([
-      requests.calibration(), told?.sensor ?? requests.points().then((points) => points.sensor)]);
-    told = {pose, sensor};
-  } catch (error) {
-    told = null;
-    if (error instanceof api.Problem && error.code === 'not-found') {
+    const {platform_from_sensor: pose, lens} = await requests.calibration();
+    if (lens) {
       toldAt = Infinity;  // a camera with lasers measures no depth
+      return;
     }
+    told = {pose, sensor: told?.sensor ?? (await requests.points()).sensor};
+  } catch {
+    told = null;
   }
 }
 

@@ -74,7 +74,8 @@ async function showPose() {
 }
 
 function showNews() {
-  const {stored, preset, trouble} = told;
+  const {stored, preset, trouble, settings} = told;
+  show(element('camera-card'), settings.sensor === 'laser-line');
   show(element('settings-trouble'), trouble !== '');
   setText(part(element('settings-trouble'), 'p'), sentence(trouble));
   setText(element('turntable-about'),

@@ -47,6 +47,7 @@ Config config_from(const json& object, const std::optional<SensorKind>& sensor) 
   config.sensor = chosen;
   if (config.sensor == SensorKind::laser_line) {
     expect_own_lines(keys, config);
+    config.scan.platform_from_sensor = config.laser.platform_from_sensor;
   }
   keys.refuse_unread();
   return config;

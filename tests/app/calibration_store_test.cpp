@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -138,6 +140,73 @@ TEST(CalibrationStore, LeavesThePoseAsItIsWhereItCannotBeWritten) {
   fs::create_directory(folder.path() / "calibration.json");  // which no file can replace
   EXPECT_EQ(code_thrown_by([&] { store.set(record_at(2)); }), "write-failed");
   EXPECT_EQ(x_in_force(store), 1);
+}
+
+PoseRecord record_of(const std::string& camera, double x) {
+  PoseRecord record = record_at(x);
+  record.scale = 1;
+  record.camera = camera;
+  record.lasers = {
+      {.name = "left", .normal = Eigen::Vector3d(1, 2, 3).normalized(), .distance = x}};
+  return record;
+}
+
+double x_in_force(const CalibrationStore& store, const char* camera) {
+  return store.in_force({}, camera).platform_from_sensor.translation().x();
+}
+
+TEST(CalibrationStore, KeepsPosesAndPlanesOfEachCamera) {
+  const TemporaryFolder folder;
+  {
+    CalibrationStore store(folder.path(), SensorKind::laser_line);
+    store.set(record_of("one", 0.1));
+    store.set(record_of("two", 0.2));
+  }
+  const CalibrationStore store(folder.path(), SensorKind::laser_line);
+  EXPECT_EQ(x_in_force(store, "one"), 0.1);
+  EXPECT_EQ(x_in_force(store, "two"), 0.2);
+  EXPECT_EQ(store.records({}, "three").front().origin, PoseOrigin::settings);
+  const PoseRecord one = store.records({}, "one").front();
+  EXPECT_EQ(one.camera, "one");
+  ASSERT_EQ(one.lasers.size(), 1U);
+  EXPECT_EQ(one.lasers[0].name, "left");
+  EXPECT_EQ(one.lasers[0].normal, Eigen::Vector3d(1, 2, 3).normalized());  // to the last bit
+  EXPECT_EQ(one.lasers[0].distance, 0.1);
+}
+
+TEST(CalibrationStore, TakesBackThePoseOfOneCameraAlone) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path(), SensorKind::laser_line);
+  store.set(record_of("one", 0.1));
+  for (int i = 0; i < 20; ++i) {
+    store.set(record_of("two", 0.2));  // more than are kept of a camera
+  }
+  store.undo("one");
+  EXPECT_EQ(store.records({}, "one").size(), 1U);
+  EXPECT_EQ(store.records({}, "one").front().origin, PoseOrigin::settings);
+  EXPECT_EQ(store.records({}, "two").size(), CalibrationStore::max_history + 1);
+  EXPECT_EQ(code_thrown_by([&] { store.undo("one"); }), "not-found");
+}
+
+TEST(CalibrationStore, KeepsThePosesOfARigWithLasersFromThoseOfADepthSensor) {
+  const TemporaryFolder folder;
+  CalibrationStore(folder.path(), SensorKind::laser_line).set(record_of("one", 0.1));
+  EXPECT_EQ(CalibrationStore(folder.path()).records({}).front().origin, PoseOrigin::drawing);
+  ScanSettings told;
+  told.platform_from_sensor = nominal_platform_from_camera();
+  const CalibrationStore store(folder.path(), SensorKind::laser_line);
+  EXPECT_EQ(store.records(told, "two").front().origin, PoseOrigin::drawing);
+}
+
+TEST(CalibrationStore, NamesADamagedFileOfARigWithLasers) {
+  const TemporaryFolder folder;
+  CalibrationStore(folder.path(), SensorKind::laser_line).set(record_of("one", 0.1));
+  EXPECT_FALSE(find_damaged_calibration(folder.path()));
+  put(folder.path() / "laser-calibration.json", "{");
+  EXPECT_EQ(x_in_force(CalibrationStore(folder.path(), SensorKind::laser_line), "one"), 0.1);
+  const auto damage = find_damaged_calibration(folder.path());
+  ASSERT_TRUE(damage);
+  EXPECT_NE(damage->find("laser-calibration.json"), std::string::npos) << *damage;
 }
 
 }  // namespace

@@ -36,6 +36,14 @@ TEST_F(ConfigStores, KeepWhatThePageSets) {
   EXPECT_EQ(next.trouble(), "");
 }
 
+TEST_F(ConfigStores, KeepHowACameraExposesAndAskForARestart) {
+  ConfigStore store = open();
+  store.change({{"laser", {{"exposure_ms", 25}, {"gain", 2}}}});
+  EXPECT_EQ(store.restart_needed(), (std::vector<std::string>{"laser.exposure_ms", "laser.gain"}));
+  EXPECT_EQ(open().config().laser.exposure, std::chrono::milliseconds(25));
+  EXPECT_EQ(open().config().laser.gain, 2);
+}
+
 TEST_F(ConfigStores, GoBackToOcturnJsonWhereAKeyBecomesNull) {
   open().change({{"turntable", {{"gear_ratio", 2}, {"full_steps", 400}}}});
   open().change({{"turntable", {{"gear_ratio", nullptr}}}});
@@ -63,6 +71,10 @@ TEST_F(ConfigStores, RefuseWhatIsWrongByItsKeyAndChangeNothing) {
       {"turntable.take_up_steps", {{"turntable", {{"take_up_steps", 3201}}}}},
       {"scan.leaf_size_mm", {{"scan", {{"leaf_size_mm", 2000}}}}},
       {"scan.clip_mm", {{"scan", {{"clip_mm", {0, 0, 0, 0.5, 100, 100}}}}}},
+      {"sensor", {{"sensor", "laser-line"}}},
+      {"laser.width", {{"laser", {{"width", 640}}}}},
+      {"laser.left", {{"laser", {{"left", {{"line", "GPIO21"}}}}}}},
+      {"laser.exposure_ms", {{"laser", {{"exposure_ms", 0}}}}},
       {"scan", {{"scan", 5}}}};
   for (const auto& [key, change] : wrong) {
     ConfigStore store = open();
@@ -152,7 +164,11 @@ TEST(ConfigSchema, TellsWhatIsAllowedAndWhatWaitsForARestart) {
   EXPECT_EQ(keys["turntable"]["x-restart"], true);
   EXPECT_EQ(keys["scan"]["x-restart"], false);
   EXPECT_FALSE(keys.contains("sensor"));
-  EXPECT_FALSE(keys.contains("laser"));
+  const json& of_laser = keys["laser"]["properties"];
+  EXPECT_EQ(of_laser.size(), 2U);
+  EXPECT_EQ(of_laser["exposure_ms"]["maximum"], 1000);
+  EXPECT_EQ(of_laser["gain"]["maximum"], 64);
+  EXPECT_EQ(keys["laser"]["x-restart"], true);
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+
+#include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
@@ -21,7 +24,7 @@ TEST(Plan, StopsAtTheNearestMicrostepWhereItDoesNot) {
 
 TEST(Plan, SumsToOneTurnExactly) {
   for (const int steps : {200, 800, 3200, 12345}) {
-    for (int stops = 1; stops <= 200; ++stops) {
+    for (int stops = 1; stops <= std::min(steps, 800); ++stops) {
       const std::vector<std::int64_t> positions = stop_positions(0, steps, stops);
       ASSERT_EQ(positions.size(), static_cast<std::size_t>(stops));
       EXPECT_EQ(positions.front(), 0);
@@ -32,6 +35,14 @@ TEST(Plan, SumsToOneTurnExactly) {
       }
     }
   }
+}
+
+TEST(Plan, HasAStepForEachStop) {
+  EXPECT_EQ(stop_positions(0, 200, 200).back(), 199);
+  const Error error = error_thrown_by([] { stop_positions(0, 200, 201); });
+  EXPECT_EQ(error.code(), ErrorCode::bad_settings);
+  EXPECT_STREQ(error.what(),
+               "a turn of the platform has 200 steps, and 201 snapshots are asked for");
 }
 
 TEST(Plan, BeginsAtTheNextWholeTurnSoThatThePlatformTurnsOneWay) {

@@ -194,15 +194,5 @@ TEST_F(ScanByLaser, EndsWithItsLasersOffWhenItIsCancelled) {
   EXPECT_FALSE(rig_.is_lit());
 }
 
-TEST_F(ScanByLaser, IsNoTurnForACalibrationOfADepthSensor) {
-  Scanner scanner(rig_.options(speed), {}, store_);
-  ASSERT_TRUE(scanner.calibrate(settings()));
-  scanner.wait_until_done(patience);
-  const auto run = scanner.calibration_run();
-  ASSERT_TRUE(*run);
-  ASSERT_EQ((*run)->state, CalibrationRun::State::failed);
-  EXPECT_EQ((*run)->failure->code, ErrorCode::sensor_other);
-}
-
 }  // namespace
 }  // namespace octurn

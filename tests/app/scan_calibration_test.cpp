@@ -44,7 +44,7 @@ class ScanCalibrationTest : public ::testing::Test {
                 phases.push_back(phase);
               }
             },
-        .on_calibrated = [&](const CalibrationReport& report) { report_ = report; },
+        .on_calibrated = [&](const ScanSolution& solution) { report_ = solution.report; },
         .on_rebuilt = [&](int snapshots) { rebuilt_.push_back(snapshots); }};
     report_.reset();
     EXPECT_TRUE(run_scan(settings, {}, folder, rig, {}, observer));

@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "camera/simulated_camera.hpp"
 #include "octurn/error.hpp"
+#include "rig/nominal_laser_rig.hpp"
 #include "scan/lens_files.hpp"
 #include "scan/rig.hpp"
 
@@ -34,15 +36,17 @@ class SimulatedLaserRig {
               if (is_unplugged) {
                 throw Error(ErrorCode::sensor_missing, "no camera is plugged in", "Plug it in.");
               }
-              const LaserCamera camera = laser_camera(settings_);
+              std::vector<Laser> lasers = laser_camera(settings_).lasers;
+              const Eigen::Isometry3d pose = other_pose.value_or(settings_.platform_from_sensor);
+              const Eigen::Vector3d up = pose.linear().transpose() * Eigen::Vector3d::UnitZ();
+              lasers.front() = turned_in_holder(lasers.front(), up, left_turn);
               const CameraLens lens = other_lens.value_or(told_lens(settings_));
-              CameraAndLasers opened =
-                  simulate_laser_rig({.lens = lens.intrinsics,
-                                      .k1 = lens.k1,
-                                      .k2 = lens.k2,
-                                      .platform_from_sensor = settings_.platform_from_sensor,
-                                      .lasers = camera.lasers},
-                                     speed);
+              CameraAndLasers opened = simulate_laser_rig({.lens = lens.intrinsics,
+                                                           .k1 = lens.k1,
+                                                           .k2 = lens.k2,
+                                                           .platform_from_sensor = pose,
+                                                           .lasers = lasers},
+                                                          speed);
               opened.camera = std::make_unique<FailingCamera>(*this, std::move(opened.camera));
               opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser,
                                                                          bool on) {
@@ -57,10 +61,12 @@ class SimulatedLaserRig {
   bool is_lit() const { return is_on_[0] || is_on_[1]; }
 
   std::atomic<bool> is_unplugged = false;
-  std::atomic<int> lost_pictures = 0;          ///< so many of the next are never handed out
-  std::atomic<int> pictures = 0;               ///< that were handed out
-  std::optional<std::size_t> dark_laser = {};  ///< that gives no light; set before a scan
-  std::optional<CameraLens> other_lens = {};   ///< that differs from the told one
+  std::atomic<int> lost_pictures = 0;                ///< so many of the next are never handed out
+  std::atomic<int> pictures = 0;                     ///< that were handed out
+  std::optional<std::size_t> dark_laser = {};        ///< that gives no light; set before a scan
+  std::optional<CameraLens> other_lens = {};         ///< that differs from the told one
+  std::optional<Eigen::Isometry3d> other_pose = {};  ///< the same of the camera's pose
+  double left_turn = 0;  ///< radians that the left laser was turned in its holder, untold
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture; read after a scan
   /// Called before each picture.
   std::function<void(SimulatedLaserRig& rig)> on_picture = [](SimulatedLaserRig&) {};

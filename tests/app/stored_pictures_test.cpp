@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scan/picture_writer.hpp"
 #include "scan/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -31,8 +32,11 @@ Picture grey(std::uint8_t level) {
 class StoredPictures : public ::testing::Test {
  protected:
   void store(const std::vector<Rgb>& colours) {
-    store_pictures(folder_.path(), scan_, 0.5,
-                   {.pictures = {grey(20), grey(90)}, .colours = colours});
+    PictureWriter writer(folder_.path(), picture_files(0, *scan_.laser));
+    writer.add(grey(20), colours);
+    writer.add(grey(90), {});
+    writer.finish();
+    store_stop(folder_.path(), scan_, 0.5);
   }
 
   std::string stored(const std::string& name) const {

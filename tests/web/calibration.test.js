@@ -49,6 +49,20 @@ test('a turn that confirms the pose says that nothing was changed', () => {
   assert.match(outcome.detail, /Nothing was changed/);
 });
 
+test('a turn of a rig with lasers tells of their planes, too', () => {
+  const outcome = after({state: 'done', report: {...turnReport, shift_mm: 0.01, tilt_deg: 0, confirms_told: false}});
+  assert.equal(outcome.title, 'Camera and lasers were measured');
+  assert.match(outcome.detail, /before they were/);
+  assert.match(after({state: 'done', report: {...turnReport, confirms_told: true}}).detail, /Nothing was changed/);
+});
+
+test('a rig with lasers calibrates itself, until it was measured', () => {
+  const withLasers = {...calibration, lens: {told: null, kept: null}};
+  assert.equal(texts.summaryOf(withLasers).title, 'Each scan calibrates itself');
+  const measured = {...withLasers, source: 'scan', at: '2026-11-21T08:15:00Z', sigma_mm: 0.031, sigma_deg: 0.012};
+  assert.equal(texts.summaryOf(measured).tone, 'good');
+});
+
 test('a refused turn says why and what to do', () => {
   const report = {...turnReport, accepted: false, reason: 'too little of an object was seen'};
   const outcome = after({state: 'refused', report});

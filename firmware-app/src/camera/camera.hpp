@@ -50,6 +50,12 @@ class Camera {
   /// The same, with its colours. A camera without any needs none of its own.
   virtual std::optional<TimedPicture> read_in_colour(const std::stop_token& stop);
 
+  /// The time by the clock that tells when its pictures begin: the steady one, unless a test has
+  /// its own.
+  virtual std::chrono::steady_clock::time_point now() const {
+    return std::chrono::steady_clock::now();
+  }
+
   /// Tells a simulated camera the platform's angle. Others ignore it.
   /// @param angle  radians, counter-clockwise seen from above
   virtual void show_angle(double angle);

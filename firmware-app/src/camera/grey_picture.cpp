@@ -8,28 +8,24 @@
 namespace octurn {
 namespace {
 
-std::size_t bytes_per_pixel(PixelLayout layout) {
-  switch (layout) {
-    case PixelLayout::grey:
-    case PixelLayout::nv12:
-    case PixelLayout::nv21:
-    case PixelLayout::yuv420:
-    case PixelLayout::yvu420:
-    case PixelLayout::yuv422:
-    case PixelLayout::yuv444:
-      return 1;
-    case PixelLayout::yuyv:
-    case PixelLayout::uyvy:
-      return 2;
-    case PixelLayout::rgb_bytes:
-    case PixelLayout::bgr_bytes:
-      break;
-  }
-  return 3;
-}
+/// Where a pixel has its colours, bytes from its first. Luminance is grey: all three are there.
+struct PixelBytes {
+  std::size_t count = 1;
+  std::size_t red = 0;
+  std::size_t green = 0;
+  std::size_t blue = 0;
+};
 
-std::uint8_t luminance_at(const std::uint8_t* pixel, PixelLayout layout) {
+PixelBytes pixel_bytes(PixelLayout layout) {
   switch (layout) {
+    case PixelLayout::yuyv:
+      return {.count = 2};
+    case PixelLayout::uyvy:
+      return {.count = 2, .red = 1, .green = 1, .blue = 1};
+    case PixelLayout::rgb_bytes:
+      return {.count = 3, .red = 0, .green = 1, .blue = 2};
+    case PixelLayout::bgr_bytes:
+      return {.count = 3, .red = 2, .green = 1, .blue = 0};
     case PixelLayout::grey:
     case PixelLayout::nv12:
     case PixelLayout::nv21:
@@ -37,22 +33,16 @@ std::uint8_t luminance_at(const std::uint8_t* pixel, PixelLayout layout) {
     case PixelLayout::yvu420:
     case PixelLayout::yuv422:
     case PixelLayout::yuv444:
-    case PixelLayout::yuyv:
-      return pixel[0];
-    case PixelLayout::uyvy:
-      return pixel[1];
-    case PixelLayout::rgb_bytes:
-      return luminance({pixel[0], pixel[1], pixel[2]});
-    case PixelLayout::bgr_bytes:
       break;
   }
-  return luminance({pixel[2], pixel[1], pixel[0]});
+  return {};
 }
 
 }  // namespace
 
 Picture grey_picture(std::span<const std::uint8_t> bytes, const PixelRows& rows) {
-  const std::size_t step = bytes_per_pixel(rows.layout);
+  const PixelBytes bytes_of = pixel_bytes(rows.layout);
+  const std::size_t step = bytes_of.count;
   const auto width = static_cast<std::size_t>(rows.width);
   const auto height = static_cast<std::size_t>(rows.height);
   if (height == 0 || rows.stride < width * step ||
@@ -69,7 +59,9 @@ Picture grey_picture(std::span<const std::uint8_t> bytes, const PixelRows& rows)
       continue;
     }
     for (std::size_t x = 0; x < width; ++x) {
-      picture.samples.push_back(luminance_at(row + x * step, rows.layout));
+      const std::uint8_t* const pixel = row + x * step;
+      picture.samples.push_back(
+          luminance({pixel[bytes_of.red], pixel[bytes_of.green], pixel[bytes_of.blue]}));
     }
   }
   return picture;

@@ -66,22 +66,16 @@ std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& so
   return text.str();
 }
 
+/// @param told, solved  lasers; empty of a depth sensor
 void write_report(const CalibrationReport& report, const std::vector<double>& angles,
+                  const std::vector<Laser>& told, const std::vector<Laser>& solved,
                   const CalibrateArguments& arguments) {
-  write_standard_output(arguments.json ? to_json(report, angles).dump() + "\n" : to_text(report));
-}
-
-void write_solution(const ScanSolution& solution, const Scan& scan,
-                    const CalibrateArguments& arguments) {
-  const std::vector<Laser>& lasers = solution.solved.lasers;
-  if (lasers.empty()) {
-    write_report(solution.report, stop_angles(scan), arguments);
-  } else if (arguments.json) {
-    write_standard_output(to_json(solution.report, stop_angles(scan), lasers).dump() + "\n");
+  if (arguments.json) {
+    const nlohmann::json object =
+        solved.empty() ? to_json(report, angles) : to_json(report, angles, solved);
+    write_standard_output(object.dump() + "\n");
   } else {
-    const bool accepted = solution.report.accepted;
-    write_standard_output(to_text(solution.report) +
-                          (accepted ? to_text(scan.laser->lasers, lasers) : ""));
+    write_standard_output(to_text(report) + (report.accepted ? to_text(told, solved) : ""));
   }
 }
 
@@ -98,7 +92,9 @@ bool calibrate_from(const std::filesystem::path& folder, const CalibrateArgument
   if (arguments.apply && accepted) {
     write_solved_pose(folder, solution.solved);
   }
-  write_solution(solution, scan, arguments);
+  write_report(solution.report, stop_angles(scan),
+               scan.laser ? scan.laser->lasers : std::vector<Laser>(), solution.solved.lasers,
+               arguments);
   return accepted;
 }
 
@@ -125,8 +121,9 @@ bool calibrate_rig(const CalibrateArguments& arguments) {
   if (!run.report) {
     throw Stopped{};
   }
-  write_report(run.report->calibration, run.report->angles, arguments);
-  return run.report->calibration.accepted;
+  const TurnReport& report = *run.report;
+  write_report(report.calibration, report.angles, report.told, report.lasers, arguments);
+  return report.calibration.accepted;
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ std::vector<Finding> check_motion(const DoctorInput& input, const std::stop_toke
 bool doctor(const DoctorArguments& arguments) {
   const ConfigStore settings = open_config(arguments.config);
   Config config = settings.config();
-  config.scan = CalibrationStore(config.data).in_force(config.scan);
+  config.scan = CalibrationStore(config.data, config.sensor).in_force(config.scan);
   const DoctorInput input{
       .rig = rig_options(arguments.rig, config),
       .config = config,

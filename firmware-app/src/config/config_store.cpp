@@ -1,8 +1,10 @@
 #include "config/config_store.hpp"
 
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include "config/page_keys.hpp"
 #include "octurn/error.hpp"
 #include "settings/field.hpp"
 
@@ -49,8 +51,12 @@ bool applies_at_once(std::string_view key) { return key == "scan" || key == "hos
 json config_schema() {
   Config config;
   json schema = to_schema(fields(config));
-  for (const Field& field : sensor_fields(config)) {
-    schema["properties"].erase(field.key);
+  schema["properties"].erase("sensor");
+  json& of_laser = schema["properties"]["laser"]["properties"];
+  const json all = std::move(of_laser);
+  of_laser = json::object();
+  for (const std::string_view key : laser_keys_of_page) {
+    of_laser[std::string(key)] = all.at(std::string(key));
   }
   for (const auto& [key, property] : schema["properties"].items()) {
     property["x-restart"] = !applies_at_once(key);

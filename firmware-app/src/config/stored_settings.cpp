@@ -1,9 +1,10 @@
 #include "config/stored_settings.hpp"
 
-#include <array>
+#include <algorithm>
 #include <optional>
-#include <string_view>
+#include <string>
 
+#include "config/page_keys.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
@@ -19,16 +20,23 @@ constexpr const char* settings_file = "settings.json";
 constexpr const char* last_good_file = "settings.last.json";
 constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a body has 64 KiB at most
 
-// Where settings are kept, and who may change them, is not for those who may change them. What the
-// rig is built of is measured beside it.
-constexpr std::array<std::string_view, 4> fixed_keys{"data", "password_file", "sensor", "laser"};
+[[noreturn]] void refuse_fixed(const std::string& key) {
+  throw Error(ErrorCode::bad_settings, "\"" + key + "\": cannot be set from the page",
+              "It is a key of octurn.json.");
+}
 
 void refuse_fixed(const json& values) {
-  for (const std::string_view key : fixed_keys) {
-    if (values.is_object() && values.contains(key)) {
-      throw Error(ErrorCode::bad_settings,
-                  "\"" + std::string(key) + "\": cannot be set from the page",
-                  "It is a key of octurn.json.");
+  for (const auto& [key, value] : values.items()) {
+    if (std::ranges::find(fixed_keys, key) != fixed_keys.end()) {
+      refuse_fixed(key);
+    }
+    if (key != "laser" || !value.is_object()) {
+      continue;
+    }
+    for (const auto& [inner, setting] : value.items()) {
+      if (std::ranges::find(laser_keys_of_page, inner) == laser_keys_of_page.end()) {
+        refuse_fixed("laser." + inner);
+      }
     }
   }
 }

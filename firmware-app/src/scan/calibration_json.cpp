@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "octurn/units.hpp"
+#include "scan/laser_planes.hpp"
 #include "scan/parameters_json.hpp"
 #include "scan/pose_json.hpp"
 
@@ -102,12 +103,7 @@ json to_json(const CalibrationReport& report, const std::vector<double>& angles)
 json to_json(const CalibrationReport& report, const std::vector<double>& angles,
              const std::vector<Laser>& lasers) {
   json object = to_json(report, angles);
-  object["lasers"] = json::array();
-  for (const Laser& laser : lasers) {
-    const Eigen::Vector3d& n = laser.normal;
-    object["lasers"].push_back(
-        {{"name", laser.name}, {"plane_m", {n.x(), n.y(), n.z(), laser.distance}}});
-  }
+  object["lasers"] = planes_to_json(lasers);
   return object;
 }
 

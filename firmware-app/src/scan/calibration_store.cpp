@@ -1,6 +1,9 @@
 #include "scan/calibration_store.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -17,8 +20,12 @@ using nlohmann::json;
 
 constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a hundred times what is written
 
-fs::path file_in(const fs::path& data) { return data / "calibration.json"; }
-fs::path copy_in(const fs::path& data) { return data / "calibration.last.json"; }
+fs::path file_in(const fs::path& data, SensorKind kind) {
+  return data / (kind == SensorKind::depth ? "calibration.json" : "laser-calibration.json");
+}
+fs::path copy_in(const fs::path& data, SensorKind kind) {
+  return file_in(data, kind).replace_extension(".last.json");
+}
 
 std::vector<PoseRecord> records_from(const json& document) {
   JsonObject root(document, ErrorCode::platform_malformed, "");
@@ -46,8 +53,8 @@ std::vector<PoseRecord> read_records(const fs::path& file) {
   }
 }
 
-std::vector<PoseRecord> last_good_records(const fs::path& data) {
-  for (const fs::path& file : {file_in(data), copy_in(data)}) {
+std::vector<PoseRecord> last_good_records(const fs::path& data, SensorKind kind) {
+  for (const fs::path& file : {file_in(data, kind), copy_in(data, kind)}) {
     try {
       return read_records(file);
     } catch (const Error& error) {
@@ -57,30 +64,49 @@ std::vector<PoseRecord> last_good_records(const fs::path& data) {
   return {};
 }
 
-/// The pose that the settings tell.
-PoseRecord to_record(const ScanSettings& told) {
-  const bool is_drawing = told.platform_from_sensor.isApprox(nominal_platform_from_sensor(), 1e-12);
-  return {.platform_from_sensor = told.platform_from_sensor,
-          .origin = is_drawing ? PoseOrigin::drawing : PoseOrigin::settings,
-          .scale = told.depth_scale};
-}
-
 bool is_told(const PoseRecord& record) {
   return record.origin == PoseOrigin::drawing || record.origin == PoseOrigin::settings;
 }
 
+/// Whether a record is of that camera, or of no camera in particular.
+bool is_of(const PoseRecord& record, std::string_view camera) {
+  return camera.empty() || record.camera.empty() || record.camera == camera;
+}
+
+/// Without the oldest of each camera. @param records  the newest first
+std::vector<PoseRecord> newest_of_each(const std::vector<PoseRecord>& records) {
+  std::map<std::string, std::size_t> count;
+  std::vector<PoseRecord> kept;
+  std::ranges::copy_if(records, std::back_inserter(kept), [&](const PoseRecord& record) {
+    return count[record.camera]++ <= CalibrationStore::max_history;
+  });
+  return kept;
+}
+
 }  // namespace
 
-CalibrationStore::CalibrationStore(fs::path data)
-    : data_(std::move(data)), records_(last_good_records(data_)) {}
+CalibrationStore::CalibrationStore(fs::path data, SensorKind kind)
+    : data_(std::move(data)), kind_(kind), records_(last_good_records(data_, kind)) {}
+
+/// The pose that the settings tell.
+PoseRecord CalibrationStore::to_record(const ScanSettings& told) const {
+  const Eigen::Isometry3d drawing =
+      kind_ == SensorKind::depth ? nominal_platform_from_sensor() : nominal_platform_from_camera();
+  const bool is_drawing = told.platform_from_sensor.isApprox(drawing, 1e-12);
+  return {.platform_from_sensor = told.platform_from_sensor,
+          .origin = is_drawing ? PoseOrigin::drawing : PoseOrigin::settings,
+          .scale = told.depth_scale};
+}
 
 std::vector<PoseRecord> CalibrationStore::records() const {
   const std::lock_guard lock(mutex_);
   return records_;
 }
 
-std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& told) const {
+std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& told,
+                                                  std::string_view camera) const {
   std::vector<PoseRecord> all = records();
+  std::erase_if(all, [&](const PoseRecord& record) { return !is_of(record, camera); });
   if (all.empty()) {
     return {to_record(told)};
   }
@@ -92,8 +118,8 @@ std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& told) cons
   return all;
 }
 
-ScanSettings CalibrationStore::in_force(ScanSettings told) const {
-  const PoseRecord now = records(told).front();
+ScanSettings CalibrationStore::in_force(ScanSettings told, std::string_view camera) const {
+  const PoseRecord now = records(told, camera).front();
   told.platform_from_sensor = now.platform_from_sensor;
   told.depth_scale = now.scale;
   return told;
@@ -111,9 +137,10 @@ void CalibrationStore::add(const PoseRecord& record) {
   write(std::move(all));
 }
 
-void CalibrationStore::change(const PoseChange& change, const ScanSettings& told) {
+void CalibrationStore::change(const PoseChange& change, const ScanSettings& told,
+                              std::string_view camera) {
   const std::lock_guard writing(writing_);  // from here on: the record that is changed stays
-  PoseRecord record = change.is_settings_pose ? to_record(told) : records(told).front();
+  PoseRecord record = change.is_settings_pose ? to_record(told) : records(told, camera).front();
   record.at = utc_text(std::chrono::system_clock::now(), rfc3339);
   if (change.platform_from_sensor || change.scale) {
     const double scale = change.scale.value_or(record.scale);
@@ -128,35 +155,38 @@ void CalibrationStore::change(const PoseChange& change, const ScanSettings& told
   add(record);
 }
 
-void CalibrationStore::undo() {
+void CalibrationStore::undo(std::string_view camera) {
   const std::lock_guard writing(writing_);
   std::vector<PoseRecord> all = records();
-  if (all.empty()) {
+  const auto now =
+      std::ranges::find_if(all, [&](const PoseRecord& record) { return is_of(record, camera); });
+  if (now == all.end()) {
     throw Error(ErrorCode::not_found, "there is no earlier pose of the sensor",
                 "The settings' pose is in force.");
   }
-  all.erase(all.begin());
+  all.erase(now);
   write(std::move(all));
 }
 
 /// `writing_` is held.
 void CalibrationStore::write(std::vector<PoseRecord> records) {
-  records.resize(std::min(records.size(), max_history + 1));
+  records = newest_of_each(records);
   json poses = json::array();
   for (const PoseRecord& record : records) {
     poses.push_back(to_json(record));
   }
   const std::string text =
       json{{"format", "octurn-calibration"}, {"version", 1}, {"poses", poses}}.dump(1) + "\n";
-  write_file(file_in(data_), text);
-  write_file(copy_in(data_), text);
+  write_file(file_in(data_, kind_), text);
+  write_file(copy_in(data_, kind_), text);
   const std::lock_guard lock(mutex_);
   records_ = std::move(records);
 }
 
 std::optional<std::string> find_damaged_calibration(const fs::path& data) {
   try {
-    read_records(file_in(data));
+    read_records(file_in(data, SensorKind::depth));
+    read_records(file_in(data, SensorKind::laser_line));
     return std::nullopt;
   } catch (const Error& error) {
     return error.what();

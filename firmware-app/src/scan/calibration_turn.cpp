@@ -21,21 +21,9 @@ namespace {
 
 using nlohmann::json;
 
-// The part of space that a slice shows, metres: what stands on a platform.
-constexpr double slice_half_thickness = 0.001;
-constexpr double slice_radius = 0.17;
-constexpr double slice_bottom = -0.02;
-constexpr double slice_top = 0.4;
-constexpr std::size_t max_slice_points = 3000;  // what a picture of some hundred pixels shows
-
-bool is_in_slice(const Eigen::Vector3d& point) {
-  return std::abs(point.y()) <= slice_half_thickness && std::abs(point.x()) <= slice_radius &&
-         point.z() >= slice_bottom && point.z() <= slice_top;
-}
-
 /// Adds the readings of one depth image that lie in the slice.
-void add_to_slice(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
-                  const Eigen::Isometry3d& object_from_sensor) {
+void add_frame(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
+               const Eigen::Isometry3d& object_from_sensor) {
   for (int v = 0; v < frame.height; ++v) {
     for (int u = 0; u < frame.width; ++u) {
       const double z =
@@ -45,29 +33,16 @@ void add_to_slice(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
       if (!(z > 0)) {
         continue;
       }
-      const Eigen::Vector3d point = object_from_sensor * (z * pixel_ray(lens, u, v));
-      if (is_in_slice(point)) {
-        slice.emplace_back(point.x(), point.z());
-      }
+      add_to_slice(slice, object_from_sensor * (z * pixel_ray(lens, u, v)));
     }
   }
-}
-
-/// Every so many points that a picture is full.
-Slice thinned(const Slice& slice) {
-  const std::size_t step = slice.size() / max_slice_points + 1;
-  Slice some;
-  for (std::size_t i = 0; i < slice.size(); i += step) {
-    some.push_back(slice[i]);
-  }
-  return some;
 }
 
 Slice make_slice(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor) {
   Slice slice;
   for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
-    add_to_slice(slice, turn.read(stop), turn.intrinsics,
-                 object_from_sensor(platform_from_sensor, turn.angles[stop]));
+    add_frame(slice, turn.read(stop), turn.intrinsics,
+              object_from_sensor(platform_from_sensor, turn.angles[stop]));
   }
   return thinned(slice);
 }
@@ -82,7 +57,12 @@ json to_json(const Slice& slice) {
 }
 
 json to_json(const TurnReport& report) {
-  json object = to_json(report.calibration, report.angles);
+  const bool has_lasers = !report.lasers.empty();
+  json object = has_lasers ? to_json(report.calibration, report.angles, report.lasers)
+                           : to_json(report.calibration, report.angles);
+  if (has_lasers) {
+    object["confirms_told"] = report.calibration.accepted && !report.replaces_told;
+  }
   object["slice_mm"] = {{"before", to_json(report.before)}, {"after", to_json(report.after)}};
   return object;
 }
@@ -139,6 +119,7 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings, const Senso
   };
   try {
     TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
+    report.replaces_told = report.calibration.accepted && !report.calibration.confirms_told();
     report.before = make_slice(turn, turn.platform_from_sensor);
     if (report.calibration.accepted) {
       report.after = make_slice(turn, report.calibration.platform_from_sensor);

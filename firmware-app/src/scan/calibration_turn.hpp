@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stop_token>
@@ -15,6 +14,7 @@
 #include "scan/board_watch.hpp"
 #include "scan/rig.hpp"
 #include "scan/scan_observer.hpp"
+#include "scan/slice.hpp"
 
 namespace octurn {
 
@@ -24,15 +24,15 @@ inline constexpr int min_calibration_stops = 4;
 inline constexpr int max_calibration_stops = 72;
 inline constexpr int default_calibration_stops = 24;
 
-/// The points of all stops within 1 mm of the plane y = 0 of the object's frame: x and z, metres.
-using Slice = std::vector<Eigen::Vector2d>;
-
 /// The sensor's pose as solved from a turn.
 struct TurnReport {
   CalibrationReport calibration = {};
   std::vector<double> angles = {};  ///< of the stops as told, radians
   Slice before = {};                ///< with the told pose
   Slice after = {};                 ///< with the solved one; empty if that is refused
+  std::vector<Laser> told = {};     ///< of a rig with lasers: with the told planes
+  std::vector<Laser> lasers = {};   ///< the same, with the solved ones
+  bool replaces_told = false;       ///< accepted, and more than what the rig was told already
 };
 
 /// The progress and result of a measurement of the rig.

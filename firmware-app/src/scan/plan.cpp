@@ -1,11 +1,22 @@
 #include "scan/plan.hpp"
 
 #include <cmath>
+#include <string>
+
+#include "octurn/error.hpp"
 
 namespace octurn {
 
 std::vector<std::int64_t> stop_positions(std::int64_t position, int steps_per_turn, int stops,
                                          int first) {
+  if (stops > steps_per_turn) {
+    throw Error(ErrorCode::bad_settings,
+                "a turn of the platform has " + std::to_string(steps_per_turn) + " steps, and " +
+                    std::to_string(stops) + " snapshots are asked for",
+                "Take fewer snapshots, or set more microsteps.",
+                {{"steps", static_cast<double>(steps_per_turn)},
+                 {"snapshots", static_cast<double>(stops)}});
+  }
   const auto from_home = [&](std::int64_t stop) {
     const std::int64_t twice = 2 * stop * steps_per_turn / stops;
     return (twice + 1) / 2;

@@ -10,6 +10,7 @@ namespace octurn {
 /// at or after `position`.
 ///
 /// @param first  the first stop that is still to be made
+/// @throws Error "bad-settings"  if a turn has fewer steps than stops
 std::vector<std::int64_t> stop_positions(std::int64_t position, int steps_per_turn, int stops,
                                          int first = 0);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "octurn/units.hpp"
+#include "scan/laser_planes.hpp"
 #include "scan/pose_json.hpp"
 #include "scan/scan_settings.hpp"
 #include "utc.hpp"
@@ -67,30 +68,46 @@ PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, double 
           .scale = scale};
 }
 
+PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, std::string camera,
+                     std::vector<Laser> lasers) {
+  PoseRecord record = to_record(report, origin, 1);
+  record.camera = std::move(camera);
+  record.lasers = std::move(lasers);
+  return record;
+}
+
 json to_json(const PoseRecord& record) {
   const auto figure = [&](double (*unit)(double), double PoseFigures::*member) {
     return record.figures ? json(unit((*record.figures).*member)) : json();
   };
-  return {{"platform_from_sensor", to_rows(record.platform_from_sensor)},
-          {"source", to_string(record.origin)},
-          {"at", record.at.empty() ? json() : json(record.at)},
-          {"shift_mm", figure(mm_from_metres, &PoseFigures::shift)},
-          {"tilt_deg", figure(degrees_from_radians, &PoseFigures::tilt)},
-          {"sigma_mm", figure(mm_from_metres, &PoseFigures::position_sigma)},
-          {"sigma_deg", figure(degrees_from_radians, &PoseFigures::direction_sigma)},
-          {"before_mm", figure(mm_from_metres, &PoseFigures::before)},
-          {"after_mm", figure(mm_from_metres, &PoseFigures::after)},
-          {"scale", record.scale}};
+  json object{{"platform_from_sensor", to_rows(record.platform_from_sensor)},
+              {"source", to_string(record.origin)},
+              {"at", record.at.empty() ? json() : json(record.at)},
+              {"shift_mm", figure(mm_from_metres, &PoseFigures::shift)},
+              {"tilt_deg", figure(degrees_from_radians, &PoseFigures::tilt)},
+              {"sigma_mm", figure(mm_from_metres, &PoseFigures::position_sigma)},
+              {"sigma_deg", figure(degrees_from_radians, &PoseFigures::direction_sigma)},
+              {"before_mm", figure(mm_from_metres, &PoseFigures::before)},
+              {"after_mm", figure(mm_from_metres, &PoseFigures::after)},
+              {"scale", record.scale}};
+  if (!record.camera.empty()) {
+    object["camera"] = record.camera;
+    object["lasers"] = planes_to_json(record.lasers);
+  }
+  return object;
 }
 
 PoseRecord to_record(const JsonValue& object) {
   JsonObject keys(object);
   const JsonValue at = keys.at("at");
+  const auto camera = keys.value("camera");
   return {.platform_from_sensor = to_pose(keys.at("platform_from_sensor")),
           .origin = to_origin(keys.at("source")),
           .at = at.json().is_null() ? std::string() : at.text(),
           .figures = to_figures(keys),
-          .scale = keys.at("scale").number(min_depth_scale, max_depth_scale)};
+          .scale = keys.at("scale").number(min_depth_scale, max_depth_scale),
+          .camera = camera ? camera->text() : std::string(),
+          .lasers = camera ? to_planes(keys.at("lasers")) : std::vector<Laser>()};
 }
 
 }  // namespace octurn

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "octurn/calibrate.hpp"
 #include "octurn/json_object.hpp"
@@ -41,10 +42,16 @@ struct PoseRecord {
   std::string at = {};                      ///< UTC, as in ISO 8601; empty: from the beginning
   std::optional<PoseFigures> figures = {};  ///< of a pose that was solved
   double scale = 1;                         ///< of the sensor's depths
+  std::string camera = {};  ///< serial number of a camera with lasers; empty: of a depth sensor
+  std::vector<Laser> lasers = {};  ///< their planes with this pose; empty: those of the settings
 };
 
 /// The record of a pose that is accepted now. @param scale  of the depths that it was solved from
 PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, double scale);
+
+/// The same of a camera, whose lasers' planes were solved with it.
+PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, std::string camera,
+                     std::vector<Laser> lasers);
 
 /// A record as files and the API have it.
 nlohmann::json to_json(const PoseRecord& record);

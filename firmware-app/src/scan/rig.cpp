@@ -1,5 +1,6 @@
 #include "scan/rig.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "octurn/error.hpp"
@@ -32,6 +33,18 @@ void Rig::use_lens(const CameraLens& lens) {
   options_.laser->lens = lens.intrinsics;
   options_.laser->k1 = lens.k1;
   options_.laser->k2 = lens.k2;
+}
+
+void Rig::use_pose(const Eigen::Isometry3d& platform_from_sensor,
+                   const std::vector<Laser>& lasers) {
+  options_.laser->platform_from_sensor = platform_from_sensor;
+  for (LaserLine* const line : {&options_.laser->left, &options_.laser->right}) {
+    const auto told = std::ranges::find(lasers, line->laser.name, &Laser::name);
+    if (told != lasers.end()) {
+      line->laser.normal = told->normal;
+      line->laser.distance = told->distance;
+    }
+  }
 }
 
 Camera& Rig::camera() {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "camera/lasers.hpp"
 #include "octurn/lens.hpp"
@@ -53,6 +54,10 @@ class Rig {
 
   /// Replaces the told lens of the rig's camera.
   void use_lens(const CameraLens& lens);
+
+  /// From now on the rig is told another pose of its camera, and other planes of its lasers.
+  /// @param lasers  by their names; one that is not among them has the plane that it had
+  void use_pose(const Eigen::Isometry3d& platform_from_sensor, const std::vector<Laser>& lasers);
 
   /// Opens the camera if it is closed, and with it the lines of its lasers.
   /// @throws Error  as `open_camera_and_lasers`

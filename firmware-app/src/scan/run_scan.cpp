@@ -17,12 +17,13 @@
 #include "scan/early_model.hpp"
 #include "scan/fitting_reconstruction.hpp"
 #include "scan/last_look.hpp"
+#include "scan/line_preview.hpp"
 #include "scan/plan.hpp"
 #include "scan/scan_of_rig.hpp"
 #include "scan/solve_pose.hpp"
 #include "scan/stored_scan.hpp"
 #include "scan/take_depth_image.hpp"
-#include "scan/take_pictures.hpp"
+#include "scan/take_stop.hpp"
 
 namespace octurn {
 namespace {
@@ -51,7 +52,7 @@ class Run {
         check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
-  /// @return false if stopped first
+  /// @return false if stopped first, as the two that take one do
   bool take_snapshots();
   std::vector<CalibrationFinding> calibrate();
   std::optional<Model> build(Clock::time_point captured,
@@ -59,10 +60,9 @@ class Run {
 
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
-  int threads() const { return reconstruction_.options().threads; }
   std::optional<ModelReport> write();
   bool take_depth(const Stop& at, double angle);
-  bool take_lines(const Stop& at, double angle);
+  bool take_lines(const Stop& at, double angle, LinePreview& preview);
   void resume();
   SnapshotSource checked();
   void add_stored();
@@ -94,18 +94,18 @@ bool Run::take_snapshots() {
     resume();
   }
   const int steps = turntable.steps_per_turn();
+  LinePreview preview(folder_, reconstruction_.options(), settings_.snapshots, stop_, observer_);
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
     const Stop at{.index = done(), .position = position};
     const double angle = radians_from_degrees(angle_deg_at(position, steps));
-    if (!(scan_.laser ? take_lines(at, angle) : take_depth(at, angle))) {
+    if (!(scan_.laser ? take_lines(at, angle, preview) : take_depth(at, angle))) {
       return false;
     }
   }
   return true;
 }
 
-/// @return false if stopped first
 bool Run::take_depth(const Stop& at, double angle) {
   std::optional<DepthFrame> frame = take_depth_image(rig_, at, settings_, stop_, observer_);
   if (!frame) {
@@ -126,14 +126,13 @@ bool Run::take_depth(const Stop& at, double angle) {
   return true;
 }
 
-/// The surface at a stop's lines ends at those of the stops beside it, so that nothing is added to
-/// the reconstruction before the last stop. @return false if stopped first
-bool Run::take_lines(const Stop& at, double angle) {
-  const auto taken = take_pictures(rig_, at, stop_, observer_);
-  if (taken) {
-    store_pictures(folder_, scan_, angle, *taken);
+/// The first stop's surface ends at the last stop's lines: the model waits for these.
+bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
+  if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
+    return false;
   }
-  return taken.has_value();
+  preview.add(scan_);
+  return true;
 }
 
 /// Adds what was stored before: in the order in which it was taken, and while the platform turns.
@@ -162,9 +161,10 @@ std::vector<CalibrationFinding> Run::calibrate() {
     early_.begin(*reconstruction_, readable_snapshots(folder_, scan_, stop_), folder_ / "Scan.stl");
   }
   const ScanSolution solution =
-      solve_scan(folder_, scan_, readable_snapshots(folder_, scan_, stop_), threads(), stop_);
+      solve_scan(folder_, scan_, readable_snapshots(folder_, scan_, stop_),
+                 reconstruction_.options().threads, stop_);
   throw_if_stopped(stop_);
-  observer_.on_calibrated(solution.report);
+  observer_.on_calibrated(solution);
   if (solution.replaces_told) {
     early_.give_up();
     scan_.solved = solution.solved;
@@ -265,7 +265,7 @@ std::optional<Model> Run::build(Clock::time_point captured,
   if (!report) {
     return std::nullopt;
   }
-  Quality quality = judge(check_.figures(threads()), *report, findings);
+  Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
   reconstruction_.tell(quality);
   report->places = {};  // a job's figures are copied for each look at them
   return Model{.report = *std::move(report),

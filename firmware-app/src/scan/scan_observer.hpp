@@ -2,10 +2,10 @@
 
 #include <functional>
 
-#include "octurn/calibrate.hpp"
 #include "octurn/png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "scan/job.hpp"
+#include "scan/solve_pose.hpp"
 
 namespace octurn {
 
@@ -19,9 +19,8 @@ struct ScanObserver {
   std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
-  /// The solved pose of the sensor, before it is used.
-  std::function<void(const CalibrationReport& report)> on_calibrated =
-      [](const CalibrationReport&) {};
+  /// The solved pose of the sensor, and the planes of the lasers, before they are used.
+  std::function<void(const ScanSolution& solution)> on_calibrated = [](const ScanSolution&) {};
   /// From time to time while the model is built again, with the number of snapshots added.
   std::function<void(int snapshots)> on_rebuilt = [](int) {};
   /// From time to time while a snapshot is being added.

@@ -27,7 +27,10 @@ RigOptions at_angle(RigOptions rig, double angle_deg) {
 
 Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
                  const std::optional<SlurmOptions>& slurm)
-    : store_(store), limits_(limits), calibration_(store.data()), board_(rig) {
+    : store_(store),
+      limits_(limits),
+      calibration_(store.data(), rig.laser ? SensorKind::laser_line : SensorKind::depth),
+      board_(rig) {
   if (slurm) {
     slurm_.emplace(*slurm, store, limits);
   }

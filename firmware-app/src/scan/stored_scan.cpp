@@ -85,14 +85,14 @@ std::vector<std::string> picture_files(int stop, const LaserCamera& camera) {
   return files;
 }
 
-void store_pictures(const std::filesystem::path& folder, Scan& scan, double angle,
-                    const StopPictures& taken) {
+void write_picture(const std::filesystem::path& file, const Picture& picture,
+                   const std::vector<Rgb>& colours) {
+  write_png(file, encode(picture, colours));
+}
+
+void store_stop(const std::filesystem::path& folder, Scan& scan, double angle) {
   Shot shot{.angle = angle};
   shot.pictures = picture_files(static_cast<int>(scan.shots.size()), *scan.laser);
-  const std::vector<Rgb> none;
-  for (std::size_t i = 0; i < taken.pictures.size(); ++i) {
-    write_png(folder / shot.pictures[i], encode(taken.pictures[i], i == 0 ? taken.colours : none));
-  }
   scan.shots.push_back(std::move(shot));
   write_scan(folder, scan);
 }

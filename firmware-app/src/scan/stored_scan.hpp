@@ -7,7 +7,6 @@
 
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/take_pictures.hpp"
 
 namespace octurn {
 
@@ -31,11 +30,15 @@ void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot&
 /// of each laser by its name.
 std::vector<std::string> picture_files(int stop, const LaserCamera& camera);
 
-/// The same of a scan by laser line: its pictures, the dark one first, then one of each laser. The
-/// dark one is stored as RGB if any of its pixels has a colour.
+/// Writes one of these pictures, as RGB if any of its pixels has a colour.
+/// @param colours  of its pixels; empty if the camera has none
 /// @throws Error  as above
-void store_pictures(const std::filesystem::path& folder, Scan& scan, double angle,
-                    const StopPictures& taken);
+void write_picture(const std::filesystem::path& file, const Picture& picture,
+                   const std::vector<Rgb>& colours);
+
+/// Writes the scan.json that names the pictures of one more stop, all of which are written.
+/// @throws Error  as above
+void store_stop(const std::filesystem::path& folder, Scan& scan, double angle);
 
 /// Whether the first dark picture of a scan by laser line has colours; false where it cannot be
 /// read, and of other scans.

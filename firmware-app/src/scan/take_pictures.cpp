@@ -100,12 +100,13 @@ void expect_line(const Picture& dark, const Picture& lit, const std::string& las
 }
 
 std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& stop,
-                                               const ScanObserver& observer) {
+                                               const ScanObserver& observer,
+                                               const KeepPicture& keep) {
   Camera& camera = rig.camera();
   StopPictures taken;
   std::vector<Picture>& pictures = taken.pictures;
   const auto take = [&](Read read) {
-    std::optional<TimedPicture> timed = read_picture(camera, read, Clock::now(), stop, observer);
+    std::optional<TimedPicture> timed = read_picture(camera, read, camera.now(), stop, observer);
     if (timed) {
       expect_size(timed->picture, rig.laser()->lens, camera.name());
       pictures.push_back(std::move(timed->picture));
@@ -118,6 +119,7 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
   }
   taken.colours = std::move(dark->colours);
   expect_dark_room(pictures.front(), camera.name());
+  keep(pictures.front(), taken.colours);
   Lasers& lasers = rig.lasers();
   const std::vector<LaserLine> lines = lines_of(*rig.laser());
   for (std::size_t laser = 0; laser < lasers.count(); ++laser) {
@@ -128,19 +130,20 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
       }
     }
     expect_line(pictures.front(), pictures.back(), lines[laser].laser.name);
+    keep(pictures.back(), {});
   }
   return taken;
 }
 
 std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
-                                          const ScanObserver& observer) {
+                                          const ScanObserver& observer, const KeepPicture& keep) {
   rig.turntable();  // whose faults are told before the camera's
   Camera& camera = rig.camera();
   if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;
   }
   camera.show_angle(radians_from_degrees(rig.platform_angle_deg()));
-  return take_pictures_here(rig, stop, observer);
+  return take_pictures_here(rig, stop, observer, keep);
 }
 
 }  // namespace octurn

@@ -17,11 +17,7 @@ constexpr auto idle_beat = 5s;          // between heartbeats while there is not
 }  // namespace
 
 Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports)
-    : rig_(rig),
-      speed_(rig.speed),
-      told_lens_(rig.laser ? std::optional(told_lens(*rig.laser)) : std::nullopt),
-      limits_(limits),
-      ports_(ports) {}
+    : rig_(rig), speed_(rig.speed), told_laser_(rig.laser), limits_(limits), ports_(ports) {}
 
 void Worker::work() {
   look_for_turntable();  // so that the status tells what is there

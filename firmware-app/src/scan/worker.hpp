@@ -68,12 +68,15 @@ class Worker {
   void begin(Phase phase);
   void show_job();
   void save_progress();
-  void keep_calibration(const CalibrationReport& report);
+  void keep_calibration(const ScanSolution& solution);
   void show_rebuilt(int snapshots);
+  std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
+                                         const ScanObserver& observer);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void flatten(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
   void use_lens();
+  void use_pose();
   void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
   void introduce_sensor();
   void close_device(const Failure& failure);
@@ -82,8 +85,8 @@ class Worker {
   void finish();
 
   Rig rig_;
-  double speed_;                         // of a simulated rig, relative to life
-  std::optional<CameraLens> told_lens_;  // as the settings have it; none: no camera with lasers
+  double speed_;                             // of a simulated rig, relative to life
+  std::optional<LaserSettings> told_laser_;  // as the settings have it; none: no camera with lasers
   Limits limits_;
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs

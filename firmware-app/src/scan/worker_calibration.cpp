@@ -6,6 +6,7 @@
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
+#include "scan/measure_laser_turn.hpp"
 #include "scan/sensor_map_files.hpp"
 #include "scan/wall_looks.hpp"
 #include "scan/worker.hpp"
@@ -13,11 +14,19 @@
 namespace octurn {
 namespace {
 
-/// What is stored of an accepted report. A told pose that it confirms stays bit for bit.
-PoseRecord to_record(const CalibrationReport& report, const ScanSettings& settings) {
-  PoseRecord record = to_record(report, PoseOrigin::turn, settings.depth_scale);
-  if (report.confirms_told()) {
-    record.platform_from_sensor = settings.platform_from_sensor;
+/// What is stored of an accepted turn. What was told and is confirmed stays bit for bit.
+PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig& rig) {
+  if (rig.laser() == nullptr) {
+    PoseRecord record = to_record(report.calibration, PoseOrigin::turn, settings.depth_scale);
+    if (!report.replaces_told) {
+      record.platform_from_sensor = settings.platform_from_sensor;
+    }
+    return record;
+  }
+  PoseRecord record = to_record(report.calibration, PoseOrigin::turn, rig.camera().serial(),
+                                report.replaces_told ? report.lasers : report.told);
+  if (!report.replaces_told) {
+    record.platform_from_sensor = rig.laser()->platform_from_sensor;
   }
   return record;
 }
@@ -101,18 +110,32 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
           },
       .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
       .on_frame = [this](const DepthFrame& frame) { show_frame(frame); }};
-  const std::optional<SensorMap> map =
-      find_sensor_map(ports_.store.data(), rig_.sensor().serial(), rig_.sensor().intrinsics());
-  run.report = measure_turn(settings, map ? &*map : nullptr, limits_.threads, rig_, stop, observer);
+  run.report = measure_turn(settings, stop, observer);
   if (!run.report) {
     run.state = CalibrationRun::State::cancelled;
     return;
   }
-  const CalibrationReport& report = run.report->calibration;
-  if (report.accepted) {
-    ports_.calibration.set(to_record(report, settings));
+  const TurnReport& report = *run.report;
+  if (report.calibration.accepted) {
+    ports_.calibration.set(to_record(report, settings, rig_));
   }
-  run.state = report.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
+  run.state =
+      report.calibration.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
+}
+
+/// @return nothing if stopped first
+std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
+                                               const std::stop_token& stop,
+                                               const ScanObserver& observer) {
+  if (rig_.laser() != nullptr) {
+    use_lens();
+    use_pose();
+    return measure_laser_turn(settings, ports_.store.data(), limits_.threads, rig_, stop, observer);
+  }
+  const std::optional<SensorMap> map =
+      find_sensor_map(ports_.store.data(), rig_.sensor().serial(), rig_.sensor().intrinsics());
+  return octurn::measure_turn(settings, map ? &*map : nullptr, limits_.threads, rig_, stop,
+                              observer);
 }
 
 /// Looks at a wall, and keeps the sensor's map if it is accepted.

@@ -1,4 +1,4 @@
-// How the worker has a camera's lens found, and which one a scan is taken with.
+// How the worker has a camera's lens found, and which lens and pose a scan is taken with.
 
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -40,7 +40,7 @@ void Worker::carry_out(LensCommand& /*command*/, const std::stop_source& stop) {
 
 /// Takes views of a board until they are enough, or somebody says so, and solves the lens.
 void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
-  if (!told_lens_) {
+  if (!told_laser_) {
     throw Error(ErrorCode::sensor_other, "this rig has a depth sensor, and no camera with lasers",
                 "A board is for the lens of such a camera.");
   }
@@ -51,7 +51,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
                 camera.name() + ": tells nothing that it is known again by",
                 "Take pictures of a board, and use octurn calibrate --board.");
   }
-  const Intrinsics lens = told_lens_->intrinsics;
+  const Intrinsics lens = told_laser_->lens;
   run.camera = camera.serial();
   const ShownBoard board(camera);
   BoardWatch watch(lens);
@@ -83,11 +83,11 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
 /// Tells the rig the lens of its camera. A scan that goes on, or that another one is joined to,
 /// keeps the lens that it was begun with, as long as its camera is there.
 void Worker::use_lens() {
-  if (!told_lens_) {
+  if (!told_laser_) {
     return;
   }
   const std::string serial = rig_.camera().serial();
-  CameraLens lens = lens_in_force(ports_.store.data(), serial, *told_lens_);
+  CameraLens lens = lens_in_force(ports_.store.data(), serial, told_lens(*told_laser_));
   const bool is_scan = ports_.board.status().is_scanning();
   const std::string begun = !is_scan                  ? ""
                             : job_.snapshots_done > 0 ? job_.id
@@ -102,6 +102,20 @@ void Worker::use_lens() {
     }
   }
   rig_.use_lens(lens);
+}
+
+/// Tells the rig where its camera and its lasers stand: as a turn or a scan with this camera found,
+/// else as the settings say.
+void Worker::use_pose() {
+  if (!told_laser_) {
+    return;
+  }
+  const PoseRecord pose = ports_.calibration
+                              .records({.platform_from_sensor = told_laser_->platform_from_sensor},
+                                       rig_.camera().serial())
+                              .front();
+  rig_.use_pose(pose.platform_from_sensor, laser_camera(*told_laser_).lasers);
+  rig_.use_pose(pose.platform_from_sensor, pose.lasers);
 }
 
 }  // namespace octurn

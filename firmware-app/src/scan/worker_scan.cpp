@@ -27,10 +27,10 @@ constexpr auto attempt_interval = 2s;
 constexpr double preview_leaf_size = 0.002;  // metres
 constexpr std::uint64_t max_preview_facets = 60'000;
 
-std::string to_text(const CalibrationReport& report) {
-  return report.confirms_told() ? "the told pose is right"
-         : report.accepted      ? "its pose is solved, the model is built again"
-                                : "the told pose stays: " + report.reason;
+std::string to_text(const ScanSolution& solution) {
+  return solution.replaces_told     ? "its pose is solved, the model is built again"
+         : solution.report.accepted ? "the told pose is right"
+                                    : "the told pose stays: " + solution.report.reason;
 }
 
 /// Which way the object lies in a scan: 0 in one of its own, then 1, 2, ... in those of other
@@ -125,6 +125,7 @@ void Worker::attempt(const std::stop_token& stop) {
   try {
     rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
     use_lens();
+    use_pose();
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
       if (rig_.laser() == nullptr) {
@@ -154,7 +155,7 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
                   ports_.board.set_mesh_preview(std::move(preview));
                 }
               },
-          .on_calibrated = [this](const CalibrationReport& report) { keep_calibration(report); },
+          .on_calibrated = [this](const ScanSolution& solution) { keep_calibration(solution); },
           .on_rebuilt = [this](int snapshots) { show_rebuilt(snapshots); },
           .on_wait = [this] { ports_.heartbeat.beat(); }};
 }
@@ -210,15 +211,19 @@ void Worker::begin(Phase phase) {
 }
 
 /// Saved at once, for a scan that is killed while its model is built again. The next scan is told
-/// the pose that this one has solved; not by a camera with lasers, whose planes go with it.
-void Worker::keep_calibration(const CalibrationReport& report) {
+/// the pose that this one has solved, and the planes of its lasers.
+void Worker::keep_calibration(const ScanSolution& solution) {
+  const CalibrationReport& report = solution.report;
   job_.calibration = to_scan_calibration(report);
-  log::info("scanner", "scan " + job_.id + ": " + to_text(report));
+  log::info("scanner", "scan " + job_.id + ": " + to_text(solution));
   show_job();
   try {
     ports_.store.save(job_);
-    if (report.accepted && !report.confirms_told() && rig_.laser() == nullptr) {
-      ports_.calibration.set(to_record(report, PoseOrigin::scan, job_.settings.depth_scale));
+    if (solution.replaces_told) {
+      ports_.calibration.set(rig_.laser() == nullptr
+                                 ? to_record(report, PoseOrigin::scan, job_.settings.depth_scale)
+                                 : to_record(report, PoseOrigin::scan, rig_.camera().serial(),
+                                             solution.solved.lasers));
     }
   } catch (...) {
     log::warning("scanner", current_failure().detail);

@@ -32,8 +32,14 @@ json lens_json(const App& app, const std::optional<KeptLens>& kept) {
                        : json();
 }
 
+/// The camera with lasers that is known; empty of another sensor.
+std::string camera_of(const App& app) {
+  return app.rig.laser ? app.scanner.known_sensor()->serial : "";
+}
+
 Response send_calibration(App& app, int status) {
-  std::vector<PoseRecord> records = app.scanner.calibration().records(app.settings.config().scan);
+  std::vector<PoseRecord> records =
+      app.scanner.calibration().records(app.settings.config().scan, camera_of(app));
   json body = to_json(records.front());
   json history = json::array();
   for (std::size_t i = 1; i < records.size(); ++i) {
@@ -68,7 +74,8 @@ PoseChange to_change(JsonObject& keys) {
 }
 
 void start_turn(App& app, JsonObject& keys) {
-  ScanSettings settings = app.scanner.calibration().in_force(app.settings.config().scan);
+  ScanSettings settings =
+      app.scanner.calibration().in_force(app.settings.config().scan, camera_of(app));
   settings.snapshots = keys.whole_number("stops", min_calibration_stops, max_calibration_stops)
                            .value_or(default_calibration_stops);
   keys.refuse_unread();
@@ -149,6 +156,9 @@ Response change_calibration(App& app, const Request& request) {
   const bool forget_map = is_without_map(keys);
   const LensWish lens = to_lens_wish(keys);
   keys.refuse_unread();
+  if (change.scale && app.rig.laser) {
+    keys.at("scale").refuse("nothing of a rig with lasers: it measures no depth");
+  }
   const bool is_change = change.scale || change.platform_from_sensor || change.is_settings_pose;
   if (!is_change && !forget_map && lens == LensWish::none) {
     throw Error(ErrorCode::bad_settings, "the body changes nothing",
@@ -159,7 +169,7 @@ Response change_calibration(App& app, const Request& request) {
     refuse_busy();
   }
   if (is_change) {
-    app.scanner.calibration().change(change, app.settings.config().scan);
+    app.scanner.calibration().change(change, app.settings.config().scan, camera_of(app));
   }
   return send_calibration(app);
 }
@@ -212,7 +222,7 @@ Response send_board(App& /*app*/, const Request& request) {
 }
 
 Response undo_calibration(App& app) {
-  app.scanner.calibration().undo();
+  app.scanner.calibration().undo(camera_of(app));
   return send_calibration(app);
 }
 

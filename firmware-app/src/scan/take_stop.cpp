@@ -1,0 +1,23 @@
+#include "scan/take_stop.hpp"
+
+#include "scan/picture_writer.hpp"
+#include "scan/stored_scan.hpp"
+#include "scan/take_pictures.hpp"
+
+namespace octurn {
+
+bool take_stop(Rig& rig, const Stop& at, double angle, const std::filesystem::path& folder,
+               Scan& scan, const std::stop_token& stop, const ScanObserver& observer) {
+  PictureWriter writer(folder, picture_files(static_cast<int>(scan.shots.size()), *scan.laser));
+  const auto write = [&](const Picture& picture, const std::vector<Rgb>& colours) {
+    writer.add(picture, colours);
+  };
+  if (!take_pictures(rig, at, stop, observer, write)) {
+    return false;
+  }
+  writer.finish();
+  store_stop(folder, scan, angle);
+  return true;
+}
+
+}  // namespace octurn

@@ -10,15 +10,15 @@
 
 namespace octurn {
 
-/// What a program with a key may do.
+/// The rights of a program with a key.
 enum class KeyAccess {
   read,  ///< GET and HEAD
-  full,  ///< all but set the password and make keys: who overhears it does not own the scanner
+  full,  ///< everything except setting the password and making keys, as a key can be overheard
 };
 
-/// A key that was given to a program. The key itself is not kept.
+/// A key of a program. The key itself is not stored.
 struct AccessKey {
-  std::string id = {};    ///< eight hexadecimal digits, which the key begins with
+  std::string id = {};    ///< eight hexadecimal digits with which the key begins
   std::string name = {};  ///< for people: what it was made for
   KeyAccess access = KeyAccess::read;
   std::string created = {};  ///< RFC 3339
@@ -28,14 +28,13 @@ struct AccessKey {
 std::string_view to_string(KeyAccess access);
 std::optional<KeyAccess> to_key_access(std::string_view word);
 
-/// Keys by which programs prove, beside people with the page's password, that they may use the
-/// interface (RFC 6750). They are kept in a file that only its owner can read. Any thread may call
-/// it.
+/// Keys of programs for the interface (RFC 6750), besides the page's password for people. They are
+/// stored in a file that only its owner can read. Thread-safe.
 class AccessKeys {
  public:
   static constexpr std::size_t max_keys = 32;
 
-  /// @param file  of an earlier run, if there is one; of one that is malformed no key counts
+  /// @param file  of an earlier run, if it exists; a malformed one holds no valid key
   explicit AccessKeys(std::filesystem::path file);
 
   /// The oldest first.
@@ -43,7 +42,7 @@ class AccessKeys {
 
   struct NewKey {
     AccessKey kept = {};
-    std::string key = {};  ///< itself, which is told this once
+    std::string key = {};  ///< the key itself, available only here
   };
 
   /// Makes a key.
@@ -53,7 +52,7 @@ class AccessKeys {
   /// @return false if there is none @throws Error "disk-full", "write-failed"
   bool revoke(std::string_view id);
 
-  /// What a key lets its owner do; nothing if it is none.
+  /// The rights of a key; nothing if it is invalid.
   std::optional<KeyAccess> access(std::string_view key) const;
 
  private:

@@ -18,19 +18,19 @@ struct RouteName {
 
 struct Route;
 
-/// Answers requests: the page, `/Scan.stl` and what is under `/api/v1`, as web/API.md has it. Any
-/// thread may call it.
+/// Answers requests for the page, `/Scan.stl` and `/api/v1`, as documented in web/API.md.
+/// Thread-safe.
 class Api {
  public:
   explicit Api(App app);
 
-  /// Throws nothing of its own: what goes wrong becomes a problem, as application/problem+json.
+  /// Does not throw: errors are answered as application/problem+json.
   Response answer(const Request& request);
 
-  /// Ends the streams of events, so that the server's threads come back.
+  /// Ends the streams of events, so that the server's threads return.
   void end_events() { events_.end(); }
 
-  /// All that it answers but the page, so that its description can be compared.
+  /// All routes except the page's, to compare them with the OpenAPI description.
   static std::vector<RouteName> routes();
 
  private:

@@ -16,7 +16,7 @@
 
 namespace octurn {
 
-/// What requests are answered from: the scanner, what it has stored, and the page that shows it.
+/// The objects that requests are answered from: the scanner, its stored scans, and the page.
 struct App {
   Scanner& scanner;
   const ScanStore& store;
@@ -27,9 +27,9 @@ struct App {
   const MachineWatch& machine;
   AddressBook& addresses;
   PrinterUploads& uploads;
-  RigOptions rig;                  ///< that the scanner works with
+  RigOptions rig;                  ///< of the scanner
   Appliance* appliance = nullptr;  ///< that this machine is; null: none
-  /// That Api begins, as it looks at all of this. The last member, so that it ends first.
+  /// Started by Api, as it reads all members above. The last member, so that it ends first.
   std::unique_ptr<WebhookSender> webhooks = {};
 
   DoctorInput doctor_input() const {

@@ -9,13 +9,12 @@
 
 namespace octurn {
 
-/// In the scanner's own WiFi whatever is asked of another host is answered by the page's address,
-/// so that a phone that looks for the internet there finds the page, where names lead it here:
-/// Android's /generate_204, Apple's /hotspot-detect.html, Windows's /connecttest.txt, Firefox's
-/// /success.txt.
+/// In the scanner's own WiFi, requests for other hosts are redirected to the page, so that a phone
+/// that probes for the internet shows it: Android's /generate_204, Apple's /hotspot-detect.html,
+/// Windows's /connecttest.txt, Firefox's /success.txt.
 ///
 /// @param host_names  names of this host, besides the local ones
-/// @return nothing where the request is for this host, or that WiFi is not on
+/// @return nothing if the request is for this host, or that WiFi is off
 std::optional<Response> captive_answer(const Request& request,
                                        std::span<const std::string> host_names,
                                        const Appliance& appliance);

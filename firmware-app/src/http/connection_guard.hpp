@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// Keeps the clients of a server to their limits, by shutting sockets down under whoever waits for
-/// them: a thread that civetweb lends to a slow client comes back at once. Any thread may call it.
+/// Enforces limits on a server's clients by shutting down their sockets, so that a civetweb thread
+/// that waits for a slow client returns at once. Thread-safe.
 class ConnectionGuard {
  public:
   using Key = ConnectionTable::Key;
@@ -26,16 +26,16 @@ class ConnectionGuard {
   /// The connection of this peer, whose head is read.
   Key claim(std::string_view address, int port);
 
-  /// Whether a connection was cut as its client was too slow.
+  /// Whether a connection was shut down because its client was too slow.
   bool is_cut(Key key);
 
-  /// Ends a connection now, and throws away what its client has not taken.
+  /// Resets a connection now; bytes that its client has not received are discarded.
   void reset(Key key);
 
-  /// Another part of an exchange begins: its clock starts anew.
+  /// Begins another part of an exchange: its clock restarts.
   void restart(Key key, Wait wait);
 
-  /// The server waits for a client, as long as this lives.
+  /// During its lifetime the server waits for a client.
   class Waiting {
    public:
     Waiting(ConnectionGuard& guard, Key key, Wait wait);
@@ -43,7 +43,7 @@ class ConnectionGuard {
     Waiting(const Waiting&) = delete;
     Waiting& operator=(const Waiting&) = delete;
 
-    /// Bytes went to the client, or came.
+    /// Counts bytes sent to or received from the client.
     void add_bytes(std::uint64_t bytes);
 
    private:
@@ -51,7 +51,7 @@ class ConnectionGuard {
     Key key_;
   };
 
-  /// Ends every connection, and those that come later.
+  /// Ends all connections, and all later ones.
   void close();
 
  private:

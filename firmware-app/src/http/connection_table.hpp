@@ -13,17 +13,17 @@
 
 namespace octurn {
 
-/// What a connection is held open for.
+/// What a connection waits for.
 enum class Wait {
   head,    ///< the client's request line and headers
-  server,  ///< an answer that this program is working at: not the client's fault
+  server,  ///< this program makes the answer: not the client's fault
   body,    ///< a small body
   upload,  ///< a large body, at min_upload_rate
   reader,  ///< a client that takes an answer, at min_answer_rate
-  close,   ///< bytes that nobody will read, and the client's end of the connection
+  close,   ///< the client's end of the connection; its bytes are discarded
 };
 
-/// What clients may take.
+/// Limits for clients.
 struct ConnectionLimits {
   std::size_t max_connections = 28;  ///< those that the server need not hold are cut
   std::chrono::duration<double> patience = std::chrono::seconds(10);  ///< with each client
@@ -31,15 +31,16 @@ struct ConnectionLimits {
   double min_answer_rate = 16e3;                                      ///< bytes a second
 };
 
-/// The connections of a server. Cuts those that keep the server waiting for too long and, while
-/// there are too many, those with the most debt.
+/// The connections of a server. Selects for shutdown those that keep the server waiting for too
+/// long and, while there are too many, those with the most debt.
 ///
 /// Each connection has a debt, in seconds. It grows with the time that the server waits for the
-/// client, and every byte pays for 1 / rate of it, never below 0: so over any span of time a client
-/// keeps up with the rate, or falls behind by as much. Heads, small bodies and closing have no
-/// rate, but a deadline: bytes pay nothing. More debt than `patience` ends the connection.
+/// client, and every byte reduces it by 1 / rate, but not below 0: over any span of time a client
+/// keeps up with the rate, or falls behind by its debt. Heads, small bodies and closing have a
+/// deadline in place of a rate: their bytes reduce nothing. A debt above `patience` ends the
+/// connection.
 ///
-/// Not thread-safe. Time is given, so that tests need none.
+/// Not thread-safe. The time is a parameter, so that tests need no clock.
 class ConnectionTable {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -52,38 +53,38 @@ class ConnectionTable {
   /// Whether there are too many, also after `cut_all_due`.
   bool is_crowded() const { return count_held() > limits_.max_connections; }
 
-  /// Takes up the connections that are new, and forgets those that are closed.
+  /// Adds new connections, and removes closed ones.
   void refresh(std::span<const AcceptedSocket> open, Time now);
 
-  /// By how much a thread that waits for a moment was late: on a busy machine a head that has come
-  /// is parsed later, and its client is not to blame.
+  /// Records how late a sleeping thread woke up: on a busy machine a received head is parsed late,
+  /// which is not the client's fault.
   void note_lateness(std::chrono::duration<double> lateness);
 
-  /// The connection of this peer, whose head is read. From here on it waits for the server.
+  /// The connection of this peer, whose head was read. From now on it waits for the server.
   std::optional<Key> claim(std::string_view address, int port, Time now);
 
   /// Changes what a connection waits for. Its debt stays.
   void set_wait(Key key, Wait wait, Time now);
 
-  /// Forgives a connection its debt: another part of the exchange begins.
+  /// Clears a connection's debt, as another part of the exchange begins.
   void forgive(Key key, Time now);
 
-  /// Bytes that went to or came from the client.
+  /// Counts bytes sent to or received from the client.
   void add_bytes(Key key, std::uint64_t bytes, Time now);
 
-  /// Whether a connection no longer takes bytes from its client, which was too slow.
+  /// Whether a connection was shut down for reading because its client was too slow.
   bool is_cut(Key key) const;
 
-  /// A connection that is to be shut down now.
+  /// A connection to be shut down now.
   struct Ending {
     AcceptedSocket socket = {};
     Cut cut = Cut::finish;
   };
 
-  /// Cuts a connection whose answer is no longer to be sent. Nothing if it was cut before.
+  /// Shuts down a connection whose answer will not be sent. Nothing if that was done before.
   std::optional<Ending> reset(Key key);
 
-  /// Cuts the connections that are over their limits, and those that are too many.
+  /// Shuts down the connections that exceed their limits or the maximum number.
   std::vector<Ending> cut_all_due(Time now);
 
  private:

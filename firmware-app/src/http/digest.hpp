@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// What a client sends to prove that it knows a password, by HTTP Digest (RFC 7616, section 3.4).
+/// A client's proof that it knows a password, by HTTP Digest (RFC 7616, section 3.4).
 struct DigestProof {
   std::string user = {};
   std::string realm = {};
@@ -18,14 +18,14 @@ struct DigestProof {
   std::string response = {};
 };
 
-/// The proof in an Authorization header; nothing if it is of another scheme, or malformed.
+/// Parses an Authorization header; nothing if it is of another scheme, or malformed.
 std::optional<DigestProof> parse_digest(std::string_view authorization);
 
 /// MD5 of user, realm and password, hexadecimal: H(A1) of section 3.4.2, which a server keeps.
 std::string digest_hash(const std::string& user, const std::string& realm,
                         const std::string& password);
 
-/// The response that belongs to a proof's other fields (section 3.4.1).
+/// The expected response for a proof's other fields (section 3.4.1).
 ///
 /// @param hash    of the user, by `digest_hash`
 /// @param method  of the request

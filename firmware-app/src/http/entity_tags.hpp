@@ -10,17 +10,17 @@ namespace octurn {
 /// The entity tag of a content, in its quotes.
 std::string to_entity_tag(std::string_view content);
 
-// Comparison of entity tags (RFC 9110, section 8.8.3.2): `field` is the value of a header that has
-// a list of them, or "*", which every tag matches. `tag` is a strong one, in its quotes. What is
-// malformed in a list matches nothing, nor does what follows it.
+// Comparison of entity tags (RFC 9110, section 8.8.3.2). `field` is a header's value: a list of
+// tags, or "*", which every tag matches. `tag` is a strong one, in its quotes. A malformed tag in a
+// list, and all tags after it, match nothing.
 
-/// As If-Match is compared: a weak tag, W/"...", matches nothing.
+/// The strong comparison, of If-Match: a weak tag, W/"...", matches nothing.
 bool matches_strongly(std::string_view field, std::string_view tag);
 
-/// As If-None-Match is compared: a weak tag matches a strong one of the same text.
+/// The weak comparison, of If-None-Match: a weak tag matches a strong one of the same text.
 bool matches_weakly(std::string_view field, std::string_view tag);
 
-/// Whether the client says by If-None-Match that it has the content of that tag: 304 is enough.
+/// Whether the client's If-None-Match has that tag, so that 304 is the answer.
 bool client_has(const Request& request, std::string_view tag);
 
 }  // namespace octurn

@@ -8,31 +8,31 @@
 
 namespace octurn {
 
-/// One kind of news, and all that there is to it now: the newest replaces what came before.
+/// The current state of one kind of event; a newer one replaces it.
 struct News {
   std::string kind = {};  ///< "status"
   std::string data = {};  ///< one line of JSON
 };
 
-/// The newest of each kind of news, numbered in the order in which they changed, and what of it a
-/// client has not had yet as server-sent events (HTML Living Standard, section 9.2).
+/// The newest event of each kind, numbered in the order of change, and formatted as server-sent
+/// events (HTML Living Standard, section 9.2) for clients that have not received them yet.
 ///
 /// Not thread-safe.
 class EventBoard {
  public:
-  /// @param run  letters and digits that no other board has: numbers of another mean nothing here
+  /// @param run  letters and digits unique to this board, as event numbers of other boards are
+  ///             invalid
   explicit EventBoard(std::string run) : run_(std::move(run)) {}
 
-  /// Takes what has changed since it was published last.
+  /// Adds the events that differ from the last published ones.
   void publish(const std::vector<News>& news);
 
-  /// The number of the last event that a client has had.
-  /// @param last_event_id  as it sends it; 0, as for one that has had none, if it is not of this
-  /// run
+  /// The number of the last event that a client received; 0 if it received none of this run.
+  /// @param last_event_id  as sent by the client
   std::uint64_t number(std::string_view last_event_id) const;
 
-  /// The events that came after one, oldest first; empty if there are none.
-  /// @param seen  its number; that of the newest afterwards
+  /// The events after number `seen`, oldest first; empty if there are none.
+  /// @param seen  is set to the number of the newest
   std::string events_after(std::uint64_t& seen) const;
 
  private:

@@ -14,29 +14,28 @@
 
 namespace octurn {
 
-/// How often watchers are told something, and for how long.
+/// Limits of event streams.
 struct FeedLimits {
-  int max_watchers = 8;  ///< each holds a thread of the server for as long as it watches
+  int max_watchers = 8;  ///< each occupies a thread of the server
   std::chrono::milliseconds look_interval{250};
-  std::chrono::milliseconds heartbeat{3000};  ///< after so long without news; finds who has gone
+  std::chrono::milliseconds heartbeat{
+      3000};  ///< sent after so long without an event; detects closed connections
   std::chrono::milliseconds lifetime = std::chrono::minutes(10);  ///< of one stream
 };
 
-/// Tells watchers what changes, by server-sent events. Whoever finds that the last look is old
-/// takes the next one for all, so that many watchers cost as much as one, and none costs nothing.
-///
-/// Any thread may call it.
+/// Streams changes to watchers as server-sent events. The first watcher that finds the last poll
+/// too old polls for all, so that many watchers cost as much as one, and no watcher costs nothing.
+/// Thread-safe.
 class EventFeed {
  public:
   using Look = std::function<std::vector<News>()>;
 
-  /// @param look  all there is to tell now; one call at a time
+  /// @param look  returns the current events; called by one thread at a time
   explicit EventFeed(Look look, const FeedLimits& limits = {});
 
-  /// A stream of events for one more watcher, which holds its place until the stream is destroyed.
-  /// The feed has to outlive it. Nothing if all places are taken.
-  /// @param last_event_id  of the last event that it has had; what has not changed since is left
-  /// out
+  /// A stream of events for a new watcher, which must not outlive the feed. Nothing if there are
+  /// `max_watchers` already.
+  /// @param last_event_id  of the last event that it received: older events are left out
   std::optional<ByteStream> watch(std::string_view last_event_id);
 
   /// Ends all streams, and those to come, at once.

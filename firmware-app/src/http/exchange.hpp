@@ -30,10 +30,10 @@ class Exchange {
   /// announced
   std::string read_body();
 
-  /// The body, to be read as it comes. What is not read of it is dropped.
+  /// The body, to be read in parts. Unread bytes are discarded.
   ByteSource upload();
 
-  /// Sends an answer, or as much of it as the client takes.
+  /// Sends an answer, or as much of it as the client receives.
   /// @param method  of the request
   void send(std::string_view method, Response response);
 

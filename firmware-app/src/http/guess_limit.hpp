@@ -6,10 +6,10 @@
 
 namespace octurn {
 
-/// Slows down whoever guesses passwords: an address may be wrong ten times at once, and after that
-/// once in ten seconds. Whoever is right is forgiven.
+/// Slows down the guessing of passwords: an address has ten wrong guesses at once, and then one in
+/// ten seconds. A right one resets this.
 ///
-/// Not thread-safe. Time is given, so that tests need none.
+/// Not thread-safe. The time is a parameter, so that tests need no clock.
 class GuessLimit {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -20,8 +20,7 @@ class GuessLimit {
   /// How long a client has to wait before its next guess; 0: it may guess.
   std::chrono::seconds to_wait(const std::string& address, Time now) const;
 
-  /// A client was wrong. Neighbours of one IPv6 network, which has addresses without end, count as
-  /// one client.
+  /// Counts a wrong guess. All addresses of one IPv6 network count as one client.
   void count_wrong(const std::string& address, Time now);
 
   /// A client was right.

@@ -17,11 +17,11 @@ class HttpServer {
  public:
   using Answer = std::function<Response(const Request&)>;
 
-  /// Answers before anybody has proved who they are; nothing where that is not its business.
+  /// Called before authentication; may return an answer, or nothing.
   using Gate = std::function<std::optional<Response>(const Request&)>;
 
   /// @param answer  called by any thread of the pool; must not throw
-  /// @param keys    let programs in as the password lets people in; null: there are none
+  /// @param keys    admit programs as the password admits people; null: there are none
   /// @param gate    as `answer`
   /// @throws Error "listen-failed", "bad-password-file"
   HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys = nullptr,

@@ -15,7 +15,7 @@
 
 namespace octurn {
 
-/// What the login looks at of a request.
+/// The parts of a request that the login needs.
 struct LoginAttempt {
   std::string method = "GET";
   std::string path = "/";                              ///< decoded
@@ -24,24 +24,24 @@ struct LoginAttempt {
   std::optional<std::string_view> authorization = {};  ///< the header of that name
 };
 
-/// Lets in who proves to know the page's password, by HTTP Digest (RFC 7616). A proof counts for
-/// one request with its method and target, once, and only for minutes after its challenge: so who
-/// has heard it has nothing. Wrong guesses are slowed.
+/// Authenticates clients by the page's password and HTTP Digest (RFC 7616). A proof is valid for
+/// one request with its method and target, once, and for some minutes after its challenge, so that
+/// an overheard proof is useless. Wrong guesses are slowed down.
 ///
-/// Any thread may call it. Time is given, so that tests need none.
+/// Thread-safe. The time is a parameter, so that tests need no clock.
 class Login {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// Nonces of a period count in it and in the next.
+  /// Nonces are valid in their period and in the next one.
   static constexpr std::chrono::minutes period{5};
 
-  /// @param password_file  as `write_password_file` makes it; read at each request, so that a new
-  /// password counts at once. Without one, or in one that is malformed, nobody is let in.
+  /// @param password_file  of `write_password_file`; read at each request, so that a new password
+  ///                       is valid at once. If it is missing or malformed, nobody is admitted.
   explicit Login(std::filesystem::path password_file);
 
-  /// Nothing if the request is let in; else its answer: 401 with a challenge, or 429 for an address
-  /// that has guessed wrong too often.
+  /// Nothing if the request is admitted; else its answer: 401 with a challenge, or 429 after too
+  /// many wrong guesses.
   std::optional<Response> refusal(const LoginAttempt& attempt, Time now);
 
  private:

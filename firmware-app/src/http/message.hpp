@@ -23,13 +23,13 @@ inline constexpr std::string_view upload_type = "application/octet-stream";
 /// Names and values, in order.
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
-/// Whether two header names, or tokens, are the same but for upper and lower case (ASCII).
+/// Whether two header names or tokens are equal, ignoring ASCII case.
 inline bool same_token(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Whether a Content-Type is this one, whatever its parameters.
+/// Whether a Content-Type is this one, ignoring parameters.
 inline bool is_of_type(std::string_view content_type, std::string_view type) {
   content_type = content_type.substr(0, content_type.find(';'));
   while (content_type.ends_with(' ')) {
@@ -38,14 +38,14 @@ inline bool is_of_type(std::string_view content_type, std::string_view type) {
   return same_token(content_type, type);
 }
 
-/// A body that is read as it comes, since it is too large to be held.
+/// A body that is too large for memory and is read in parts.
 struct ByteSource {
   std::optional<std::uint64_t> length = {};  ///< as announced
   /// Fills a buffer from its begin. @return how many bytes; 0: no more come
   std::function<std::size_t(std::span<std::byte>)> read = {};
 };
 
-/// A request. Its body is whole, or, if it is of upload_type, yet to be read.
+/// A request. Its body is complete, or, if it is of upload_type, still to be read.
 struct Request {
   std::string method = "GET";
   std::string path = "/";   ///< decoded, without the query
@@ -71,20 +71,20 @@ struct FileSlice {
   std::uint64_t length = 0;
 };
 
-/// Takes bytes. @return false if nobody wants more of them
+/// Receives bytes. @return false if no more are wanted
 using ByteSink = std::function<bool(std::span<const std::byte>)>;
 
 /// A body that is made while it is sent.
 struct ByteStream {
   std::optional<std::uint64_t> length = {};  ///< nothing: it ends with the connection
   std::stop_token stop = {};  ///< ends the answer at once, even if its reader is slow
-  /// Hands over all of it, in order, unless told to end. Throws nothing. For one call; a
-  /// packaged_task, since a std::function would have to be copyable.
+  /// Passes the whole body to the sink, in order, until it returns false. Does not throw. Called
+  /// once; a packaged_task, since a std::function must be copyable.
   std::packaged_task<void(const ByteSink&)> make = {};
 };
 
-/// An answer. The server adds Content-Length and what every answer has, and leaves the body out
-/// where the request was HEAD.
+/// An answer. The server adds Content-Length and the headers of every answer, and omits the body if
+/// the request was HEAD.
 struct Response {
   int status = 200;
   Headers headers = {};

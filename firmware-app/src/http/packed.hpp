@@ -4,12 +4,12 @@
 
 namespace octurn {
 
-/// Whether a client takes gzip: its Accept-Encoding has it, not with the weight 0 (RFC 9110,
+/// Whether a client accepts gzip: its Accept-Encoding has it with a weight above 0 (RFC 9110,
 /// section 12.5.3).
 bool takes_gzip(const Request& request);
 
-/// An answer of JSON packed by gzip where the client takes that and it is worth it; any other as it
-/// is. Its entity tag becomes a weak one, as it is that of the JSON, packed or not.
+/// Compresses an answer of JSON by gzip if the client accepts that and it saves bytes; other
+/// answers are unchanged. The entity tag becomes a weak one, as it is the same for both encodings.
 Response packed(const Request& request, Response response);
 
 }  // namespace octurn

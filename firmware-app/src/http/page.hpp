@@ -14,9 +14,9 @@ namespace octurn {
 /// @throws Error "page-missing"  if there is neither
 std::filesystem::path page_folder();
 
-/// The files of the page, read once and held in memory: a request can name nothing else. Beside a
-/// file may lie the same packed, NAME.gz, for clients that take that; of files below `assets/` the
-/// name changes with the content, so that they may be kept for ever.
+/// The files of the page, read once and held in memory: a request can name no other file. A file
+/// may have a compressed copy, NAME.gz, for clients that accept it. Files below `assets/` have
+/// names that change with their content, so that they may be cached for ever.
 class Page {
  public:
   /// @throws Error "page-missing"  if the folder has no index.html

@@ -11,7 +11,7 @@ namespace octurn {
 /// where there is no reading.
 std::string preview_png(const DepthFrame& frame, double depth_unit);
 
-/// The same of a camera's picture, as bright as that is.
+/// The same for a camera's picture, with unchanged brightness.
 std::string preview_png(const Picture& picture);
 
 }  // namespace octurn

@@ -20,8 +20,8 @@ struct HttpProblem {
 /// As application/problem+json (RFC 9457).
 Response to_response(const HttpProblem& problem);
 
-/// An error as application/problem+json (RFC 9457). The status follows from the code; one that the
-/// API does not know is 500.
+/// An error as application/problem+json (RFC 9457). The status follows from the code; unknown codes
+/// are 500.
 Response problem(const Failure& failure);
 
 }  // namespace octurn

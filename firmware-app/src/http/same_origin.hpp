@@ -16,13 +16,13 @@ bool is_own_host(std::string_view host, std::span<const std::string> host_names)
 
 /// Whether a request may be answered at all, and may change something.
 ///
-/// Any page that a browser has open may send requests here. Two rules keep other sites out: the
+/// Any page that is open in a browser can send requests here. Two rules keep other sites out. The
 /// `Host` must be a name that nobody else can own (an address, a name of the local network, or one
-/// of `host_names`), which defeats DNS rebinding; and what changes something must carry a
+/// of `host_names`), which defeats DNS rebinding. And a request that changes something must have a
 /// `Content-Type` that no form can send, and an `Origin`, if any, of this host.
 ///
 /// @param body_type  that `Content-Type`: JSON, or upload_type
-/// @return why not, or nothing
+/// @return the reason of a refusal, or nothing
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type = "application/json");
 

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// A scan as web/API.md has it, but for its preview and its other poses.
+/// A scan as in web/API.md, except its preview and its other poses.
 nlohmann::json to_json(const Job& job);
 
 /// A scan of another pose as one of those of the first scan. @param number  of the pose, from 1

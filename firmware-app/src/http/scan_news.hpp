@@ -13,23 +13,23 @@
 
 namespace octurn {
 
-/// What has become of the scans, by their ids.
+/// The states of scans, by their ids.
 using ScanStates = std::map<std::string, JobState>;
 
-/// A scan, and the event of webhooks that tells what has become of it.
+/// A scan, and the webhook event of its new state.
 struct ScanEvent {
   std::string event = {};
   std::string id = {};
 };
 
-/// What has changed between two looks.
-/// @param newest  the last id that any scan had before: what came since and is no newer than that
-///                is no news: it was taken out of the bin
+/// The changes between two polls.
+/// @param newest  the last id before: a scan that appeared with an older id was restored from the
+///                bin, and is no news
 std::vector<ScanEvent> changes(const ScanStates& before, const ScanStates& now,
                                const std::string& newest);
 
-/// What has happened to the scans and the machine from one look to the next. The first look finds
-/// nothing. Not thread-safe.
+/// Detects changes of the scans and the machine from one poll to the next. The first poll finds
+/// none. Not thread-safe.
 class ScanNews {
  public:
   std::vector<Happening> next(const App& app);

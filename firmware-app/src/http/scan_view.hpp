@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-// Scans as they are now: the one that runs as the scanner has it, the others as they are stored.
+// The current state of scans: of the running one from the scanner, of the others as stored.
 
 /// @throws Error "no-such-scan"
 Job find_scan(const App& app, std::string_view id);

@@ -10,6 +10,7 @@
 #include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {

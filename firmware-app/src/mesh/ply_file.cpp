@@ -4,6 +4,7 @@
 #include "mesh/mesh_formats.hpp"
 #include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
+#include "octurn/file.hpp"
 
 namespace octurn {
 namespace {

@@ -16,6 +16,7 @@
 #include "mesh/coarse_mesh.hpp"
 #include "mesh/mesh_formats.hpp"
 #include "mesh/thumbnail.hpp"
+#include "octurn/file.hpp"
 #include "scan/colour_model.hpp"
 
 namespace octurn {

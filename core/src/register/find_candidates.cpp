@@ -28,8 +28,8 @@ constexpr std::size_t shapes_turned = 2;  // best ones, of which half turns are 
 
 // A candidate that is contradicted by so much more than the best one is refined no further. Among
 // the rest are more than a person can choose from.
-constexpr double contradicted_far_more = 0.3;
-constexpr std::size_t min_refined = 10;
+constexpr double contradicted_far_more = 0.4;
+constexpr std::size_t min_refined = 16;
 
 // Between candidates that are contradicted by about as much, what both turns saw decides. A nearly
 // symmetric object's false poses reach no place that was seen empty, but they fit worse.

@@ -102,6 +102,19 @@ TEST_F(LaserCalibrationOfARig, RemembersAcrossAStartWhatAScanHasSolved) {
   EXPECT_EQ(scan(scanner, next).laser->lasers[0].normal, solved);
 }
 
+TEST_F(LaserCalibrationOfARig, StaysAsItIsWhereTheNextScanAgrees) {
+  rig_.left_turn = radians_from_degrees(turned);
+  Scanner scanner(rig_.options(speed), {}, store_);
+  scan(scanner, settings(24));
+  const std::vector<PoseRecord> first = scanner.calibration().records({});
+  const Scan second = scan(scanner, settings(24));
+  EXPECT_FALSE(second.solved);
+  EXPECT_TRUE(scanner.status().job->calibration->accepted);
+  EXPECT_TRUE(scanner.status().job->calibration->confirms_told);
+  EXPECT_EQ(scanner.calibration().records({}).size(), first.size());
+  EXPECT_EQ(second.laser->lasers[0].normal, first.front().lasers[0].normal);
+}
+
 TEST_F(LaserCalibrationOfARig, IsOfItsOwnCamera) {
   Scanner scanner(rig_.options(speed), {}, store_);
   const Laser another{.name = "left", .normal = Eigen::Vector3d::UnitX(), .distance = 0.1};

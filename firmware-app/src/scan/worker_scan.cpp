@@ -215,6 +215,7 @@ void Worker::begin(Phase phase) {
 void Worker::keep_calibration(const ScanSolution& solution) {
   const CalibrationReport& report = solution.report;
   job_.calibration = to_scan_calibration(report);
+  job_.calibration->confirms_told = report.accepted && !solution.replaces_told;  // planes, too
   log::info("scanner", "scan " + job_.id + ": " + to_text(solution));
   show_job();
   try {

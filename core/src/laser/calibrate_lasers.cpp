@@ -138,6 +138,19 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
   return "";
 }
 
+/// The scan with at most so many stops, evenly over the turn: more tell little more, and each takes
+/// as long to read again for the model.
+Scan thinned(const Scan& scan) {
+  constexpr std::size_t most_stops = 100;
+  const std::size_t step = (scan.shots.size() + most_stops - 1) / most_stops;
+  Scan some = scan;
+  some.shots.clear();
+  for (std::size_t stop = 0; stop < scan.shots.size(); stop += step) {
+    some.shots.push_back(scan.shots[stop]);
+  }
+  return some;
+}
+
 }  // namespace
 
 LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
@@ -148,7 +161,7 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   throw_if_stopped(stop);
   const LaserRig told{.platform_from_sensor = scan.platform_from_sensor,
                       .lasers = scan.laser->lasers};
-  const LaserLines lines(folder, scan);
+  const LaserLines lines(folder, thinned(scan));
   const RigSolver solver(lines, told, threads, stop);
   LaserCalibration calibration{.lasers = told.lasers};
   CalibrationReport& report = calibration.report;

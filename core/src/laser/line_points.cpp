@@ -1,5 +1,6 @@
 #include "laser/line_points.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -43,9 +44,11 @@ LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t
     add_stop(make_strip(own, nullptr, &next), stop, min_height,
              own.object_from_sensor.translation().cast<float>());
   }
+  cells_.reserve(points_.size());
   for (std::uint32_t i = 0; i < points_.size(); ++i) {
-    cells_.emplace(key_of(cell_of(points_[i].point)), i);
+    cells_.push_back({.cell = key_of(cell_of(points_[i].point)), .point = i});
   }
+  std::ranges::sort(cells_);
 }
 
 void LinePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_height,
@@ -79,17 +82,19 @@ const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& norm
   std::uint32_t best = 0;
   float best_square = max_distance * max_distance;
   bool found = false;
-  for (int i = 0; i < 27; ++i) {
-    const Cell cell{middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1};
-    const auto [first, end] = cells_.equal_range(key_of(cell));
-    for (auto at = first; at != end; ++at) {
-      const LinePoint& other = points_[at->second];
+  // Cells beside each other along X have keys one after the other.
+  for (int i = 0; i < 9; ++i) {
+    const Cell cell{middle[0] - 1, middle[1] + i % 3 - 1, middle[2] + i / 3 - 1};
+    const std::uint64_t last = key_of({middle[0] + 1, cell[1], cell[2]});
+    for (auto at = std::ranges::lower_bound(cells_, key_of(cell), {}, &Filed::cell);
+         at != cells_.end() && at->cell <= last; ++at) {
+      const LinePoint& other = points_[at->point];
       const float square = (other.point - point).squaredNorm();
-      // Of two as near the first one, whatever the order of the table is.
+      // Of two as near the first one, whatever the order of the cells is.
       const bool nearer =
-          square < best_square || (found && square == best_square && at->second < best);
+          square < best_square || (found && square == best_square && at->point < best);
       if (nearer && other.normal.dot(normal) > min_agreement) {
-        best = at->second;
+        best = at->point;
         best_square = square;
         found = true;
       }

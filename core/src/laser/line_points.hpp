@@ -1,9 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <compare>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "laser/laser_lines.hpp"
@@ -36,7 +35,13 @@ class LinePoints {
                 const Eigen::Vector3f& camera);
 
   std::vector<LinePoint> points_ = {};
-  std::unordered_multimap<std::uint64_t, std::uint32_t> cells_ = {};
+  struct Filed {
+    std::uint64_t cell = 0;
+    std::uint32_t point = 0;  // its index
+
+    auto operator<=>(const Filed&) const = default;
+  };
+  std::vector<Filed> cells_ = {};  // sorted
 };
 
 }  // namespace octurn

@@ -33,6 +33,8 @@ constexpr double platform_correlation = 25;
 // Cauchy's scale, metres: far starts first.
 constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
                                0.0002, 0.0002, 0.0002, 0.0002, 0.0002};
+// Radians and metres: a thousandth of a millimetre at the object.
+constexpr double at_rest = 0.000002;
 
 double weight_of(double residual, double scale) {
   const double part = residual / scale;
@@ -260,6 +262,9 @@ RigSolution RigSolver::solve(const RigTrust& trust) const {
     }
     solution.rig = moved(solution.rig, pivots_, change);
     moved_so_far += change;
+    if (scale == scales.back() && change.cwiseAbs().maxCoeff() < at_rest) {
+      break;
+    }
   }
   Look last = look(solution.rig, scales.back(), solution);
   last.matrix.diagonal() += prior;

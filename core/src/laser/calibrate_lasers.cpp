@@ -44,9 +44,9 @@ constexpr double max_shift = 0.04;           // metres
 constexpr double max_turn_deg = 6;
 constexpr double lever = 0.05;  // metres above the platform, where positions are judged
 
-// A solution whose median is worse by so little fits as well, as the solver minimises weighted
-// squares instead: then what was told is right.
-constexpr double may_worsen = 1.02;
+// What was told is right if a solution fits better, or worse, by no more than this share: what one
+// turn's noise makes of a rig that another has solved.
+constexpr double no_change = 0.02;
 
 // A change that is worth another model.
 constexpr double least_shift = 0.00005;  // metres
@@ -65,6 +65,13 @@ double median_of(std::vector<float> values) {
 double disagreement(const RigSolution& solution) {
   return solution.between.size() >= min_pairs ? median_of(solution.between)
                                               : median_of(solution.platform);
+}
+
+/// Whether a solution fits as what was told does, to the object and to the platform.
+bool fits_no_better(const RigSolution& solution, const RigSolution& told) {
+  const double before = disagreement(told);
+  return std::abs(disagreement(solution) - before) <= no_change * before &&
+         median_of(solution.platform) >= (1 - no_change) * median_of(told.platform);
 }
 
 RigSolution best_of(const RigSolver& solver) {
@@ -170,10 +177,11 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
     report.reason = "the lasers' lines are not seen on the platform";
     return calibration;
   }
-  report.before = disagreement(solver.as_told());
+  const RigSolution as_told = solver.as_told();
+  report.before = disagreement(as_told);
   RigSolution best = best_of(solver);
   report.after = disagreement(best);
-  if (report.after > report.before && report.after <= may_worsen * report.before) {
+  if (fits_no_better(best, as_told)) {
     best.rig = told;
     report.after = report.before;
   }

@@ -185,8 +185,11 @@ bool undo_filters(std::vector<std::byte>& pixels, std::size_t row_bytes) {
 }
 
 void swap_bytes(std::vector<std::byte>& samples) {
-  for (std::size_t i = 0; i + 1 < samples.size(); i += 2) {
-    std::swap(samples[i], samples[i + 1]);
+  for (std::size_t i = 0; i + 1 < samples.size(); i += sizeof(std::uint16_t)) {
+    std::uint16_t sample = 0;
+    std::memcpy(&sample, &samples[i], sizeof sample);
+    sample = static_cast<std::uint16_t>(sample << 8U | sample >> 8U);
+    std::memcpy(&samples[i], &sample, sizeof sample);
   }
 }
 

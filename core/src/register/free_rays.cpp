@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "depth/depth_limits.hpp"
-#include "depth/pinhole.hpp"
 #include "parallel/vector_levels.hpp"
 
 namespace octurn {
@@ -73,26 +72,28 @@ FreeRays::FreeRays(const Intrinsics& lens, std::span<const Eigen::Isometry3d> se
 }
 
 OCTURN_VECTOR_LEVELS
-void FreeRays::see(const Poses& poses, const Eigen::Vector3d& point, Seen& seen) {
+void FreeRays::see(const Intrinsics& lens, const Poses& poses, const Eigen::Vector3d& point,
+                   Seen& seen) {
+  const double fx = lens.fx;
+  const double fy = lens.fy;
+  const double cx = lens.cx;
+  const double cy = lens.cy;
   const double px = point.x();
   const double py = point.y();
   const double pz = point.z();
   const auto& [of_x, of_y, of_z] = poses.rows;
   for (std::size_t i = 0; i < at_once; ++i) {
-    seen.x[i] = of_x[0][i] * px + of_x[1][i] * py + of_x[2][i] * pz + of_x[3][i];
-    seen.y[i] = of_y[0][i] * px + of_y[1][i] * py + of_y[2][i] * pz + of_y[3][i];
-    seen.z[i] = of_z[0][i] * px + of_z[1][i] * py + of_z[2][i] * pz + of_z[3][i];
+    const double x = of_x[0][i] * px + of_x[1][i] * py + of_x[2][i] * pz + of_x[3][i];
+    const double y = of_y[0][i] * px + of_y[1][i] * py + of_y[2][i] * pz + of_y[3][i];
+    const double z = of_z[0][i] * px + of_z[1][i] * py + of_z[2][i] * pz + of_z[3][i];
+    seen.u[i] = x / z * fx + cx + 0.5;
+    seen.v[i] = y / z * fy + cy + 0.5;
+    seen.z[i] = z;
   }
 }
 
-bool FreeRays::passes(std::size_t stop, double x, double y, double z) const {
-  if (!(z > nearest_z)) {
-    return false;
-  }
-  const Eigen::Vector2d pixel = project(lens_, {x, y, z});
-  const double u = pixel.x() + 0.5;
-  const double v = pixel.y() + 0.5;
-  if (!(u >= 0 && v >= 0 && u < lens_.width && v < lens_.height)) {
+bool FreeRays::passes(std::size_t stop, double u, double v, double z) const {
+  if (!(z > nearest_z && u >= 0 && v >= 0 && u < lens_.width && v < lens_.height)) {
     return false;
   }
   const std::uint16_t free =
@@ -105,9 +106,9 @@ bool FreeRays::pass(const Eigen::Vector3d& point, int min_stops) const {
   int stops = 0;
   Seen seen;
   for (std::size_t first = 0; first < depths_.size(); first += at_once) {
-    see(poses_[first / at_once], point, seen);
+    see(lens_, poses_[first / at_once], point, seen);
     for (std::size_t i = 0; i < std::min(at_once, depths_.size() - first); ++i) {
-      stops += passes(first + i, seen.x[i], seen.y[i], seen.z[i]) ? 1 : 0;
+      stops += passes(first + i, seen.u[i], seen.v[i], seen.z[i]) ? 1 : 0;
       if (stops >= min_stops) {
         return true;
       }

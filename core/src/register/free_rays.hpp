@@ -42,15 +42,17 @@ class FreeRays {
   struct Poses {
     std::array<std::array<Each<double>, 4>, 3> rows = {};
   };
-  /// Where these stops see a point: optical frame, metres.
+  /// Where these stops see a point: pixels, whose middles lie at a half, and metres along the
+  /// optical axis.
   struct Seen {
-    Each<double> x;
-    Each<double> y;
+    Each<double> u;
+    Each<double> v;
     Each<double> z;
   };
 
-  static void see(const Poses& poses, const Eigen::Vector3d& point, Seen& seen);
-  bool passes(std::size_t stop, double x, double y, double z) const;
+  static void see(const Intrinsics& lens, const Poses& poses, const Eigen::Vector3d& point,
+                  Seen& seen);
+  bool passes(std::size_t stop, double u, double v, double z) const;
 
   Intrinsics lens_ = {};
   std::vector<Poses> poses_ = {};

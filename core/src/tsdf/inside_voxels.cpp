@@ -120,12 +120,11 @@ void HoleFilledSdf::add_inside(const Index3& brick, VoxelMask& mask) const {
 VoxelMask HoleFilledSdf::inside(const std::stop_token& stop, ThreadTeam& team) const {
   VoxelMask mask(low_, end_);
   const Index3& size = mask.size();
-  team.for_each(size.z / brick_side, [&](int z) {
+  const int rows = size.y / brick_side;  // of bricks, in a layer
+  team.for_each(size.z / brick_side * rows, [&](int row) {
     throw_if_stopped(stop);
-    for (int y = 0; y < size.y / brick_side; ++y) {
-      for (int x = 0; x < size.x / brick_side; ++x) {
-        add_inside({x, y, z}, mask);
-      }
+    for (int x = 0; x < size.x / brick_side; ++x) {
+      add_inside({x, row % rows, row / rows}, mask);
     }
   });
   clear_border(mask);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <functional>
+#include <utility>
 
 #include "octurn/snapshot.hpp"
 #include "voxel/connected_components.hpp"
@@ -34,13 +35,29 @@ std::uint64_t VoxelMask::count() const {
   return count;
 }
 
+/// What is left does not depend on the order in which voxels go. So only rows beside one that has
+/// lost voxels are looked at again.
 void VoxelMask::remove_spurs(const std::stop_token& stop) {
+  std::vector<char> pending(static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z),
+                            1);
+  const auto row_at = [&](int y, int z) -> char& {
+    return pending[static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) +
+                   static_cast<std::size_t>(y)];
+  };
   for (bool removed = true; removed;) {
     removed = false;
     for (int z = 0; z < size_.z; ++z) {
       throw_if_stopped(stop);
       for (int y = 0; y < size_.y; ++y) {
-        removed = remove_spurs_of(y, z) || removed;
+        if (std::exchange(row_at(y, z), 0) == 0 || !remove_spurs_of(y, z)) {
+          continue;
+        }
+        removed = true;
+        row_at(y, z) = 1;
+        row_at(std::max(y - 1, 0), z) = 1;
+        row_at(std::min(y + 1, size_.y - 1), z) = 1;
+        row_at(y, std::max(z - 1, 0)) = 1;
+        row_at(y, std::min(z + 1, size_.z - 1)) = 1;
       }
     }
   }

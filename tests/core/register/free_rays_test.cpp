@@ -49,7 +49,7 @@ TEST(FreeRays, PassPointsThatLieWellBeforeWhatEnoughStopsSaw) {
         const Eigen::Vector3d seen = sensor_from_turn * point;
         const double u = seen.x() / seen.z() * lens.fx + lens.cx;
         const double v = seen.y() / seen.z() * lens.fy + lens.cy;
-        const bool is_seen = u > 0 && v > 0 && u < lens.width - 1 && v < lens.height - 1;
+        const bool is_seen = u > -0.5 && v > -0.5 && u < lens.width - 0.5 && v < lens.height - 0.5;
         expected += is_seen && seen.z() > 0.05 && seen.z() < wall - 0.006 ? 1 : 0;
       }
       for (const int min_stops : {1, 2, 5}) {

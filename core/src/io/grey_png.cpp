@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 
@@ -147,34 +146,21 @@ struct RawPng {
   std::string text = {};  // of the keyword
 };
 
-/// A plain PNG; nothing if it is another, or damaged.
-/// @param expect_header  throws as in `decode`
-template <typename ExpectHeader>
-std::optional<RawPng> decode_plain(const PngSource& source, const ExpectHeader& expect_header) {
-  const auto png = find_plain_png(source.bytes);
-  if (!png) {
-    return std::nullopt;
-  }
-  RawPng image;
-  image.header.width = png->width;
-  image.header.height = png->height;
-  image.header.bit_depth = static_cast<std::uint8_t>(png->bit_depth);
-  image.header.color_type = static_cast<std::uint8_t>(png->colour_type);
-  expect_header(image.header);
-  auto pixels = unpack_plain_png(*png);
-  if (!pixels) {
-    return std::nullopt;
-  }
-  image.pixels = *std::move(pixels);
-  return image;
-}
-
 /// @param expect_header  throws if the pixels or their number are not what is wanted, before memory
 ///                       is taken for them
 template <typename ExpectHeader>
 RawPng decode(const PngSource& source, std::string_view keyword, ExpectHeader expect_header) {
-  if (auto plain = decode_plain(source, expect_header)) {
-    return *std::move(plain);
+  RawPng image;
+  if (const auto plain = find_plain_png(source.bytes)) {
+    image.header.width = plain->width;
+    image.header.height = plain->height;
+    image.header.bit_depth = static_cast<std::uint8_t>(plain->bit_depth);
+    image.header.color_type = static_cast<std::uint8_t>(plain->colour_type);
+    expect_header(image.header);
+    image.pixels = unpack_plain_png(*plain);
+    if (!image.pixels.empty()) {
+      return image;
+    }
   }
   const auto check = [&](int status) {
     if (status != 0) {
@@ -185,7 +171,6 @@ RawPng decode(const PngSource& source, std::string_view keyword, ExpectHeader ex
   const Context context(spng_ctx_new(0));
   check(spng_set_chunk_limits(context.get(), max_chunk_bytes, max_chunk_bytes));
   check(spng_set_png_stream(context.get(), take, &input));
-  RawPng image;
   check(spng_get_ihdr(context.get(), &image.header));
   expect_header(image.header);
   std::size_t size = 0;

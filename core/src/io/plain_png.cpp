@@ -218,19 +218,19 @@ std::optional<PlainPng> find_plain_png(Bytes bytes) {
   return std::nullopt;
 }
 
-std::optional<std::vector<std::byte>> unpack_plain_png(const PlainPng& png) {
+std::vector<std::byte> unpack_plain_png(const PlainPng& png) {
   const std::size_t pixel =
       static_cast<std::size_t>(png.bit_depth) / 8 * (png.colour_type == 2 ? 3 : 1);
   const std::size_t row_bytes = png.width * pixel;
   std::vector<std::byte> pixels(png.height * (row_bytes + 1));
   if (pixels.size() > std::numeric_limits<uInt>::max() || !inflate_all(png.parts, pixels)) {
-    return std::nullopt;
+    return {};
   }
   const bool is_undone = pixel == 1   ? undo_filters<1>(pixels, row_bytes)
                          : pixel == 2 ? undo_filters<2>(pixels, row_bytes)
                                       : undo_filters<3>(pixels, row_bytes);
   if (!is_undone) {
-    return std::nullopt;
+    return {};
   }
   if (pixel == 2 && std::endian::native == std::endian::little) {
     swap_bytes(pixels);

@@ -26,7 +26,7 @@ struct PlainPng {
 std::optional<PlainPng> find_plain_png(std::span<const std::byte> bytes);
 
 /// Unpacks the pixels, row by row, 16 bits in this machine's byte order. Takes memory for them.
-/// @return nothing if the image data are damaged, or more or less than the header says
-std::optional<std::vector<std::byte>> unpack_plain_png(const PlainPng& png);
+/// @return none if the image data are damaged, or more or less than the header says
+std::vector<std::byte> unpack_plain_png(const PlainPng& png);
 
 }  // namespace octurn

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace octurn {
 namespace {
@@ -119,14 +120,14 @@ std::optional<PlainPng> find(const Bytes& png) {
 /// The pixels as a PNG stores them: 16 bits in big endian.
 std::optional<Bytes> unpacked(const Bytes& png) {
   const auto plain = find(png);
-  const auto pixels = plain ? unpack_plain_png(*plain) : std::nullopt;
-  if (!pixels) {
+  const auto pixels = plain ? unpack_plain_png(*plain) : std::vector<std::byte>();
+  if (pixels.empty()) {
     return std::nullopt;
   }
   Bytes bytes;
-  for (std::size_t i = 0; i < pixels->size(); ++i) {
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
     const bool is_swapped = plain->bit_depth == 16 && std::endian::native == std::endian::little;
-    bytes += std::to_integer<unsigned char>((*pixels)[is_swapped ? i ^ 1U : i]);
+    bytes += std::to_integer<unsigned char>(pixels[is_swapped ? i ^ 1U : i]);
   }
   return bytes;
 }

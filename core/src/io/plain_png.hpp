@@ -11,8 +11,7 @@ namespace octurn {
 /// A PNG as depth images and pictures are stored, without texts, palette, transparency or
 /// interlacing: greyscale of 8 or 16 bits, or RGB of 8.
 ///
-/// libspng reads every PNG, row by row, at four times the instructions: it asks zlib for one row at
-/// a time, and undoes Paeth's filter with branches.
+/// libspng reads every PNG, in a third more time: it asks zlib for one row at a time.
 struct PlainPng {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels

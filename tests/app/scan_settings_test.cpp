@@ -43,7 +43,7 @@ TEST(ScanSettings, ComeBackAsTheyWereWritten) {
 TEST(ScanSettings, RefuseWhatIsOutOfRangeAndNameIt) {
   const char* const wrong[] = {
       R"({"snapshots": 0})",
-      R"({"snapshots": 201})",
+      R"({"snapshots": 401})",
       R"({"snapshots": 2.5})",
       R"({"snapshots": "8"})",
       R"({"snapshots": null})",

@@ -76,9 +76,6 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const snapshots = 12;
   await chooseQuickScan(page, snapshots);
   await noteProgress(page);
-  const growth = [];  // bytes of each mesh of what was seen so far
-  page.on('response', (response) => response.url().endsWith('/preview.stl') && response.status() === 200 &&
-      growth.push(Number(response.headers()['content-length'])));
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   await page.waitForFunction(() => Number(document.getElementById('dial-done').textContent) >= 2);
@@ -94,7 +91,6 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(noted.length >= 3, `progress was shown in steps, not as ${noted}`);
   assert.deepEqual(noted, [...new Set(noted)].sort((a, b) => a - b), 'progress only grows');
   assert.equal(await page.title(), `${await page.locator('#details-name').innerText()} · Octurn`);
-  assert.ok(new Set(growth).size >= 2, `a model in the making, not ${growth}`);
 
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.equal(arrived.suggestedFilename(), 'Scan.stl');
@@ -143,5 +139,28 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   const upright = await halfHeight();
   assert.equal(upright.toFixed(1), ((mesh.min[2] + mesh.max[2]) / 2).toFixed(1), 'as it was scanned');
   assert.ok(laid < 0.9 * upright, `on its front it is lower than on its feet: ${2 * laid} mm, not ${2 * upright}`);
+  assert.deepEqual(faults, []);
+});
+
+test('the model grows on the page while the platform turns', async (t) => {
+  // It lasts longer than a busy machine takes to show a second mesh.
+  const scanner = await startScanner(t, lifelike);
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url);
+  await chooseQuickScan(page, 200);
+  const sizes = new Set();  // bytes of the meshes of what was seen so far
+  const hasGrown = new Promise((done) => {
+    page.on('response', (response) => {
+      if (response.url().endsWith('/preview.stl') && response.status() === 200) {
+        sizes.add(response.headers()['content-length']);
+        if (sizes.size === 2) {
+          done(sizes);
+        }
+      }
+    });
+  });
+  await page.getByRole('button', {name: 'Start scan'}).click();
+  await hasGrown;
+  await page.locator('#cancel').click();
+  await page.getByText('Scan ended', {exact: true}).waitFor();
   assert.deepEqual(faults, []);
 });

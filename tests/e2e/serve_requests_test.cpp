@@ -96,7 +96,7 @@ TEST(ServeRequests, SaysWhatAPathTakes) {
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans/20261121-081500-3f2a"))["code"], "no-such-scan");
   const json settings = parsed(daemon.get("/api/v1/settings"));
   EXPECT_EQ(settings["defaults"]["snapshots"], 36);
-  EXPECT_EQ(settings["schema"]["properties"]["snapshots"]["maximum"], 200);
+  EXPECT_EQ(settings["schema"]["properties"]["snapshots"]["maximum"], 400);
   EXPECT_EQ(settings["schema"]["properties"].size(), settings["defaults"].size());
 }
 

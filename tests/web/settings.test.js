@@ -35,5 +35,5 @@ test('the slider of the snapshots goes as far as the field beside it', async () 
     return ['min', 'max', 'step'].map((name) => new RegExp(` ${name}="([^"]+)"`).exec(input)[1]);
   });
   assert.deepEqual(slider, field);
-  assert.deepEqual(field, ['1', '200', '1']);
+  assert.deepEqual(field, ['1', '400', '1']);
 });

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_snapshots = 800;  // the steps of a turn, unless the settings say otherwise
+constexpr int max_snapshots = 400;  // a laser's lines are then 0.9 degrees apart
 constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not lower the noise
 constexpr int max_threads = 256;
 constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther

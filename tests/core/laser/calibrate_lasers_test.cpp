@@ -135,6 +135,23 @@ TEST(CalibrateLasers, IsRefusedWhereThePlatformIsNotSeen) {
   EXPECT_FALSE(found.report.reason.empty());
 }
 
+// Every second stop of 104 has no pictures, and is not asked for any.
+TEST(CalibrateLasers, ReadsAtMostAHundredStops) {
+  const TemporaryFolder folder;
+  const Scan half = write_laser_scan(folder.path(), two_balls, 52);
+  Scan whole = half;
+  whole.shots.clear();
+  for (const Shot& shot : half.shots) {
+    whole.shots.push_back(shot);
+    whole.shots.push_back({.pictures = {"none.png", "none.png", "none.png"}, .angle = shot.angle});
+  }
+
+  const LaserCalibration found = calibrate_lasers(folder.path(), whole, 1);
+
+  ASSERT_TRUE(found.report.accepted) << found.report.reason;
+  EXPECT_EQ(found.lasers[0].normal, calibrate_lasers(folder.path(), half, 1).lasers[0].normal);
+}
+
 TEST(CalibrateLasers, IsTheSameForAnyThreads) {
   const Scan& truth = Turn::of_two_balls().truth();
   Scan told = truth;

@@ -66,7 +66,6 @@ Vector3d widened_normal(const Vector3d& normal, double factor) {
 }
 
 void widen(TurnViews& turn, double factor) {
-  turn.looked_up.assign(turn.looked_up.size(), {});
   for (ObjectView& view : turn.views) {
     view.widen(factor);
   }

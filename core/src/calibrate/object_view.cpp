@@ -94,12 +94,7 @@ std::optional<SurfaceReading> ObjectView::read(int u, int v) const {
   return SurfaceReading{.point = ray / static_cast<double>(at(u, v)), .normal = *normal};
 }
 
-std::optional<SurfaceReading> ObjectView::read(std::size_t pixel) const {
-  const auto width = static_cast<std::size_t>(window_.width);
-  return read(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
-}
-
-std::optional<std::size_t> ObjectView::find_pixel(const Vector3d& point) const {
+std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   if (!(point.z() > nearest_z)) {
     return std::nullopt;
   }
@@ -109,15 +104,7 @@ std::optional<std::size_t> ObjectView::find_pixel(const Vector3d& point) const {
   if (!(u > 0 && v > 0 && u < window_.width && v < window_.height)) {
     return std::nullopt;
   }
-  const int column = static_cast<int>(u + 0.5);
-  const int row = static_cast<int>(v + 0.5);
-  return column < window_.width && row < window_.height ? std::optional(index(column, row))
-                                                        : std::nullopt;
-}
-
-std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
-  const auto pixel = find_pixel(point);
-  return pixel ? read(*pixel) : std::nullopt;
+  return read(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
 }
 
 void ObjectView::widen(double factor) {

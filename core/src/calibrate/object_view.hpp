@@ -37,12 +37,6 @@ class ObjectView {
   /// @return nothing without a reading, near a depth edge, or at a grazing angle
   std::optional<SurfaceReading> look_up(const Eigen::Vector3d& point) const;
 
-  /// The pixel of the rectangle where a point is seen; nothing if that is outside.
-  std::optional<std::size_t> find_pixel(const Eigen::Vector3d& point) const;
-
-  /// The reading of a pixel of the rectangle; nothing as `look_up`.
-  std::optional<SurfaceReading> read(std::size_t pixel) const;
-
   /// Divides the focal length by a factor: everything becomes wider, and no nearer.
   void widen(double factor);
 

@@ -85,7 +85,6 @@ TurnViews TurnReader::read_views() {
   for (const ObjectView& view : seen.views) {
     seen.readings.push_back(view.readings(step));
   }
-  seen.looked_up.resize(seen.pairs.size());
   return seen;
 }
 

@@ -3,19 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "calibrate/object_view.hpp"
 #include "calibrate/stop_pairs.hpp"
 
 namespace octurn {
-
-/// What was seen where a reading was looked up last.
-struct LookedUp {
-  std::optional<std::size_t> pixel = {};  ///< of the rectangle; nothing: not looked up yet
-  std::optional<SurfaceReading> surface = {};
-};
 
 /// The object's readings at all stops.
 struct TurnViews {
@@ -26,10 +19,6 @@ struct TurnViews {
   /// Residuals per independent one: the sensor's errors are correlated in neighbouring pixels, and
   /// a reading is compared with several stops.
   double correlation = 1;
-  /// Of each pair, of each reading of its first stop: a solver that settles looks readings up at
-  /// the same pixels again and again. Changed by the one thread that compares that stop. Empty:
-  /// nothing is kept.
-  mutable std::vector<std::vector<LookedUp>> looked_up = {};
 };
 
 /// Distance of a reading of one stop from the surface that another stop saw.
@@ -69,9 +58,7 @@ void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
     reading = {.point = platform_from_sensor * reading.point,
                .normal = platform_from_sensor.linear() * reading.normal};
   }
-  std::vector<LookedUp> none;
-  for (std::size_t which = 0; which < turn.pairs.size(); ++which) {
-    const StopPair& pair = turn.pairs[which];
+  for (const StopPair& pair : turn.pairs) {
     if (pair.from != from) {
       continue;
     }
@@ -80,18 +67,9 @@ void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
     const Eigen::Matrix3d to_from_from =
         Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     const ObjectView& view = turn.views[pair.to];
-    std::vector<LookedUp>& looked_up = turn.looked_up.empty() ? none : turn.looked_up[which];
-    looked_up.resize(placed.size());
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      const Eigen::Vector3d turned = to_from_from * placed[i].point;
-      const auto pixel = view.find_pixel(sensor_from_platform * turned);
-      if (!pixel) {
-        continue;
-      }
-      if (looked_up[i].pixel != pixel || turn.looked_up.empty()) {
-        looked_up[i] = {.pixel = pixel, .surface = view.read(*pixel)};
-      }
-      const auto& surface = looked_up[i].surface;
+    for (const SurfaceReading& reading : placed) {
+      const Eigen::Vector3d turned = to_from_from * reading.point;
+      const auto surface = view.look_up(sensor_from_platform * turned);
       if (!surface) {
         continue;
       }
@@ -99,11 +77,11 @@ void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
       const Eigen::Vector3d back = to_from_from.transpose() * normal;
       const Eigen::Vector3d seen = platform_from_sensor * surface->point;
       const double distance = normal.dot(turned - seen);
-      if (std::abs(distance) < limits.max_distance && back.dot(placed[i].normal) > min_agreement) {
+      if (std::abs(distance) < limits.max_distance && back.dot(reading.normal) > min_agreement) {
         visit(StopResidual{.from = from,
                            .to = pair.to,
                            .distance = distance,
-                           .point_from = placed[i].point,
+                           .point_from = reading.point,
                            .normal_from = back,
                            .point_to = seen,
                            .normal_to = normal});

@@ -44,9 +44,10 @@ constexpr double max_shift = 0.04;           // metres
 constexpr double max_turn_deg = 6;
 constexpr double lever = 0.05;  // metres above the platform, where positions are judged
 
-// What was told is right if a solution fits better, or worse, by no more than this share: what one
-// turn's noise makes of a rig that another has solved.
-constexpr double no_change = 0.02;
+// What was told is right if a solution fits better, or worse, by no more than this share. Two
+// lasers disagree by 0.1 mm in a rig that is right; a plane that is off by `least_turn_deg`, 0.03
+// mm at the object, adds a twentieth to that, as much as noise does from turn to turn.
+constexpr double no_change = 0.05;
 
 // A change that is worth another model.
 constexpr double least_shift = 0.00005;  // metres

@@ -23,16 +23,6 @@ Config defaults() {
   return config;
 }
 
-/// Refuses lines of lasers that the turntable has.
-void expect_own_lines(const JsonObject& keys, const Config& config) {
-  const std::vector<NamedLine> turntable = lines_of(config.turntable);
-  for (const std::string& line : gpio_lines_of(config.laser)) {
-    if (std::ranges::find(turntable, line, &NamedLine::name) != turntable.end()) {
-      keys.refuse("laser", line, "on lines that the turntable has not");
-    }
-  }
-}
-
 /// The sensor's settings come first: what a scan has by default depends on it.
 Config config_from(const json& object, const std::optional<SensorKind>& sensor) {
   JsonObject keys(object, ErrorCode::bad_config, "");
@@ -45,8 +35,8 @@ Config config_from(const json& object, const std::optional<SensorKind>& sensor) 
   const SensorKind chosen = config.sensor;
   read_fields(keys, fields(config));
   config.sensor = chosen;
+  expect_own_lines(keys, config);
   if (config.sensor == SensorKind::laser_line) {
-    expect_own_lines(keys, config);
     config.scan.platform_from_sensor = config.laser.platform_from_sensor;
   }
   keys.refuse_unread();
@@ -79,6 +69,18 @@ std::vector<Field> nested_fields(Config& config) {
 }
 
 }  // namespace
+
+void expect_own_lines(const JsonObject& keys, const Config& config) {
+  if (config.sensor != SensorKind::laser_line) {
+    return;
+  }
+  const std::vector<NamedLine> turntable = lines_of(config.turntable);
+  for (const std::string& line : gpio_lines_of(config.laser)) {
+    if (std::ranges::find(turntable, line, &NamedLine::name) != turntable.end()) {
+      keys.refuse("laser", line, "on lines that the turntable has not");
+    }
+  }
+}
 
 std::vector<Field> network_fields(Config& config) {
   return {

@@ -38,6 +38,12 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 ///                             unknown key
 Config read_config(const std::filesystem::path& file, const std::optional<SensorKind>& sensor = {});
 
+class JsonObject;
+
+/// Refuses a laser on a line of the turntable, whose pulses would light it.
+/// @param keys  of the configuration, for messages
+void expect_own_lines(const JsonObject& keys, const Config& config);
+
 struct Field;
 
 /// All settings of the file.

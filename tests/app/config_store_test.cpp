@@ -90,6 +90,19 @@ TEST_F(ConfigStores, RefuseWhatIsWrongByItsKeyAndChangeNothing) {
   }
 }
 
+TEST_F(ConfigStores, RefuseTheTurntableALineOfALaser) {
+  ConfigLayers layers;
+  layers.file.data = file("");
+  layers.file.sensor = SensorKind::laser_line;
+  const json change{{"turntable", {{"step_line", layers.file.laser.left.gpio_line}}}};
+  ConfigStore store(layers);
+  const Error error = error_thrown_by([&] { store.change(change); });
+  EXPECT_EQ(error.code(), ErrorCode::bad_settings);
+  EXPECT_NE(std::string(error.what()).find("GPIO23"), std::string::npos) << error.what();
+  EXPECT_EQ(store.stored(), json::object());
+  open().change(change);  // a rig without lasers has that line to itself
+}
+
 TEST_F(ConfigStores, PutAScansSettingsInForceAtOnceAndTellOfTheRest) {
   ConfigStore store = open();
   store.change({{"scan", {{"snapshots", 12}}},

@@ -117,6 +117,7 @@ Config with_settings(const Config& base, const json& values) {
   Config config = base;
   read_fields(keys, fields(config));
   keys.refuse_unread();
+  expect_own_lines(keys, config);
   if (const json* scan = keys.find("scan")) {
     check_clip(JsonObject(*scan, ErrorCode::bad_settings, "scan"), config.scan);
   }

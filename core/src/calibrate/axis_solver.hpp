@@ -13,8 +13,8 @@ struct AxisSolution {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   /// Of the small motion (rotation about x and y, translation along x and y): radians, metres.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  double last_step =
-      0;  ///< metres: change of the axis, 5 cm above the platform, in the last iteration
+  /// Metres: change of the axis, 5 cm above the platform, in the last iteration.
+  double last_step = 0;
 
   double position_sigma() const;   ///< metres, of the axis 5 cm above the platform
   double direction_sigma() const;  ///< radians

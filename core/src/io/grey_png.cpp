@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <type_traits>
 
 #include "octurn/file.hpp"
 
@@ -90,23 +91,12 @@ void describe<Rgb>(spng_ihdr& header) {
   header.color_type = SPNG_COLOR_TYPE_TRUECOLOR;
 }
 
-/// How hard to press. Depth is pressed as libspng does by itself.
-template <typename Sample>
-void set_effort(spng_ctx* /*context*/) {}
 /// A camera's noise hardly shrinks, and the platform waits for the file. A grey picture of 820 x
 /// 616 pixels takes 4 ms of an x86-64 core in place of the 42 that libspng takes by itself, and is
 /// a fortieth larger; one in colour 13 in place of 107, and is a tenth larger.
 void set_effort_for_noise(spng_ctx* context) {
   check_encoded(spng_set_option(context, SPNG_IMG_COMPRESSION_LEVEL, 2));
   check_encoded(spng_set_option(context, SPNG_FILTER_CHOICE, SPNG_DISABLE_FILTERING));
-}
-template <>
-void set_effort<std::uint8_t>(spng_ctx* context) {
-  set_effort_for_noise(context);
-}
-template <>
-void set_effort<Rgb>(spng_ctx* context) {
-  set_effort_for_noise(context);
 }
 
 template <typename Sample>
@@ -122,7 +112,9 @@ std::vector<std::byte> encode(int width, int height, std::span<const Sample> sam
   header.height = static_cast<std::uint32_t>(height);
   describe<Sample>(header);
   check_encoded(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
-  set_effort<Sample>(context.get());
+  if constexpr (std::is_same_v<Sample, std::uint8_t> || std::is_same_v<Sample, Rgb>) {
+    set_effort_for_noise(context.get());
+  }
   check_encoded(spng_set_ihdr(context.get(), &header));
   set_text(context.get(), text);
   check_encoded(spng_encode_image(context.get(), samples.data(), samples.size_bytes(), SPNG_FMT_PNG,

@@ -223,9 +223,7 @@ std::vector<Rgb> vertex_colours(const std::filesystem::path& folder, const Scan&
   const std::vector<Vector3f> normals = normals_of(mesh);
   std::vector<Seen> seen(mesh.vertices.size());
   for (const std::size_t index : chosen_shots(scan)) {
-    if (stop.stop_requested()) {
-      throw Stopped{};
-    }
+    throw_if_stopped(stop);
     const Shot& shot = scan.shots[index];
     std::optional<ColourPicture> picture;
     try {

@@ -12,12 +12,12 @@
 
 namespace octurn {
 
-/// The triangles of a mesh in chunks, of which each knows between which numbers its vertices are. A
-/// thread that looks for the triangles of some vertices passes over most chunks, as triangles and
-/// vertices come in nearly the same order.
+/// The triangles of a mesh in chunks of consecutive ones. Each chunk stores the range of its vertex
+/// indices, so that a thread that needs the triangles of a range of vertices skips most chunks:
+/// triangles and vertices are in nearly the same order.
 class TriangleChunks {
  public:
-  /// O(triangles); of one thread there is one chunk.
+  /// O(triangles). A team of one thread has one chunk, whose range is not computed.
   TriangleChunks(std::span<const MeshTriangle> triangles, ThreadTeam& team)
       : triangles_(triangles),
         side_(team.size() > 1 ? some_triangles : std::max<std::size_t>(triangles.size(), 1)),
@@ -34,7 +34,7 @@ class TriangleChunks {
     });
   }
 
-  /// A number that no vertex is below.
+  /// A lower bound of all vertex indices.
   std::uint32_t low() const {
     std::uint32_t low = std::numeric_limits<std::uint32_t>::max();
     for (const Range& range : ranges_) {
@@ -43,8 +43,8 @@ class TriangleChunks {
     return low;
   }
 
-  /// Calls `visit(index, triangle)`, in their order, at least for all that have a vertex from
-  /// `first` to below `end`.
+  /// Calls `visit(index, triangle)` in ascending order for all triangles with a vertex from `first`
+  /// to below `end`, and for some others.
   template <typename Visit>
   void for_each(std::size_t first, std::size_t end, const Visit& visit) const {
     for (std::size_t chunk = 0; chunk < ranges_.size(); ++chunk) {
@@ -57,7 +57,7 @@ class TriangleChunks {
     }
   }
 
-  /// The same, the last one first.
+  /// The same in descending order.
   template <typename Visit>
   void for_each_backwards(std::size_t first, std::size_t end, const Visit& visit) const {
     for (std::size_t chunk = ranges_.size(); chunk-- > 0;) {
@@ -73,7 +73,7 @@ class TriangleChunks {
  private:
   static constexpr std::size_t some_triangles = 256;
 
-  /// At first that of any vertex.
+  /// A range of vertex indices, both ends included; by default that of all indices.
   struct Range {
     std::uint32_t min = 0;
     std::uint32_t max = std::numeric_limits<std::uint32_t>::max();

@@ -12,8 +12,8 @@ struct RigidFit {
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  Matrix6d normal_matrix =
-      Matrix6d::Zero();  ///< of rotation and shift: radians, metres; lower half
+  /// Of rotation and shift: radians, metres. Its lower triangle alone.
+  Matrix6d normal_matrix = Matrix6d::Zero();
   Vector6d right = Vector6d::Zero();
   double weight = 0;
   double squares = 0;  ///< metres^2, weighted

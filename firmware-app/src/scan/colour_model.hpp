@@ -13,7 +13,7 @@ namespace octurn {
 /// of a `VertexTable`.
 std::filesystem::path colours_file(const std::filesystem::path& model);
 
-/// Refuses a scan that is not by laser line. @throws Error "scan-malformed"
+/// Refuses a scan that is not by laser line. @throws Error "bad-settings"
 void expect_pictures(const Scan& scan);
 
 /// Makes that file, whole or not at all, from the pictures of the model's scan.

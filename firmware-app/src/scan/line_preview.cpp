@@ -34,9 +34,9 @@ LinePreview::LinePreview(const std::filesystem::path& folder, ReconstructOptions
 
 void LinePreview::add(const Scan& scan) {
   using namespace std::chrono_literals;
-  const bool is_at_it = adding_.valid() && adding_.wait_for(0s) != std::future_status::ready;
+  const bool is_adding = adding_.valid() && adding_.wait_for(0s) != std::future_status::ready;
   const std::size_t end = scan.shots.empty() ? 0 : (scan.shots.size() - 1) / step_;
-  if (is_at_it || has_failed_ || next_ >= end) {
+  if (is_adding || has_failed_ || next_ >= end) {
     return;
   }
   adding_ = std::async(std::launch::async, [this, scan, first = next_, end] {

@@ -13,31 +13,31 @@
 
 namespace octurn {
 
-/// A coarse surface of a scan by laser line, for people to see while the platform turns. The
-/// surface at a line ends at those of the stops beside it, so that it is a stop behind. No bit of
-/// the model depends on it.
+/// A coarse surface of a scan by laser line, shown while the platform turns. A line's surface ends
+/// at the lines of the neighbouring stops, so that the preview is one stop behind. The model does
+/// not depend on it.
 ///
-/// Its cost is bounded: at most 100 lines of each laser, and leaves of 2 mm. A stop does not wait
-/// for it; what it has missed is added at the next one.
+/// Its cost is bounded: at most 100 lines of each laser, and leaves of 2 mm. No stop waits for it;
+/// a stop that comes while lines are being added is added with the next one.
 class LinePreview {
  public:
   static constexpr double leaf_size = 0.002;  ///< metres, or the model's if that is larger
   static constexpr int max_lines = 100;       ///< of each laser
 
-  /// @param folder    of the scan; it lives longer, as the observer does
+  /// @param folder    of the scan; it and the observer must outlive this
   /// @param options   of the model
   /// @param stops     of the whole scan
   LinePreview(const std::filesystem::path& folder, ReconstructOptions options, int stops,
               std::stop_token stop, const ScanObserver& observer);
-  /// Waits for what is being added.
+  /// Waits as `wait` does.
   ~LinePreview() = default;
   LinePreview(const LinePreview&) = delete;
   LinePreview& operator=(const LinePreview&) = delete;
 
-  /// Begins to add what the stops so far show, unless it is at it still.
+  /// Starts to add the stops so far, unless earlier ones are still being added.
   void add(const Scan& scan);
 
-  /// Returns when it is no more at it.
+  /// Waits until nothing is being added.
   void wait() const;
 
  private:

@@ -23,7 +23,7 @@ struct Config {
   ScanSettings scan = {};  ///< defaults of a scan
   StepperSettings turntable = {};
   SensorKind sensor = SensorKind::depth;
-  LaserSettings laser = {};  ///< of a rig whose sensor is that
+  LaserSettings laser = {};  ///< used if `sensor` is laser_line
 };
 
 /// The default configuration file. It need not exist.
@@ -32,27 +32,27 @@ inline constexpr const char* default_config_file = "/etc/octurn/octurn.json";
 /// Reads a configuration file, such as `{"port": 80, "scan": {"snapshots": 60}}`. docs/settings.md
 /// lists the keys.
 ///
-/// @param sensor  in place of the one that the file names. A scan's settings that the file does not
-///                have are those of the sensor
+/// @param sensor  overrides the file's key "sensor". Settings that the file leaves out get the
+///                defaults of this kind of sensor
 /// @throws Error "bad-config"  that names file and key, the value and what is allowed; also for an
 ///                             unknown key
 Config read_config(const std::filesystem::path& file, const std::optional<SensorKind>& sensor = {});
 
 class JsonObject;
 
-/// Refuses a laser on a line of the turntable, whose pulses would light it.
-/// @param keys  of the configuration, for messages
+/// Refuses a laser that shares a GPIO line with the turntable, whose pulses would switch it on.
+/// @param keys  JSON of the configuration, for error messages
 void expect_own_lines(const JsonObject& keys, const Config& config);
 
 struct Field;
 
 /// All settings of the file.
 std::vector<Field> fields(Config& config);
-/// Where the page is served.
+/// The settings of the HTTP listener: `listen` and `port`.
 std::vector<Field> network_fields(Config& config);
-/// Where scans are kept.
+/// The setting `data`, the folder of scans.
 std::vector<Field> data_fields(Config& config);
-/// What the rig looks with.
+/// The settings `sensor` and `laser`.
 std::vector<Field> sensor_fields(Config& config);
 
 /// The configuration in the form of the file, with every key. It contains no secret.

@@ -16,7 +16,7 @@ struct Failure {
   std::string hint = {};
   Parameters parameters = {};  ///< the values in `detail`
 
-  /// The device that failed. A scan waits while a person mends it.
+  /// The device that failed, or `none`. A scan waits until a person has repaired it.
   Device device() const;
   /// Whether the device is missing, rather than broken.
   bool is_absence() const;
@@ -29,7 +29,7 @@ Failure to_failure(const Error& error);
 /// `catch`.
 Failure current_failure();
 
-/// The Error with what a failure has.
+/// Converts a failure back to the exception.
 Error to_error(const Failure& failure);
 
 }  // namespace octurn

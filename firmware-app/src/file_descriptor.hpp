@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// Owns an open file of the system.
+/// Owns a POSIX file descriptor and closes it.
 class FileDescriptor {
  public:
   FileDescriptor() = default;

@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-/// What this machine is called in its network.
+/// Returns this machine's host name (gethostname(2)).
 std::string host_name();
 
 }  // namespace octurn

@@ -6,12 +6,12 @@
 
 namespace octurn {
 
-/// Where the page is served, and to whom.
+/// Options of the HTTP server.
 struct HttpOptions {
-  std::string address = "0.0.0.0";  ///< to listen on; the default is every one of this machine
-  int port = 8080;                  ///< 0: any free one
-  std::filesystem::path password_file = {};  ///< who may open it; empty: everybody
-  std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< with a client that stalls
+  std::string address = "0.0.0.0";           ///< to listen on; the default is every IPv4 interface
+  int port = 8080;                           ///< 0: any free port
+  std::filesystem::path password_file = {};  ///< the page's users; empty: no authentication
+  std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< timeout of a stalled client
 };
 
 }  // namespace octurn

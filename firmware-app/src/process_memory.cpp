@@ -7,9 +7,9 @@
 namespace octurn {
 namespace {
 
-constexpr int large_block_bytes = 1 << 18;  // below the blocks that voxels are stored in
+constexpr int large_block_bytes = 1 << 18;  // smaller than the blocks that store voxels
 
-constexpr int kept_bytes = 1 << 25;  // of a block: the most that the C library keeps
+constexpr int kept_bytes = 1 << 25;  // glibc's maximum of M_MMAP_THRESHOLD on 64 bit
 
 }  // namespace
 

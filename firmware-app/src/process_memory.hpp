@@ -2,13 +2,13 @@
 
 namespace octurn {
 
-/// Has the C library keep what is freed: each snapshot takes as much as the one before, and to get
-/// its pages from the system anew was a tenth of a model's processor time.
+/// Makes malloc keep freed memory for reuse (mallopt(3)). Each snapshot allocates as much as the
+/// last one, and mapping its pages anew took a tenth of a model's processor time.
 void keep_freed_memory();
 
-/// Has the C library return every large block to the system as soon as it is freed. Otherwise it
-/// keeps what one thread frees for that thread alone, and a memory limit is passed: by 24 MB with
-/// two threads.
+/// Makes malloc return every large block to the kernel as soon as it is freed. Otherwise a thread's
+/// arena keeps its freed blocks for that thread alone, and the process exceeds its memory limit: by
+/// 24 MB with two threads.
 void return_freed_memory();
 
 }  // namespace octurn

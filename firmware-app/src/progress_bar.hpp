@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-/// Progress bar on standard error; silent if that is no terminal. Thread-safe.
+/// Progress bar on standard error; prints nothing if that is no terminal. Thread-safe.
 class ProgressBar {
  public:
   ProgressBar();
@@ -12,7 +12,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Redraws the bar. @param doing  what is going on, behind the numbers
+  /// Redraws the bar. @param doing  label after the numbers
   void show(int done, int total, std::string_view doing);
 
  private:

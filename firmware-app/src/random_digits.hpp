@@ -5,10 +5,10 @@
 
 namespace octurn {
 
-/// Secrets and names that nobody can guess: random bytes of the system's, as two hexadecimal digits
-/// each.
+/// Returns random bytes from getentropy(3) as two hexadecimal digits each, for secrets and names
+/// that nobody can guess.
 /// @param bytes  at most 256
-/// @throws Error  internal, if the system has none
+/// @throws Error "internal"  if getentropy fails
 std::string random_digits(std::size_t bytes);
 
 }  // namespace octurn

@@ -23,7 +23,8 @@ namespace {
 constexpr auto look_interval = std::chrono::milliseconds(5);
 constexpr std::size_t max_output = std::size_t{16} << 20U;
 
-/// A file in memory, into which a program may write more than a pipe holds.
+/// Creates an anonymous file in memory for a program's output. Unlike a pipe, it never blocks the
+/// program.
 FileDescriptor make_output() {
   FileDescriptor file(::memfd_create("output", MFD_CLOEXEC));
   if (!file.is_open()) {
@@ -40,7 +41,8 @@ std::string content_of(const FileDescriptor& file) {
   return content;
 }
 
-/// What a program starts with: its outputs, nothing to read, and no signal blocked or ignored.
+/// Attributes of posix_spawn(3): standard output and error go to files, standard input is empty, no
+/// signal is blocked, and the signals that `block_signals` ignores have their default action.
 class SpawnSetup {
  public:
   SpawnSetup(const FileDescriptor& output, const FileDescriptor& errors) {

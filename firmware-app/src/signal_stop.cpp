@@ -58,7 +58,7 @@ SignalStop::SignalStop()
       }) {}
 
 SignalStop::~SignalStop() {
-  // Wakes the waiter, and nobody else, with one of the signals that it waits for.
+  // Ends the waiter's sigwait(3). The signal is sent to that thread only, not to the process.
   ::pthread_kill(waiter_.native_handle(), SIGTERM);
 }
 

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// Blocks SIGINT and SIGTERM in this thread and its future children, and ignores SIGPIPE and
-/// SIGXFSZ: a reader that has gone and a file over its limit are then errors of `write`. Call it
+/// Blocks SIGINT and SIGTERM in this thread and the threads that it starts. Ignores SIGPIPE and
+/// SIGXFSZ, so that write(2) reports a closed pipe (EPIPE) and the file size limit (EFBIG). Call it
 /// before the first thread starts.
 void block_signals();
 

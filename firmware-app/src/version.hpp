@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-/// Of this program, as CMakeLists.txt has it.
+/// This program's version, as CMakeLists.txt sets it.
 std::string_view version();
 
 }  // namespace octurn

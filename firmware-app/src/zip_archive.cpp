@@ -71,7 +71,7 @@ std::string write_archive(std::span<const ArchivedFile> files, system_clock::tim
   }
   const bool added =
       std::ranges::all_of(files, [&](const ArchivedFile& file) { return add(zip, file, info); });
-  if (zipClose(zip, nullptr) != ZIP_OK || !added) {  // writing to memory fails only for lack of it
+  if (zipClose(zip, nullptr) != ZIP_OK || !added) {  // writing to memory fails only if none is left
     throw std::bad_alloc();
   }
   return {memory.bytes, memory.size};
@@ -79,7 +79,7 @@ std::string write_archive(std::span<const ArchivedFile> files, system_clock::tim
 
 }  // namespace
 
-// On a thread of its own: minizip takes 70 KB of stack, and the HTTP server's threads have 100 KB.
+// Runs on its own thread: minizip uses 70 KB of stack, and the HTTP server's threads have 100 KB.
 std::string make_zip(std::span<const ArchivedFile> files, system_clock::time_point time) {
   return std::async(std::launch::async, write_archive, files, time).get();
 }

@@ -26,7 +26,7 @@ constexpr unsigned long encrypted = 1;  // bit of a file's flags
               "Send a file that an Octurn has made: scan.zip.");
 }
 
-/// The name of the file that the archive stands at.
+/// The name of the archive's current entry.
 std::string name_here(unzFile zip) {
   std::array<char, max_name + 1> name{};
   unz_file_info64 info{};
@@ -40,7 +40,7 @@ std::string name_here(unzFile zip) {
   return {name.data(), info.size_filename};
 }
 
-/// Unpacks the file that the archive stands at. @return its bytes
+/// Unpacks the archive's current entry. @return its size, bytes
 std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max_bytes) {
   if (unzOpenCurrentFile(zip) != UNZ_OK) {
     refuse("is damaged");
@@ -56,7 +56,7 @@ std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max
     }
     file.write(std::as_bytes(std::span(part).first(static_cast<std::size_t>(got))));
   }
-  if (got < 0 || unzCloseCurrentFile(zip) != UNZ_OK) {  // which checks the checksum
+  if (got < 0 || unzCloseCurrentFile(zip) != UNZ_OK) {  // closing verifies the CRC-32
     refuse("is damaged");
   }
   file.commit();

@@ -7,19 +7,19 @@
 
 namespace octurn {
 
-/// What an archive may hold at most: it may come from anybody.
+/// Maximum content of an archive, whose source is untrusted.
 struct ZipLimits {
   std::uint64_t files = 4000;
-  std::uint64_t file_bytes = std::uint64_t{32} << 20U;  ///< of one file, unpacked
-  std::uint64_t all_bytes = std::uint64_t{2} << 30U;    ///< of all of them
+  std::uint64_t file_bytes = std::uint64_t{32} << 20U;  ///< one file, unpacked
+  std::uint64_t all_bytes = std::uint64_t{2} << 30U;    ///< all files, unpacked
 };
 
-/// Unpacks a zip archive into a folder that exists. Nothing but regular files of allowed names is
-/// made, each once, and no more is written than the limits allow, whatever the archive says of
-/// itself. Takes 70 KB of stack, which the threads of the HTTP server have not got.
-/// @param is_allowed  tells of a name, with '/' between folders, whether it may be in the archive
-/// @throws Error "bad-request"  if it is no whole archive, or is not as allowed; "disk-full",
-///               "write-failed"
+/// Unpacks a zip archive into an existing folder. Creates only regular files with allowed names,
+/// each once. Applies the limits to the bytes that it unpacks, not to the sizes that the archive
+/// declares. Uses 70 KB of stack, too much for a thread of the HTTP server.
+/// @param is_allowed  whether an entry may have this name, which has '/' between folders
+/// @throws Error "bad-request"  if the archive is damaged, exceeds a limit, or has a name twice or
+///               one that is not allowed; "disk-full", "write-failed"
 void unpack_zip(const std::filesystem::path& archive, const std::filesystem::path& folder,
                 const std::function<bool(std::string_view name)>& is_allowed,
                 const ZipLimits& limits = {});

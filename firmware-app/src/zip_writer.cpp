@@ -27,7 +27,7 @@ struct ZipWriter::Archive {
   zipFile zip = nullptr;
   bool has_file = false;
 
-  /// @return false if that failed
+  /// Closes the open file, if there is one. @return false if that failed
   bool close_file() { return !std::exchange(has_file, false) || zipCloseFileInZip(zip) == ZIP_OK; }
   bool close() {
     const bool closed = close_file();

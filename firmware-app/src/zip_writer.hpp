@@ -7,12 +7,11 @@
 
 namespace octurn {
 
-/// How a file is held in an archive: what is packed already is not packed again.
+/// Compression of a file in an archive; `stored` is for files that are compressed already.
 enum class ZipMethod { stored, deflated };
 
-/// A zip archive of files of any size, written as they come, that appears whole or not at all.
-/// Deterministic: every file has the same date. Takes 70 KB of stack, which the threads of the HTTP
-/// server have not got.
+/// Streams files of any size into a zip archive, which appears whole or not at all. Deterministic:
+/// every file has the same date. Uses 70 KB of stack, too much for a thread of the HTTP server.
 class ZipWriter {
  public:
   /// @throws Error "write-failed"
@@ -21,13 +20,14 @@ class ZipWriter {
   ZipWriter(const ZipWriter&) = delete;
   ZipWriter& operator=(const ZipWriter&) = delete;
 
-  /// Begins a file; the one before it is done. @throws Error "disk-full"
+  /// Begins a file and ends the one before it. @throws Error "disk-full"
   void begin(const std::string& name, ZipMethod method);
 
   /// Appends to the file that was begun. @throws Error "disk-full"
   void write(std::string_view bytes);
 
-  /// Ends the archive and gives it its name. @throws Error "disk-full", "write-failed"
+  /// Ends the archive, syncs it to disk and renames it to its target.
+  /// @throws Error "disk-full", "write-failed"
   void commit();
 
  private:

@@ -1,5 +1,7 @@
 // The three ways to scan that stand in front of all settings. Pure.
 
+import {leafChoices} from './settings.js';
+
 /** @typedef {import('./api.js').Settings} Settings */
 
 /**
@@ -8,16 +10,25 @@
  * @property {Settings} settings
  */
 
+const maxSnapshots = 400;
+
 /**
- * Standard is what the scanner scans with unless told otherwise; the others have the same space and pose.
+ * Standard is the scanner's default. Quick and best have a third and twice as many snapshots, and the next coarser and finer leaves: a scan
+ * by laser line starts from more and finer ones than a Kinect's.
  * @param {Settings} defaults
  * @returns {Preset[]}
  */
-export const presets = (defaults) => [
-  {name: 'quick', settings: {...defaults, snapshots: 12, filter: 'basic', method: 'solid', leaf_size_mm: 2}},
-  {name: 'standard', settings: defaults},
-  {name: 'best', settings: {...defaults, snapshots: 72, filter: 'average', frames: 10, method: 'solid', leaf_size_mm: 0.5}},
-];
+export function presets(defaults) {
+  const sizes = leafChoices(defaults.leaf_size_mm).map(({mm}) => mm);
+  const at = sizes.indexOf(defaults.leaf_size_mm);
+  const quick = {snapshots: Math.ceil(defaults.snapshots / 3), leaf_size_mm: sizes[Math.max(at - 1, 0)]};
+  const best = {snapshots: Math.min(2 * defaults.snapshots, maxSnapshots), leaf_size_mm: sizes[Math.min(at + 1, sizes.length - 1)]};
+  return [
+    {name: 'quick', settings: {...defaults, ...quick, filter: 'basic', method: 'solid'}},
+    {name: 'standard', settings: defaults},
+    {name: 'best', settings: {...defaults, ...best, method: 'solid'}},
+  ];
+}
 
 /** Settings that a filter or a method does not use do not count. @param {Partial<Settings>} settings */
 const used = ({snapshots, filter, frames, method, leaf_size_mm, threshold_m2, calibrate, clip_mm}) => JSON.stringify([
@@ -42,7 +53,9 @@ export const toKept = (settings) => JSON.stringify(Object.fromEntries(kept.map((
 export function fromKept(text, defaults) {
   try {
     const found = JSON.parse(text ?? '{}') ?? {};
-    const usable = kept.filter((key) => typeof found[key] === typeof defaults[key] && (typeof found[key] !== 'number' || found[key] > 0));
+    const isOffered = leafChoices(defaults.leaf_size_mm).some(({mm}) => mm === found.leaf_size_mm);
+    const usable = kept.filter((key) => typeof found[key] === typeof defaults[key] &&
+      (typeof found[key] !== 'number' || found[key] > 0) && (key !== 'leaf_size_mm' || isOffered));
     return {...defaults, ...Object.fromEntries(usable.map((key) => [key, found[key]]))};
   } catch {
     return defaults;

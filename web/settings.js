@@ -12,16 +12,17 @@ const details = [
   {mm: 2, name: 'coarse'},
   {mm: 1, name: 'medium'},
   {mm: 0.5, name: 'fine'},
+  {mm: 0.25, name: 'finest'},
 ];
 
 /**
- * The leaf sizes to choose from: the named ones, and the scanner's default if it is another.
+ * The leaf sizes to choose from: the named ones from four times to half of the scanner's default, and that if it is another.
  * @param {number} preset  millimetres
  * @returns {Detail[]} coarse to fine
  */
 export function leafChoices(preset) {
-  return details.some(({mm}) => mm === preset) ? details :
-      [...details, {mm: preset, name: 'preset'}].sort((a, b) => b.mm - a.mm);
+  const near = details.filter(({mm}) => mm <= 4 * preset && mm > preset / 4);
+  return near.some(({mm}) => mm === preset) ? near : [...near, {mm: preset, name: 'preset'}].sort((a, b) => b.mm - a.mm);
 }
 
 /** @param {Settings['filter'] | Settings['method'] | Settings['calibrate']} choice */

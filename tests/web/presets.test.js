@@ -22,6 +22,17 @@ test('quick takes fewer stops than standard, and best more and finer ones', () =
   assert.ok(quick.leaf_size_mm > standard.leaf_size_mm && standard.leaf_size_mm > best.leaf_size_mm);
 });
 
+test('with lasers no preset has lines farther apart than the object needs, nor more stops than a scan may have', () => {
+  const lasers = {...settings, snapshots: 200, filter: 'basic', leaf_size_mm: 0.5};
+  const chosen = presets(lasers).map((preset) => preset.settings);
+  assert.deepEqual(chosen.map(({snapshots}) => snapshots), [67, 200, 400]);
+  assert.deepEqual(chosen.map(({leaf_size_mm}) => leaf_size_mm), [1, 0.5, 0.25]);
+});
+
+test('a leaf size that is not offered any more, as of another sensor, is not chosen', () => {
+  assert.deepEqual(fromKept(toKept({...settings, leaf_size_mm: 0.25}), settings), settings);
+});
+
 test('the last choice is kept, but not the space, which the scanner may have changed since', () => {
   const chosen = {...settings, snapshots: 50, leaf_size_mm: 2, clip_mm: [0, 0, 0, 1, 1, 1]};
   assert.deepEqual(fromKept(toKept(chosen), settings), {...settings, snapshots: 50, leaf_size_mm: 2});

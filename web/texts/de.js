@@ -167,6 +167,7 @@ export const texts = {
   'leaf.coarse': 'Grob',
   'leaf.medium': 'Mittel',
   'leaf.fine': 'Fein',
+  'leaf.finest': 'Feinst',
   'leaf.preset': 'Vorgabe',
   'method.solid': 'Körper',
   'method.intersection': 'Schale',

@@ -176,6 +176,7 @@ export const texts = {
   'leaf.coarse': 'Coarse',
   'leaf.medium': 'Medium',
   'leaf.fine': 'Fine',
+  'leaf.finest': 'Finest',
   'leaf.preset': 'Preset',
   'method.solid': 'Solid',
   'method.intersection': 'Intersection',

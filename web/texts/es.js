@@ -167,6 +167,7 @@ export const texts = {
   'leaf.coarse': 'Grueso',
   'leaf.medium': 'Medio',
   'leaf.fine': 'Fino',
+  'leaf.finest': 'Muy fino',
   'leaf.preset': 'Predeterminado',
   'method.solid': 'Sólido',
   'method.intersection': 'Cáscara',

@@ -167,6 +167,7 @@ export const texts = {
   'leaf.coarse': 'Grossier',
   'leaf.medium': 'Moyen',
   'leaf.fine': 'Fin',
+  'leaf.finest': 'Très fin',
   'leaf.preset': 'Par défaut',
   'method.solid': 'Solide',
   'method.intersection': 'Coque',

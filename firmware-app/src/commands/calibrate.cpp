@@ -53,7 +53,7 @@ std::string to_text(const CalibrationReport& report) {
   return text.str();
 }
 
-/// How each laser's plane was turned, as lines for people.
+/// The angle between each laser's told and solved plane, as lines for people.
 std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
   std::ostringstream text;
   text.setf(std::ios::fixed);
@@ -66,7 +66,7 @@ std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& so
   return text.str();
 }
 
-/// @param told, solved  lasers; empty of a depth sensor
+/// @param told, solved  lasers before and after solving; empty for a depth sensor
 void write_report(const CalibrationReport& report, const std::vector<double>& angles,
                   const std::vector<Laser>& told, const std::vector<Laser>& solved,
                   const CalibrateArguments& arguments) {
@@ -106,14 +106,14 @@ void show_turn(ProgressBar& bar, const CalibrationRun& run) {
 bool calibrate_rig(const CalibrateArguments& arguments) {
   const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config);
-  load_sensor_drivers();  // before the first thread, as it asks
+  load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   ScanSettings settings = scanner.calibration().in_force(config.scan);
   settings.snapshots = arguments.stops;
   scanner.expect_ready();
-  scanner.calibrate(settings);  // nothing else goes on here
+  scanner.calibrate(settings);  // cannot be refused as busy: this process does nothing else
   const CalibrationRun run = follow_calibration(scanner, signal.token(), show_turn);
   if (run.failure) {
     throw to_error(*run.failure);

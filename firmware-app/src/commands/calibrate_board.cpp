@@ -57,9 +57,9 @@ struct PictureSize {
   int height = 1;
 };
 
-/// What a PNG says in its header; 1 x 1, which its decoding refuses, if it has none.
+/// Reads the size from a PNG's header; 1 x 1 for a file without one, which fails to decode.
 PictureSize size_of(std::string_view png) {
-  constexpr std::size_t header = 24;  // bytes: signature, chunk's length and name, width, height
+  constexpr std::size_t header = 24;  // bytes: signature, length and type of IHDR, width, height
   const auto number = [&](std::size_t first) {
     unsigned value = 0;
     for (std::size_t i = first; i < first + 4; ++i) {
@@ -105,7 +105,7 @@ LensReport report_from(const std::filesystem::path& folder) {
   return calibrate_lens(views, size.width, size.height);
 }
 
-/// What a person should do with the board, beside the progress bar.
+/// The advice as the label of the progress bar.
 std::string_view to_words(BoardAdvice advice) {
   constexpr std::array<std::string_view, 5> words{"show the board", "hold it still", "tilt it",
                                                   "show it at the picture's edges",
@@ -126,7 +126,7 @@ LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   scanner.expect_ready();
-  scanner.look_at_board();  // nothing else goes on here
+  scanner.look_at_board();  // cannot be refused as busy: this process does nothing else
   const CalibrationRun run = follow_calibration(scanner, signal.token(), show_advice);
   if (run.failure) {
     throw to_error(*run.failure);

@@ -6,7 +6,7 @@
 namespace octurn {
 namespace {
 
-/// The options of what is calibrated with a printed board.
+/// The command's options that need or make a printed board.
 struct BoardOptions {
   CLI::Option* board = nullptr;
   CLI::Option* print = nullptr;

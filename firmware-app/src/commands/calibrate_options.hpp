@@ -6,9 +6,9 @@
 
 namespace octurn {
 
-/// Options of `octurn calibrate`, by what it is to find.
+/// Options of `octurn calibrate`, grouped by the quantity that it measures.
 struct CalibrateOptions {
-  CalibrateArguments pose = {};  ///< and what all have in common
+  CalibrateArguments pose = {};  ///< also holds the options that all three share
   CalibrateWallArguments wall = {};
   CalibrateBoardArguments board = {};
 };

@@ -15,7 +15,7 @@ namespace {
 
 double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
 
-/// The walls' frames, and whose they are.
+/// Views of walls, all by one sensor.
 struct Looks {
   std::vector<WallView> views = {};
   std::string sensor_serial = {};
@@ -33,7 +33,7 @@ WallView read_view(const std::filesystem::path& folder, const Wall& wall,
   return view;
 }
 
-/// @throws Error "recording-malformed"  also if they are walls of several sensors
+/// @throws Error "recording-malformed"  also if the folders are of several sensors
 Looks read_looks(const std::vector<std::filesystem::path>& folders, const std::stop_token& stop) {
   Looks looks;
   for (const std::filesystem::path& folder : folders) {

@@ -9,10 +9,10 @@
 
 namespace octurn {
 
-/// A model with colours that a command is to write: first as an STL beside it, then in its format.
+/// Writes a model with colours in two steps: an STL beside the file, then the file itself.
 class ColouredModel {
  public:
-  /// @throws Error "bad-settings"    if the file's name ends with no format that has colours
+  /// @throws Error "bad-settings"    if the file's extension is not of a format with colours
   /// @throws Error "scan-malformed"  if the scan has no pictures
   ColouredModel(const std::filesystem::path& file, const Scan& scan);
 
@@ -23,7 +23,7 @@ class ColouredModel {
 
   const std::filesystem::path& stl() const { return stl_; }
 
-  /// Writes it, whole or not at all, once the STL is there.
+  /// Colours the finished STL and writes the file, which appears whole or not at all.
   /// @param folder  of the scan
   /// @throws Error "disk-full", "write-failed", "memory-limit"; Stopped
   void write(const std::filesystem::path& folder, const Scan& scan,

@@ -16,35 +16,35 @@ namespace octurn {
 /// Options of the sensor and the turntable.
 struct RigArguments {
   bool simulate = false;
-  bool laser = false;          ///< what is simulated is a camera with line lasers
+  bool laser = false;          ///< simulates a camera with line lasers, not a depth sensor
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
-  bool other_lens = false;     ///< the simulated camera's lens is not the one of the settings
-  bool perfect = false;  ///< the simulated sensor has no error of its own, and its pose is true
-  std::optional<double> wall = {};        ///< metres: the simulated sensor looks at a wall
-  double speed = 1.0;                     ///< of the simulated rig, relative to life
-  std::optional<double> gear_ratio = {};  ///< of the simulated turntable; none: as it is set
+  bool other_lens = false;     ///< the simulated camera's lens differs from the settings
+  bool perfect = false;  ///< no fixed pattern error of the simulated sensor; its told pose is true
+  std::optional<double> wall = {};        ///< metres from the simulated sensor to a wall it faces
+  double speed = 1.0;                     ///< of the simulated rig, relative to real time
+  std::optional<double> gear_ratio = {};  ///< of the simulated turntable; nothing: as configured
   bool reversed = false;                  ///< the simulated motor is wired the other way
-  double play_deg = 0;                    ///< of the simulated gears
-  std::string sensor_uri = {};            ///< of a DepthSensor; empty: the default one
+  double play_deg = 0;                    ///< backlash of the simulated gears
+  std::string sensor_uri = {};            ///< for `open_sensor`
 };
 
 /// The rig that the options select.
-/// @param config  what it is told of itself. A simulated turntable obeys gear_ratio and reversed
+/// @param config  settings of the rig; a simulated turntable uses its gear_ratio and reversed
 RigOptions rig_options(const RigArguments& arguments, const Config& config);
 
 /// Options of the configuration.
 struct ConfigArguments {
   std::optional<std::filesystem::path> file = {};
-  nlohmann::json given = nlohmann::json::object();  ///< by their keys in octurn.json
-  std::optional<SensorKind> sensor = {};            ///< in place of the file's
+  nlohmann::json given = nlohmann::json::object();  ///< options by their keys in octurn.json
+  std::optional<SensorKind> sensor = {};            ///< overrides the file's
 };
 
-/// The configuration file, the page's settings over it, and the options of the command line over
-/// both. Warns of page's settings that cannot be used.
+/// Reads the configuration file. The page's settings override it, and the options of the command
+/// line override both. If the page's settings cannot be used, `ConfigStore::trouble` says why.
 /// @throws Error  that names the wrong key of the file or the options
 ConfigStore open_config(const ConfigArguments& arguments);
 
-/// What is in force with these.
+/// The configuration in force with these options.
 Config make_config(const ConfigArguments& arguments);
 
 /// Checks before minutes of work that the model can be written. @param output  "-": standard output
@@ -56,7 +56,7 @@ struct ServeArguments {
   ConfigArguments config = {};
   std::optional<std::filesystem::path> web = {};
   std::optional<std::filesystem::path> appliance = {};  ///< folder of an Appliance
-  std::string builds_by = "here";                       ///< or "slurm": who builds stored scans
+  std::string builds_by = "here";  ///< where models of stored scans are built: "here" or "slurm"
 };
 
 /// `octurn serve`: the daemon. Returns after SIGTERM or SIGINT.
@@ -67,7 +67,7 @@ struct ScanArguments {
   ConfigArguments config = {};
   nlohmann::json settings = nlohmann::json::object();  ///< of ScanSettings, by their keys
   std::optional<std::string> resume = {};     ///< id of a scan to resume, with its own settings
-  std::optional<std::string> pose_of = {};    ///< id or folder of a scan of the object, turned over
+  std::optional<std::string> pose_of = {};    ///< id or folder of the scan before turning it over
   std::filesystem::path output = "Scan.stl";  ///< "-" is standard output
 };
 
@@ -78,13 +78,13 @@ struct RecordArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
   std::filesystem::path output = {};
-  std::filesystem::path wall = {};  ///< folder for a look at a wall, in place of a recording
+  std::filesystem::path wall = {};  ///< folder for frames of a wall, in place of a recording
   int snapshots = 36;               ///< stops in a turn
-  std::optional<int> frames = {};   ///< at each stop; 10, or 25 of a wall
+  std::optional<int> frames = {};   ///< at each stop; default: 10, or 25 of a wall
 };
 
 /// `octurn record`: records the sensor during one turn of the platform, for `--sensor` to replay;
-/// or what it sees of a wall, for `octurn calibrate --wall`.
+/// or frames of a wall, for `octurn calibrate --wall`.
 void record(const RecordArguments& arguments);
 void record_wall(const RecordArguments& arguments);
 
@@ -92,7 +92,7 @@ struct DoctorArguments {
   RigArguments rig = {};
   ConfigArguments config = {};
   bool json = false;                              ///< one line of JSON in place of the table
-  bool turn = false;                              ///< also turns the platform, and looks
+  bool turn = false;                              ///< also turns the platform to check its motion
   std::optional<std::filesystem::path> zip = {};  ///< also writes an archive for remote support
 };
 
@@ -105,27 +105,27 @@ struct ReconstructArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};                     ///< "-" is standard output
   nlohmann::json settings = nlohmann::json::object();    ///< of ModelSettings, by their keys
-  std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
+  std::optional<std::filesystem::path> sensor_map = {};  ///< overrides the folder's
   bool json = false;                                     ///< one line of JSON on standard output
-  bool colour = false;  ///< the model is no STL, and has the colours of the scan's pictures
+  bool colour = false;  ///< colours the model by the scan's pictures; its format is not STL
 };
 
 /// `octurn reconstruct`: makes a model from a scan folder.
 void reconstruct(const ReconstructArguments& arguments);
 
 struct CalibrateArguments {
-  std::optional<std::filesystem::path> folder = {};      ///< a stored scan; none: a turn on the rig
-  std::optional<std::filesystem::path> sensor_map = {};  ///< in place of the folder's
-  bool apply = false;  ///< writes what is accepted into the folder's scan.json
+  std::optional<std::filesystem::path> folder = {};      ///< a stored scan; nothing: turns the rig
+  std::optional<std::filesystem::path> sensor_map = {};  ///< overrides the folder's
+  bool apply = false;  ///< writes an accepted pose into the folder's scan.json
   bool json = false;   ///< one line of JSON in place of text
   RigArguments rig = {};
   ConfigArguments config = {};
   int stops = default_calibration_stops;  ///< of the turn
 };
 
-/// `octurn calibrate`: the sensor's pose, from a stored scan, or from a turn that is made for it. A
-/// pose that a turn tells is in force from then on.
-/// @return false if what was solved is not to be trusted
+/// `octurn calibrate`: solves the sensor's pose from a stored scan or from a new turn of the
+/// platform. An accepted pose of a turn is put into force.
+/// @return false if the solution was rejected
 bool calibrate(const CalibrateArguments& arguments);
 
 struct CalibrateWallArguments {
@@ -134,26 +134,26 @@ struct CalibrateWallArguments {
   bool json = false;  ///< one line of JSON in place of text
 };
 
-/// `octurn calibrate --wall`: the map of a sensor's own error, from looks at flat walls.
-/// @return false if they are no walls
+/// `octurn calibrate --wall`: maps a depth sensor's fixed pattern error from frames of flat walls.
+/// @return false if the map was rejected
 bool calibrate_wall(const CalibrateWallArguments& arguments);
 
 struct CalibrateBoardArguments {
-  std::filesystem::path folder = {};     ///< of pictures; empty: the rig's camera looks at it
-  std::optional<std::string> keep = {};  ///< serial number of the camera that took them
-  std::filesystem::path pdf = {};        ///< for `print_board`
-  std::string paper = "a4";              ///< of that
+  std::filesystem::path folder = {};     ///< of pictures; empty: the rig's camera takes them
+  std::optional<std::string> keep = {};  ///< serial number of the camera whose lens to store
+  std::filesystem::path pdf = {};        ///< output of `print_board`
+  std::string paper = "a4";              ///< paper size of the PDF
   bool json = false;                     ///< one line of JSON in place of text
   RigArguments rig = {};
   ConfigArguments config = {};
 };
 
-/// `octurn calibrate --board`: the lens of a camera with lasers, from pictures of a printed board
-/// or from such a board that is held before the camera. The latter is kept if it is accepted.
-/// @return false if what was solved is not to be trusted
+/// `octurn calibrate --board`: solves the lens of a camera with lasers, from stored pictures of a
+/// printed board or by the rig's camera. An accepted lens of the rig's camera is stored.
+/// @return false if the solution was rejected
 bool calibrate_board(const CalibrateBoardArguments& arguments);
 
-/// `octurn calibrate --print-board`: writes that board as a PDF.
+/// `octurn calibrate --print-board`: writes the board as a PDF.
 void print_board(const CalibrateBoardArguments& arguments);
 
 struct SetArguments {
@@ -169,27 +169,27 @@ struct MergeArguments {
   std::vector<std::filesystem::path> folders = {};
   std::filesystem::path output = {};  ///< folder, which must not exist yet
   bool json = false;                  ///< one line of JSON in place of text
-  /// Of the poses that fit the last scan, the one to take, the best 0; none: what is accepted.
+  /// Index of the last scan's candidate pose to use, 0 is the best; nothing: registration chooses.
   std::optional<int> candidate = {};
-  /// Or points of the object: x, y, z in the first scan's frame, then in the last one's; mm.
+  /// Point correspondences, millimetres: x, y, z in the first scan's frame, then in the last one's.
   std::vector<double> pairs = {};
 };
 
-/// `octurn merge`: one scan folder of several scans of one object, laid down in several ways.
-/// @return false if the scans do not fit together, or in several ways
+/// `octurn merge`: registers several scans of one object in different poses and writes them as one
+/// scan folder.
+/// @return false if the scans do not fit together, or fit in several ways
 bool merge(const MergeArguments& arguments);
 
 /// `octurn password`: reads a line from standard input, and writes it as a password file for
 /// `password_file` of the configuration.
 void set_password(const std::filesystem::path& file);
 
-/// What `octurn update` installs.
 struct UpdateArguments {
   std::filesystem::path file = {};
-  bool takes_older = false;  ///< also a version that is older than the one that runs
+  bool takes_older = false;  ///< allows a version older than the one that runs
 };
 
-/// `octurn update`: executes the appliance's program that installs an update, in this process.
+/// `octurn update`: replaces this process by the appliance's installer of updates (execv(3)).
 /// @throws Error  if this is no appliance, or not root
 [[noreturn]] void install_update(const UpdateArguments& arguments);
 

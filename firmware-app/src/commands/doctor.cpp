@@ -79,7 +79,7 @@ SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_t
   return read_sensor(rig, stop);
 }
 
-/// What a turn of the platform shows.
+/// Turns the platform once and checks its motion.
 std::vector<Finding> check_motion(const DoctorInput& input, const std::stop_token& stop) {
   constexpr Check turn{"turn", "Turn"};
   if (input.lines == LineOwner::this_program && input.rig.stepper) {
@@ -115,7 +115,7 @@ bool doctor(const DoctorArguments& arguments) {
       .config = config,
       .settings_trouble = settings.trouble(),
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
-  load_sensor_drivers();  // before the first thread, as it asks
+  load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   const SensorReading reading = read_sensor_from_shell(input, signal.token());
   if (signal.token().stop_requested()) {

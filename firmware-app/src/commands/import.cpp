@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_image_bytes = std::size_t{64} << 20U;
-constexpr int max_side = 8192;  // pixels, as a scan may have
+constexpr int max_side = 8192;  // pixels, the limit of a scan's depth images
 
 std::string read_image(const fs::path& file) {
   auto bytes = read_regular_file(file, max_image_bytes);
@@ -37,7 +37,7 @@ void take_size(const std::string& png, Intrinsics& intrinsics) {
   constexpr std::size_t width_at = 16;
   constexpr std::size_t header = 24;
   if (png.size() < header) {
-    return;  // which decoding it refuses
+    return;  // decoding refuses the image
   }
   const auto number = [&](std::size_t at) {
     int value = 0;
@@ -54,7 +54,7 @@ void take_size(const std::string& png, Intrinsics& intrinsics) {
   }
 }
 
-/// Files the recording's depth images as snapshots. @return the scan that they make
+/// Copies the recording's depth images into the folder as snapshots. @return their scan
 Scan gather(const TumRecording& recording, const ImportArguments& arguments, const fs::path& folder,
             const std::stop_token& stop) {
   const std::string camera =
@@ -71,7 +71,7 @@ Scan gather(const TumRecording& recording, const ImportArguments& arguments, con
     if (index == 0) {
       take_size(png, scan.intrinsics);
     }
-    // Looked at now, as the recording may be gone when a model is made.
+    // Decoded to refuse a damaged image now: the recording may be gone when a model is made.
     decode_depth_png(image.file, std::as_bytes(std::span(png)), scan.intrinsics.width,
                      scan.intrinsics.height);
     const std::string file = shot_file(index);

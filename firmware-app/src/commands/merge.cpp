@@ -54,7 +54,7 @@ Json to_json(const Registration& registration) {
           {"candidates", std::move(candidates)}};
 }
 
-/// The answer as lines for people.
+/// The registration as lines for people.
 std::string to_text(const Registration& registration, const std::vector<StoredTurn>& turns) {
   if (!registration.accepted) {
     return "Not merged: " + registration.reason + ".\n";
@@ -81,7 +81,7 @@ std::string to_text(const Registration& registration, const std::vector<StoredTu
   return text.str();
 }
 
-/// The pose that points of the object tell. @throws Error "bad-settings"
+/// Solves the last scan's pose from point correspondences, mm. @throws Error "bad-settings"
 Eigen::Isometry3d pose_from(const std::vector<double>& coordinates) {
   constexpr std::size_t coordinates_of_pair = 6;
   std::vector<PointPair> pairs;
@@ -102,7 +102,7 @@ Eigen::Isometry3d pose_from(const std::vector<double>& coordinates) {
   return *pose;
 }
 
-/// Registers the turns, from where the arguments say that the last one lay.
+/// Registers the turns. The arguments may give an estimate of the last turn's pose.
 Registration register_as_told(std::vector<StoredTurn>& turns, const MergeArguments& arguments,
                               int threads, const std::stop_token& stop) {
   auto& told = turns.back().told_object_from_platform;

@@ -7,7 +7,7 @@
 namespace octurn {
 namespace {
 
-/// What `octurn reconstruct` does: a model, a plan or a tile.
+/// Runs `octurn reconstruct`, which makes a model, a plan or a tile.
 void run_reconstruct(const TileArguments& arguments) {
   if (arguments.plan) {
     plan_tiles(arguments);

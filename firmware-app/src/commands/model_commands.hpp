@@ -15,21 +15,21 @@ class Option;
 
 namespace octurn {
 
-/// The commands that make models, whole and tile by tile, and scans of what other programs
-/// recorded.
+// Commands that reconstruct models, whole or tile by tile, and that import other programs'
+// recordings.
 
 struct TileArguments {
-  ReconstructArguments model = {};                      ///< of the whole, but for its output
+  ReconstructArguments model = {};                      ///< its output is a model, plan or tile
   bool plan = false;                                    ///< prints the tiles; makes none
-  std::optional<std::size_t> tile = {};                 ///< makes this one alone
-  std::optional<std::filesystem::path> plan_file = {};  ///< that the output of `plan` was
+  std::optional<std::size_t> tile = {};                 ///< index of the only tile to make
+  std::optional<std::filesystem::path> plan_file = {};  ///< output of an earlier run with `plan`
 };
 
-/// `octurn reconstruct --plan`: the tiles of a scan with free poses, as a line of JSON; and as a
-/// file, if there is an output.
+/// `octurn reconstruct --plan`: prints the tiles of a scan with free poses as a line of JSON, and
+/// writes the plan to the output if one is given.
 void plan_tiles(const TileArguments& arguments);
 
-/// `octurn reconstruct --tile`: one of them.
+/// `octurn reconstruct --tile`: makes one tile.
 void make_tile(const TileArguments& arguments);
 
 struct JoinArguments {
@@ -38,20 +38,20 @@ struct JoinArguments {
   bool json = false;  ///< one line of JSON on standard output
 };
 
-/// `octurn join`: a model from all tiles of a scan.
+/// `octurn join`: joins all tiles of a scan into a model.
 void join(const JoinArguments& arguments);
 
-/// `octurn build`: the build that `octurn serve --builds-by slurm` has ordered in a folder.
+/// `octurn build`: builds the task that `octurn serve --builds-by slurm` has written to a folder.
 void build_ordered(const std::filesystem::path& folder);
 
 struct ImportArguments {
   std::filesystem::path folder = {};
   std::filesystem::path output = {};  ///< scan folder to write
-  std::string camera = {};            ///< a name or four numbers; empty: as the folder's name tells
-  int every = 1;                      ///< takes one of so many depth images
+  std::string camera = {};            ///< name or "FX,FY,CX,CY"; empty: from the folder's name
+  int every = 1;                      ///< takes every n-th depth image
 };
 
-/// `octurn import tum`: a scan folder from a recording in the layout of TUM's RGB-D data sets.
+/// `octurn import tum`: makes a scan folder of a recording in the layout of TUM's RGB-D data sets.
 void import_tum(const ImportArguments& arguments);
 
 /// Adds the commands. The arguments outlive the parsing.

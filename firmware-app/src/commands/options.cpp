@@ -60,7 +60,7 @@ CLI::Option* add_option_of_type(CLI::App& command, const Field& field, json& giv
   return add_option<std::string>(command, field, given);
 }
 
-/// An option that has something simulated, with the object for it. Its value is optional.
+/// Adds an option that selects a simulated rig. Its optional value is the object's mesh file.
 const CLI::Option* add_mesh_option(CLI::App& command, const std::string& name, RigArguments& rig,
                                    const std::string& help) {
   return command.add_option(name, rig.mesh_file, help)->type_name("[=MESH]")->expected(0, 1);
@@ -107,7 +107,7 @@ std::vector<const CLI::Option*> add_laser_simulation_options(CLI::App& command, 
                            "longer, off the middle, and distorts")};
 }
 
-/// Refuses options that are given without what they belong to.
+/// Refuses options that are given without the option that they depend on.
 void expect_partner(const std::vector<const CLI::Option*>& options, bool has_partner,
                     const std::string& partner) {
   for (const CLI::Option* option : options) {
@@ -187,7 +187,7 @@ void expect_writable(const std::filesystem::path& output) {
                 "--output is empty: must be a file, or - for standard output");
   }
   if (output != "-") {
-    const AtomicFile probe(output);  // which its end removes
+    const AtomicFile probe(output);  // its destructor removes the temporary file
   }
 }
 

@@ -25,13 +25,14 @@ struct ConfigArguments;
 
 /// Adds the options of sensor and turntable.
 /// @param rig     outlives the parsing
-/// @param config  the same; gets the kind of a simulated sensor
+/// @param config  outlives the parsing; receives the kind of a simulated sensor
 void add_rig_options(CLI::App& command, RigArguments& rig, ConfigArguments& config);
 
 /// Adds the option of the configuration file. @param config  outlives the parsing
 void add_config_option(CLI::App& command, ConfigArguments& config);
 
-/// The same, and options of what is in it of the folder of scans and the machine's memory.
+/// Adds the options of the configuration file and of the folder of scans, `data`.
+/// @param config  outlives the parsing
 void add_config_options(CLI::App& command, ConfigArguments& config);
 
 /// Refuses options of the other method. @throws Error "bad-settings"  that names the option

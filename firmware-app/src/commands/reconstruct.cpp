@@ -31,8 +31,8 @@ using Json = nlohmann::ordered_json;
 
 /// Duration of each stage.
 struct Times {
-  Clock::duration snapshots = {};  ///< reading and intersecting them
-  Clock::duration surface = {};    ///< making and writing it
+  Clock::duration snapshots = {};  ///< reading them and adding them to the reconstruction
+  Clock::duration surface = {};    ///< extracting and writing it
 };
 
 double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
@@ -51,7 +51,7 @@ std::uint64_t peak_memory_bytes() {
   return 0;
 }
 
-/// The settings that the method uses. A space that has no clip box has none here.
+/// The settings that the method uses; `clip_mm` is null for a scan without a clip box.
 Json to_json(ModelSettings settings) {
   const Box& clip = settings.scan.clip;
   const bool is_clipped = clip.min != everywhere.min || clip.max != everywhere.max;
@@ -76,7 +76,7 @@ std::string to_text(const Quality& quality) {
   return text + ".\n";
 }
 
-/// @param quality  of a scan on a platform; that of a space is not judged
+/// @param quality  nothing for a scan with free poses, which is not judged
 Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
              const ModelSettings& settings, const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
@@ -141,7 +141,7 @@ class ModelOutput {
   std::optional<StlFile> file_ = {};
 };
 
-/// The folder on whose disk tiles wait: that of the model.
+/// The folder for temporary tiles, the model's own; empty for standard output.
 std::filesystem::path spool_of(const std::filesystem::path& output) {
   if (output.empty() || output == "-") {
     return {};
@@ -156,7 +156,7 @@ void print(const ReconstructArguments& arguments, const Json& report) {
   }
   const std::string line = report.dump() + "\n";
   if (arguments.output == "-") {
-    std::cerr << line;  // a line of text does not belong into the model
+    std::cerr << line;  // standard output holds the model
   } else {
     write_standard_output(line);
   }

@@ -35,7 +35,7 @@ ReconstructOptions options_from(const ModelSettings& settings, const Scan& scan)
   return options;
 }
 
-/// A scan with the pose that its model is made with, and what solving it and its last look found.
+/// A scan with the pose that its model is made with, and the findings of its calibration.
 struct PosedScan {
   Scan scan = {};
   std::vector<CalibrationFinding> findings = {};
@@ -48,7 +48,8 @@ void take_told_poses(Scan& scan) {
   }
 }
 
-/// A solved pose that merely confirms the told one does not replace it: the model keeps its bytes.
+/// Solves the sensor's pose if the settings ask for it. A solved pose that only confirms the told
+/// one does not replace it, so that the model keeps its bytes.
 PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
                     const std::stop_token& stop) {
   PosedScan posed{.scan = std::move(scan)};
@@ -67,7 +68,7 @@ PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelS
   return posed;
 }
 
-/// The scan, to be read with the sensor map that the arguments name, else with its own.
+/// Reads the scan. The sensor map that the arguments name, if any, replaces its own.
 Scan read_scan_of(const ReconstructArguments& arguments) {
   Scan scan = read_scan(arguments.folder);
   if (arguments.sensor_map) {

@@ -13,15 +13,15 @@
 
 namespace octurn {
 
-/// What `octurn reconstruct` makes a model of.
+/// The input of `octurn reconstruct`.
 struct ReconstructInput {
   ModelSettings settings = {};
   Scan scan = {};                                 ///< with the pose that the model is made with
-  std::vector<CalibrationFinding> findings = {};  ///< of solving the pose, and of the last look
+  std::vector<CalibrationFinding> findings = {};  ///< of solving the pose; of a moved object
   ReconstructOptions options = {};
 };
 
-/// Reads the scan, solves its pose where that is asked for, and makes options of the settings.
+/// Reads the scan, solves its pose if the settings ask for it, and makes options of the settings.
 /// @throws Error, Stopped
 ReconstructInput read_input(const ReconstructArguments& arguments, const std::stop_token& stop);
 

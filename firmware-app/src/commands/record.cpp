@@ -38,7 +38,7 @@ void record(const RecordArguments& arguments) {
   }
   const Config config = make_config(arguments.config);
   const RigOptions options = rig_options(arguments.rig, config);
-  load_sensor_drivers();  // before the first thread, as it asks
+  load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   const std::stop_token stop = signal.token();
   Rig rig(options);

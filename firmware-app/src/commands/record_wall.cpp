@@ -8,14 +8,14 @@
 namespace octurn {
 namespace {
 
-constexpr int usual_frames = 25;  // more does not lower the noise that a wall's map is left with
+constexpr int usual_frames = 25;  // more frames do not lower the noise of the map
 
 }  // namespace
 
 void record_wall(const RecordArguments& arguments) {
   const Config config = make_config(arguments.config);
   const RigOptions options = rig_options(arguments.rig, config);
-  load_sensor_drivers();  // before the first thread, as it asks
+  load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   Rig rig(options);
   DepthSensor& sensor = rig.sensor();

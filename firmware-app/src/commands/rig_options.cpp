@@ -12,14 +12,15 @@
 namespace octurn {
 namespace {
 
-/// The simulated platform's motion: a gear or a wire that differs from the settings shows.
+/// The simulated platform's motion. If its gear ratio or wiring differs from the settings, its rate
+/// is not 1.
 SimulatedMechanism to_mechanism(const RigArguments& arguments, const StepperSettings& stepper) {
   const double rate = stepper.gear_ratio / arguments.gear_ratio.value_or(stepper.gear_ratio);
   const bool is_right = !arguments.reversed || stepper.reversed;
   return {.rate = is_right ? rate : -rate, .play = radians_from_degrees(arguments.play_deg)};
 }
 
-/// Opens a sensor as usual, but for a mechanism with faults.
+/// Returns `open_sensor`, or a function that also simulates the mechanism if that has faults.
 std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> sensor_opener(
     const SimulatedMechanism& mechanism) {
   if (mechanism.rate == 1 && mechanism.play == 0) {
@@ -28,11 +29,11 @@ std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> sensor_opene
   return [mechanism](const std::string& uri) { return on_mechanism(open_sensor(uri), mechanism); };
 }
 
-// How far the lasers of a simulated rig were turned in their holders since they were measured.
+// Rotation of a simulated rig's lasers in their holders since their planes were measured.
 constexpr double left_turn_deg = 0.06;  // 0.35 mm at the platform's axis
 constexpr double right_turn_deg = -0.04;
 
-/// A lens that differs from the told one as one of another make does.
+/// Changes a lens as much as lenses of different makes differ.
 CameraLens other_lens(CameraLens lens) {
   Intrinsics& in = lens.intrinsics;
   in.fx *= 1.012;
@@ -44,7 +45,7 @@ CameraLens other_lens(CameraLens lens) {
   return lens;
 }
 
-/// The rig as it stands in truth.
+/// The simulated rig's true geometry, from which the told one may differ.
 LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings& told) {
   const CameraLens lens = arguments.other_lens ? other_lens(told_lens(told)) : told_lens(told);
   LaserSimulation simulation{.mesh_file = arguments.mesh_file,

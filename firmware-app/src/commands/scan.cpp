@@ -81,7 +81,7 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
   }
 }
 
-/// The id of a scan that is told by it, or by its folder in the store.
+/// Converts the folder of a scan in the store to the scan's id; an id stays as it is.
 std::string to_id(const std::string& told, const ScanStore& store) {
   if (store.find(told) || !std::filesystem::is_directory(told)) {
     return told;
@@ -98,16 +98,16 @@ std::string to_id(const std::string& told, const ScanStore& store) {
   return id;
 }
 
-/// Settings as the arguments have them, the rest as another scan had it.
+/// The arguments' settings; those that they leave out are the first scan's.
 ScanSettings pose_settings(const ScanArguments& arguments, const Job& first,
                            const Scanner& scanner) {
   ScanSettings settings =
       settings_from(arguments.settings, scanner.calibration().in_force(first.settings));
-  settings.depth_scale = first.settings.depth_scale;  // so that both have one sensor
+  settings.depth_scale = first.settings.depth_scale;  // the scans are merged: they need one scale
   return settings;
 }
 
-/// @param settings  of a scan of its own
+/// Starts or resumes the scan. @param settings  for a scan that is neither resumed nor of a pose
 std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& settings,
                          const ScanStore& store, Scanner& scanner) {
   if (arguments.resume) {
@@ -120,7 +120,8 @@ std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& set
   return scanner.start(scanner.calibration().in_force(settings));
 }
 
-/// The scan whose model is handed over. @throws Error  if a pose does not fit to what it is one of
+/// The id of the scan that has the model. A scan of another pose is merged into its first scan.
+/// @throws Error "no-model"  if the pose could not be registered
 std::string scan_with_model(const Job& job, const ScanStore& store) {
   if (!job.pose_of) {
     return job.id;
@@ -141,16 +142,16 @@ void scan(const ScanArguments& arguments) {
   expect_options_of_method(arguments.settings, fields(settings), to_string(settings.method));
   expect_writable(arguments.output);  // before minutes of scanning
   const RigOptions rig = rig_options(arguments.rig, config);
-  load_sensor_drivers();  // before the first thread, as it asks
+  load_sensor_drivers();  // changes the working directory: before the first thread
 
   const SignalStop signal;
   ScanStore store(config.data);
   return_freed_memory();
   Scanner scanner(rig, config.limits, store);
 
-  scanner.expect_ready();  // or there would be no more than an empty folder
+  scanner.expect_ready();  // a missing device would leave an empty scan folder
   const std::optional<Job> started =
-      begin(arguments, settings, store, scanner);  // nothing else starts scans here
+      begin(arguments, settings, store, scanner);  // has a value: no other scan runs
   const Job job = follow(scanner, *started, signal.token());
   if (job.state != JobState::finished) {
     explain(job, store.folder(job.id));

@@ -29,30 +29,30 @@ std::string page_address(const HttpOptions& options, int port) {
   return "http://" + host + ":" + std::to_string(port) + "/";
 }
 
-/// Why the daemon ends what it does.
+/// Why the daemon stops serving.
 enum class Outcome { end, restart };
 
-/// A restart for new settings is put off by at least this long, so that the answer to the request
-/// that stored them is sent first.
+/// A restart for new settings waits at least this long, so that the response to the request that
+/// stored them is sent first.
 constexpr auto look_interval = 500ms;
 
-/// What a daemon is made of, once for all of its restarts.
+/// The daemon's state that outlives its restarts.
 struct Machine {
   const ServeArguments& arguments;
   const Page& page;
   std::optional<Appliance>& appliance;
-  StartRecord* start = nullptr;  ///< of real devices
-  int port = 0;                  ///< of the first start; 0: it has not come yet
+  StartRecord* start = nullptr;  ///< null on a simulated rig
+  int port = 0;                  ///< of the first start; 0 before it
 };
 
-/// What runs between two restarts.
+/// Objects that live from one restart to the next.
 struct Daemon {
   const ConfigStore& settings;
   const Scanner& scanner;
   const TurntableRunner& turntable;
 };
 
-/// Whether settings wait for a restart, and it disturbs nobody.
+/// Whether settings wait for a restart, and nothing runs that a restart would interrupt.
 bool is_restart_due(const Machine& machine, const Daemon& daemon) {
   return !daemon.settings.restart_needed().empty() && !daemon.scanner.status().busy() &&
          daemon.turntable.state().doing == TurntableState::Doing::nothing &&
@@ -87,7 +87,7 @@ Outcome wait(const Machine& machine, const Daemon& daemon) {
   return Outcome::end;
 }
 
-/// Tells where the page is: on standard output once, for who started the program.
+/// Logs the start, notifies systemd, and prints the page's address, at the first start only.
 void announce(Machine& machine, const HttpOptions& options, int port) {
   if (machine.port == 0) {
     std::cout << "Octurn is at " << page_address(options, port) << std::endl;
@@ -97,8 +97,8 @@ void announce(Machine& machine, const HttpOptions& options, int port) {
   notify_ready("serving the page at port " + std::to_string(port));
 }
 
-/// How Slurm builds models, if it does. The jobs run this program, which has the same path on all
-/// machines.
+/// Options of Slurm if it builds the models. Its jobs run this program, which has to have the same
+/// path on all machines.
 std::optional<SlurmOptions> slurm_options(const ServeArguments& arguments) {
   if (arguments.builds_by != "slurm") {
     return std::nullopt;
@@ -113,7 +113,7 @@ constexpr const char* leave_safe_mode =
     "Take the sensor's plugs out and put them in again, then restart Octurn. Scans and models are "
     "there as ever.";
 
-/// Devices that stay closed, and say why.
+/// Replaces the rig's functions that open devices by ones that throw the reason of safe mode.
 RigOptions closed(RigOptions rig) {
   rig.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
     throw Error(ErrorCode::sensor_missing, why_safe, leave_safe_mode);
@@ -183,11 +183,12 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
     notify_stopping();
   }
   api.end_events();
-  scanner.request_stop();  // so that no request waits for it while the server ends
+  scanner.request_stop();  // no request shall wait for the scanner while the server ends
   return outcome;
 }
 
-/// The same; with the settings that it served with last, where it cannot serve with these.
+/// Serves with the current settings. If they fail, restores the last ones that worked and asks for
+/// a restart.
 Outcome serve_with_good_settings(Machine& machine) {
   ConfigStore settings = open_config(machine.arguments.config);
   if (const std::string trouble = settings.trouble(); !trouble.empty()) {
@@ -213,7 +214,7 @@ void serve(const ServeArguments& arguments) {
     start.emplace(open_config(arguments.config).config().data);
   }
   if (!start || !start->is_safe_mode()) {
-    load_sensor_drivers();  // before the first thread, as it asks
+    load_sensor_drivers();  // changes the working directory: before the first thread
   }
   if (const auto slurm = slurm_options(arguments)) {
     slurm->slurm.expect_programs();

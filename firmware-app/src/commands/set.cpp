@@ -15,13 +15,14 @@ using nlohmann::json;
 constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;
 constexpr unsigned for_all_to_read = 0644;
 
-/// A value as JSON has it; text that is none is text.
+/// Parses a JSON number, boolean, string or null. Any other text becomes a string.
 json to_value(const std::string& text) {
   json value = json::parse(text, nullptr, false);
   return value.is_discarded() || value.is_structured() ? json(text) : value;
 }
 
-/// `turntable.gear_ratio=4` as an object in an object. @throws Error "bad-settings"
+/// Converts `turntable.gear_ratio=4` to `{"turntable": {"gear_ratio": 4}}`.
+/// @throws Error "bad-settings"
 json to_change(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
@@ -49,7 +50,7 @@ void set(const SetArguments& arguments) {
   json checked = values;
   checked.erase("data");
   checked.erase("password_file");
-  with_settings({}, checked);  // or the wrong key is named
+  with_settings({}, checked);  // throws an error that names a wrong key
   write_file(arguments.file, values.dump(2) + "\n", for_all_to_read);
 }
 

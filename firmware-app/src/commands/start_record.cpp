@@ -18,7 +18,8 @@ using namespace std::chrono_literals;
 constexpr auto long_enough = 1min;
 constexpr std::size_t max_bytes = 4096;
 
-/// Differs after every start of the machine: a plug that is pulled is nothing that a driver did.
+/// The kernel's id of this boot. Starts of earlier boots do not count: the machine may have lost
+/// power, which is no crash of a driver.
 std::string read_boot_id() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string id;
@@ -26,7 +27,7 @@ std::string read_boot_id() {
   return id;
 }
 
-/// How many starts of that boot a file tells of.
+/// The number of starts of a boot that the file counts; 0 if it is of another boot.
 int read_starts(const fs::path& file, const std::string& boot) {
   std::istringstream text(read_regular_file(file, max_bytes).value_or(""));
   std::string of_boot;

@@ -5,21 +5,21 @@
 
 namespace octurn {
 
-/// Tells whether the daemon is killed again and again soon after its start, as by a driver that a
-/// broken device brings down. The file `starts` of the data folder counts the starts of this boot
-/// of the machine; it goes when the daemon ends by itself, or has run for a minute.
+/// Detects a crash loop: a daemon that dies soon after each start, for example in the driver of a
+/// broken device. The file `starts` in the data folder counts the starts of this boot of the
+/// machine. It is removed when the daemon ends normally, or has run for a minute.
 class StartRecord {
  public:
-  /// Counts this start. A folder that cannot be written to counts none.
+  /// Counts this start, or logs that it is not counted if the folder cannot be written to.
   explicit StartRecord(const std::filesystem::path& data);
   ~StartRecord();
   StartRecord(const StartRecord&) = delete;
   StartRecord& operator=(const StartRecord&) = delete;
 
-  /// Whether three starts before this one ended like that: the devices had better stay closed.
+  /// Whether at least three starts before this one crashed. The devices should then stay closed.
   bool is_safe_mode() const { return failed_starts_ >= 3; }
 
-  /// Removes the file once a minute has passed.
+  /// Removes the file if a minute has passed since the start.
   void look();
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// @throws Error "bad-settings"  if the scan is one that is not tiled
+/// @throws Error "bad-settings"  if the scan was made on a turntable, which is not tiled
 ReconstructInput read_tiled_input(const ReconstructArguments& arguments,
                                   const std::stop_token& stop) {
   ReconstructInput input = read_input(arguments, stop);

@@ -24,7 +24,7 @@ void install_update(const UpdateArguments& arguments) {
   }
   std::string name = program;
   std::string older = "--older";
-  std::string file = std::filesystem::absolute(arguments.file);  // which begins with no hyphen
+  std::string file = std::filesystem::absolute(arguments.file);  // begins with '/', not with '-'
   std::array<char*, 4> words{name.data(), older.data(), file.data(), nullptr};
   if (!arguments.takes_older) {
     words = {name.data(), file.data(), nullptr};

@@ -35,7 +35,7 @@ int to_port(const sockaddr_storage& address) {
   return 0;
 }
 
-/// The number of a socket's inode, which no other open one has.
+/// The inode number of a socket, unique among open sockets; nothing for any other file.
 std::optional<ino_t> socket_inode(int descriptor) {
   struct ::stat info {};
   if (::fstat(descriptor, &info) != 0 || !S_ISSOCK(info.st_mode)) {
@@ -62,7 +62,7 @@ std::optional<AcceptedSocket> accepted_socket(int descriptor, int local_port) {
   if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
       ::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), size, address.data(), address.size(),
                     nullptr, 0, NI_NUMERICHOST) != 0) {
-    return std::nullopt;  // it listens, or its peer has gone
+    return std::nullopt;  // a listening socket, or its peer has closed
   }
   int unread = 0;  // bytes
   return AcceptedSocket{.descriptor = descriptor,
@@ -110,7 +110,7 @@ void defer_accept(int local_port, std::chrono::seconds time) {
 }
 
 void shut_down(const AcceptedSocket& socket, Cut cut) {
-  // The copy keeps what is looked at from becoming another file before it is shut.
+  // The duplicate pins the open file: `descriptor` may be closed and reused at any moment.
   const FileDescriptor copy(::fcntl(socket.descriptor, F_DUPFD_CLOEXEC, 0));
   if (!copy.is_open() || socket_inode(copy.number()) != socket.inode) {
     return;

@@ -23,17 +23,18 @@ using nlohmann::json;
 constexpr std::size_t max_file_bytes = std::size_t{64} * 1024;
 constexpr std::size_t id_bytes = 4;
 
-// More than can be guessed, however fast.
+// 128 bits: beyond any number of guesses.
 constexpr std::size_t secret_bytes = 16;
 
 // A key is "octurn", its id and its secret, with dashes between them.
 constexpr std::string_view key_begin = "octurn-";
 
-// SHA-256 of crypt(5), the fewest rounds: they slow down guesses of passwords that people choose,
-// and a key is drawn by lot.
+// SHA-256 of crypt(5) with the minimum of rounds: more rounds protect passwords that people choose,
+// and keys are random.
 constexpr const char* hash_method = "$5$";
 constexpr unsigned long hash_rounds = 1000;
 
+/// Hashes a key by crypt(3).
 /// @param setting  a salt, or a hash, whose salt is used @return empty if it is neither
 std::string hash_with(const std::string& key, const std::string& setting) {
   const auto room = std::make_unique<crypt_data>();  // too large for the stack of a server's thread
@@ -98,7 +99,7 @@ std::vector<AccessKey> AccessKeys::all() const {
   return keys_;
 }
 
-/// Stores them before they count: a key that was told, or revoked, stays so.
+/// Writes the file. Callers write before a change takes effect, so that no crash can undo it.
 void AccessKeys::write(const std::vector<AccessKey>& keys) const {
   json all = json::array();
   for (const AccessKey& key : keys) {

@@ -16,10 +16,10 @@ enum class KeyAccess {
   full,  ///< everything except setting the password and making keys, as a key can be overheard
 };
 
-/// A key of a program. The key itself is not stored.
+/// A program's key as it is stored: only its hash, not the key itself.
 struct AccessKey {
   std::string id = {};    ///< eight hexadecimal digits with which the key begins
-  std::string name = {};  ///< for people: what it was made for
+  std::string name = {};  ///< display name
   KeyAccess access = KeyAccess::read;
   std::string created = {};  ///< RFC 3339
   std::string hash = {};     ///< of crypt(5): SHA-256 with a salt
@@ -34,14 +34,14 @@ class AccessKeys {
  public:
   static constexpr std::size_t max_keys = 32;
 
-  /// @param file  of an earlier run, if it exists; a malformed one holds no valid key
+  /// @param file  read if it exists; no key of a malformed file is valid
   explicit AccessKeys(std::filesystem::path file);
 
-  /// The oldest first.
+  /// All keys, oldest first.
   std::vector<AccessKey> all() const;
 
   struct NewKey {
-    AccessKey kept = {};
+    AccessKey kept = {};   ///< as stored
     std::string key = {};  ///< the key itself, available only here
   };
 
@@ -49,7 +49,8 @@ class AccessKeys {
   /// @throws Error "bad-settings" if there are max_keys; "disk-full", "write-failed"
   NewKey add(const std::string& name, KeyAccess access, std::chrono::system_clock::time_point now);
 
-  /// @return false if there is none @throws Error "disk-full", "write-failed"
+  /// Removes the key of that id. @return false if there is none
+  /// @throws Error "disk-full", "write-failed"
   bool revoke(std::string_view id);
 
   /// The rights of a key; nothing if it is invalid.

@@ -17,20 +17,20 @@
 namespace octurn {
 namespace {
 
-/// The parts of a path for which its route has `{id}` and `{number}`; empty if it has not.
+/// The path segments that match `{id}` and `{number}` of a route; empty if the route has none.
 struct PathParts {
   std::string_view id = {};
   std::string_view number = {};
 };
 
-/// Takes a path's first part, up to the next slash, which goes with it.
+/// Removes the first segment of a path, and the slash after it. @return the segment
 std::string_view take_part(std::string_view& path) {
   const std::string_view part = path.substr(0, path.find('/'));
   path.remove_prefix(std::min(part.size() + 1, path.size()));
   return part;
 }
 
-/// Whether a path is as a route has it; `{id}` and `{number}` stand for any one part each.
+/// Matches a path with a route's, where `{id}` and `{number}` match any one segment each.
 std::optional<PathParts> match(std::string_view route, std::string_view path) {
   if (std::ranges::count(route, '/') != std::ranges::count(path, '/')) {
     return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<PathParts> match(std::string_view route, std::string_view path) {
   return parts;
 }
 
-/// Calls any of the handlers.
+/// Visitor of a handler: calls it with the parameters that it takes.
 struct Call {
   App& app;
   EventFeed& events;
@@ -79,7 +79,7 @@ struct Call {
   }
 };
 
-/// Holds one of the places that a semaphore counts; none where there is no semaphore.
+/// Holds a semaphore for its lifetime; null: it holds nothing.
 class Place {
  public:
   /// @throws Error "too-many"  if all are taken
@@ -101,7 +101,7 @@ class Place {
   std::counting_semaphore<>* places_;
 };
 
-/// Adds a method to those that a path takes.
+/// Adds a method to the value of an Allow header.
 void allow(std::string_view method, std::string& allowed) {
   allowed.append(allowed.empty() ? "" : ", ").append(method);
   allowed.append(method == "GET" ? ", HEAD" : "");
@@ -148,7 +148,7 @@ std::vector<RouteName> Api::routes() {
   return names;
 }
 
-/// What counts those who wait as this route may; null: it waits for nothing.
+/// The semaphore that limits requests which wait as this route does; null: the route does not wait.
 std::counting_semaphore<>* Api::places_for(const Route& route) {
   switch (route.waits_for) {
     case WaitsFor::look:

@@ -39,7 +39,7 @@ class Api {
 
   App app_;
   EventFeed events_;
-  // Who waits for a device holds one of the server's threads. These few never hold all of them.
+  // A request that waits for a device occupies a server thread. These limits leave threads free.
   std::counting_semaphore<> looks_{4};
   std::counting_semaphore<> starts_{4};
 };

@@ -28,7 +28,7 @@ struct App {
   AddressBook& addresses;
   PrinterUploads& uploads;
   RigOptions rig;                  ///< of the scanner
-  Appliance* appliance = nullptr;  ///< that this machine is; null: none
+  Appliance* appliance = nullptr;  ///< null: this machine does not run Octurn's image
   /// Started by Api, as it reads all members above. The last member, so that it ends first.
   std::unique_ptr<WebhookSender> webhooks = {};
 

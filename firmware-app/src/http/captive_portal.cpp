@@ -5,7 +5,7 @@
 namespace octurn {
 namespace {
 
-/// Of the page there, as image-build's hotspot.network has it.
+/// The page's address in the hotspot, as in image-build's hotspot.network.
 constexpr const char* page_address = "http://192.168.77.1/";
 
 }  // namespace
@@ -17,7 +17,7 @@ std::optional<Response> captive_answer(const Request& request,
       appliance.wifi().state != "hotspot") {
     return std::nullopt;
   }
-  // Phones show what a redirect leads to, and take a page of the status 200 for the internet's.
+  // Phones show the target of a redirect. They take an answer of status 200 for the internet's.
   return Response{.status = 302,
                   .headers = {{"Location", page_address}, {"Cache-Control", "no-store"}}};
 }

@@ -10,10 +10,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How often the debts are looked at; small beside the patience of seconds.
+// Polling interval of the debts, short relative to a patience of seconds.
 constexpr std::chrono::milliseconds tick(100);
 
-// The same while there are too many connections: whoever is in the queue behind them waits for it.
+// Polling interval while there are too many connections, as clients in the queue wait for it.
 constexpr std::chrono::milliseconds crowded_tick(10);
 
 }  // namespace
@@ -57,7 +57,7 @@ void ConnectionGuard::close() {
   look();
 }
 
-/// Shuts down what is due. The mutex is held.
+/// Polls the sockets and shuts down those that are due. The caller holds the mutex.
 void ConnectionGuard::look() try {
   const std::vector<AcceptedSocket> open = accepted_sockets(port_);
   const auto now = Clock::now();
@@ -71,7 +71,7 @@ void ConnectionGuard::look() try {
     }
   }
 } catch (const Error& error) {
-  log::error("http", error.what());  // too many open files, say: the next look may be luckier
+  log::error("http", error.what());  // such as too many open files; the next poll may succeed
 }
 
 void ConnectionGuard::watch(const std::stop_token& stop) {

@@ -20,22 +20,22 @@ class ConnectionGuard {
   /// @param port  at which the server listens
   ConnectionGuard(int port, const ConnectionLimits& limits);
 
-  /// A connection has been given a thread.
+  /// Handles that a civetweb thread has taken a new connection: polls the sockets at once.
   void take_up();
 
-  /// The connection of this peer, whose head is read.
+  /// Returns the connection of this peer once its request head is read, or `unknown`.
   Key claim(std::string_view address, int port);
 
-  /// Whether a connection was shut down because its client was too slow.
+  /// Whether a connection was shut down, for reading or in both directions.
   bool is_cut(Key key);
 
   /// Resets a connection now; bytes that its client has not received are discarded.
   void reset(Key key);
 
-  /// Begins another part of an exchange: its clock restarts.
+  /// Begins the next part of an exchange, with a debt of 0.
   void restart(Key key, Wait wait);
 
-  /// During its lifetime the server waits for a client.
+  /// RAII scope in which the server waits for a client, so that the client's debt grows.
   class Waiting {
    public:
     Waiting(ConnectionGuard& guard, Key key, Wait wait);

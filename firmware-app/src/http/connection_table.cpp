@@ -7,23 +7,23 @@
 namespace octurn {
 namespace {
 
-// A debt that a packet which is lost and sent again does not explain: such clients are cut first.
+// Debt that a retransmitted packet does not explain: clients above it are cut first.
 constexpr double noticeable_debt = 1;  // seconds
 
-// Time from a whole head's arrival to the thread that parses it, at most. With 10 ms a visitor was
-// cut as the only one who could be, while others filled the queue.
+// Maximum time from the arrival of a whole head until a thread parses it. With 10 ms a visitor was
+// cut as the only candidate, while others filled the queue.
 constexpr std::chrono::milliseconds reading_time(100);
 
-// A thread of a busy machine waits for its turn more than once while it parses a head.
+// Scheduling delays allowed per head: on a busy machine a thread is preempted more than once.
 constexpr int turns_of_reading = 10;
 
-// However busy the machine is, those who hold the server are cut after this.
+// Upper bound of the reading time, however busy the machine is.
 constexpr std::chrono::milliseconds max_reading_time(1000);
 
-// Share of the lateness that the next look still counts: a machine that was busy may be so again.
+// Decay of the lateness per poll: a machine that was busy may be so again.
 constexpr double remembered_lateness = 0.9;
 
-/// What a slow reader has not taken would stay in the kernel's memory for minutes.
+/// A slow reader is reset: its unsent bytes would stay in kernel memory for minutes.
 Cut final_cut(Wait wait) { return wait == Wait::reader ? Cut::reset : Cut::finish; }
 
 }  // namespace
@@ -63,14 +63,14 @@ std::optional<ConnectionTable::Key> ConnectionTable::claim(std::string_view addr
   return found->first;
 }
 
-/// A head that has come and that no thread has read yet is in the queue: so is every visitor while
-/// others hold all threads.
+/// A connection whose head has arrived unread is in the queue for a thread, as every visitor is
+/// while others occupy all threads.
 bool ConnectionTable::waits_for_server(const Connection& connection) {
   return connection.wait == Wait::server ||
          (connection.wait == Wait::head && connection.socket.has_unread);
 }
 
-/// Bytes a second; nothing where only the deadline counts.
+/// The minimum rate in bytes a second; nothing if only the deadline applies.
 std::optional<double> ConnectionTable::min_rate(Wait wait) const {
   switch (wait) {
     case Wait::upload:
@@ -126,8 +126,8 @@ std::optional<ConnectionTable::Ending> ConnectionTable::reset(Key key) {
   return Ending{.socket = found->second.socket, .cut = Cut::reset};
 }
 
-/// Cuts a connection that is over its limit. A client that sends a body can still be told so: it is
-/// only no longer listened to, and gets as much patience again to take the answer.
+/// Decides how a connection over its limit is cut. One that sends a body is first shut down for
+/// reading only, and has as much patience again to receive an error.
 std::optional<Cut> ConnectionTable::due(Connection& connection, Time now) const {
   if (connection.ended) {
     return std::nullopt;
@@ -156,7 +156,7 @@ std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
   for (std::size_t held = count_held(); held > limits_.max_connections; --held) {
     Connection* const connection = worst(now);
     if (connection == nullptr) {
-      break;  // all of them wait for the server, or are new
+      break;  // all connections wait for the server, or are new
     }
     connection->ended = true;
     endings.push_back({.socket = connection->socket, .cut = final_cut(connection->wait)});
@@ -169,7 +169,7 @@ std::size_t ConnectionTable::count_held() const {
       std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.ended; }));
 }
 
-/// The connections that wait for their clients, and have for a while.
+/// The connections that have waited for their clients for at least the reading time.
 std::vector<ConnectionTable::Connection*> ConnectionTable::candidates(Time now) {
   const auto reading = std::min<std::chrono::duration<double>>(
       reading_time + turns_of_reading * lateness_, max_reading_time);
@@ -182,8 +182,8 @@ std::vector<ConnectionTable::Connection*> ConnectionTable::candidates(Time now) 
   return waiting;
 }
 
-/// The connection with the most debt; where none has any to speak of, the oldest of the address
-/// that holds the most. Null if all wait for the server.
+/// The candidate with the most debt; if no debt is noticeable, the oldest candidate of the address
+/// with the most connections. Null if there is none.
 ConnectionTable::Connection* ConnectionTable::worst(Time now) {
   const std::vector<Connection*> waiting = candidates(now);
   if (waiting.empty()) {

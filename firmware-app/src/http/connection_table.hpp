@@ -16,16 +16,16 @@ namespace octurn {
 /// What a connection waits for.
 enum class Wait {
   head,    ///< the client's request line and headers
-  server,  ///< this program makes the answer: not the client's fault
+  server,  ///< this program makes the answer; that time does not count against the client
   body,    ///< a small body
   upload,  ///< a large body, at min_upload_rate
-  reader,  ///< a client that takes an answer, at min_answer_rate
+  reader,  ///< the client receives an answer, at min_answer_rate
   close,   ///< the client's end of the connection; its bytes are discarded
 };
 
 /// Limits for clients.
 struct ConnectionLimits {
-  std::size_t max_connections = 28;  ///< those that the server need not hold are cut
+  std::size_t max_connections = 28;  ///< beyond it, connections that wait for clients are cut
   std::chrono::duration<double> patience = std::chrono::seconds(10);  ///< with each client
   double min_upload_rate = 100e3;                                     ///< bytes a second
   double min_answer_rate = 16e3;                                      ///< bytes a second
@@ -50,7 +50,7 @@ class ConnectionTable {
 
   bool is_empty() const { return connections_.empty(); }
 
-  /// Whether there are too many, also after `cut_all_due`.
+  /// Whether more than `max_connections` are open, which can be so even after `cut_all_due`.
   bool is_crowded() const { return count_held() > limits_.max_connections; }
 
   /// Adds new connections, and removes closed ones.
@@ -60,7 +60,8 @@ class ConnectionTable {
   /// which is not the client's fault.
   void note_lateness(std::chrono::duration<double> lateness);
 
-  /// The connection of this peer, whose head was read. From now on it waits for the server.
+  /// Returns the connection of this peer, whose head was read; nothing if it has closed. From now
+  /// on it waits for the server.
   std::optional<Key> claim(std::string_view address, int port, Time now);
 
   /// Changes what a connection waits for. Its debt stays.
@@ -72,7 +73,7 @@ class ConnectionTable {
   /// Counts bytes sent to or received from the client.
   void add_bytes(Key key, std::uint64_t bytes, Time now);
 
-  /// Whether a connection was shut down for reading because its client was too slow.
+  /// Whether a connection was shut down, for reading or in both directions.
   bool is_cut(Key key) const;
 
   /// A connection to be shut down now.
@@ -90,7 +91,7 @@ class ConnectionTable {
  private:
   struct Connection {
     AcceptedSocket socket = {};
-    Time since = {};  // new, or read from after it was in the queue
+    Time since = {};  // it appeared, or a thread last read its queued bytes
     Wait wait = Wait::head;
     double debt = 0;  // seconds, at the time `settled`
     Time settled = {};
@@ -107,7 +108,7 @@ class ConnectionTable {
   Connection* worst(Time now);
 
   ConnectionLimits limits_;
-  std::chrono::duration<double> lateness_ = {};  // the longest of the last looks, fading
+  std::chrono::duration<double> lateness_ = {};  // decaying maximum over the last polls
   std::unordered_map<Key, Connection> connections_ = {};
 };
 

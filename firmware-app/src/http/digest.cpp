@@ -16,14 +16,14 @@ void skip(std::string_view& text, std::string_view letters) {
   text.remove_prefix(std::min(text.find_first_not_of(letters), text.size()));
 }
 
-/// Takes letters from the front of a text, until one of `ends`.
+/// Takes characters from the front of a text, up to the first of `ends`.
 std::string take_until(std::string_view& text, std::string_view ends) {
   const std::string_view taken = text.substr(0, text.find_first_of(ends));
   text.remove_prefix(taken.size());
   return std::string(taken);
 }
 
-/// Takes a quoted string whose first quote is gone; nothing if it does not end.
+/// Takes a quoted string after its opening quote; nothing if it has no closing quote.
 std::optional<std::string> take_quoted(std::string_view& text) {
   std::string value;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -39,7 +39,7 @@ std::optional<std::string> take_quoted(std::string_view& text) {
   return std::nullopt;
 }
 
-/// Where a field of that name belongs; null for a field that nothing depends on.
+/// The member for a field of that name; null for a field that is not used.
 std::string* find_field(DigestProof& proof, std::string_view name) {
   const std::array<std::pair<std::string_view, std::string*>, 8> fields{
       {{"username", &proof.user},

@@ -10,7 +10,7 @@ namespace octurn {
 namespace {
 
 struct EntityTag {
-  std::string_view text = {};  // in its quotes
+  std::string_view text = {};  // with its quotes
   bool is_weak = false;
 };
 
@@ -18,7 +18,7 @@ void skip_separators(std::string_view& list) {
   list.remove_prefix(std::min(list.find_first_not_of(" \t,"), list.size()));
 }
 
-/// Takes the next tag off a list. @return nothing at its end, or if it is malformed there
+/// Takes the next tag from a list. @return nothing at its end, or if it is malformed there
 std::optional<EntityTag> next_tag(std::string_view& list) {
   skip_separators(list);
   EntityTag tag;

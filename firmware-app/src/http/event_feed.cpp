@@ -12,11 +12,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What clients wait before they connect again, milliseconds: shorter than the page takes to say
+/// Reconnection time of clients, in milliseconds: shorter than the page's delay before it reports
 /// that the scanner is away.
 constexpr std::string_view greeting = "retry: 1000\n\n";
 
-/// Not a comment: scripts in a browser are not told of those.
+/// An event rather than an SSE comment, as browsers do not pass comments to scripts.
 constexpr std::string_view heartbeat_event = "event: heartbeat\ndata: {}\n\n";
 
 bool put(std::string_view text, const ByteSink& sink) {
@@ -25,7 +25,7 @@ bool put(std::string_view text, const ByteSink& sink) {
 
 }  // namespace
 
-/// Of a watcher, for as long as this lives.
+/// A watcher's place among `max_watchers`, given back at the end of its lifetime.
 class EventFeed::Place {
  public:
   explicit Place(EventFeed& feed) : feed_(&feed) {}
@@ -67,7 +67,7 @@ void EventFeed::end() {
   ended_changed_.notify_all();
 }
 
-/// The events of a watcher that are due.
+/// Polls if the last poll is too old. @return the events that the watcher has not received
 std::string EventFeed::next_events(std::uint64_t& seen) {
   const std::lock_guard lock(mutex_);
   if (const auto now = Clock::now(); now - looked_ >= limits_.look_interval) {
@@ -77,7 +77,7 @@ std::string EventFeed::next_events(std::uint64_t& seen) {
   return board_.events_after(seen);
 }
 
-/// Waits until the next look. @return false if the streams are to end
+/// Waits for the polling interval. @return false if the streams are to end
 bool EventFeed::wait() {
   std::unique_lock lock(mutex_);
   return !ended_changed_.wait_for(lock, limits_.look_interval, [this] { return ended_; });

@@ -18,13 +18,13 @@
 namespace octurn {
 namespace {
 
-// A request is small: settings, a name. What is larger is not meant for us.
+// Bodies other than uploads are small: settings, or a name.
 constexpr std::size_t max_body = std::size_t{64} * 1024;    // bytes
 constexpr std::size_t file_part = std::size_t{64} * 1024;   // bytes read from a file at a time
-constexpr std::size_t write_part = std::size_t{16} * 1024;  // bytes: progress is seen between parts
+constexpr std::size_t write_part = std::size_t{16} * 1024;  // bytes: progress counts after each
 
-/// What every answer has. The page loads nothing from elsewhere, and no other page may show it,
-/// read it, or guess what its files are.
+/// Headers of every answer. The page loads nothing from other sites, no other site may embed or
+/// read it, and browsers must not sniff content types.
 const Headers common_headers{
     {"Content-Security-Policy",
      "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
@@ -37,7 +37,7 @@ const Headers closing_headers{{"Connection", "close"}};
 const Headers keeping_headers{{"Connection", "keep-alive"},
                               {"Keep-Alive", "timeout=" + std::to_string(idle_seconds)}};
 
-/// Nothing of a body whose end nobody knows yet.
+/// The length of a body in bytes; nothing if it is not known in advance.
 std::optional<std::uint64_t> body_length(const Response& response) {
   if (const auto* slice = std::get_if<FileSlice>(&response.body)) {
     return slice->length;
@@ -48,8 +48,8 @@ std::optional<std::uint64_t> body_length(const Response& response) {
   return std::get<std::string>(response.body).size();
 }
 
-/// Whether a client asks that its connection be kept for its next request: browsers do. One with a
-/// body is closed, as some of that may be unread.
+/// Whether a client asks for a persistent connection, as browsers do. After a request with a body
+/// the connection closes, as part of the body may be unread.
 bool asks_to_keep(const mg_request_info& info) {
   const std::string_view method = info.request_method;
   const auto headers =
@@ -83,7 +83,8 @@ std::string to_head(const Response& response, bool keeps) {
   return head + "\r\n";
 }
 
-/// "scanner:8080" of "http://scanner:8080/path"; nothing of a target that is a path.
+/// The authority of a request target: "scanner:8080" of "http://scanner:8080/path". Nothing for a
+/// target that is a path.
 std::optional<std::string_view> authority(std::string_view target) {
   constexpr std::string_view separator = "://";
   const std::size_t scheme = target.find(separator);
@@ -97,7 +98,7 @@ std::optional<std::string_view> authority(std::string_view target) {
 /// The names and values of a query, decoded.
 Headers to_parameters(const char* query) {
   std::string text(query != nullptr ? query : "");
-  std::array<mg_header, 16> fields{};  // more than any request takes
+  std::array<mg_header, 16> fields{};  // more than any handler accepts
   const int count = mg_split_form_urlencoded(text.data(), fields.data(), fields.size());
   Headers parameters;
   for (const mg_header& field : std::span(fields).first(static_cast<std::size_t>(count))) {
@@ -122,7 +123,7 @@ Request Exchange::head() {
                   .path = info.local_uri != nullptr ? info.local_uri : "",
                   .parameters = to_parameters(info.query_string)};
   if (const auto host = authority(info.request_uri != nullptr ? info.request_uri : "")) {
-    request.headers.emplace_back("Host", *host);  // the first of a name counts
+    request.headers.emplace_back("Host", *host);  // the first of a name is in force
   }
   for (int i = 0; i < info.num_headers; ++i) {
     const mg_header& header = info.http_headers[i];
@@ -131,7 +132,7 @@ Request Exchange::head() {
   return request;
 }
 
-/// @return bytes; 0 at the end; negative if what came is malformed
+/// @return bytes; 0 at the end; negative if the body is malformed
 int Exchange::read(std::span<char> buffer, Wait wait) {
   ConnectionGuard::Waiting waiting(guard_, key_, wait);
   const int got = mg_read(&connection_, buffer.data(), buffer.size());
@@ -200,7 +201,7 @@ bool Exchange::write(std::string_view bytes) {
   return true;
 }
 
-/// @return false if the client has not got all of it
+/// @return false if the client has not received all bytes
 bool Exchange::send_slice(const FileSlice& slice) {
   std::vector<char> buffer(file_part);
   std::uint64_t sent = 0;
@@ -243,7 +244,7 @@ void Exchange::send(std::string_view method, Response response) {
   } else if (slice != nullptr) {
     is_whole = send_slice(*slice);
   } else {
-    send_stream(*stream);  // which may end early: only closing tells
+    send_stream(*stream);  // it may end early, which only closing shows to the client
   }
   if (may_keep_ && stream == nullptr && is_whole) {
     guard_.restart(key_, Wait::head);

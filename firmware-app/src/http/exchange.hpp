@@ -18,7 +18,7 @@ inline constexpr int idle_seconds = 5;
 /// One request and its answer over a connection of civetweb, within the limits of the guard.
 class Exchange {
  public:
-  /// @param connection  whose head is read, or malformed: then there is only an answer to send
+  /// @param connection  with a parsed head; one with a malformed head can only be answered
   Exchange(mg_connection& connection, ConnectionGuard& guard);
 
   /// The request without its body. The host of an absolute request target is in force over the
@@ -46,7 +46,7 @@ class Exchange {
   mg_connection& connection_;
   ConnectionGuard& guard_;
   ConnectionGuard::Key key_ = ConnectionGuard::unknown;
-  bool may_keep_ = false;  // the client asks for that
+  bool may_keep_ = false;  // the client asks for a persistent connection
 };
 
 }  // namespace octurn

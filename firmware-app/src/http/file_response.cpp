@@ -17,7 +17,7 @@ struct ByteRange {
   std::uint64_t last = 0;  // included
 };
 
-/// What a Range header asks for of a file of `size` bytes.
+/// The part of a file that a Range header asks for.
 struct RangeRequest {
   enum class Extent { whole, part, outside };
   Extent extent = Extent::whole;
@@ -32,7 +32,8 @@ std::optional<std::uint64_t> parse_number(std::string_view text) {
   return whole ? std::optional(value) : std::nullopt;
 }
 
-/// A header that is malformed, or asks for several ranges, is answered by the whole file.
+/// Parses a Range header for a file of `size` bytes. A malformed header, or one with several
+/// ranges, selects the whole file.
 RangeRequest parse_range(std::string_view header, std::uint64_t size) {
   constexpr std::string_view unit = "bytes=";
   const std::size_t dash = header.find('-');
@@ -50,7 +51,7 @@ RangeRequest parse_range(std::string_view header, std::uint64_t size) {
   if (first ? *first >= size : *last == 0 || size == 0) {
     return {.extent = RangeRequest::Extent::outside};
   }
-  if (!first) {  // the last so many
+  if (!first) {  // a suffix range: the last bytes
     return {.extent = RangeRequest::Extent::part,
             .range = {.first = size - std::min(*last, size), .last = size - 1}};
   }
@@ -58,7 +59,8 @@ RangeRequest parse_range(std::string_view header, std::uint64_t size) {
           .range = {.first = *first, .last = last ? std::min(*last, size - 1) : size - 1}};
 }
 
-/// Differs between versions of a file: each is a new file, renamed over the old one.
+/// An entity tag of inode, size and time. It differs between versions of a file, as each version is
+/// a new file that is renamed over the old one.
 std::string to_entity_tag(const struct ::stat& info) {
   std::array<char, 80> text{};
   const int length = std::snprintf(
@@ -68,8 +70,8 @@ std::string to_entity_tag(const struct ::stat& info) {
   return {text.data(), static_cast<std::size_t>(length)};
 }
 
-/// A name as percent-encoded UTF-8 (RFC 8187, section 3.2). mg_url_encode leaves ';' and ',' as
-/// they are, which end a parameter.
+/// A name as percent-encoded UTF-8 (RFC 8187, section 3.2). mg_url_encode does not encode ';' and
+/// ',', which end a parameter.
 std::string percent_encoded(std::string_view text) {
   constexpr std::string_view plain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._";

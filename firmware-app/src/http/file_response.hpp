@@ -8,11 +8,12 @@
 
 namespace octurn {
 
-/// Headers and conditions of RFC 9110, sections 13 and 14: ETag, If-Match, If-None-Match, If-Range
-/// and Range with one range (several are answered by the whole).
+/// Answers a GET or HEAD of a file with the headers and conditions of RFC 9110, sections 13 and 14:
+/// ETag, If-Match, If-None-Match, If-Range and Range. A request for several ranges gets the whole
+/// file; one for a range outside the file gets 416.
 ///
 /// @param name  under which a browser saves it
-/// @throws Error "no-model" if there is no such file, "changed", "bad-range"
+/// @throws Error "no-model" if there is no such file, "changed" if If-Match fails
 Response file_response(const Request& request, const std::filesystem::path& file,
                        const std::string& content_type, const std::string& name);
 

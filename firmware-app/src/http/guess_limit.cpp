@@ -8,13 +8,13 @@
 namespace octurn {
 namespace {
 
-// A home network has fewer clients; with more, those that owe least are forgotten.
+// More than a home network has. Beyond it, the client whose guesses expire first is forgotten.
 constexpr std::size_t max_clients = 1000;
 
-/// The client at an address: an IPv6 address' network, which is its first 64 bits.
+/// The key of a client: an IPv4 address, or the /64 network of an IPv6 address.
 std::string to_client(const std::string& address) {
   std::array<char, sizeof(in6_addr)> bytes{};
-  std::string bare = address.substr(0, address.find('%'));  // without the interface
+  std::string bare = address.substr(0, address.find('%'));  // without the zone
   if (::inet_pton(AF_INET6, bare.c_str(), bytes.data()) != 1) {
     return address;
   }

@@ -23,11 +23,11 @@ class GuessLimit {
   /// Counts a wrong guess. All addresses of one IPv6 network count as one client.
   void count_wrong(const std::string& address, Time now);
 
-  /// A client was right.
+  /// Forgets a client's wrong guesses after a right one.
   void forgive(const std::string& address);
 
  private:
-  std::map<std::string, Time> paid_ = {};  // when a client will have paid for all its guesses
+  std::map<std::string, Time> paid_ = {};  // when all wrong guesses of a client expire (GCRA)
 };
 
 }  // namespace octurn

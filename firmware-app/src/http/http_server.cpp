@@ -23,29 +23,28 @@
 namespace octurn {
 namespace {
 
-/// civetweb spends a thread on each open connection: its stack, of 100 KiB by Debian's build, and
-/// max_request_size of buffer. Some are always left, as the guard cuts connections before all are
-/// taken.
+/// civetweb occupies a thread for each open connection, with a stack of 100 KiB in Debian's build
+/// and a buffer of max_request_size. The guard cuts connections before all threads are taken.
 constexpr std::size_t threads = 32;
 constexpr std::size_t spare_threads = 4;
 
 constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
     {"max_request_size", "16384"},       // of the head, bytes
     {"enable_keep_alive", "yes"},        // Exchange decides
-    {"enable_auth_domain_check", "no"},  // that an absolute request target names the server by
+    {"enable_auth_domain_check", "no"},  // any host in an absolute request target
     {"tcp_nodelay", "1"},
     {"enable_directory_listing", "no"},
     {"access_control_allow_origin", ""},
     {"access_control_allow_methods", ""},
 }};
 
-/// What the callbacks work with.
+/// State that civetweb's callbacks use.
 struct Service {
   HttpServer::Answer answer = {};
-  std::optional<Login> login = {};  // where not everybody may open the page
+  std::optional<Login> login = {};  // if the page has a password
   const AccessKeys* keys = nullptr;
   HttpServer::Gate gate = {};
-  std::latch started{1};  // there is a guard
+  std::latch started{1};  // released once `guard` exists
   std::optional<ConnectionGuard> guard = {};
 
   ConnectionGuard& wait_for_guard() {
@@ -58,7 +57,8 @@ Service& to_service(const mg_connection* connection) {
   return *static_cast<Service*>(mg_get_user_data(mg_get_context(connection)));
 }
 
-/// The answer of the gate, or to who may not open the page; nothing if it is let in.
+/// The gate's answer, or the refusal of missing or wrong credentials; nothing if the request is
+/// admitted.
 std::optional<Response> refusal(mg_connection& connection, const Request& request,
                                 Service& service) {
   if (auto answer = service.gate ? service.gate(request) : std::nullopt) {
@@ -115,7 +115,7 @@ int answer_request(mg_connection* connection) noexcept try {
   return 500;  // the connection closes
 }
 
-/// Errors that civetweb finds itself: heads that are malformed, too large or too slow.
+/// Answers errors that civetweb detects: heads that are malformed, too large or too slow.
 int answer_error(mg_connection* connection, int /*status*/, const char* message) noexcept try {
   Exchange exchange(*connection, to_service(connection).wait_for_guard());
   exchange.send("GET", problem({.code = ErrorCode::bad_request, .detail = message, .hint = ""}));
@@ -126,13 +126,13 @@ int answer_error(mg_connection* connection, int /*status*/, const char* message)
 }
 
 int keep_message(const mg_connection* connection, const char* message) noexcept {
-  if (connection == nullptr) {  // about the server; those about one client's mistakes are dropped
+  if (connection == nullptr) {  // about the server; messages about one client are dropped
     log::warning("http", message);
   }
   return 1;
 }
 
-/// The address that reaches a server on this machine that listens at `address`.
+/// The address at which this machine reaches its own server that listens at `address`.
 std::string reaching(const std::string& address) {
   if (address == "0.0.0.0") {
     return "127.0.0.1";
@@ -162,7 +162,7 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
   std::array<char, 256> reason{};
   mg_init_data init{
       .callbacks = &callbacks, .user_data = &service, .configuration_options = settings.data()};
-  mg_error_data error{};  // what else it holds changes with civetweb's version
+  mg_error_data error{};  // its other members depend on civetweb's version
   error.text = reason.data();
   error.text_buffer_size = reason.size();
   mg_context* const context = mg_start2(&init, &error);
@@ -178,7 +178,7 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
 
 struct HttpServer::Server {
   Service service = {};
-  std::string address = {};  // that reaches this server from this machine
+  std::string address = {};  // at which this machine reaches the server
   mg_context* context = nullptr;
 };
 
@@ -207,8 +207,8 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
 
 HttpServer::~HttpServer() {
   server_->service.guard->close();
-  // civetweb looks whether it shall stop only between connections, or after 2 s without one: so it
-  // gets connections until it has.
+  // civetweb checks whether to stop only between connections, or after 2 s without one. Opening
+  // connections until it has stopped makes that fast.
   const int own_port = port();
   defer_accept(own_port, std::chrono::seconds(0));
   const std::future<void> stopped = std::async(std::launch::async, mg_stop, server_->context);

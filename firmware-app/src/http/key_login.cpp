@@ -5,7 +5,7 @@
 namespace octurn {
 namespace {
 
-/// Whether a path is about who may use the scanner.
+/// Whether a path manages the keys or the password.
 bool is_about_access(std::string_view path) {
   return path == "/api/v1/keys" || path.starts_with("/api/v1/keys/") ||
          path == "/api/v1/settings/password";

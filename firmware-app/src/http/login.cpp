@@ -20,8 +20,8 @@ constexpr std::size_t number_digits = 16;
 constexpr std::size_t signature_digits = 32;
 constexpr std::size_t secret_bytes = 16;
 
-// Proofs that are remembered until their nonce expires. The page sends about one a second, so that
-// only an attacker reaches the limit.
+// Maximum number of proofs remembered for the nonces of one period. The page sends about one a
+// second, so that only an attacker reaches it.
 constexpr std::size_t max_used = 100'000;
 
 std::string to_hexadecimal(std::uint64_t number) {
@@ -63,7 +63,7 @@ Response refuse_guess(std::chrono::seconds wait) {
 Login::Login(std::filesystem::path password_file)
     : password_file_(std::move(password_file)), secret_(random_digits(secret_bytes)) {}
 
-/// The secret stands on both sides: MD5 of a secret and a text can be continued without it.
+/// The secret is on both sides, as MD5 of a secret and a text is open to length extension.
 std::string Login::sign(const std::string& text) const {
   std::array<char, signature_digits + 1> signature{};
   mg_md5(signature.data(), secret_.c_str(), text.c_str(), secret_.c_str(), nullptr);
@@ -84,13 +84,13 @@ bool Login::is_fresh(const std::string& nonce, std::int64_t now) {
   return text + sign(text) == nonce && now - period_of_nonce(nonce) <= 1;
 }
 
-/// Whether a right proof, with a fresh nonce, was not used before. It now is.
+/// Marks a correct proof with a fresh nonce as used. @return false if it was used before
 bool Login::is_first_use(const DigestProof& proof, std::int64_t now) {
   std::erase_if(used_, [&](const auto& entry) { return now - entry.first > 1; });
   std::set<std::string>& used = used_[period_of_nonce(proof.nonce)];
   if (used.size() >= max_used) {
     secret_ =
-        random_digits(secret_bytes);  // no nonce is fresh any more, so nothing need be remembered
+        random_digits(secret_bytes);  // invalidates all nonces, so no proof need be remembered
     used_.clear();
     return false;
   }

@@ -55,9 +55,9 @@ class Login {
 
   const std::filesystem::path password_file_;
   std::mutex mutex_ = {};  // guards what follows
-  std::string secret_;     // what nonces are signed with
+  std::string secret_;     // key that signs nonces
   std::uint64_t nonces_ = 0;
-  std::map<std::int64_t, std::set<std::string>> used_ = {};  // responses, by their nonces' period
+  std::map<std::int64_t, std::set<std::string>> used_ = {};  // used responses by nonce period
   GuessLimit guesses_ = {};
 };
 

@@ -41,7 +41,7 @@ inline bool is_of_type(std::string_view content_type, std::string_view type) {
 /// A body that is too large for memory and is read in parts.
 struct ByteSource {
   std::optional<std::uint64_t> length = {};  ///< as announced
-  /// Fills a buffer from its begin. @return how many bytes; 0: no more come
+  /// Fills a buffer from its start. @return bytes read; 0 at the end of the body
   std::function<std::size_t(std::span<std::byte>)> read = {};
 };
 

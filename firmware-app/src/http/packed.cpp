@@ -9,10 +9,10 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t worth_packing = 1024;  // bytes
-constexpr int gzip_window = 15 + 16;         // the largest, and gzip's head: zlib.h, deflateInit2
+constexpr int gzip_window = 15 + 16;         // largest window, gzip header: zlib.h, deflateInit2
 constexpr int memory_level = 8;              // zlib's default
 
-/// Nothing if zlib has no memory for it.
+/// Compresses a text; nothing if zlib is out of memory.
 std::optional<std::string> gzip(const std::string& text) {
   z_stream stream{};
   if (::deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, memory_level,
@@ -20,7 +20,7 @@ std::optional<std::string> gzip(const std::string& text) {
     return std::nullopt;
   }
   std::string small(::deflateBound(&stream, text.size()), '\0');
-  // zlib reads through a pointer to what is not const.
+  // next_in is not a pointer to const, but zlib only reads through it.
   stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(text.data()));
   stream.avail_in = static_cast<uInt>(text.size());
   stream.next_out = reinterpret_cast<Bytef*>(small.data());

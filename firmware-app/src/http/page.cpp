@@ -19,7 +19,7 @@ struct ContentType {
   std::string_view name;
 };
 
-// What the page may consist of. civetweb's table has neither webmanifest nor character sets.
+// File types of the page. civetweb's table has neither webmanifest nor character sets.
 constexpr std::array content_types{
     ContentType{".html", "text/html; charset=utf-8"},
     ContentType{".css", "text/css; charset=utf-8"},
@@ -37,7 +37,7 @@ constexpr std::array content_types{
 constexpr std::string_view assets = "/assets/";
 constexpr const char* for_ever = "max-age=31536000, immutable";  // a year: RFC 8246
 
-/// The tag of the same content as gzip has it: a strong one names bytes (RFC 9110, 8.8.3.3).
+/// The tag of the gzip encoding: a strong tag identifies the encoded bytes (RFC 9110, 8.8.3.3).
 std::string packed_tag(std::string tag) {
   tag.insert(tag.size() - 1, "-gzip");
   return tag;
@@ -83,7 +83,8 @@ Page::Page(const fs::path& folder) {
     if (const fs::path packed = entry.path().string() + ".gz"; fs::exists(packed)) {
       file.packed = read(packed);
     }
-    // All files of an image have the same date: a tag from date and size could outlive an update.
+    // The tag is of the content: all files of an image have one date, so that a tag of date and
+    // size could survive an update.
     file.tag = to_entity_tag(file.content);
     files_.emplace("/" + fs::relative(entry.path(), folder).generic_string(), std::move(file));
   }

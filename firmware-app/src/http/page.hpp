@@ -29,7 +29,7 @@ class Page {
   struct File {
     std::string content_type = {};
     std::string content = {};
-    std::string packed = {};  // by gzip; empty: it is not
+    std::string packed = {};  // by gzip; empty: there is no compressed copy
     std::string tag = {};
   };
   std::map<std::string, File, std::less<>> files_ = {};

@@ -11,7 +11,7 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t hash_digits = 32;
-constexpr std::size_t max_file_bytes = 4096;  // one line is all that is written
+constexpr std::size_t max_file_bytes = 4096;  // this program writes a single line
 
 std::string line_begin() { return std::string(page_user) + ":" + page_realm + ":"; }
 

@@ -17,7 +17,7 @@ constexpr int height = 240;
 // 0.45 m; 2 m is behind any platform.
 constexpr double min_depth = 0.45;  // metres
 constexpr double max_depth = 2.0;
-constexpr double min_brightness = 24;  // tells far from no reading
+constexpr double min_brightness = 24;  // distinguishes far from no reading
 
 std::uint8_t to_brightness(double depth) {
   if (depth <= 0) {

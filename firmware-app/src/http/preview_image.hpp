@@ -11,7 +11,7 @@ namespace octurn {
 /// where there is no reading.
 std::string preview_png(const DepthFrame& frame, double depth_unit);
 
-/// The same for a camera's picture, with unchanged brightness.
+/// A camera's picture as PNG of that size, with unchanged brightness.
 std::string preview_png(const Picture& picture);
 
 }  // namespace octurn

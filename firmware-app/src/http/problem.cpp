@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// What a code of an error means in HTTP.
+/// The HTTP status and title of an error code.
 struct ProblemType {
   ErrorCode code;
   int status;

@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// What goes wrong between client and server alone, and no part of the library knows.
+/// An error that arises only in HTTP and has no ErrorCode.
 struct HttpProblem {
   int status = 400;
   std::string_view title = {};
@@ -17,7 +17,7 @@ struct HttpProblem {
   Parameters parameters = {};  ///< the values in `detail`
 };
 
-/// As application/problem+json (RFC 9457).
+/// An HTTP problem as application/problem+json (RFC 9457).
 Response to_response(const HttpProblem& problem);
 
 /// An error as application/problem+json (RFC 9457). The status follows from the code; unknown codes

@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// A handler's parameters are those that it needs of the request and of the parts of its path.
+/// A handler takes only what it needs: the request, and the variable parts of its path.
 using Handler =
     std::variant<Response (*)(App&), Response (*)(App&, const Request&),
                  Response (*)(EventFeed&, const Request&), Response (*)(App&, std::string_view id),
@@ -18,10 +18,10 @@ using Handler =
                  Response (*)(App&, std::string_view id, std::string_view number),
                  Response (*)(App&, const Request&, std::string_view id, std::string_view number)>;
 
-/// What a handler may wait for, up to some seconds.
+/// What a handler may wait for, up to some seconds: a frame of the sensor, or the start of devices.
 enum class WaitsFor { nothing, look, start };
 
-/// The handler of a method and a path, which has `{id}` and `{number}` for its variable parts.
+/// The handler of a method and a path, with `{id}` and `{number}` for its variable parts.
 struct Route {
   std::string_view method;
   std::string_view path;

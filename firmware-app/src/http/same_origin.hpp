@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// Whether a `Host` is an address or a name of this host.
+/// Whether a `Host` is an IP address or a name of this host.
 /// @param host_names  besides the local ones
 bool is_own_host(std::string_view host, std::span<const std::string> host_names);
 

@@ -127,7 +127,7 @@ json builds_json(const Job& job, const std::vector<BuildRun>& runs) {
     const bool goes_on = std::ranges::any_of(runs, [&](const BuildRun& run) {
       return run.scan == job.id && run.number == build.number && !run.has_ended();
     });
-    if (!goes_on) {  // else it is as its run tells
+    if (!goes_on) {  // otherwise its run is listed below
       builds.push_back(to_json(job, build));
     }
   }

@@ -12,20 +12,21 @@ namespace octurn {
 /// A scan as in web/API.md, except its preview and its other poses.
 nlohmann::json to_json(const Job& job);
 
-/// A scan of another pose as one of those of the first scan. @param number  of the pose, from 1
+/// A scan in another pose, as an entry of `poses` of the first scan.
+/// @param number  of the pose, from 1
 nlohmann::json pose_json(const Job& job, int number);
 
-/// The scans of other poses of a scan, the oldest first.
+/// The array `poses` of a scan. @param poses  its scans in other poses, oldest first
 nlohmann::json poses_json(const std::vector<Job>& poses);
 
-/// A build as web/API.md has it, of the scan of that id. Number 0 is what the scan itself made.
+/// A finished build of a scan as in web/API.md. Number 0 is the model that the scan itself made.
 nlohmann::json to_json(const Job& job, const Build& build);
 
-/// The same of a build without a model.
+/// A build that runs, or ended without a model.
 nlohmann::json to_json(const BuildRun& run);
 
-/// All builds of a scan, the one that it made itself first, and the one that goes on.
-/// @param run  the build that goes on, or the last one, of any scan
+/// All builds of a scan: the model that it made itself, the stored builds, and those that run or
+/// ended without a model. @param runs  of any scan
 nlohmann::json builds_json(const Job& job, const std::vector<BuildRun>& runs);
 
 }  // namespace octurn

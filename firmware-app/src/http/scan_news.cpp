@@ -27,7 +27,7 @@ Happening happening(const std::string& event, const char* key, const json& about
   return {.event = event, .body = json_text(body)};
 }
 
-/// The event that tells of a state; empty if none does.
+/// The webhook event of a state; empty if there is none.
 std::string event_of(JobState state) {
   switch (state) {
     case JobState::running:
@@ -41,7 +41,7 @@ std::string event_of(JobState state) {
     case JobState::cancelled:
       return "scan-cancelled";
     case JobState::interrupted:
-      break;  // this program ended, and tells nothing
+      break;  // the program has ended, and sends nothing
   }
   return "";
 }
@@ -85,7 +85,7 @@ std::vector<ScanEvent> ScanNews::next_scans(const App& app) {
 }
 
 std::vector<Happening> ScanNews::next_warnings(const App& app) {
-  if (app.addresses.webhooks().empty()) {  // nobody is told: the machine is not looked at
+  if (app.addresses.webhooks().empty()) {  // no receiver: warnings are not tracked
     warnings_.reset();
     return {};
   }

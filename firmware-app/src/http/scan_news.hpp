@@ -40,13 +40,13 @@ class ScanNews {
   std::vector<ScanEvent> next_scans(const App& app);
   std::vector<Happening> next_warnings(const App& app);
 
-  std::optional<Mark> mark_ = {};  // of the last look: if it is the same, nothing has happened
+  std::optional<Mark> mark_ = {};  // of the last poll; while it is the same, no scan has changed
   ScanStates states_ = {};
   std::string newest_ = {};
-  std::optional<std::set<std::string>> warnings_ = {};  // their checks
+  std::optional<std::set<std::string>> warnings_ = {};  // checks that warned at the last poll
 };
 
-/// That tells nothing but that it works.
+/// The event "test", which carries no data: it shows that a webhook works.
 Happening test_happening();
 
 }  // namespace octurn

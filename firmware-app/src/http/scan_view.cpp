@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A scan without its other poses.
+/// A scan as in web/API.md, without its other poses.
 json with_preview(const App& app, const Job& job) {
   json scan = to_json(job);
   const auto preview = app.scanner.mesh_preview();

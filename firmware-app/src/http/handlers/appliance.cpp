@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t part_bytes = std::size_t{64} << 10U;  // bytes of an update, held at a time
+constexpr std::size_t part_bytes = std::size_t{64} << 10U;  // of an update, read at a time
 
 json to_json(const UpdateState& update) {
   return {{"version", version()},
@@ -36,7 +36,8 @@ json to_json(const WifiState& wifi) {
           {"host", host_name()}};
 }
 
-/// @throws Error "cut-short", and what the upload throws
+/// Copies a body of known length into an upload.
+/// @throws Error "cut-short", and those of `Upload::write`
 void copy(const ByteSource& source, Appliance::Upload& upload) {
   std::vector<std::byte> buffer(part_bytes);
   std::uint64_t left = *source.length;
@@ -105,7 +106,7 @@ Response take_update(App& app, const Request& request) {
   {
     Appliance::Upload upload(machine, *request.upload.length, age);
     copy(request.upload, upload);
-    expect_no_scan();  // that began meanwhile
+    expect_no_scan();  // one may have started meanwhile
     upload.commit();
   }
   log::info("appliance",

@@ -25,12 +25,12 @@ constexpr std::size_t part_bytes = std::size_t{16} << 10U;
 
 std::mutex packing;  // one archive at a time
 
-/// A folder or file that is gone at the end.
+/// A folder or file that is removed at the end of its scope.
 class Scratch {
  public:
   explicit Scratch(fs::path path) : path_(std::move(path)) {}
   ~Scratch() {
-    std::error_code ignored;  // the next start clears it away
+    std::error_code ignored;  // the next start of the program removes leftovers
     fs::remove_all(path_, ignored);
   }
   Scratch(const Scratch&) = delete;
@@ -71,7 +71,7 @@ Response send_archive(App& app, const Request& request, std::string_view id) {
   const Scratch archive(app.store.data() / "scans" / (".export-" + job.id + ".zip"));
   std::async(std::launch::async, write_scan_archive, app.store.folder(id), archive.path()).get();
   return file_response(request, archive.path(), "application/zip",
-                       download_name(job, ".zip"));  // open, so it stays
+                       download_name(job, ".zip"));  // its open descriptor outlives the removal
 }
 
 Response import_scan(App& app, const Request& request) {

@@ -15,7 +15,7 @@ std::string to_text(ScanTime time) {
   return utc_text(std::chrono::floor<std::chrono::seconds>(time), rfc3339);
 }
 
-/// Whether a scan goes where its first one goes.
+/// Whether a scan in another pose is in the bin together with its first scan.
 bool is_with_another(const ScanBin& bin, const Job& job) {
   return job.pose_of && bin.find(job.pose_of->scan);
 }

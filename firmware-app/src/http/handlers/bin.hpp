@@ -7,15 +7,15 @@
 
 namespace octurn {
 
-// Scans that were deleted: what `/api/v1/bin` answers.
+// Deleted scans, at `/api/v1/bin`.
 
-/// What can be restored, what was deleted last first.
+/// Lists the scans that can be restored, most recently deleted first.
 Response send_bin(App& app);
 
-/// Removes all of it for good.
+/// Removes all scans in the bin permanently.
 Response empty_bin(App& app);
 
-/// Brings a scan back. @throws Error "no-such-scan"  if it is not in the bin
+/// Restores a scan. @throws Error "no-such-scan"  if it is not in the bin
 Response restore_scan(App& app, std::string_view id);
 
 }  // namespace octurn

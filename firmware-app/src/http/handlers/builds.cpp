@@ -34,7 +34,7 @@ json find_build(const App& app, std::string_view id, std::string_view number) {
 
 int parse_build_number(const json& build) { return build["build"].get<int>(); }
 
-/// Reads the key that is no setting, and takes it out.
+/// Removes the key `choose`, which is not a setting, from a body. @return its value
 bool take_choice(json& body) {
   if (!body.is_object() || !body.contains("choose")) {
     return false;

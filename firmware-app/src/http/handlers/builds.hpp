@@ -9,35 +9,35 @@
 
 namespace octurn {
 
-// Models built again from the snapshots of a scan: what `/api/v1/scans/{id}/builds` answers. Each
-// throws Error "no-such-scan" for a scan that there is not, and "no-model" for such a build.
+// Models rebuilt from the snapshots of a scan, at `/api/v1/scans/{id}/builds`. Each handler throws
+// Error "no-such-scan" for an unknown scan, and "no-model" for an unknown build.
 
-/// All builds of a scan, the one that it made itself first.
+/// Lists all builds of a scan; the first is the model that the scan itself made.
 Response list_builds(App& app, std::string_view id);
 
-/// Begins a build with the settings of the body. 202, and its address.
+/// Starts a build with the settings of the body. Answers 202 with Location.
 /// @throws Error "bad-json", "bad-settings", "busy", "no-model", "disk-full"
 Response start_build(App& app, const Request& request, std::string_view id);
 
-/// Tells of a build that was begun: 202, and its address.
-/// @throws Error "busy"  if none was
+/// Answers 202 with a build that has started, and its Location.
+/// @param run  nothing: none could start @throws Error "busy"  then
 Response send_begun(const std::optional<BuildRun>& run);
 
 Response send_build(App& app, std::string_view id, std::string_view build);
 
-/// Asks a build to stop. @throws Error "not-running"  if it has ended
+/// Asks a build to stop. Answers 202. @throws Error "not-running"  if it has ended
 Response cancel_build(App& app, std::string_view id, std::string_view build);
 
-/// Makes a build's model the scan's. @throws Error "disk-full", "write-failed"
+/// Makes a build's model that of the scan. @throws Error "disk-full", "write-failed"
 Response choose_build(App& app, std::string_view id, std::string_view build);
 
-/// Removes a build and its model. @throws Error "busy"  if that is the scan's
+/// Removes a build and its model. @throws Error "busy"  if the scan uses that model
 Response remove_build(App& app, std::string_view id, std::string_view build);
 
-/// The file of a build's model.
+/// The path of a build's STL. @throws Error "no-model"  also if the build has not finished
 std::filesystem::path find_build_model(const App& app, std::string_view id, std::string_view build);
 
-/// The model of a build.
+/// Sends a build's model as STL. @throws Error "bad-settings"  if the query asks for colours
 Response send_build_model(App& app, const Request& request, std::string_view id,
                           std::string_view build);
 

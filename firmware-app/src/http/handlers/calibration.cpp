@@ -23,16 +23,16 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int point_step = 8;  // pixels: 80 x 60 points show where the sensor looks
+constexpr int point_step = 8;  // pixels: 80 x 60 points suffice to show the sensor's view
 
-/// What is told and kept of the lens of a camera with lasers; null of another sensor.
+/// The configured and the calibrated lens of a camera with lasers; null for another sensor.
 json lens_json(const App& app, const std::optional<KeptLens>& kept) {
   return app.rig.laser ? json{{"told", to_json(told_lens(*app.rig.laser))},
                               {"kept", kept ? to_json(*kept) : json()}}
                        : json();
 }
 
-/// The camera with lasers that is known; empty of another sensor.
+/// The serial number of the known camera with lasers; empty for another sensor.
 std::string camera_of(const App& app) {
   return app.rig.laser ? app.scanner.known_sensor()->serial : "";
 }
@@ -95,7 +95,7 @@ void start_wall(App& app, JsonObject& keys) {
   }
 }
 
-/// What a body asks for about a lens.
+/// The change of the lens that a body asks for.
 enum class LensWish { none, keep, discard, remove };
 
 LensWish to_lens_wish(JsonObject& keys) {

@@ -5,37 +5,39 @@
 
 namespace octurn {
 
-// The sensor's pose, its own error and its lens: what `/api/v1/calibration` answers.
+// Calibration of the sensor's pose, its depth errors and its lens, at `/api/v1/calibration`.
 
-/// The pose in force, those before it, and the measurement that goes on or was the last.
+/// Sends the pose in force, earlier poses, and the current or last measurement.
 Response send_calibration(App& app);
 
-/// Puts the pose, or the scale, of the body into force, removes the sensor's map, or keeps,
+/// Applies the pose or the depth scale of the body, removes the sensor's depth error map, or keeps,
 /// discards or removes a lens.
 /// @throws Error "bad-json", "bad-settings", "busy", "not-found", "disk-full", "write-failed"
 Response change_calibration(App& app, const Request& request);
 
-/// Begins the measurement of the body. 202
+/// Starts the measurement that the body names. Answers 202.
 /// @throws Error "bad-json", "bad-settings", "busy", "sensor-...", "turntable-..."
 Response start_calibration(App& app, const Request& request);
 
-/// @throws Error "not-running"
+/// Asks the measurement to stop. Answers 202. @throws Error "not-running"
 Response cancel_calibration(App& app);
 
-/// Has the lens solved from the views of a board so far. 202
-/// @throws Error "not-running"  if no board is looked at, or was not seen yet
+/// Has the lens solved from the views of the calibration board taken so far. Answers 202.
+/// @throws Error "not-running"  if there are no views
 Response solve_lens(App& app);
 
-/// The board for that, as a PDF. @throws Error "bad-settings"  if the query asks for other paper
+/// Sends the calibration board as a PDF.
+/// @throws Error "bad-settings"  if the query asks for an unknown paper size
 Response send_board(App& app, const Request& request);
 
-/// Puts the pose before the one in force back. @throws Error "not-found"
+/// Restores the pose that was in force before the current one. @throws Error "not-found"
 Response undo_calibration(App& app);
 
-/// A picture of the map of the sensor's own error. @throws Error "not-found"
+/// Sends the sensor's depth error map as JSON, downsampled for display. @throws Error "not-found"
 Response send_sensor_map(App& app);
 
-/// What the sensor sees as points in its own frame. @throws Error "sensor-..."
+/// Sends the depth frame, downsampled, as points in millimetres in the sensor's frame.
+/// @throws Error "sensor-...", "not-found"  for a camera with lasers, which measures no depth
 Response send_points(App& app);
 
 }  // namespace octurn

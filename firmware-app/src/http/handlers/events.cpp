@@ -22,7 +22,7 @@ std::vector<News> StatusNews::operator()() {
               .cluster_builds = app_.scanner.slurm_runs(),
               .machine = app_.machine.health(),
               .scans_revision = app_.store.revision()};
-  if (now == before_ && !now.status->is_scanning()) {  // the time of a scan runs on
+  if (now == before_ && !now.status->is_scanning()) {  // a running scan's times always change
     return {};
   }
   before_ = std::move(now);

@@ -11,17 +11,17 @@
 
 namespace octurn {
 
-/// What watchers are told, each whenever it changes: "status" as GET status, "devices" of it,
-/// "scans" by their revision, and "warnings" about the machine. Touches no disk.
+/// Source of the server-sent events: "status" as GET status, its "devices" and "warnings", and the
+/// revision of "scans". Touches no disk.
 class StatusNews {
  public:
   explicit StatusNews(const App& app) : app_(app) {}
 
-  /// Makes the news. Empty if nothing has changed since the call before: then it makes no status.
+  /// Returns the current events; empty if nothing has changed since the last call, at low cost.
   std::vector<News> operator()();
 
  private:
-  /// All that a status is made of. What is published anew is another object.
+  /// The inputs of a status. Publishing replaces an object, so that comparing pointers is enough.
   struct Sources {
     std::shared_ptr<const Status> status = {};
     std::shared_ptr<const std::optional<BuildRun>> build = {};
@@ -35,7 +35,7 @@ class StatusNews {
   Sources before_ = {};
 };
 
-/// A stream of it; 503 "too-many" with Retry-After where too many watch already.
+/// Streams events to a client; 503 "too-many" with Retry-After if too many clients watch already.
 Response send_events(EventFeed& feed, const Request& request);
 
 }  // namespace octurn

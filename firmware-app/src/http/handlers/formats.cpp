@@ -24,23 +24,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_coarse_facets = 3000;  // 150 kB: with three.js, a first sight of 400 kB
+constexpr std::size_t max_coarse_facets = 3000;  // 150 kB; the first view with three.js: 400 kB
 constexpr std::size_t max_thumbnail_bytes = std::size_t{1} << 20U;
 
-// Memory is for one at a time. Held while a file is looked at and made.
+// Held while a cached file is checked and made: memory suffices for one at a time.
 std::mutex making;
-// The same of colours: who asks for those of one model in several formats waits for them once.
+// Held while colours are checked and made, so that requests for several formats of a model make
+// them once.
 std::mutex colouring;
 
-/// When a file was written; long ago where there is none.
+/// The modification time of a file; the minimum if there is no file.
 fs::file_time_type written(const fs::path& file) {
   std::error_code none;
   const auto time = fs::last_write_time(file, none);
   return none ? fs::file_time_type::min() : time;
 }
 
-/// Makes a file unless it is there, and not older than what it is made of. On a thread of its own:
-/// those of the HTTP server have little stack.
+/// Makes a file if it is missing, or older than its source. Runs on a new thread, as the HTTP
+/// server's threads have small stacks.
 void keep_fresh(const fs::path& file, fs::file_time_type source,
                 const std::function<void()>& make) {
   const std::lock_guard lock(making);
@@ -58,7 +59,7 @@ fs::path fresh_thumbnail(const fs::path& model) {
   return file;
 }
 
-/// A model for a first sight of it.
+/// Sends a simplified model for a fast first view.
 Response send_coarse(const Request& request, const fs::path& model) {
   const fs::path file = model.parent_path() / "coarse.stl";
   keep_fresh(file, written(model),
@@ -66,10 +67,11 @@ Response send_coarse(const Request& request, const fs::path& model) {
   return file_response(request, file, "model/stl", "coarse.stl");
 }
 
-/// What a file in another format is made of besides the model: the name, and colours if it has any.
+/// Colouring of a mesh: none, or the colours of the scan's pictures.
 enum class Paint { clay, colours };
 
-/// The file of a model in another format, made if it is not there.
+/// The path of a model in another format. It is made if it is missing, or older than the model, the
+/// scan's name or the colours.
 fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
                     const std::string& extension, Paint paint = Paint::clay) {
   const MeshFormat format = mesh_format_of(extension).value();
@@ -80,14 +82,14 @@ fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
   const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
   keep_fresh(file, source, [&] {
     const auto png =
-        read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing where it has none
+        read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing for formats other than 3MF
     write_mesh(format, FacetFile(model), download_name(job, ""), png.value_or(""), file,
                is_coloured ? read_colours(model) : std::vector<Rgb>());
   });
   return file;
 }
 
-/// What a query asks for: nothing, or `colour` as true or false.
+/// Parses a query that is empty or has `colour` as true or false. @throws Error "bad-settings"
 Paint wanted_paint(const Request& request) {
   if (request.parameters.empty()) {
     return Paint::clay;
@@ -100,9 +102,10 @@ Paint wanted_paint(const Request& request) {
   return value == "true" ? Paint::colours : Paint::clay;
 }
 
-/// Has the colours of a model made, unless they are there. Pictures are many and large: the worker
-/// does that, when it has nothing else to do.
-/// @param build  that the model is of
+/// Has the worker make the colours of a model if they are missing or outdated. The pictures are
+/// many and large, so that an occupied worker refuses.
+/// @param build  number of the model's build
+/// @throws Error "bad-settings"  if the scan has no colour pictures, "busy"
 void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
   if (!job.builds.have_colours) {
     throw Error(ErrorCode::bad_settings, "this scan has no pictures in colour",
@@ -117,12 +120,12 @@ void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
   }
 }
 
-/// A model in the format that its path ends with.
-/// @param build   that the model is of
-/// @param suffix  of the name under which a browser saves it, before the extension
+/// Sends a model in the format of the request path's extension.
+/// @param build   number of the model's build
+/// @param suffix  of the file name under which a browser saves the model, before the extension
 Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
                         int build, std::string suffix) {
-  const std::string extension = fs::path(request.path).extension().string();  // as its route has it
+  const std::string extension = fs::path(request.path).extension().string();  // one of the routes'
   const Paint paint = wanted_paint(request);
   if (paint == Paint::colours) {
     keep_colours(app, job, model, build);
@@ -148,7 +151,7 @@ Response send_mesh(App& app, const Request& request, std::string_view id) {
 
 Response send_build_mesh(App& app, const Request& request, std::string_view id,
                          std::string_view build) {
-  const fs::path model = find_build_model(app, id, build);  // so that it is a number
+  const fs::path model = find_build_model(app, id, build);  // checks that `build` is a number
   return send_in_format(app, request, find_scan(app, id), model, std::stoi(std::string(build)),
                         "-" + std::string(build));
 }

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// All but the hash.
+/// A key without its hash.
 json to_json(const AccessKey& key) {
   return {{"id", key.id},
           {"name", key.name},

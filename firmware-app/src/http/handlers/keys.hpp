@@ -7,14 +7,15 @@
 
 namespace octurn {
 
-// The keys of other programs.
+// Access keys of programs, at `/api/v1/keys`.
 
 Response list_keys(App& app);
 
-/// Makes one, and tells it this once.
+/// Makes a key. Only this answer contains the key itself.
+/// @throws Error "bad-json", "bad-name", "bad-settings", "disk-full", "write-failed"
 Response make_key(App& app, const Request& request);
 
-/// From now on it counts no more.
+/// Revokes a key; it is invalid at once. @throws Error "not-found", "disk-full", "write-failed"
 Response revoke_key(App& app, std::string_view id);
 
 }  // namespace octurn

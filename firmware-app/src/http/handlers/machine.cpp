@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t max_lines = 200;
 
-/// The last lines of a text.
+/// The last `max_lines` lines of a text.
 json last_lines(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < text.size();) {
@@ -28,7 +28,7 @@ json last_lines(const std::string& text) {
   return std::vector(lines.begin() + static_cast<std::ptrdiff_t>(skipped), lines.end());
 }
 
-/// Whether the clock is worth setting: the doctor warns of it.
+/// Whether the machine's health checks warn about the clock, so that it may be set.
 bool is_clock_doubtful(const App& app) {
   const auto health = app.machine.health();
   return std::ranges::count(health->warnings, "clock", &Finding::check) > 0;

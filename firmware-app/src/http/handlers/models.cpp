@@ -35,7 +35,7 @@ std::optional<json> to_number(std::string_view text) {
   return is_number ? std::optional<json>(number) : std::nullopt;
 }
 
-/// Numbers by name.
+/// Parses query parameters as numbers. @throws Error "bad-settings"
 json to_numbers(const Headers& parameters) {
   json numbers = json::object();
   for (const auto& [name, text] : parameters) {
@@ -48,7 +48,7 @@ json to_numbers(const Headers& parameters) {
   return numbers;
 }
 
-/// A model that is made from the snapshots while it is sent.
+/// Builds a model from the snapshots and streams it.
 Response make_model(App& app, const Request& request, const Job& job) {
   json numbers = to_numbers(request.parameters);
   std::optional<int> level;
@@ -127,7 +127,7 @@ Response send_model(App& app, const Request& request, std::string_view id) {
 }
 
 Response send_preview(App& app, const Request& request, std::string_view id) {
-  find_scan(app, id);  // or there is no such scan
+  find_scan(app, id);  // throws if there is no such scan
   const auto preview = app.scanner.mesh_preview();
   if (preview->id != id || preview->snapshots == 0) {
     throw Error(ErrorCode::no_preview, "there is nothing of this scan to show",

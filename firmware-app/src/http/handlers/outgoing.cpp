@@ -142,7 +142,7 @@ Response send_to_printer(App& app, const Request& request, std::string_view id) 
   }
   const Job job = find_scan(app, id);
   const std::filesystem::path file = model_in_format(app, job, extension);
-  // A printer keeps one file of a name.
+  // A printer keeps one file of each name, so the file of an unnamed scan is named by its id.
   const std::string name =
       job.label.name.empty() ? "Scan-" + job.id + extension : download_name(job, extension);
   const auto begun = app.uploads.start(job.id, *printer, file, name);

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-// Whom the scanner tells what happens, and sends models to. Keys, and of addresses all but scheme,
-// host and port, are never told again: they may be secret.
+// Webhooks, and printers that receive models. Answers never contain keys, nor more of an address
+// than its origin (scheme, host, port): the rest may be secret.
 
 Response list_webhooks(App& app);
 
@@ -18,7 +18,7 @@ Response add_webhook(App& app, const Request& request);
 /// @throws Error "not-found"
 Response remove_webhook(App& app, std::string_view id);
 
-/// Tells a webhook the event "test". @throws Error "not-found"
+/// Sends the event "test" to a webhook. Answers 202. @throws Error "not-found"
 Response test_webhook(App& app, std::string_view id);
 
 Response list_printers(App& app);
@@ -29,15 +29,15 @@ Response add_printer(App& app, const Request& request);
 /// @throws Error "not-found"
 Response remove_printer(App& app, std::string_view id);
 
-/// Begins to send a scan's model to the printer that the body names.
+/// Starts sending a scan's model to the printer that the body names. Answers 202 with Location.
 /// @throws Error "bad-json", "bad-settings", "no-such-scan", "no-model", "busy"
 Response send_to_printer(App& app, const Request& request, std::string_view id);
 
-/// How far that is. @throws Error "not-found"  if it was not sent since the daemon started, or
-/// another scan was sent after it
+/// Sends the state of a scan's upload to a printer.
+/// @throws Error "not-found"  if the scan's upload is not the last one since the daemon started
 Response send_upload(App& app, std::string_view id);
 
-/// @throws Error "not-running"
+/// Cancels a scan's upload to a printer. @throws Error "not-running"
 Response cancel_upload(App& app, std::string_view id);
 
 }  // namespace octurn

@@ -16,7 +16,7 @@
 namespace octurn {
 namespace {
 
-/// A pose's number in a path; 0 if it is none.
+/// Parses a pose's number; 0, which no pose has, if the text is no number.
 int to_number(std::string_view text) {
   int number = 0;
   const char* const end = text.data() + text.size();
@@ -27,14 +27,14 @@ int to_number(std::string_view text) {
 }  // namespace
 
 Response list_poses(App& app, std::string_view id) {
-  find_scan(app, id);  // or there is no such scan
+  find_scan(app, id);  // throws if there is no such scan
   return json_response({{"poses", poses_json(app.scanner.poses(id))}});
 }
 
 Response start_pose(App& app, const Request& request, std::string_view id) {
   const Job first = find_scan(app, id);
   ScanSettings defaults = app.scanner.calibration().in_force(first.settings);
-  defaults.depth_scale = first.settings.depth_scale;  // so that both have one sensor
+  defaults.depth_scale = first.settings.depth_scale;  // both are merged: they need one scale
   const ScanSettings settings = settings_from(parse_body(request), defaults);
   expect_no_update(app);
   app.scanner.expect_ready();

@@ -22,8 +22,8 @@ using nlohmann::json;
               "Wait for its end, or cancel it.");
 }
 
-/// Takes the places of its verdict's reasons from a model: of thousands of scans they would be most
-/// of the list.
+/// Removes the places of a model's quality reasons: in a list of thousands of scans they would be
+/// most of the bytes.
 void drop_places(json& model) {
   if (model.is_null() || model["quality"].is_null()) {
     return;
@@ -36,7 +36,7 @@ void drop_places(json& model) {
 }  // namespace
 
 Response list_scans(App& app) {
-  // As text from scan to scan: a document of thousands of them takes ten times the memory.
+  // Serialized scan by scan: one JSON document of thousands of scans takes ten times the memory.
   std::string list;
   for_each_scan(app, [&](json scan) {
     drop_places(scan["model"]);

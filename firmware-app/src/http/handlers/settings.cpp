@@ -21,8 +21,7 @@ using nlohmann::json;
 constexpr const char* backup_format = "octurn-settings";
 constexpr int backup_version = 1;
 
-/// Who may open the page: "everybody", or who knows the password that the page, or octurn.json, has
-/// set.
+/// The source of the page's password: "page" or "octurn.json"; "everybody" if there is none.
 std::string_view password_state(const App& app) {
   const Config config = app.settings.config();
   return std::filesystem::exists(own_password_file(config)) ? "page"

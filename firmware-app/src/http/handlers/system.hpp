@@ -7,23 +7,23 @@
 
 namespace octurn {
 
-// What the scanner as a whole answers.
+// The state of the scanner as a whole.
 
-/// The devices, the disk, warnings, the scan that runs and the newest that is finished. Touches no
-/// disk.
+/// The devices, free disk space, warnings, the running scan and build, and the id of the newest
+/// finished scan. Touches no disk.
 nlohmann::json status_json(const App& app);
 Response send_status(App& app);
 
-/// The description of this interface for programs, OpenAPI 3.1: a file of the page.
+/// Sends the OpenAPI 3.1 description of this interface, a file of the page.
 Response send_description(App& app, const Request& request);
 
-/// What `octurn doctor` finds.
+/// Sends the findings of `octurn doctor`.
 Response send_findings(App& app);
 
-/// A zip of what a person who helps would want to see.
+/// Sends a zip of diagnostics for support: findings, log, settings and scans.
 Response send_diagnostics(App& app);
 
-/// What the sensor sees, as a picture for people. @throws Error "sensor-..."
+/// Sends the current depth frame or camera picture as PNG. @throws Error "sensor-..."
 Response send_depth_picture(App& app);
 
 }  // namespace octurn

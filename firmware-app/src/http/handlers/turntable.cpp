@@ -50,7 +50,7 @@ json to_json(const TurntableState& state) {
           {"test", state.test ? to_json(*state.test) : json(nullptr)}};
 }
 
-/// @throws Error "bad-settings"  if a flag is given, and is not true
+/// Whether a flag is given. @throws Error "bad-settings"  if it is given, and is not true
 bool is_asked(JsonObject& keys, std::string_view key) {
   const auto value = keys.value(key);
   if (value && value->json() != true) {

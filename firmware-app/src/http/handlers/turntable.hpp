@@ -5,12 +5,12 @@
 
 namespace octurn {
 
-// What `/api/v1/turntable` answers: moves without a scan.
+// Moves of the turntable outside of scans, at `/api/v1/turntable`.
 
-/// What the turntable does, and what its last test has found.
+/// Sends the turntable's state, and the findings of its last test.
 Response send_turntable(App& app);
 
-/// Jogs, tests or stops it, as the body says. 202.
+/// Jogs, tests or stops the turntable, as the body says. Answers 202.
 /// @throws Error "bad-json", "bad-settings", "busy"
 Response move_turntable(App& app, const Request& request);
 

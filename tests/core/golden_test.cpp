@@ -13,8 +13,8 @@
 #include "octurn/stl.hpp"
 #include "support/checksum.hpp"
 
-// Small scans whose models are known to the last byte: on every processor, by every compiler and
-// with every number of threads the same.
+// Small scans whose models are known to the last byte. They are the same for every processor,
+// compiler and number of threads.
 
 namespace octurn {
 namespace {
@@ -28,7 +28,7 @@ struct Golden {
   std::uint64_t checksum = 0;  // of the whole STL file
 };
 
-/// GoogleTest puts this into the names of tests.
+/// GoogleTest prints a parameter this way, and CTest has it in the test's name.
 void PrintTo(const Golden& golden, std::ostream* out) {  // NOLINT(readability-identifier-naming)
   *out << golden.scan;
 }

@@ -12,7 +12,7 @@
 namespace octurn {
 namespace {
 
-/// A scan of 24 stops as a Kinect at 0.65 m gives it.
+/// The figures of a flawless scan: 24 stops by a Kinect at 0.65 m.
 ScanFigures right_scan() {
   return {.stops = 24,
           .object_pixels = 9000,
@@ -130,7 +130,7 @@ std::shared_ptr<const SurfaceCells> surface_at(const Eigen::Vector3d& point) {
   return std::make_shared<SurfaceCells>(std::move(surface));
 }
 
-/// As a sensor sees a limb of 6 cm, 2 cm wide, above the model.
+/// Adds the cells of a limb, 6 cm long and 2 cm wide, above the model.
 void add_seen_limb(ScanFigures& scan) {
   for (double z = 0.1; z < 0.16; z += 0.005) {
     for (double x = 0; x < 0.02; x += 0.005) {
@@ -170,7 +170,7 @@ TEST(Judge, LooksAtEachPoseOfSeveral) {
   poses[2].platform_height = 0.02;
   const Quality quality = judge(poses, right_model());
   EXPECT_EQ(quality.verdict, Verdict::bad);
-  ASSERT_EQ(codes(quality), Codes{"floats"});  // each once
+  ASSERT_EQ(codes(quality), Codes{"floats"});  // each code once
   EXPECT_EQ(quality.reasons.front().detail.find("side 2: the platform is seen 20"), 0U);
 }
 

@@ -40,8 +40,9 @@ std::vector<Facet> surface_of(const ReconstructOptions& options, const SnapshotS
 TEST(Reconstruction, StaysWithinALeafOfTheBall) {
   const std::vector<Facet> facets = surface_of(ball_options(0.002), ball_scan(8));
   ASSERT_GT(facets.size(), 10000U);
-  // A leaf is met wherever in it the surface lies; its facets reach half a leaf beyond its centre,
-  // on each axis. Triangles between samples 4 mm apart lie up to 4^2 / (8 * 50) = 0.04 mm inside.
+  // The surface may lie anywhere in a leaf, and the leaf's facets reach half a leaf beyond its
+  // centre on each axis. Triangles between samples 4 mm apart lie up to 4^2 / (8 * 50) = 0.04 mm
+  // inside.
   const double leaf = 1.0 / 512;
   const double slack = leaf * std::sqrt(3.0) + 0.0001;
   for (const Facet& facet : facets) {
@@ -87,7 +88,7 @@ TEST(Reconstruction, GivesTheSameBytesInSlabs) {
   options.threads = 2;
   options.memory_limit = std::size_t{7} << 20U;
   EXPECT_TRUE(same_bytes(surface_of(options, counted), whole));
-  EXPECT_GT(reads, snapshots.count);  // it did not fit in one slab
+  EXPECT_GT(reads, snapshots.count);  // it took more than one slab
 }
 
 TEST(Reconstruction, CountsWhatItWillGiveAlsoInSlabs) {
@@ -123,7 +124,7 @@ TEST(Reconstruction, ShowsACoarsePreviewOfWhatWasSeenSoFar) {
 
   const MeshCheck coarser = preview(both.facets() - 1);
   EXPECT_TRUE(coarser.closed());
-  EXPECT_LT(coarser.facets(), both.facets() / 2);  // a level coarser is about a quarter
+  EXPECT_LT(coarser.facets(), both.facets() / 2);  // a level coarser has about a quarter
   EXPECT_GT(coarser.facets(), both.facets() / 8);
 }
 

@@ -1,5 +1,5 @@
-// A stop ends a reconstruction in each of its phases. Work is counted, not time: no phase that
-// comes after the stop does any.
+// A stop request ends a reconstruction in each of its phases. The tests count work instead of
+// measuring time: no phase after the request does any.
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ class StoppedReconstruction : public testing::TestWithParam<MethodAndThreads> {
 TEST_P(StoppedReconstruction, ReadsNoFurtherSnapshot) {
   const auto reconstructor = make_reconstructor(options_);
   EXPECT_THROW(reconstructor->add(stopping_at(2), stop_.get_token()), Stopped);
-  // Another thread may have begun the snapshot after it.
+  // Each other thread may have begun one more snapshot.
   EXPECT_LE(reads_, 3U + static_cast<std::size_t>(GetParam().threads) - 1);
 }
 
@@ -82,7 +82,7 @@ TEST_P(StoppedReconstruction, MakesNoFacet) {
 }
 
 TEST_P(StoppedReconstruction, EndsItsSurfaceAtThePieceInWhichItWasAsked) {
-  options_.target_error = 0;  // so that the surface comes layer by layer
+  options_.target_error = 0;  // streams the surface layer by layer
   const auto reconstructor = make_reconstructor(options_);
   reconstructor->add(all_);
   int pieces = 0;

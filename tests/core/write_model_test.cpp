@@ -35,7 +35,7 @@ TEST(WriteModel, ReportsTheFileThatItWrote) {
   EXPECT_EQ(report->triangles, reconstructor->count(snapshots).facets);
   EXPECT_GT(report->leaves, 0U);
   EXPECT_TRUE(report->watertight);
-  // Leaves reach a side of 3.9 mm beyond the ball at most, and it is seen from all round.
+  // Leaves reach at most one side, 3.9 mm, beyond the ball, which is seen from all around.
   EXPECT_GT(report->size.x(), 2 * ball_radius - 0.004);
   EXPECT_LT(report->size.x(), 2 * (ball_radius + 0.004));
 }

@@ -14,8 +14,8 @@
 namespace octurn {
 namespace {
 
-// The technique written down a second time from Bennett 2014, in double precision and without a
-// grid: points by the pinhole formula, triangles, and all leaves by separating axes.
+// A second implementation of Bennett 2014 in double precision, without the snap grid: pinhole
+// back-projection, triangulation, and a separating axis test of every triangle against every leaf.
 
 using Vector = Eigen::Vector3d;
 using Corners = std::array<Vector, 3>;
@@ -76,7 +76,8 @@ bool meets_cube(const Corners& corners, double half_side) {
   return true;
 }
 
-/// The leaves that a triangle meets, whose sides are moved outward by `margin` (metres).
+/// Adds the leaves that a triangle meets after each leaf's sides are moved outward by `margin`
+/// metres (inward if negative).
 void add_leaves(Leaves& leaves, const Corners& corners, double leaf_side, double margin) {
   const Vector root_min(-0.5, -0.5, 0);
   const Vector low = (corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]) - root_min) / leaf_side;
@@ -99,9 +100,9 @@ void add_leaves(Leaves& leaves, const Corners& corners, double leaf_side, double
 }
 
 TEST(BennettReconstructor, FindsTheLeavesOfAnImplementationInFloatingPoint) {
-  // A corner moves by half a unit of the snap grid along each axis, 1.9 micrometres, and by the
-  // rounding of a float below 1 m, 0.1 micrometres. So does the triangle: it meets all the leaves
-  // that it met when they were smaller by as much, and none that it did not meet when larger.
+  // Snapping moves a corner by up to half a grid unit per axis, 1.9 micrometres, and the rounding
+  // of a float below 1 m by 0.1 micrometres. The snapped triangle therefore meets every leaf that
+  // the exact one meets in leaves smaller by `moved`, and none that it misses in larger leaves.
   constexpr double moved = 1.0 / (1 << SnapGrid::bits) + 2e-7;
   constexpr double threshold = 0.0001;
   const SnapshotSource snapshots = ball_scan(4);
@@ -121,7 +122,7 @@ TEST(BennettReconstructor, FindsTheLeavesOfAnImplementationInFloatingPoint) {
     EXPECT_GE(leaves, fewest.size());
     EXPECT_LE(leaves, all.size());
     EXPECT_GT(fewest.size(), 1000U);
-    EXPECT_LT(all.size() - fewest.size(), fewest.size() / 50);  // so that the bounds say something
+    EXPECT_LT(all.size() - fewest.size(), fewest.size() / 50);  // the bounds are tight
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace octurn {
 
-// Brings what the fast implementation gives into the form of the plain one.
+// Converts the results of the fast implementation into the form of the plain one.
 
 using Leaves = std::set<std::array<int, 3>>;
 
@@ -50,7 +50,7 @@ inline std::vector<Facet> surface_of(const Octree& octree) {
   return facets;
 }
 
-/// The facets as the plain implementation gives them: in half leaves, sorted.
+/// Converts facets into the plain implementation's triangles: corners in half leaves, sorted.
 inline std::vector<plain::Triangle> in_half_leaves(const Octree& octree,
                                                    const std::vector<Facet>& facets) {
   std::vector<plain::Triangle> triangles;

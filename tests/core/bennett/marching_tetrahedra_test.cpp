@@ -20,7 +20,7 @@ struct RandomLeaves {
   std::set<std::array<int, 3>> leaves = {};
 };
 
-/// Leaves at random in a corner of the root, so that they touch its border and bricks' borders.
+/// Random leaves in a corner of the root, so that some touch the root's and the bricks' borders.
 RandomLeaves random_leaves(std::uint32_t seed, int levels, int extent, int percent) {
   RandomLeaves random{.octree = Octree(1.0, levels)};
   Soup dice(seed, levels);
@@ -89,8 +89,8 @@ TEST(MarchingTetrahedra, OfABlockHasItsBoxAndNormalsThatPointOutward) {
   constexpr double leaf = 15.625;
   EXPECT_EQ(check.bounds_mm().min, Eigen::Vector3d(30 * leaf - 500, 20 * leaf - 500, 0));
   EXPECT_EQ(check.bounds_mm().max, Eigen::Vector3d(40 * leaf - 500, 36 * leaf - 500, 12 * leaf));
-  // Half a leaf is cut off along the edges, and nothing else: the volume lies between those of the
-  // block and of the block of leaves' centres.
+  // Marching tetrahedra cut off half a leaf along the edges and nothing else: the volume lies
+  // between that of the block and that of the box around the leaves' centres.
   EXPECT_LT(check.volume_mm3(), 10 * 16 * 12 * std::pow(leaf, 3));
   EXPECT_GT(check.volume_mm3(), 9 * 15 * 11 * std::pow(leaf, 3));
 

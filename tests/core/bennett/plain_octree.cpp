@@ -7,7 +7,8 @@ namespace octurn::plain {
 namespace {
 
 using Vector = std::array<std::int64_t, 3>;
-__extension__ typedef __int128 Exact;  // NOLINT(modernize-use-using): pedantic compilers want it so
+__extension__ typedef __int128
+    Exact;  // NOLINT(modernize-use-using): -Wpedantic needs __extension__
 
 Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
@@ -19,7 +20,7 @@ Exact dot(const Vector& a, const Vector& b) {
   return Exact{a[0]} * b[0] + Exact{a[1]} * b[1] + Exact{a[2]} * b[2];
 }
 
-/// Whether the shadows of a triangle and a cube on an axis lie apart.
+/// Whether the projections of a triangle and a cube onto an axis are disjoint.
 bool apart(const Vector& axis, const std::array<Vector, 3>& corners, const Vector& low,
            std::int64_t side) {
   Exact cube_low = 0;
@@ -51,8 +52,8 @@ bool meet(const std::array<Vector, 3>& corners, const Vector& low, std::int64_t 
 const std::array<std::array<int, 4>, 6> tetrahedra{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
-/// Turns a triangle so that `inside` (half leaves) lies behind it, and starts it with its smallest
-/// corner.
+/// Orients a triangle so that `inside` (half leaves) lies behind it, and rotates its corners so
+/// that the smallest comes first.
 Triangle outward(Triangle t, const std::array<int, 3>& inside) {
   const auto v = [](const std::array<int, 3>& p) { return Vector{p[0], p[1], p[2]}; };
   const Vector normal = cross(minus(v(t[1]), v(t[0])), minus(v(t[2]), v(t[0])));
@@ -101,7 +102,7 @@ std::vector<Triangle> marching_tetrahedra(const std::set<std::array<int, 3>>& le
   const auto corner = [](const std::array<int, 3>& low, int i) {
     return std::array{low[0] + (i & 1), low[1] + (i >> 1 & 1), low[2] + (i >> 2)};
   };
-  std::set<std::array<int, 3>> pseudo_voxels;  // by the leaf position at their lowest corner
+  std::set<std::array<int, 3>> pseudo_voxels;  // each by the leaf at its lowest corner
   for (const auto& [x, y, z] : leaves) {
     for (int i = 0; i < 8; ++i) {
       pseudo_voxels.insert({x - (i & 1), y - (i >> 1 & 1), z - (i >> 2)});
@@ -109,8 +110,8 @@ std::vector<Triangle> marching_tetrahedra(const std::set<std::array<int, 3>>& le
   }
   std::vector<Triangle> triangles;
   for (const std::array<int, 3>& low : pseudo_voxels) {
-    // A leaf's centre is at its position and a half: 2 p + 1 half leaves. An edge's middle is the
-    // sum.
+    // The leaf at p has its centre at 2 p + 1 half leaves. The middle between the centres of p and
+    // q is half their sum, p + q + 1.
     const auto half_way = [&](int a, int b) {
       const std::array<int, 3> p = corner(low, a);
       const std::array<int, 3> q = corner(low, b);

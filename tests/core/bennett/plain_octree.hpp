@@ -11,10 +11,10 @@
 
 namespace octurn::plain {
 
-/// The technique as its text tells it, with nothing done for speed: nodes that own their eight
-/// children, every triangle tested from the root down by all thirteen separating axes, leaves in a
-/// set, pseudo-voxels one by one. It shares nothing with `octurn::Octree` but the snap grid that
-/// corners are rounded to. What the fast implementation does must agree with it exactly.
+/// Bennett's octree as the paper describes it, with nothing done for speed: every triangle is
+/// tested from the root down against all thirteen separating axes, leaves are kept in a set, and
+/// pseudo-voxels are visited one by one. It shares only the snap grid of the corners with
+/// `octurn::Octree`. The fast implementation must agree with it exactly.
 class Octree {
  public:
   explicit Octree(int levels) : levels_(levels) {}
@@ -24,7 +24,7 @@ class Octree {
   /// Lowest corners of the leaves, counted in leaves.
   const std::set<std::array<int, 3>>& leaves() const { return leaves_; }
 
-  /// The nodes of a coarser level, likewise.
+  /// Lowest corners of the nodes of a coarser level, counted in nodes of that level.
   std::set<std::array<int, 3>> nodes(int level) const;
 
  private:
@@ -34,11 +34,12 @@ class Octree {
   std::set<std::array<int, 3>> leaves_ = {};
 };
 
-/// A triangle of the surface: corners in half leaves from the root's lowest corner, outward.
+/// A triangle of the surface, counter-clockwise seen from outside; its corners are in half leaves
+/// from the root's lowest corner.
 using Triangle = std::array<std::array<int, 3>, 3>;
 
-/// Marching Tetrahedra on the pseudo-voxels of a set of leaves, sorted; each triangle starts with
-/// its smallest corner, so that equal surfaces are equal lists.
+/// Marching tetrahedra on the pseudo-voxels of a set of leaves. The triangles are sorted, each
+/// starts with its smallest corner: equal surfaces are equal lists.
 std::vector<Triangle> marching_tetrahedra(const std::set<std::array<int, 3>>& leaves);
 
 }  // namespace octurn::plain

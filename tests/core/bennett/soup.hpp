@@ -9,8 +9,8 @@
 
 namespace octurn {
 
-/// Random triangles of all the kinds that exact voxelization must get right: tiny and huge, without
-/// area, with corners beside the faces of leaves, partly and wholly outside the root.
+/// Random triangles of all kinds that are hard to voxelize exactly: tiny and huge ones, degenerate
+/// ones, with corners next to leaf faces, partly and wholly outside the root.
 class Soup {
  public:
   Soup(std::uint32_t seed, int levels) : random_(seed), leaf_(1 << (SnapGrid::bits - levels)) {}
@@ -31,7 +31,7 @@ class Soup {
           at = (at / leaf_) * leaf_ + (between(0, 1) == 0 ? 1 : -1);  // beside a face
         }
         if (between(0, 9) == 0) {
-          at = middle[axis];  // edges along the axes, or no edge at all
+          at = middle[axis];  // makes edges parallel to an axis, and edges of length 0
         }
         corner[axis] = std::clamp(at, low, high - 1) | 1;
       }

@@ -18,12 +18,12 @@ TEST(AxisSolver, FindsTheAxisOfAnObjectFromAPoseThatIsWrong) {
 
   ASSERT_TRUE(solution);
   const AxisError error = axis_error(solution->platform_from_sensor);
-  // What a Kinect must reach with eight stops; the readings have 0.35 mm of noise.
+  // Required accuracy of a Kinect with eight stops; the readings have 0.35 mm of noise.
   EXPECT_LT(error.position_mm, 0.12);
   EXPECT_LT(error.direction_deg, 0.05);
   EXPECT_LT(error.height_mm, 0.06);
   EXPECT_LT(solution->last_step, 1e-5);
-  // Three sigma of what the solver itself says, of two coordinates each.
+  // Three of the solver's own sigmas in each of two coordinates: 3 * sqrt(2) = 4.2, at most 4.
   EXPECT_LT(error.position_mm, mm_from_metres(4 * solution->position_sigma()));
   EXPECT_LT(error.direction_deg, degrees_from_radians(4 * solution->direction_sigma()));
 }

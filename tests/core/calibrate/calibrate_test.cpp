@@ -12,7 +12,7 @@
 namespace octurn {
 namespace {
 
-// What a Kinect must reach with eight stops.
+// Required accuracy of a Kinect with eight stops.
 constexpr double position_mm = 0.12;
 constexpr double direction_deg = 0.05;
 
@@ -52,7 +52,7 @@ TEST(Calibrate, SeesAnObjectThatStandsBesideTheMiddleFromEightStops) {
   expect_axis_found(calibrate(turn));
 }
 
-// Its sides, of 12 mm, overlap nothing of themselves from there.
+// From a pose so far off, the box's sides, 12 mm high, do not overlap themselves between stops.
 TEST(Calibrate, FindsTheAxisUnderAFlatBoxThatWasTold28MillimetresBeside) {
   CalibrationTurn turn = rendered_turn(block({0.12, 0.08, 0.012}), 8);
   turn.platform_from_sensor = wrong_pose({0.02, 0.02, 0}, {1, 0.5, 0}, 3);
@@ -92,7 +92,7 @@ TEST(Calibrate, NamesTheStopAtWhichThePlatformSlipped) {
   EXPECT_NEAR(std::get<double>(values.at("off_deg")), 1.8, 0.3);
 }
 
-/// Of a platform that stood still all the while.
+/// A turn whose platform never moves.
 CalibrationTurn still_turn(const Shape& object, std::size_t stops) {
   CalibrationTurn turn = rendered_turn(object, stops);
   std::vector<DepthFrame> frames;
@@ -125,7 +125,8 @@ TEST(Calibrate, TakesAnObjectOfRevolutionThatTurnedForNoPlatformThatStoodStill) 
   }
 }
 
-/// The shape from a stop on, where it stands elsewhere on the platform.
+/// A turn during which the object moves on the platform: shifted by `by` metres from stop `from`
+/// on.
 CalibrationTurn turn_with_move(std::size_t stops, std::size_t from, const Eigen::Vector3d& by) {
   CalibrationTurn turn = rendered_turn(figure(), stops);
   const CalibrationTurn after = rendered_turn(moved(figure(), by), stops);
@@ -139,8 +140,8 @@ TEST(Calibrate, TellsThatTheObjectMovedAndByHowMuch) {
   const CalibrationReport report = calibrate(turn_with_move(12, 7, {0.003, -0.002, 0}));
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_EQ(report.findings[0].code, "moved");
-  // 3.6 mm, of which the axis, which was solved as if nothing moved, takes a part and gives it
-  // back.
+  // The object moves by 3.6 mm. The axis is first solved as if nothing had moved and absorbs a part
+  // of it; the measurement of the move must restore that part.
   const std::string& detail = report.findings[0].detail;
   EXPECT_NE(detail.find("between stops 6 and 7"), std::string::npos) << detail;
   EXPECT_NEAR(std::stod(detail.substr(detail.find(" by ") + 4)), 3.6, 0.5) << detail;
@@ -166,8 +167,8 @@ TEST(Calibrate, SeesInOneMoreLookAtTheFirstAngleThatTheObjectMovedAtTheEnd) {
       << report.findings[0].detail;
 }
 
-/// The same by a sensor that errs by a smooth pattern, whose waves are some 130 pixels long.
-/// @param size  units of disparity, root mean square
+/// The same turn seen by a sensor with a smooth error pattern whose waves are some 130 pixels long.
+/// @param size  root mean square, units of disparity
 CalibrationTurn with_pattern(CalibrationTurn turn, double size = 0.8) {
   turn.read = [size, read = turn.read](std::size_t stop) {
     DepthFrame frame = read(stop);
@@ -208,7 +209,8 @@ TEST(Calibrate, TellsThatThePlatformIsNotSquareToItsShaft) {
     ASSERT_NE(wobble, report.findings.end());
     constexpr std::string_view before = "the platform's surface tilts by ";
     ASSERT_TRUE(wobble->detail.starts_with(before)) << wobble->detail;
-    // Depths are rounded to 0.1 mm: over the platform's 30 cm by no more than 0.02 degrees.
+    // Depths are rounded to 0.1 mm, which tilts a plane over the platform's 30 cm by at most 0.02
+    // degrees.
     EXPECT_NEAR(std::stod(wobble->detail.substr(before.size())), 0.6, 0.05);
     EXPECT_NEAR(std::get<double>(wobble->parameters.at("wobble_deg")), 0.6, 0.05);
   }
@@ -221,7 +223,7 @@ TEST(Calibrate, TakesNoPatternForAWobble) {
   }
 }
 
-/// The finding of a code, if there is one.
+/// The report's finding with a code, if there is one.
 std::optional<CalibrationFinding> finding(const CalibrationReport& report,
                                           const std::string& code) {
   const auto found = std::ranges::find(report.findings, code, &CalibrationFinding::code);
@@ -237,7 +239,7 @@ TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
     ASSERT_TRUE(wrong) << ratio;
     constexpr std::string_view before = "the sensor's focal length is ";
     ASSERT_TRUE(wrong->detail.starts_with(before)) << wrong->detail;
-    // The sigma is 0.3 %.
+    // Three sigma: the ratio's sigma is 0.3 %.
     EXPECT_NEAR(std::stod(wrong->detail.substr(before.size())), 2, 0.9) << wrong->detail;
     EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than told" : "shorter than told"),
               std::string::npos);
@@ -250,7 +252,7 @@ TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
   }
 }
 
-// A map of one wall leaves some 0.1 units.
+// A sensor map from one wall leaves an error of some 0.1 units of disparity.
 TEST(Calibrate, TellsAFocalLengthOnlyBesideSoMuchOfAPatternAsAMapLeaves) {
   const CalibrationTurn seen = rendered_turn(figure(), 8);
   for (const bool has_map : {false, true}) {
@@ -262,7 +264,7 @@ TEST(Calibrate, TellsAFocalLengthOnlyBesideSoMuchOfAPatternAsAMapLeaves) {
   }
 }
 
-// Of a ball and a platform, only the platform's tilt against the axis tells.
+// With a ball, only the platform's tilt against the axis depends on the focal length.
 TEST(Calibrate, TellsNoFocalLengthOfABall) {
   EXPECT_FALSE(finding(calibrate(rendered_turn(ball({0.02, 0, 0.05}, 0.05), 8)), "focal-length"));
 }

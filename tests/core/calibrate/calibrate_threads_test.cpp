@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-/// All figures of a report, to the last bit: the shortest texts that give the same numbers.
+/// All numbers of a report as JSON, which prints each double with enough digits to restore its
+/// bits.
 std::string to_text(const CalibrationReport& report) {
   json rows = json::array();
   for (int row = 0; row < 4; ++row) {
@@ -38,7 +39,7 @@ std::string golden_text() {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// Also on arm64, where CI runs this, too.
+// CI also runs this test on arm64.
 TEST(Calibrate, GivesTheSameBitsOnEveryProcessorAndForAnyNumberOfThreads) {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   turn.platform_from_sensor = wrong_pose({0.01, -0.005, 0.004}, {1, 0.4, 0}, 2);

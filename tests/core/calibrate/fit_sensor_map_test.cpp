@@ -10,8 +10,8 @@
 namespace octurn {
 namespace {
 
-/// How far a wall is from flat that the sensor sees with that map, steps of disparity (root mean
-/// square of 4 x 4 pixels).
+/// Deviation from a plane of a wall seen through the map: root mean square over the blocks of
+/// 4 x 4 pixels, steps of disparity.
 double unevenness(const InverseDepthAt& wall, const SensorMap* map = nullptr) {
   const Intrinsics lens;
   std::mt19937 random(77);
@@ -47,8 +47,8 @@ TEST(FitSensorMap, FlattensAnotherWallAtTheSameDistance) {
   EXPECT_EQ(report.walls[0].coverage, 1);
   const InverseDepthAt other = flat_wall(0.65, -6);
   EXPECT_GT(unevenness(other), 0.7);
-  // What is left: rounding, half a step of noise in 64 readings, and what 3 cm from the middle to
-  // the sides make of the share that changes.
+  // Remaining error: rounding, half a step of noise over 64 readings, and the distance-dependent
+  // share of the pattern, as the two walls' depths differ by up to 3 cm at the sides.
   EXPECT_LT(unevenness(other, &report.map), 0.2);
 }
 
@@ -103,12 +103,12 @@ TEST(FitSensorMap, RefusesWhatIsNoWall) {
             })
                 .find("no flat wall"),
             std::string::npos);
-  EXPECT_NE(reason_of([&](int u, int v) {  // somebody 30 cm before it
+  EXPECT_NE(reason_of([&](int u, int v) {  // a person 30 cm in front of the wall
               return u > 250 && u < 350 && v > 100 ? 1 / 0.4 : flat_wall(0.7, 0)(u, v);
             })
                 .find("no flat wall"),
             std::string::npos);
-  EXPECT_NE(reason_of([&](int u, int v) {  // a picture of 8 x 10 cm and 1.5 cm
+  EXPECT_NE(reason_of([&](int u, int v) {  // a picture frame of 8 x 10 cm, 1.5 cm thick
               const bool is_frame = u > 300 && u < 370 && v > 200 && v < 290;
               return is_frame ? behind(wall(u, v), 0.015) : wall(u, v);
             })

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cells that a sensor saw: of the sides of a post of 4 x 4 cm, from z = 5 mm to a height.
+/// Cells that a sensor saw on the sides of a post of 4 x 4 cm, from z = 5 mm up to `height`.
 ScanFigures post_seen(double height, double distance = 0.65) {
   ScanFigures scan{.stops = 8, .distance = distance};
   for (double z = 0.0075; z < height; z += 0.005) {
@@ -29,7 +29,7 @@ ScanFigures post_seen(double height, double distance = 0.65) {
   return scan;
 }
 
-/// A model of that post, as high as one wants, of voxels of a millimetre.
+/// A model of that post, `height` metres high, of 1 mm voxels.
 ModelReport post_model(double height) {
   const double volume = 0.04 * 0.04 * height;
   SurfaceCells surface;
@@ -57,7 +57,7 @@ TEST(MissingPart, IsNoneOfAModelOfAllThatWasSeen) {
 TEST(MissingPart, IsMeasuredAndPlaced) {
   const auto part = find_missing_part(post_seen(0.12), post_model(0.05));
   ASSERT_TRUE(part);
-  // What is up to 8 mm and a cell of the model's surface is not told from it.
+  // Cells within 8 mm, plus one 4 mm cell, of the model's surface count as part of the model.
   EXPECT_NEAR(mm_from_metres(part->length), 120 - 50 - 8 - 4, 6);
   ASSERT_FALSE(part->places.empty());
   for (const Vector3d& place : part->places) {
@@ -89,7 +89,7 @@ TEST(MissingPart, AllowsForANoiseThatGrowsWithTheSquareOfTheDistance) {
   ModelReport model = post_model(0.12);
   ScanFigures scan = post_seen(0.12);
   for (Vector3d& point : scan.seen) {
-    point *= 1.7;  // its sides are 14 mm before the model's
+    point *= 1.7;  // its sides stand 14 mm outside the model's
     point.z() /= 1.7;
   }
   EXPECT_TRUE(find_missing_part(scan, model));

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 const Box clip{.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}};
-constexpr double error_mm = 0.3;  // three sigma of a figure of 12 cm, which the readings' noise has
+constexpr double error_mm = 0.3;  // three sigma of the readings' noise, for a 12 cm figure
 constexpr double error_deg = 0.4;
 
 Snapshot first_look(const Shape& object,
@@ -29,7 +29,7 @@ DepthFrame last_look(const Shape& object, double angle = 0) {
   return rendered_frame(object, angle, random);
 }
 
-/// What a sensor with a fixed, smooth pattern of 0.8 units of disparity sees instead.
+/// The same frame seen by a sensor with a fixed, smooth error pattern of 0.8 units of disparity.
 DepthFrame with_pattern(DepthFrame frame) {
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     const double error = 0.8 * (std::sin(static_cast<double>(i % 640) / 21) +
@@ -83,7 +83,8 @@ TEST(ObjectMove, TellsATurnFromAShift) {
   EXPECT_NEAR(std::get<double>(findings[0].parameters.at("turn_deg")), 1.8, error_deg);
 }
 
-// So far off, some of the platform is taken for the object; both errors are the same in both looks.
+// With a pose so far off, a part of the platform is taken for the object. Both errors, the pose's
+// and the pattern's, are the same in both looks and cancel.
 TEST(ObjectMove, DoesNotDependOnTheSensorsPatternAndARoughPose) {
   Snapshot first = first_look(figure(), wrong_pose({0.006, -0.005, 0.003}, {1, 0.5, 0}, 1.2));
   first.frame = with_pattern(std::move(first.frame));

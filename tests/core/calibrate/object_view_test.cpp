@@ -15,11 +15,11 @@ using Eigen::Vector3d;
 constexpr Intrinsics lens{
     .width = 120, .height = 80, .fx = 600, .fy = 600, .cx = 60, .cy = 40, .depth_unit = 0.00001};
 
-/// All that is nearer than 0.5 m counts as the object.
+/// A mask that takes everything nearer than 0.5 m for the object.
 const ObjectView::Mask all_near{.plane = {.normal = -Vector3d::UnitZ(), .offset = -0.5},
                                 .axis_point = Vector3d(0, 0, 0.4)};
 
-/// A plane through (0, 0, 0.4) with this normal.
+/// A depth frame of the plane through (0, 0, 0.4) with this normal.
 DepthFrame plane_frame(const Vector3d& normal) {
   DepthFrame frame{.width = lens.width, .height = lens.height, .depth = {}};
   for (int v = 0; v < lens.height; ++v) {
@@ -39,7 +39,7 @@ TEST(ObjectView, ReadsPointsAsTheyAreAndNormalsOfTheirNeighbourhood) {
   const auto readings = view.readings(3);
   ASSERT_GT(readings.size(), 500U);
   for (const SurfaceReading& reading : readings) {
-    // Depth is rounded to 10 micrometres; normals are of 5 x 5 pixels, 0.7 mm from one to the next.
+    // Depth is rounded to 10 micrometres; normals are fitted to 5 x 5 pixels, 0.7 mm apart.
     EXPECT_NEAR(normal.dot(reading.point - Vector3d(0, 0, 0.4)), 0, 6e-6);
     EXPECT_LT(reading.normal.cross(normal).norm(), 0.003);
     EXPECT_GT(reading.normal.dot(normal), 0);

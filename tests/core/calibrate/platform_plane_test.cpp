@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where the ray from the sensor in that direction ends, in the platform's frame; what it does not
-/// meet is no reading.
+/// Returns where a ray of the platform's frame meets the scene, in lengths of `direction` from
+/// `origin`; 0 is no reading.
 using Scene = std::function<double(const Vector3d& origin, const Vector3d& direction)>;
 
 /// A disc of 30 cm at the platform's height, or a smaller one above it.
@@ -42,11 +42,11 @@ PlatformSamples sampled(const Scene& scene, std::size_t stops) {
   return samples;
 }
 
-/// The plane's distance from the platform's origin, and its angle to the platform.
+/// Expects the plane to be the platform's true one, in angle and in height.
 void expect_true(const std::optional<PlatformPlane>& plane) {
   ASSERT_TRUE(plane);
   const Vector3d up = true_platform_from_sensor().linear() * plane->normal;
-  // Readings are floats: 0.03 micrometres at 0.6 m.
+  // Readings are floats, rounded by 0.03 micrometres at 0.6 m.
   EXPECT_LT(degrees_from_radians(up.head<2>().norm()), 0.001);
   EXPECT_NEAR(plane->height(true_platform_from_sensor().inverse().translation()), 0, 1e-6);
 }

@@ -24,7 +24,8 @@ inline Eigen::Isometry3d true_platform_from_sensor() {
   return pose;
 }
 
-/// A pose that is wrong by a shift (metres) of the platform's origin and a rotation about it.
+/// The true pose with an error: the platform's origin shifted by `shift` metres, and a rotation
+/// about that origin.
 inline Eigen::Isometry3d wrong_pose(const Eigen::Vector3d& shift, const Eigen::Vector3d& axis,
                                     double angle_deg) {
   return Eigen::Translation3d(shift) *
@@ -40,16 +41,16 @@ inline Shape joined(const Shape& a, const Shape& b) {
   return [=](const Eigen::Vector3d& p) { return std::min(a(p), b(p)); };
 }
 
-/// Some 12 cm tall, with a face of its own for each direction.
+/// An asymmetric figure some 12 cm tall, different from each side.
 inline Shape figure() {
   return joined(block({0.07, 0.045, 0.06}),
                 joined(ball({0.02, 0.01, 0.085}, 0.035), ball({-0.03, -0.015, 0.06}, 0.025)));
 }
 
-/// Depth of an object turned by `angle` on a disc of 30 cm, with noise that is uniform in
-/// disparity, as a Kinect's is, of 0.3 of its steps.
-/// @param object       within 20 cm of a point 6 cm above the disc's middle: rays that pass by that
-///                     ball are not walked along
+/// Renders the depth of an object turned by `angle` on a disc of 30 cm. The noise is uniform in
+/// disparity, as a Kinect's is, with a deviation of 0.3 steps.
+/// @param object       within 20 cm of a point 6 cm above the disc's centre: rays that miss this
+///                     bounding sphere are not traced
 /// @param disc_normal  in the frame that turns
 inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937& random,
                                  const Eigen::Vector3d& disc_normal = Eigen::Vector3d::UnitZ()) {
@@ -84,8 +85,8 @@ inline DepthFrame rendered_frame(const Shape& object, double angle, std::mt19937
   return frame;
 }
 
-/// A turn of so many stops, told the truth but for `offsets`: radians that the platform stood
-/// further on than told, 0 at the stops that it does not have.
+/// A turn with the true pose and the true angles, except for `offsets`: how far the platform stood
+/// beyond the commanded angle at each stop, radians; 0 beyond the vector's end.
 /// @param disc_normal  in the frame that turns
 inline CalibrationTurn rendered_turn(
     const Shape& object, std::size_t stops, const std::vector<double>& offsets = {},
@@ -103,7 +104,7 @@ inline CalibrationTurn rendered_turn(
   return turn;
 }
 
-/// How far a pose's axis is from the true one.
+/// Deviation of a pose's axis from the true one.
 struct AxisError {
   double direction_deg = 0;
   double position_mm = 0;  ///< 5 cm above the platform

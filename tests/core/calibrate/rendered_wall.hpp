@@ -22,8 +22,9 @@ inline InverseDepthAt flat_wall(double distance, double slant_deg) {
   };
 }
 
-/// A smooth pattern of 0.8 steps of disparity (root mean square) and waves of 200 pixels or more,
-/// of which two fifths are another one 0.43 1/m farther away. 1/m.
+/// A smooth error pattern, 1/m: 0.8 steps of disparity (root mean square) at 0.65 m, in waves of
+/// 200 pixels or more. A second pattern of two fifths that size grows linearly in inverse depth,
+/// and has that size 0.43 1/m farther away.
 inline double pattern_error(int u, int v, double inverse_depth) {
   const auto wave = [&](double along_u, double along_v, double start) {
     return std::sin(2 * std::numbers::pi * (along_u * u + along_v * v) + start);
@@ -34,9 +35,10 @@ inline double pattern_error(int u, int v, double inverse_depth) {
   return 0.8 * disparity_unit * (stays + 0.4 * farther * changes);
 }
 
-/// One frame of a sensor with that pattern, noise of half a step, and steps of disparity.
+/// One frame of a sensor with that pattern, noise of up to half a step, and depth quantised in
+/// steps of disparity.
 inline DepthFrame wall_frame(const InverseDepthAt& wall, std::mt19937& random) {
-  constexpr double infinity = 1089.40;  // the reading there, of a Kinect v1: not a whole number
+  constexpr double infinity = 1089.40;  // a Kinect v1's raw reading at infinite depth, no integer
   const Intrinsics lens;
   DepthFrame frame{.width = lens.width, .height = lens.height, .depth = {}};
   for (int v = 0; v < lens.height; ++v) {

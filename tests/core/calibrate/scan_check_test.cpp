@@ -12,7 +12,7 @@ namespace {
 
 const Box roomy{.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}};
 
-/// The figures of the stops of a turn that `is_taken` takes, with the turn's pose.
+/// The figures of a turn's stops for which `is_taken(stop)` holds, with the turn's pose.
 template <typename IsTaken>
 ScanFigures figures(const CalibrationTurn& turn, const Box& clip, IsTaken is_taken) {
   ScanCheck check(clip, turn.angles.size());
@@ -37,7 +37,7 @@ TEST(ScanCheck, FindsNothingWrongWithARightRig) {
   EXPECT_NEAR(scan.distance, 0.66, 0.05);
   EXPECT_NEAR(degrees_from_radians(scan.widest_gap), 45, 0.01);
   EXPECT_NEAR(scan.platform_height.value_or(1), 0, 0.0005);
-  // The noise, of 0.3 steps of 1.3 mm at 0.66 m, and where two stops see an edge differently.
+  // The noise is 0.3 steps of 1.3 mm at 0.66 m; edges that two stops see differently add to it.
   EXPECT_LT(scan.disagreement, 0.0007);
   EXPECT_LT(std::ranges::max(scan.contradicted), 0.05);
   EXPECT_EQ(std::ranges::max(scan.cut_pixels), 0);
@@ -47,7 +47,8 @@ TEST(ScanCheck, SeesThatStopsDisagreeWithARigTwoDegreesOff) {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   const double right = figures(turn).disagreement;
   turn.platform_from_sensor = wrong_pose({0, 0, 0}, {0, 1, 0}, 2);
-  // The top, 12 cm up, is 4 mm from the axis, at which stops of 45 degrees see it 3 mm apart.
+  // The tilt moves the top, 12 cm up, by 4 mm: neighbouring stops, 45 degrees apart, see it 3 mm
+  // apart.
   EXPECT_GT(figures(turn).disagreement, 2 * right);
   EXPECT_GT(figures(turn).disagreement, 0.0011);
   EXPECT_FALSE(figures(turn).disagreeing_places.empty());
@@ -66,13 +67,13 @@ TEST(ScanCheck, SeesABoxThatIsTooLowCutTheHeadOff) {
   const Box low{.min = roomy.min, .max = {0.14, 0.14, 0.09}};
   const ScanFigures scan = figures(turn, low);
   const auto cut = scan.cut_pixels;
-  // The ball of 7 cm is cut 5 mm above its middle: 60 pixels of 1.1 mm.
+  // The box cuts the ball of 7 cm 5 mm above its centre: a line of 60 pixels of 1.1 mm.
   EXPECT_GT(cut[4], 20);
   EXPECT_LT(cut[4], 120);
   EXPECT_EQ(cut[0] + cut[1] + cut[2] + cut[3], 0);
   ASSERT_FALSE(scan.cut_places[4].empty());
   for (const Eigen::Vector3d& place : scan.cut_places[4]) {
-    EXPECT_NEAR(place.z(), 0.09, 0.008);  // a cell, and a pixel
+    EXPECT_NEAR(place.z(), 0.09, 0.008);  // a cell and a pixel
     EXPECT_NEAR((place - Eigen::Vector3d(0.02, 0.01, 0.085)).norm(), 0.035, 0.008);  // the ball
   }
 }
@@ -92,7 +93,7 @@ TEST(ScanCheck, MeasuresTheGapThatMissingStopsLeave) {
   EXPECT_NEAR(degrees_from_radians(half.widest_gap), 225, 0.01);
 }
 
-/// A turn of eight stops, with a hand in the picture at the stop 3.
+/// A turn of eight stops with a hand in the frame at stop 3.
 CalibrationTurn turn_with_hand() {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   const Shape with_hand = joined(figure(), moved(ball({0, 0, 0.05}, 0.03), {-0.075, 0.075, 0}));
@@ -111,7 +112,7 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   EXPECT_GT(contradicted[3], 0.1);
   ASSERT_FALSE(scan.contradicted_places.empty());
   for (const Eigen::Vector3d& place : scan.contradicted_places) {
-    // The hand's ball, and half the diagonal of a cell.
+    // The ball's radius, half a cell's diagonal, and the noise.
     EXPECT_LT((place - Eigen::Vector3d(-0.075, 0.075, 0.05)).norm(), 0.03 + 0.0035 + 0.002);
   }
 }
@@ -119,7 +120,7 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
 TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {
   const std::vector<Eigen::Vector3d> seen = figures(turn_with_hand()).seen;
   for (const Eigen::Vector3d& place : seen) {
-    // Half the diagonal of a cell, and the noise.
+    // Half a cell's diagonal, and the noise.
     EXPECT_LT(std::abs(figure()(place)), 0.0044 + 0.0015) << place.transpose();
   }
   const auto is_seen = [&](const Eigen::Vector3d& point) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t stops = 12;
 
-/// Angles of a turn.
+/// Evenly spaced stop angles of one turn, radians.
 std::vector<double> angles() {
   std::vector<double> angles;
   for (std::size_t stop = 0; stop < stops; ++stop) {
@@ -22,8 +22,9 @@ std::vector<double> angles() {
   return angles;
 }
 
-/// A platform that tilts by 0.4 degrees as it turns, with noise of 0.02 degrees and 0.02 mm.
-/// @param moved  what is added to a stop's plane
+/// The planes of a platform that tilts by 0.4 degrees as it turns, with noise of 0.02 degrees and
+/// 0.02 mm.
+/// @param moved  added to each stop's plane
 std::vector<StopPlane> planes(const std::function<StopPlane(std::size_t stop)>& moved) {
   std::mt19937 random(3);
   const auto noise = [&] { return 2 * static_cast<double>(random()) / 4294967295.0 - 1; };
@@ -76,7 +77,7 @@ TEST(SensorStep, IsNoneOfASensorThatWarmsUp) {
                         }),
                         angles());
   ASSERT_TRUE(step);
-  EXPECT_GT(step->size, 0.0005);  // large enough to be told, were it sudden
+  EXPECT_GT(step->size, 0.0005);  // large enough to be reported if it were sudden
   EXPECT_FALSE(find_bump(*step));
 }
 

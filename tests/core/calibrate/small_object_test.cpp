@@ -12,12 +12,13 @@
 namespace octurn {
 namespace {
 
-/// Of 3 cm, with a face of its own for each direction.
+/// An asymmetric figure of 3 cm, different from each side.
 Shape small_figure() {
   return joined(block({0.015, 0.01, 0.014}), ball({0.004, 0.002, 0.018}, 0.009));
 }
 
-/// The mean of so many neighbours on both sides, row by row or column by column.
+/// A box filter of 2 * reach + 1 samples that lie `stride` apart: 1 filters rows, the width
+/// columns.
 std::vector<float> box_filtered(const std::vector<float>& image, std::size_t stride, int reach) {
   std::vector<float> filtered(image.size());
   const std::size_t margin = stride * static_cast<std::size_t>(reach);
@@ -31,8 +32,8 @@ std::vector<float> box_filtered(const std::vector<float>& image, std::size_t str
   return filtered;
 }
 
-/// Adds half a step of a Kinect's disparity that neighbours have in common: two box filters of 5 x
-/// 5 pixels.
+/// Adds an error of half a step of a Kinect's disparity that is correlated between neighbours:
+/// white noise smoothed by two box filters of 5 x 5 pixels.
 void add_common_error(DepthFrame& frame, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<float> error(frame.depth.size());
@@ -43,7 +44,7 @@ void add_common_error(DepthFrame& frame, unsigned seed) {
   for (const std::size_t stride : {width, std::size_t{1}, width, std::size_t{1}}) {
     error = box_filtered(error, stride, 2);
   }
-  constexpr double rms = 0.0415;  // that the filters leave: 0.289 * 0.144
+  constexpr double rms = 0.0415;  // of the filtered noise: 0.289 * 0.144
   const Intrinsics lens;
   for (std::size_t i = 0; i < error.size(); ++i) {
     const double z = frame.depth[i] * lens.depth_unit;
@@ -53,9 +54,9 @@ void add_common_error(DepthFrame& frame, unsigned seed) {
   }
 }
 
-// Its axis is known to half a millimetre. As it is tried many readings move by a pixel, so that the
-// last step stays larger than for what is known well; and by chance the stops may agree better as
-// told, though the told pose is as likely as the solved one.
+// A small object gives the axis to half a millimetre only. While the solver iterates, many readings
+// move by a pixel, so the last step stays larger than for a well-determined axis. By chance the
+// stops may agree better in the told pose, although both poses are equally likely.
 TEST(CalibrateSmallObject, ConfirmsARigThatIsRight) {
   const CalibrationTurn clean = rendered_turn(small_figure(), 8);
   for (const unsigned seed : {0U, 3U, 9U, 35U, 51U}) {

@@ -23,8 +23,8 @@ TEST(StopOffsets, AreTheAnglesThatThePlatformStoodFurtherOn) {
 
   ASSERT_TRUE(solved);
   for (std::size_t stop = 0; stop < offsets.size(); ++stop) {
-    // 0.4 mm of noise over some hundred readings, 40 mm from the axis, is 0.05 degrees, and as much
-    // at the first stop: three sigma.
+    // Three sigma: 0.4 mm of noise over some hundred readings 40 mm from the axis gives 0.05
+    // degrees, at this stop and at the first stop, to which offsets are relative.
     EXPECT_NEAR(degrees_from_radians(solved->offsets[stop]), degrees_from_radians(offsets[stop]),
                 0.21)
         << stop;
@@ -33,12 +33,12 @@ TEST(StopOffsets, AreTheAnglesThatThePlatformStoodFurtherOn) {
 
 TEST(StopOffsets, AreUnknownOfAnObjectThatLooksTheSameFromAllSides) {
   TurnViews views = views_of(rendered_turn(ball({0, 0, 0.06}, 0.055), 12));
-  views.correlation = 10;  // as of a turn that is read with this step
+  views.correlation = 10;  // the value of a turn that is read with this step
   EXPECT_FALSE(solve_stop_offsets(views, true_platform_from_sensor(), 1));
 }
 
-// In profile a plate of 10 mm shows little, as the simulator's robot does: the stops before are
-// uncertain against those after by 1.3 degrees.
+// Seen edge-on, a plate of 10 mm shows few readings, as the simulator's robot does. Across such a
+// stop, the offsets before and after are known relative to each other to 1.3 degrees only.
 TEST(StopOffsets, AreKnownOfAnObjectThatIsThinFromSomeSides) {
   const Shape plate = moved(block({0.01, 0.09, 0.08}), {0.01, 0.01, 0});
   TurnViews views = views_of(rendered_turn(plate, 8));
@@ -50,7 +50,7 @@ TEST(StopOffsets, AreKnownOfAnObjectThatIsThinFromSomeSides) {
   }
 }
 
-/// Offsets with a standard deviation of 0.1 degrees, as if solved.
+/// Solved offsets that are 0 but for noise with a standard deviation of 0.1 degrees.
 StopOffsets noisy_offsets(std::size_t stops) {
   std::mt19937 random(3);
   StopOffsets solved;
@@ -88,7 +88,7 @@ TEST(FindSlips, NamesTheStopOfAStepAndItsSize) {
 
 TEST(FindSlips, NamesAStepOfThreeSigmaThatStandsOutOfTheOthers) {
   StopOffsets solved = noisy_offsets(8);
-  const double sigma = radians_from_degrees(0.25);  // as eight stops leave it
+  const double sigma = radians_from_degrees(0.25);  // typical of eight stops
   solved.covariance = Eigen::MatrixXd::Identity(7, 7) * sigma * sigma;
   for (std::size_t stop = 5; stop < 8; ++stop) {
     solved.offsets[stop] += radians_from_degrees(1.4);
@@ -98,7 +98,7 @@ TEST(FindSlips, NamesAStepOfThreeSigmaThatStandsOutOfTheOthers) {
   EXPECT_EQ(findings[0].stop, 5);
 }
 
-// A flat box in profile: it creeps up, and is gone at the next stop.
+// A flat box seen edge-on gives such an error: it grows over two stops and is gone at the next.
 TEST(FindSlips, FindsNoneWhereTheOffsetsComeBack) {
   StopOffsets solved = noisy_offsets(24);
   solved.offsets[5] -= radians_from_degrees(0.6);
@@ -118,7 +118,7 @@ TEST(FindSlips, SaysWhatATurnCameOutAs) {
   StopOffsets solved = noisy_offsets(24);
   const auto angles = even_angles(24);
   for (std::size_t stop = 0; stop < 24; ++stop) {
-    solved.offsets[stop] = -0.25 * angles[stop];  // a gear of 3 to 4
+    solved.offsets[stop] = -0.25 * angles[stop];  // as a gear ratio wrong by 3 : 4 does
   }
   const auto findings = find_slips(angles, solved);
   ASSERT_EQ(findings.size(), 1U);

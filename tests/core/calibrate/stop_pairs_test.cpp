@@ -20,7 +20,7 @@ std::vector<double> even_angles(int stops) {
   return angles;
 }
 
-/// The angles that pairs are apart, whole degrees.
+/// The angles between the stops of each pair, rounded to whole degrees.
 std::set<long> apart_deg(const std::vector<double>& angles) {
   std::set<long> apart;
   for (const StopPair& pair : make_stop_pairs(angles)) {

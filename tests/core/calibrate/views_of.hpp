@@ -12,7 +12,7 @@ inline PlatformPlane true_plane() {
   return {.normal = normal, .offset = normal.dot(sensor_from_platform.translation())};
 }
 
-/// What the stops of a turn saw of the object; each independent reading counts as one.
+/// The stops' readings of the object, each counted as independent.
 inline TurnViews views_of(const CalibrationTurn& turn, int step = 5) {
   TurnViews views{.angles = turn.angles, .pairs = make_stop_pairs(turn.angles)};
   const ObjectView::Mask mask{.plane = true_plane(),

@@ -75,7 +75,7 @@ TEST(WorldPoints, AgreeWithTheFormulaAtEverySampleOfAKinect) {
       farthest = std::max(farthest, (point.cast<double>() - point_by_hand(snapshot, u, v)).norm());
     }
   }
-  // Some ten roundings of floats below 2 m: far below a tenth of a millimetre, the sensor's unit.
+  // Some ten roundings of floats below 2 m, far below the sensor's unit of 0.1 mm.
   constexpr double rounding =
       2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());  // metres
   EXPECT_LT(farthest, 10 * rounding);

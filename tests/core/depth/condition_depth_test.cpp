@@ -47,7 +47,7 @@ TEST(ConditionedDepth, FindsThePlaneThatItSees) {
 
 TEST(ConditionedDepth, LeavesOutALoneReading) {
   Snapshot snapshot = plane_snapshot({0, 0, -1}, 0.5);
-  for (const int column : {30, 31, 32}) {  // three that bear each other out are too few
+  for (const int column : {30, 31, 32}) {  // three readings that agree are too few to be kept
     snapshot.frame.depth[static_cast<std::size_t>(20 * 64 + column)] = 4500;
   }
   const ConditionedDepth conditioned(snapshot, everywhere);
@@ -64,7 +64,8 @@ TEST(ConditionedDepth, HasNoSurfaceOutsideTheClipBoxButSeesAsFar) {
   EXPECT_FLOAT_EQ(conditioned.at(60, 24).free_space_depth, 0.5F);
 }
 
-// Where the platform is, is known; where another thing is that makes no surface, is not.
+// A ray that ends on the platform, whose position is known, may free space nearly down to it. A ray
+// that ends on anything else may not.
 TEST(ConditionedDepth, SeesNearlyDownToThePlatformOfOneOfSeveralPoses) {
   const Snapshot snapshot = rendered(block({0.06, 0.06, 0.04}), 1).read(0);
   const Box clip{.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}};
@@ -75,7 +76,7 @@ TEST(ConditionedDepth, SeesNearlyDownToThePlatformOfOneOfSeveralPoses) {
       {.object_from_platform = Eigen::Isometry3d(Eigen::Translation3d(0, 0, -0.01)), .clip = clip});
   int on_platform = 0;
   int on_object = 0;
-  int others = 0;  // which are free as far as something else
+  int others = 0;  // pixels whose free space ends anywhere else
   for (int v = 2; v < 178; ++v) {
     for (int u = 2; u < 238; ++u) {
       const double z = snapshot.frame.depth[static_cast<std::size_t>(v * 240 + u)] * 0.0001;

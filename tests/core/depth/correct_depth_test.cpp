@@ -19,7 +19,8 @@ std::uint16_t corrected_depth(std::uint16_t depth, const SensorMap& map) {
   return corrected({.width = 1, .height = 1, .depth = {depth}}, map, tenth_mm).depth[0];
 }
 
-/// What a sensor that reads so much too much in inverse depth says of a depth, metres.
+/// The reading, in units of 0.1 mm, of a sensor whose inverse depth is too large by `error` 1/m.
+/// @param depth  true depth, metres
 std::uint16_t erring(double depth, double error) {
   return static_cast<std::uint16_t>(std::lround(1 / ((1 / depth + error) * tenth_mm)));
 }
@@ -67,7 +68,8 @@ TEST(Corrected, InterpolatesOverInverseDepthAndGoesOnForAsMuchAgain) {
 
 TEST(Corrected, IsTheFarthestDepthWhereItWouldBeFarther) {
   EXPECT_EQ(corrected_depth(60000, map_of(0.1F)), 65535);
-  EXPECT_EQ(corrected_depth(60000, map_of(0.3F)), 65535);  // beyond infinity
+  EXPECT_EQ(corrected_depth(60000, map_of(0.3F)),
+            65535);  // the corrected depth would lie beyond infinity
   EXPECT_EQ(corrected_depth(1, map_of(-1e6F)), 1);
 }
 

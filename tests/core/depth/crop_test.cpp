@@ -9,7 +9,7 @@ namespace {
 
 const Box held{.min = {-0.02, -0.03, 0.5}, .max = {0.03, 0.02, 0.6}};  // metres, sensor's frame
 
-/// Each sample tells where it is.
+/// A snapshot whose samples hold their own index.
 Snapshot numbered() {
   Snapshot snapshot;
   snapshot.frame = {.width = snapshot.intrinsics.width, .height = snapshot.intrinsics.height};

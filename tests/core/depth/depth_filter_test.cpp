@@ -53,7 +53,8 @@ TEST(MergeFrames, DoesNotOverflowOnTheLargestDepths) {
 
 TEST(MergeFrames, BringsNoiseDownByTheRootOfTheFrames) {
   // The mean of n readings has a standard deviation of sigma / sqrt(n). Rounding to whole units
-  // adds 1/12; the bound is five standard deviations of the estimate from 10,000 pixels.
+  // adds 1/12 to the variance; the bound is five standard deviations of the estimate from 10,000
+  // pixels.
   constexpr double sigma = 20.0;  // depth units
   Random random(1);
   std::vector<DepthFrame> frames(10, {.width = 100, .height = 100, .depth = Depths(10'000)});

@@ -50,7 +50,7 @@ TEST(FitPlane, HasNoPlaneForTooFewReadingsOrALine) {
       if (u != 4) {
         set(line, u, v, 0);
       }
-      if (u < 3 || u > 5 || v < 4 || v > 6 || (u == 5 && v == 6)) {  // eight are left
+      if (u < 3 || u > 5 || v < 4 || v > 6 || (u == 5 && v == 6)) {  // keeps eight samples
         set(few, u, v, 0);
       }
     }
@@ -64,7 +64,7 @@ TEST(RemoveSpeckle, KeepsAReadingThatFourNeighboursSupport) {
   for (const auto& [u, v] : {std::pair{2, 2}, {1, 2}, {3, 2}, {2, 1}}) {
     set(image, u, v, 0.5F);
   }
-  EXPECT_EQ(remove_speckle(image).at(2, 2), 0);  // three neighbours
+  EXPECT_EQ(remove_speckle(image).at(2, 2), 0);  // three neighbours are too few
   set(image, 2, 3, 0.5F + 0.009F);               // beyond the step limit
   EXPECT_EQ(remove_speckle(image).at(2, 2), 0);
   set(image, 2, 3, 0.5F + 0.007F);

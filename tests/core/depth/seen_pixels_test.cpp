@@ -9,7 +9,8 @@
 namespace octurn {
 namespace {
 
-/// The corners of a box of that size, turned, at a place in the optical frame.
+/// The corners of a box of that size, turned about its centre, which is at `middle` (optical
+/// frame).
 std::array<Eigen::Vector3d, 8> corners_of(const Eigen::Vector3d& size,
                                           const Eigen::AngleAxisd& turn,
                                           const Eigen::Vector3d& middle) {

@@ -23,7 +23,7 @@ std::ptrdiff_t files_in(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
-/// Files may not grow past `bytes` while this lives, as if the disk were full.
+/// Limits the size of files to `bytes` during its lifetime, to simulate a full disk.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -43,7 +43,7 @@ class SmallDisk {
   void (*handler_)(int);
 };
 
-/// What root may do, its tests must not rely on: acts as nobody while this lives.
+/// Drops root's privileges during its lifetime, so that tests run by root see permissions enforced.
 class WithoutPrivileges {
  public:
   WithoutPrivileges() {
@@ -84,7 +84,7 @@ TEST(AtomicFile, OverwritesInPlaceWithoutMovingItsEnd) {
 }
 
 TEST(AtomicFile, KeepsEveryByteOfALargeFile) {
-  // Of this size it goes past the page cache, but for its end and what is overwritten.
+  // A file of this size is written past the page cache, except for its end and overwritten ranges.
   const TemporaryFolder folder;
   const std::filesystem::path target = folder.path() / "Scan.stl";
   std::string model;
@@ -204,7 +204,7 @@ TEST(AtomicFile, RefusesToReplaceAFolder) {
 }
 
 TEST(AtomicFile, RefusesToReplaceWhatIsNoFile) {
-  // As for /dev/null, which root could turn into a file for every program on the machine.
+  // Otherwise root could replace /dev/null by a regular file, for every program on the machine.
   const TemporaryFolder folder;
   const std::filesystem::path pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

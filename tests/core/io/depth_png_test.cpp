@@ -92,7 +92,7 @@ TEST(PicturePng, IsReadAsAnotherProgramWroteIt) {
     return decode_picture_png("dark.png", std::as_bytes(std::span(png)), 4, 3).samples;
   };
   const std::vector<std::uint8_t> grey = {0, 10, 20, 30, 40, 50, 100, 150, 200, 250, 254, 255};
-  // Red, green, blue and white; then greys, whose luminance is their own.
+  // The luminance of red, green, blue and white, then of greys, which keep their level.
   const std::vector<std::uint8_t> of_colours = {76,  150, 29,  255, 40,  50,
                                                 100, 150, 200, 250, 254, 255};
   EXPECT_EQ(samples(golden("picture_grey8_4x3.png")), grey);

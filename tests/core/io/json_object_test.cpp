@@ -63,7 +63,7 @@ TEST(ParseJson, RefusesWhatIsNoJson) {
   }
 }
 
-/// What the refusal of a value shows of it.
+/// The part of a refusal's message that quotes the refused value.
 std::string refused_text(const json& value) {
   const Error error = error_thrown_by([&] {
     const json object{{"key", value}};
@@ -99,7 +99,7 @@ TEST(JsonObject, QuotesADeepValueOnASmallStack) {
   });
 }
 
-/// What reading a value of `text` says.
+/// The message with which `read` refuses the JSON of `text`.
 template <typename Read>
 std::string refusal(const char* text, const Read& read) {
   const json document = parsed_text(text);

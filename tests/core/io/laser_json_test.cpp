@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A scan by laser line as the contract prints it.
+/// A scan.json of a scan by line lasers, in the format of octurn/scan_folder.hpp.
 const json laser_contract = json::parse(R"({
   "format": "octurn-scan", "version": 2,
   "sensor": {"kind": "laser-line", "name": "Camera", "width": 1640, "height": 1232, "fx": 1358.9,
@@ -74,7 +74,7 @@ TEST(LaserJson, MakesModelsWithThePlanesThatWereSolved) {
 
   const std::vector<Laser> lasers = model_lasers(*scan.laser, scan.solved);
 
-  EXPECT_DOUBLE_EQ(lasers[0].distance, -0.14);  // as told
+  EXPECT_DOUBLE_EQ(lasers[0].distance, -0.14);  // as told: nothing solved
   EXPECT_TRUE(lasers[0].source);
   EXPECT_DOUBLE_EQ(lasers[1].distance, 0.15);
   EXPECT_LT((lasers[1].normal - Eigen::Vector3d(0.6, 0, 0.8)).norm(), 1e-12);
@@ -123,7 +123,7 @@ TEST(LaserJson, RefusesWhatIsWrongByName) {
   expect_refused(with("/version", 1), "\"version\"");
   expect_refused(with("/sensor/kind", "radar"), "\"sensor.kind\"");
   expect_refused(with("/sensor/k1", "-0.05"), "\"sensor.k1\"");
-  expect_refused(with("/sensor/k1", -5), "\"sensor.k1\"");  // folds the corners over
+  expect_refused(with("/sensor/k1", -5), "\"sensor.k1\"");  // is not invertible up to the corners
   expect_refused(with("/sensor/lasers", json::array()), "\"sensor.lasers\"");
   expect_refused(with("/sensor/lasers/0/plane_m", {1, 1, 0, 0.1}), "\"sensor.lasers[0].plane_m\"");
   expect_refused(with("/sensor/lasers/0/plane_m", {1, 0, 0}), "\"sensor.lasers[0].plane_m\"");

@@ -40,14 +40,14 @@ const std::array elements{"/calibration/platform_from_sensor/2",
                           "/calibration/platform_from_sensor/2/1", "/clip_m/min/0", "/clip_m/max/2",
                           "/snapshots/1"};
 
-/// The contract with one value replaced.
+/// The text of `contract` with one value replaced.
 std::string with(const char* pointer, const json& value) {
   json changed = contract;
   changed[json::json_pointer(pointer)] = value;
   return changed.dump();
 }
 
-/// What a message calls the value at a JSON pointer: "/snapshots/1/file" is snapshots[1].file.
+/// The name in messages of the value at a JSON pointer: "/snapshots/1/file" is snapshots[1].file.
 std::string dotted(const std::string& pointer) {
   std::string name;
   std::size_t start = 1;

@@ -38,7 +38,8 @@ TEST(ReadScan, RefusesAFolderInPlaceOfItsFile) {
 TEST(ReadScan, RefusesAFileTooLargeToBeOne) {
   const TemporaryFolder folder;
   put(folder.path() / "scan.json", contract.dump());
-  std::filesystem::resize_file(folder.path() / "scan.json", 1ULL << 40U);  // a hole, takes no disk
+  std::filesystem::resize_file(folder.path() / "scan.json",
+                               1ULL << 40U);  // sparse: takes no disk space
 
   EXPECT_EQ(code_thrown_by([&] { read_scan(folder.path()); }), "scan-malformed");
 }
@@ -52,13 +53,13 @@ TEST(ReadSnapshot, IsTheImageSeenFromItsAngle) {
 
   EXPECT_EQ(snapshot.frame.depth[1], 8001);
   EXPECT_EQ(snapshot.intrinsics.fx, 575.8);
-  // The sensor stands at (0.01, -0.62, 0.4); the object turned counter-clockwise by 90 degrees sees
-  // it come round clockwise, to (-0.62, -0.01, 0.4).
+  // The sensor stands at (0.01, -0.62, 0.4). In the frame of the object, which turned 90 degrees
+  // counter-clockwise, it moved clockwise to (-0.62, -0.01, 0.4).
   const Eigen::Vector3d eye = snapshot.object_from_sensor.translation();
   EXPECT_LT((eye - Eigen::Vector3d(-0.62, -0.01, 0.4)).norm(), 1e-12);
 }
 
-/// A map that finds every pixel of the contract's scan too far by so much, 1/m.
+/// A sensor map for the size of `contract`, with the same error (1/m) at every pixel.
 SensorMap map_of(float error, int width = 4) {
   return {.width = width,
           .height = 3,
@@ -173,7 +174,7 @@ TEST(WriteSolvedPose, StandsBesideTheToldOneAndIsThatOfModels) {
   const TemporaryFolder folder;
   write_contract_scan(folder.path());
   json before = contract;
-  before["filter"] = "average";  // a key that readers pass over
+  before["filter"] = "average";  // a key that readers ignore
   put(folder.path() / "scan.json", before.dump());
   SolvedPose solved{.position_sigma = 0.00025, .direction_sigma = 0.001, .before = 0.002};
   solved.after = 0.0005;

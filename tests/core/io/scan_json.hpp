@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// A scan.json as the contract prints it, on the small image of tests/golden.
+/// A scan.json in the format of octurn/scan_folder.hpp, for the small image of tests/golden.
 inline const nlohmann::json contract = nlohmann::json::parse(R"({
   "format": "octurn-scan", "version": 1,
   "sensor": {"name": "Kinect v1", "width": 4, "height": 3, "fx": 575.8, "fy": 570.5, "cx": 320.5,
@@ -19,7 +19,7 @@ inline const nlohmann::json contract = nlohmann::json::parse(R"({
   "snapshots": [{"file": "snapshots/000.png", "angle_deg": 0.0},
                 {"file": "snapshots/001.png", "angle_deg": 90.0}]})");
 
-/// A scan folder whose first snapshot is the golden image. The second is missing.
+/// Writes a scan folder whose first snapshot is the golden image. The second one's file is missing.
 inline Scan write_contract_scan(const std::filesystem::path& folder) {
   put(folder / "scan.json", contract.dump());
   std::filesystem::create_directory(folder / "snapshots");

@@ -14,10 +14,11 @@ namespace {
 
 using nlohmann::json;
 
-/// From the platform's frame of the second pose: laid on its side, turned about Y by 90 degrees.
+/// Object from platform of the second pose: the object lies on its side, turned about Y by 90
+/// degrees.
 const json on_its_side = {{0, 0, 1, 0.25}, {0, 1, 0, 0.5}, {-1, 0, 0, 0.125}, {0, 0, 0, 1}};
 
-/// A scan of two poses as the contract prints it, the second one with its own rig.
+/// A scan.json of two poses in the format of octurn/scan_folder.hpp, the second with its own rig.
 json two_poses() {
   json scan = contract;
   scan["version"] = 2;
@@ -42,8 +43,8 @@ TEST(ScanOfPoses, HasTheSnapshotsOfEachInTheObjectsFrame) {
   EXPECT_EQ(scan.shots[0].pose, 0);
   EXPECT_EQ(scan.shots[1].pose, 1);
   EXPECT_EQ(model_pose(scan, scan.shots[0]).matrix(), scan.platform_from_sensor.matrix());
-  // The sensor stands at (0.75, -0.62, 0.4), after a quarter turn back at (-0.62, -0.75, 0.4); the
-  // pose's X is the object's -Z, its Z the object's X.
+  // The sensor stands at (0.75, -0.62, 0.4). Turning back by a quarter takes it to
+  // (-0.62, -0.75, 0.4). The pose's X axis is the object's -Z, its Z axis the object's X.
   const Eigen::Vector3d eye = model_pose(scan, scan.shots[1]).translation();
   EXPECT_LT((eye - Eigen::Vector3d(0.4 + 0.25, -0.75 + 0.5, 0.62 + 0.125)).norm(), 1e-12);
 }
@@ -57,7 +58,8 @@ TEST(ScanOfPoses, HasAClipBoxForEachAndOneAroundAll) {
   ASSERT_EQ(lying.size(), 2U);
   EXPECT_EQ(lying[0].clip.max, scan.clip.max);
   EXPECT_EQ(lying[1].clip.max, Eigen::Vector3d(0.1, 0.1, 0.3));
-  EXPECT_LT((around.min - Eigen::Vector3d(-0.14, -0.15, 0.002)).norm(), 1e-12);  // the first's
+  EXPECT_LT((around.min - Eigen::Vector3d(-0.14, -0.15, 0.002)).norm(),
+            1e-12);  // of the first pose
   EXPECT_LT((around.max - Eigen::Vector3d(0.3 + 0.25, 0.1 + 0.5, 0.4)).norm(), 1e-12);
 }
 
@@ -155,7 +157,7 @@ TEST(ScanOfSensorPoses, ASnapshotHasOneOrAnAngle) {
   scan["snapshots"][1]["object_from_sensor"] = on_its_side;
   EXPECT_NE(refusal_of(scan).find("either"), std::string::npos);
   scan["snapshots"][1].erase("angle_deg");
-  EXPECT_NO_THROW(parse_scan(scan.dump()));  // one of each
+  EXPECT_NO_THROW(parse_scan(scan.dump()));  // one snapshot of each kind
   scan.erase("calibration");
   EXPECT_NE(refusal_of(scan).find("calibration"), std::string::npos);
   scan["snapshots"][1].erase("object_from_sensor");

@@ -19,8 +19,8 @@ const std::array facets{
           .corners = {{{1.5F, 2, 3}, {4, 5, 6}, {7, 8, -9}}},
           .attributes = filled_in}};
 
-/// The format as its description has it: 80 bytes, the count, and for each triangle twelve floats
-/// and a 16-bit number, all little-endian.
+/// A binary STL file assembled from the format's description: 80 bytes, the count, and for each
+/// triangle twelve floats and a 16-bit number, all little-endian.
 std::string written_by_hand() {
   std::string bytes = "Octurn, millimetres";
   bytes.resize(80);

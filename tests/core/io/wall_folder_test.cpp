@@ -26,7 +26,7 @@ const json wall_json{{"format", "octurn-wall"},
                        {"depth_unit_m", 0.001}}},
                      {"frames", {"frames/000.png", "frames/001.png"}}};
 
-/// The message that refuses a wall.json with one value changed.
+/// The message with which a wall.json is refused that has one value changed.
 std::string refusal(const std::string& pointer, const json& value) {
   json document = wall_json;
   document[json::json_pointer(pointer)] = value;

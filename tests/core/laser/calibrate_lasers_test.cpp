@@ -12,9 +12,9 @@ namespace {
 const LitScene two_balls{.balls = {{.centre = {0.014, -0.003, 0.022}, .radius = 0.022},
                                    {.centre = {-0.022, 0.006, 0.013}, .radius = 0.013}}};
 
-constexpr double tenth_of_a_pixel = 1e-4;  // metres: the pictures are small
+constexpr double tenth_of_a_pixel = 1e-4;  // metres at the object, in pictures of 200 x 150 pixels
 
-/// A scan's pictures, to be solved with what is told differently from what they show.
+/// A scan's pictures, which can be solved from an initial rig that differs from the true one.
 class Turn {
  public:
   explicit Turn(const LitScene& scene) : truth_(write_laser_scan(folder_.path(), scene, 40)) {}
@@ -34,7 +34,7 @@ class Turn {
   Scan truth_;
 };
 
-/// The laser turned in its holder, about the vertical through its source.
+/// Returns the laser turned in its holder, about the vertical axis through its source.
 Laser turned(const Laser& laser, double degrees) {
   const Eigen::Vector3d up = laser_rig_pose().linear().transpose() * Eigen::Vector3d::UnitZ();
   Laser other = laser;
@@ -57,7 +57,7 @@ double distance_at_object(const Laser& a, const Laser& b) {
   return largest;
 }
 
-/// How far two planes are turned against each other about the vertical.
+/// The angle between two planes about the vertical axis.
 double degrees_between(const Laser& a, const Laser& b) {
   const auto heading = [](const Laser& laser) {
     const Eigen::Vector3d normal = laser_rig_pose().linear() * laser.normal;
@@ -74,7 +74,7 @@ TEST(CalibrateLasers, LeavesWhatIsRightAsItIs) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_LT(distance_at_object(found.lasers[i], truth.laser->lasers[i]), tenth_of_a_pixel);
   }
-  EXPECT_LT(found.report.shift, 2e-4);  // as far as a told pose is trusted
+  EXPECT_LT(found.report.shift, 2e-4);  // metres, the sigma of a told pose
 }
 
 TEST(CalibrateLasers, FindsPlanesThatWereTurnedInTheirHolders) {
@@ -107,7 +107,7 @@ TEST(CalibrateLasers, FindsAPoseThatWasToldWrong) {
   ASSERT_TRUE(found.report.accepted) << found.report.reason;
   const Eigen::Isometry3d left =
       found.report.platform_from_sensor * truth.platform_from_sensor.inverse();
-  // Up to a turn about the axis: where the axis and the platform are, 3 cm up.
+  // The error of the pose, except for a rotation about the axis: compared on the axis, 3 cm up.
   const Eigen::Vector3d up = left * Eigen::Vector3d(0, 0, 0.03);
   EXPECT_LT(up.head<2>().norm(), 1.5e-4);
   EXPECT_NEAR(up.z(), 0.03, 1e-4);
@@ -135,7 +135,7 @@ TEST(CalibrateLasers, IsRefusedWhereThePlatformIsNotSeen) {
   EXPECT_FALSE(found.report.reason.empty());
 }
 
-// Every second stop of 104 has no pictures, and is not asked for any.
+// The pictures of every second of the 104 stops do not exist, so reading one would fail.
 TEST(CalibrateLasers, ReadsAtMostAHundredStops) {
   const TemporaryFolder folder;
   const Scan half = write_laser_scan(folder.path(), two_balls, 52);

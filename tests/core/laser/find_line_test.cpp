@@ -14,7 +14,7 @@ namespace {
 constexpr int width = 120;
 constexpr int height = 60;
 
-/// Light at the middle of a pixel, grey levels.
+/// Light at a pixel's centre, grey levels.
 using Light = std::function<double(double u, int v)>;
 
 Picture draw(const Light& light) {
@@ -41,9 +41,11 @@ TEST(FindLine, FindsItsColumnToAFractionOfAPixel) {
 
   const std::vector<LineSample> samples = find_line(no_light, lit, {});
 
-  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));  // without its ends
+  ASSERT_EQ(samples.size(),
+            static_cast<std::size_t>(height - 2));  // without the first and the last row
   for (const LineSample& sample : samples) {
-    EXPECT_NEAR(sample.u, middle(sample.row), 0.02) << "row " << sample.row;  // of 8 bits
+    EXPECT_NEAR(sample.u, middle(sample.row), 0.02)
+        << "row " << sample.row;  // pixels; the picture has 8 bits
   }
 }
 
@@ -70,7 +72,7 @@ TEST(FindLine, PartsTwoPiecesThatNearlyTouch) {
 }
 
 TEST(FindLine, IsNotMovedByRoomLight) {
-  const auto room = [](double u, int) { return u < 50 ? 30 : 90.0; };  // changes in the line
+  const auto room = [](double u, int) { return u < 50 ? 30 : 90.0; };  // steps within the line
   const Picture dark = draw(room);
   const Picture lit = draw([&](double u, int v) { return room(u, v) + line(u, 50.4, 120); });
 
@@ -82,7 +84,8 @@ TEST(FindLine, IsNotMovedByRoomLight) {
 
 TEST(FindLine, LeavesOutGlowAndSpecks) {
   const Picture lit = draw([](double u, int v) {
-    const double glow = v > 30 ? line(u, 90, 120, 9) : 0;  // light from within the object
+    const double glow =
+        v > 30 ? line(u, 90, 120, 9) : 0;  // light scattered below the object's surface
     const double speck = v == 7 || v == 8 ? line(u, 70, 200) : 0;
     return line(u, 30.5, 200) + glow + speck;
   });
@@ -159,8 +162,8 @@ TEST(FindLine, AveragesSpeckleAlongTheLine) {
     }
     return std::sqrt(squares / static_cast<double>(samples.size()));
   };
-  // A quadratic through 2 n + 1 = 9 columns has 0.51 times their noise in the middle, and through
-  // 3 it has all.
+  // A quadratic fitted to 2 n + 1 = 9 columns has 0.51 times their noise in the middle; through 3
+  // columns it has all of it.
   EXPECT_LT(rms(4), 0.7 * rms(1));
 }
 

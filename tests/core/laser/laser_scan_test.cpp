@@ -14,10 +14,10 @@
 namespace octurn {
 namespace {
 
-// The pictures' pixels are 0.9 mm wide at the ball, and the line two of them.
+// At the ball a pixel is 0.9 mm wide, and the laser line two pixels.
 const LitScene ball_on_platform{.balls = {{.centre = {0.004, -0.003, 0.022}, .radius = 0.022}}};
 
-/// One scan for all tests here: its pictures take most of their time.
+/// The scan shared by all tests of this file, as drawing its pictures takes most of their time.
 struct LaserScan {
   TemporaryFolder folder = {};
   Scan scan = write_laser_scan(folder.path(), ball_on_platform, 60);
@@ -64,7 +64,7 @@ TEST(LaserScan, HasItsPointsOnTheSurface) {
   ASSERT_GT(errors.size(), 1000U);
   std::ranges::sort(errors);
   EXPECT_LT(errors[errors.size() / 2], 0.00005);        // a twentieth of a pixel
-  EXPECT_LT(errors[errors.size() * 95 / 100], 0.0002);  // where the line grazes, or ends
+  EXPECT_LT(errors[errors.size() * 95 / 100], 0.0002);  // at grazing incidence and at line ends
 }
 
 TEST(LaserScan, HasTrianglesBetweenLinesButNoneAcrossGaps) {
@@ -82,14 +82,14 @@ TEST(LaserScan, HasTrianglesBetweenLinesButNoneAcrossGaps) {
       for (const std::uint32_t point : triangle) {
         middle += strip.points[point] / 3;
       }
-      // Chords of 3 mm lie up to 3^2 / (8 * 22) = 0.05 mm inside the ball. One that bridged the gap
-      // from ball to platform would be farther off.
+      // Chords of 3 mm lie up to 3^2 / (8 * 22) = 0.05 mm inside the ball. A triangle across the
+      // gap from ball to platform would be farther off.
       EXPECT_LT(std::abs(ball_on_platform.distance(middle.cast<double>())), 0.0004);
     }
   }
 }
 
-// What a ray would meet, and no surface behind it that other stops saw.
+// Each pixel holds the first surface on its ray, never one behind it that other stops saw.
 TEST(LaserScan, IsDrawnAsADepthCameraWouldHaveSeenIt) {
   const RegistrationTurn turn =
       laser_turn(LaserScan::get().folder.path(), read_scan(LaserScan::get().folder.path()));
@@ -117,7 +117,7 @@ TEST(LaserScan, IsDrawnAsADepthCameraWouldHaveSeenIt) {
   EXPECT_GT(on_ball, 5 * 1000U);
   std::ranges::sort(errors);
   EXPECT_LT(errors[errors.size() / 2], 0.0001);
-  EXPECT_LT(errors[errors.size() * 98 / 100], 0.0008);  // the ball's rim, of a pixel
+  EXPECT_LT(errors[errors.size() * 98 / 100], 0.0008);  // a pixel, at the ball's rim
 }
 
 TEST(LaserScan, MakesASolidOfTheBallsVolume) {
@@ -127,7 +127,8 @@ TEST(LaserScan, MakesASolidOfTheBallsVolume) {
   const double volume = 4.0 / 3 * std::numbers::pi * std::pow(22, 3);  // mm3
   EXPECT_TRUE(topology_of(facets).manifold);
   EXPECT_EQ(topology_of(facets).euler, 2);
-  // A ball stands on a point: below, where neither camera nor laser reaches, a foot is filled in.
+  // The ball touches the platform at a point. Below it, out of sight of camera and laser, the
+  // method fills in a foot.
   EXPECT_GT(check.volume_mm3(), 0.98 * volume);
   EXPECT_LT(check.volume_mm3(), 1.12 * volume);
   double worst = 0;
@@ -139,7 +140,7 @@ TEST(LaserScan, MakesASolidOfTheBallsVolume) {
       }
     }
   }
-  EXPECT_LT(worst, 0.0008);  // less than a voxel, or a picture's pixel
+  EXPECT_LT(worst, 0.0008);  // less than a voxel or a pixel
 }
 
 TEST(LaserScan, IsMetByTheLeavesOfTheIntersection) {

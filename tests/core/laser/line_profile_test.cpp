@@ -36,7 +36,7 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
   std::vector<LineSample> samples;
   std::vector<Eigen::Vector3d> truth;
   for (int row = 10; row < 140; row += 7) {
-    // The point of a straight line in the plane that the lens puts on that row, by bisection.
+    // Bisection for the point of a straight line in the laser's plane that the lens shows on `row`.
     const Eigen::Vector3d along = laser.normal.cross(Eigen::Vector3d(1, 0, 0)).normalized();
     const Eigen::Vector3d foot =
         laser.normal * laser.distance + Eigen::Vector3d(0.59, 0, 0.8) * 0.2;
@@ -63,7 +63,8 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
   ASSERT_EQ(profile.rays.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     EXPECT_EQ(profile.row(samples[i].row).size(), 1U);
-    EXPECT_LT((meet(profile.rays[i], laser) - truth[i]).norm(), 2e-6);  // columns are floats
+    EXPECT_LT((meet(profile.rays[i], laser) - truth[i]).norm(),
+              2e-6);  // metres; columns are floats
   }
 }
 

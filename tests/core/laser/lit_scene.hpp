@@ -16,8 +16,8 @@
 
 namespace octurn {
 
-/// Balls on the platform, in the object's frame, metres. Rays are met with them exactly, so that
-/// nothing here shares code or error with what is tested.
+/// Balls on the platform, in the object's frame, metres. Rays are intersected analytically, so that
+/// the scene shares neither code nor error with the library.
 struct LitScene {
   struct Ball {
     Eigen::Vector3d centre;
@@ -57,7 +57,7 @@ struct LitScene {
     return nearest;
   }
 
-  /// The distance of a point to the nearest surface, positive outside.
+  /// Signed distance of a point to the nearest surface, metres, positive outside.
   double distance(const Eigen::Vector3d& point) const {
     double least = std::abs(point.z());
     for (const Ball& ball : balls) {
@@ -68,7 +68,8 @@ struct LitScene {
   }
 };
 
-/// Optical X right, Y down, Z forward, seen from the front and tilted down by 25 degrees.
+/// Platform from camera: the camera stands in front and looks down by 25 degrees (optical X right,
+/// Y down, Z forward).
 inline Eigen::Isometry3d laser_rig_pose() {
   Eigen::Matrix3d upright;
   upright << 1, 0, 0, 0, 0, 1, 0, -1, 0;
@@ -78,8 +79,8 @@ inline Eigen::Isometry3d laser_rig_pose() {
   return pose;
 }
 
-/// An upright laser that stands to one side of the camera and lights a plane past the axis.
-/// @param off  metres that the plane passes beside the axis
+/// A laser beside the camera that lights a vertical plane close to the axis.
+/// @param off  distance of the plane from the axis, metres
 inline Laser upright_laser(const std::string& name, double azimuth_deg, double off) {
   const double azimuth = radians_from_degrees(azimuth_deg);
   const Eigen::Vector3d normal(std::cos(azimuth), std::sin(azimuth), 0);  // platform's frame
@@ -91,7 +92,7 @@ inline Laser upright_laser(const std::string& name, double azimuth_deg, double o
           .source = pose.inverse() * Eigen::Vector3d(source + normal * (off - normal.dot(source)))};
 }
 
-/// A scan by two lasers in small pictures, without shots' pictures yet.
+/// A scan by two lasers with small pictures. The shots name their pictures; no file exists yet.
 inline Scan laser_rig(int stops) {
   Scan scan{.sensor_name = "test",
             .intrinsics = {.width = 200, .height = 150, .fx = 330, .fy = 330, .cx = 99.5, .cy = 90},
@@ -122,13 +123,13 @@ class LaserPictures {
     std::vector<std::uint8_t> samples;
     for (int v = 0; v < lens.height; ++v) {
       for (int u = 0; u < lens.width; ++u) {
-        double light = 6;  // of the room
+        double light = 6;  // room light, grey levels
         if (laser != nullptr && is_near(*laser, pose, u, v)) {
           for (int part = 0; part < parts; ++part) {
             light += of_line(*laser, pose, u + (part + 0.5) / parts - 0.5, v) / parts;
           }
         }
-        light += noise_ * 3.5 * (random_.uniform() - 0.5);  // of that deviation
+        light += noise_ * 3.5 * (random_.uniform() - 0.5);  // 3.5 is about sqrt(12): deviation 1
         samples.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L)));
       }
     }
@@ -136,10 +137,10 @@ class LaserPictures {
   }
 
  private:
-  static constexpr int parts = 3;             // of a pixel
-  static constexpr double half_width = 8e-4;  // metres, to 1/e^2 of the light
+  static constexpr int parts = 3;             // samples across a pixel
+  static constexpr double half_width = 8e-4;  // metres, to 1/e^2 of the peak
 
-  /// What a pixel's ray meets, in the object's frame.
+  /// The first surface on a pixel's ray. `point` receives it in the object's frame.
   std::optional<LitScene::Hit> cast(const Eigen::Isometry3d& pose, double u, double v,
                                     Eigen::Vector3d& point) const {
     const Intrinsics& lens = scan_.intrinsics;
@@ -147,7 +148,7 @@ class LaserPictures {
     const double yd = (v - lens.cy) / lens.fy;
     double x = xd;
     double y = yd;
-    for (int i = 0; i < 10; ++i) {  // a fixed point
+    for (int i = 0; i < 10; ++i) {  // fixed-point iteration
       const double square = x * x + y * y;
       const double factor = 1 + scan_.laser->k1 * square + scan_.laser->k2 * square * square;
       x = xd / factor;
@@ -161,7 +162,7 @@ class LaserPictures {
     return hit;
   }
 
-  /// Whether the line may show in a pixel.
+  /// Whether the laser line may be visible in a pixel.
   bool is_near(const Laser& laser, const Eigen::Isometry3d& pose, int u, int v) const {
     Eigen::Vector3d point;
     return cast(pose, u, v, point) &&

@@ -19,7 +19,7 @@ constexpr Rgb blue = {20, 60, 180};
 constexpr Rgb green = {10, 220, 10};
 constexpr Rgb platform = {90, 90, 90};
 
-/// A ball of two colours, and a small one that hides a part of it at some stops.
+/// A ball of two colours, and a small ball that hides a part of it at some stops.
 const LitScene::Ball ball{.centre = {0, 0, 0.03}, .radius = 0.025};
 const LitScene::Ball before{.centre = {0.04, 0, 0.055}, .radius = 0.01};
 
@@ -33,8 +33,7 @@ Rgb colour_of(const Vector3d& point) {
   return platform;
 }
 
-/// The picture of a stop: where each pixel's ray, freed from the lens's distortion by a fixed
-/// point, meets the scene.
+/// Renders the picture of a stop. Each pixel's ray is undistorted by fixed-point iteration.
 ColourPicture draw(const Scan& scan, double angle) {
   const Intrinsics& lens = scan.intrinsics;
   const Eigen::Isometry3d pose = object_from_sensor(scan.platform_from_sensor, angle);
@@ -93,7 +92,7 @@ Ball both_balls() {
   return mesh;
 }
 
-/// As a model has it whose brightest colour is the small ball's.
+/// The colour in a model that is scaled by its brightest colour, the small ball's green, to 240.
 Rgb brightened(const Rgb& painted) {
   Rgb bright{};
   std::ranges::transform(painted, bright.begin(), [](std::uint8_t level) {
@@ -114,7 +113,7 @@ void put_png(const std::filesystem::path& file, std::span<const std::byte> png) 
   put(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// A scan folder with the dark pictures alone.
+/// Writes a scan folder that has only the dark pictures.
 Scan write_pictures(const std::filesystem::path& folder) {
   Scan scan = laser_rig(stops);
   for (const Shot& shot : scan.shots) {
@@ -123,20 +122,19 @@ Scan write_pictures(const std::filesystem::path& folder) {
   return scan;
 }
 
-/// The colours of a mesh by the pictures of such a folder.
+/// The colours of a mesh's vertices in the pictures of `write_pictures`.
 std::vector<Rgb> colours_in_pictures(const Ball& mesh) {
   const TemporaryFolder folder;
   const Scan scan = write_pictures(folder.path());
   return vertex_colours(folder.path(), scan, {mesh.vertices, mesh.triangles});
 }
 
-/// Vertices of the upper half of the large ball that are not near its seam and have another colour
-/// than it has there.
+/// Counts wrongly coloured vertices of the large ball's upper half, except near the colour seam.
 int wrong_vertices(const Ball& mesh, const std::vector<Rgb>& colours) {
   int wrong = 0;
   for (std::size_t i = 0; i < 400; ++i) {
     const float x = mesh.vertices[i][0];
-    if (std::abs(x) > 2) {  // a pixel is 0.8 mm wide there, and more where it is seen flatly
+    if (std::abs(x) > 2) {  // a pixel covers 0.8 mm there, more at grazing angles
       wrong += difference(colours[i], brightened(x < 0 ? red : blue)) > 8 ? 1 : 0;
     }
   }
@@ -148,7 +146,7 @@ TEST(VertexColours, AreThoseOfTheObjectWhereSomethingElseHidesItAtSomeStops) {
   const std::vector<Rgb> colours = colours_in_pictures(mesh);
 
   ASSERT_EQ(colours.size(), mesh.vertices.size());
-  // One in 50: at the rim of the small ball a pixel has both.
+  // One in 50: a pixel at the small ball's rim shows both balls.
   EXPECT_LE(wrong_vertices(mesh, colours), 8);
 }
 
@@ -193,7 +191,7 @@ TEST(VertexColours, OfDarkPicturesAreBrightenedByOneFactor) {
   const std::vector<Rgb> colours =
       vertex_colours(folder.path(), scan, {mesh.vertices, mesh.triangles});
 
-  // A level of the pictures is 11 of the model.
+  // One grey level of the pictures is 11 levels of the model.
   const std::size_t red_side = 10 * 40 + 20;
   const std::size_t blue_side = 10 * 40;
   EXPECT_LE(difference(colours[red_side], brightened(red)), 11);

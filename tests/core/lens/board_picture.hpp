@@ -12,7 +12,7 @@
 
 namespace octurn {
 
-/// A board of squares before a camera, drawn by itself: it shares nothing with what finds it.
+/// A checkerboard in front of a camera. The renderer shares no code with the detector under test.
 struct BoardScene {
   CameraLens lens = {};
   int columns = 17;  // squares
@@ -20,7 +20,7 @@ struct BoardScene {
   double side = 0.015;  // metres, of a square
   double noise = 2;     // grey levels
   double blur = 0.8;    // pixels
-  double shade = 0;     // by how much darker the left edge is than the right one, as a share
+  double shade = 0;     // share by which the left edge is darker than the right one
   bool has_clutter = false;
 };
 
@@ -30,7 +30,8 @@ inline CameraLens test_lens() {
           .k2 = 0.04};
 }
 
-/// Optical frame from a board's frame whose middle is at a place, turned about x, then y, then z.
+/// Camera from board: the board's centre is at `middle` (optical frame), and it is turned about x,
+/// then y, then z.
 inline Eigen::Isometry3d board_at(const Eigen::Vector3d& middle, double about_x, double about_y,
                                   double about_z, const BoardScene& scene = {}) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -42,7 +43,7 @@ inline Eigen::Isometry3d board_at(const Eigen::Vector3d& middle, double about_x,
   return pose;
 }
 
-/// Where the lens shows a point of the optical frame.
+/// Projects a point of the optical frame to pixels.
 inline Eigen::Vector2d shown(const CameraLens& lens, const Eigen::Vector3d& point) {
   const Eigen::Vector2d ray = point.hnormalized();
   const double factor = 1 + lens.k1 * ray.squaredNorm() + lens.k2 * std::pow(ray.norm(), 4);
@@ -50,7 +51,7 @@ inline Eigen::Vector2d shown(const CameraLens& lens, const Eigen::Vector3d& poin
           lens.intrinsics.fy * ray.y() * factor + lens.intrinsics.cy};
 }
 
-/// The ray that a lens shows there: by going back what it moves, again and again.
+/// The ray of a pixel, undistorted by fixed-point iteration.
 inline Eigen::Vector2d ray_at(const CameraLens& lens, double u, double v) {
   const Eigen::Vector2d seen((u - lens.intrinsics.cx) / lens.intrinsics.fx,
                              (v - lens.intrinsics.cy) / lens.intrinsics.fy);
@@ -62,7 +63,7 @@ inline Eigen::Vector2d ray_at(const CameraLens& lens, double u, double v) {
   return ray;
 }
 
-/// All corners where four squares meet that are in the picture.
+/// The visible inner corners, where four squares meet, in pixels.
 inline std::vector<Eigen::Vector2d> true_corners(const BoardScene& scene,
                                                  const Eigen::Isometry3d& pose) {
   std::vector<Eigen::Vector2d> corners;
@@ -79,7 +80,7 @@ inline std::vector<Eigen::Vector2d> true_corners(const BoardScene& scene,
   return corners;
 }
 
-/// Where a ray meets the board's plane: column and row.
+/// Where a ray meets the board's plane, in columns and rows of squares.
 inline Eigen::Vector2d met_by(const BoardScene& scene, const Eigen::Isometry3d& board_from_camera,
                               const Eigen::Vector2d& ray) {
   const Eigen::Vector3d from = board_from_camera.translation();
@@ -87,22 +88,22 @@ inline Eigen::Vector2d met_by(const BoardScene& scene, const Eigen::Isometry3d& 
   return (from - way * (from.z() / way.z())).head<2>() / scene.side;
 }
 
-/// 1 on the even squares' side of the nearest line between squares, -1 on the other, and between
-/// them where a pixel's part of that width holds both.
+/// 1 on even columns (or rows), -1 on odd ones, and linear between them across a line between
+/// squares over `width`, the extent of a pixel's sample.
 inline double parity(double place, double width) {
   const double nearest = std::round(place);
   const double side = std::clamp((place - nearest) / (width / 2), -1.0, 1.0);
   return std::fmod(std::abs(nearest), 2) < 0.5 ? side : -side;
 }
 
-/// Grey levels of what a ray meets: squares, the paper's margin, or what is behind it.
-/// @param width  columns and rows that its part of a pixel covers
+/// Grey level of what a ray meets: a square, the paper's margin, or the background.
+/// @param width  extent of the ray's sample, in columns and rows of squares
 inline double light_of(const BoardScene& scene, const Eigen::Vector2d& met,
                        const Eigen::Vector2d& width, const Eigen::Vector2d& ray) {
   const double margin = 0.7;
   if ((met.array() < -margin).any() || met.x() > scene.columns + margin ||
       met.y() > scene.rows + margin) {
-    // Bricks, some of whose corners look like a board's, and a dark door.
+    // Bricks, some of whose corners resemble a board's corners, and a dark door.
     const bool is_brick = std::fmod(std::abs(ray.x() * 31), 2) < 1 &&
                           std::fmod(std::abs(ray.y() * 23 + std::floor(ray.x() * 31) * 0.4), 2) < 1;
     return scene.has_clutter && is_brick ? 170 : scene.has_clutter && ray.x() > 0.3 ? 25 : 90;
@@ -141,14 +142,14 @@ inline std::vector<double> transposed(const std::vector<double>& light, int widt
   return turned;
 }
 
-/// Means of 3 x 3 rays a pixel, blurred, shaded, with noise.
+/// Renders the scene with 3 x 3 rays a pixel, then adds blur, shade and noise.
 inline Picture board_picture(const BoardScene& scene, const Eigen::Isometry3d& pose,
                              std::uint32_t seed = 1) {
   const int width = scene.lens.intrinsics.width;
   const int height = scene.lens.intrinsics.height;
   const Eigen::Isometry3d board_from_camera = pose.inverse();
   std::vector<double> light;
-  std::vector<Eigen::Vector2d> rays;  // of one more row and column
+  std::vector<Eigen::Vector2d> rays;  // with one more row and column than the picture
   for (int v = 0; v <= height; ++v) {
     for (int u = 0; u <= width; ++u) {
       rays.push_back(ray_at(scene.lens, u, v));

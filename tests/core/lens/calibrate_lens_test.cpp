@@ -16,7 +16,7 @@ struct Hold {
   double about_z;
 };
 
-/// As a person would hold a board: tilted each way, and at each part of the picture.
+/// Board poses as a person would hold it: tilted each way, and in each part of the picture.
 std::vector<Hold> holds() {
   return {{{0, 0, 0.3}, 0.1, 0.0, 0.0},         {{0, 0, 0.34}, 0.55, 0.0, 0.1},
           {{0, 0, 0.34}, -0.55, 0.0, 1.5},      {{0, 0, 0.34}, 0.0, 0.55, 0.2},
@@ -26,7 +26,7 @@ std::vector<Hold> holds() {
           {{0, -0.05, 0.24}, -0.2, 0.3, 0.0},   {{0.02, 0.0, 0.4}, 0.5, 0.5, 0.5}};
 }
 
-/// Views whose corners are the true ones, with noise.
+/// Views made of the true corners with noise.
 std::vector<BoardView> views_of(const BoardScene& scene, const std::vector<Hold>& held,
                                 double noise) {
   Random random(7);
@@ -126,7 +126,7 @@ TEST(CalibrateLens, RefusesTooFewViews) {
   const BoardScene scene{.lens = test_lens()};
   std::vector<BoardView> views = views_of(scene, holds(), 0.05);
   views.resize(4);
-  views.resize(9);  // with pictures that show none
+  views.resize(9);  // five more pictures that show no board
   expect_refused(calibrate_lens(views, 640, 480), "in 4 pictures");
   expect_refused(calibrate_lens({}, 640, 480), "in 0 pictures");
 }

@@ -12,7 +12,7 @@
 namespace octurn {
 namespace {
 
-/// How far what was found is from the truth, and how much of that was found.
+/// Errors of the found corners, and the share of corners found.
 struct Comparison {
   double worst = 0;  // pixels
   double mean = 0;   // pixels
@@ -37,8 +37,7 @@ Comparison look(const BoardScene& scene, const Eigen::Isometry3d& pose) {
   return compare(find_board(board_picture(scene, pose)), true_corners(scene, pose));
 }
 
-/// Whether neighbours on the board are as far apart as they are in the picture: a place that is
-/// wrong by a square shows.
+/// Expects at least 20 corners, no two of them with the same column and row.
 void expect_lattice(const BoardView& view) {
   std::set<std::pair<int, int>> places;
   for (const BoardCorner& corner : view) {
@@ -76,7 +75,7 @@ TEST(FindBoard, TakesThePartOfABoardThatIsInThePicture) {
   const Comparison seen = compare(view, true_corners(scene, pose));
   EXPECT_GT(view.size(), 25U);
   EXPECT_LT(view.size(), 150U);  // of 176
-  EXPECT_GT(seen.found, 0.8);    // the features' ring leaves out what is near the edge
+  EXPECT_GT(seen.found, 0.8);    // the detector's ring of samples misses corners near the edge
   EXPECT_LT(seen.worst, 0.1);
 }
 
@@ -96,7 +95,7 @@ TEST(FindBoard, SeesTheBoardAroundAHandThatHoldsIt) {
   EXPECT_GT(seen.found, 0.6);
   EXPECT_LT(seen.found, 0.85);
   EXPECT_LT(seen.mean,
-            0.1);  // at the hand's outline some are a pixel off, which the solver leaves out
+            0.1);  // some at the hand's outline are a pixel off; the solver rejects them
   EXPECT_LT(seen.worst, 2);
   expect_lattice(view);
 }
@@ -106,7 +105,7 @@ TEST(FindBoard, PutsEachCornerAtItsOwnPlace) {
   const Eigen::Isometry3d pose = board_at({0, 0, 0.36}, 0.5, -0.3, 0.8);
   const BoardView view = find_board(board_picture(scene, pose));
   ASSERT_GT(view.size(), 100U);
-  // One turn and shift of the lattice explains all places.
+  // A single rotation by quarters and a single shift must map all indices to the true ones.
   std::set<std::array<int, 2>> origins_by_turn[4];
   for (const BoardCorner& corner : view) {
     for (int row = 1; row < scene.rows; ++row) {

@@ -1,5 +1,5 @@
-// Self-intersections as CGAL's exact predicates find them, which share no code with Octurn. In a
-// file of its own, as CGAL takes long to compile.
+// Compares the overlap test with CGAL's exact predicates, which share no code with Octurn. The test
+// has its own file, as CGAL takes long to compile.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Kernel::Triangle_3 triangle_of(const Positions& vertices, const MeshTriangle& t)
   return {point(vertices, t[0]), point(vertices, t[1]), point(vertices, t[2])};
 }
 
-/// Whether triangles with area meet elsewhere than in the vertices that they share.
+/// Whether two triangles, neither degenerate, meet outside their shared vertices.
 bool overlap_exactly(const Positions& vertices, MeshTriangle a, MeshTriangle b) {
   const auto shared = std::stable_partition(a.begin(), a.end(), [&](std::uint32_t corner) {
     return std::ranges::find(b, corner) != b.end();
@@ -42,7 +42,8 @@ bool overlap_exactly(const Positions& vertices, MeshTriangle a, MeshTriangle b) 
     case 0:
       return CGAL::do_intersect(triangle_of(vertices, a), triangle_of(vertices, b));
     case 1:
-      // What they share beyond the vertex ends on the side of one that faces it.
+      // Beyond the shared vertex, an intersection reaches the opposite side of one of the
+      // triangles.
       return CGAL::do_intersect(Kernel::Segment_3(p(a[1]), p(a[2])), triangle_of(vertices, b)) ||
              CGAL::do_intersect(Kernel::Segment_3(p(b[1]), p(b[2])), triangle_of(vertices, a));
     case 2:
@@ -53,11 +54,13 @@ bool overlap_exactly(const Positions& vertices, MeshTriangle a, MeshTriangle b) 
   }
 }
 
-/// Pairs of triangles on a lattice so small that most touch, fold onto or nearly miss each other.
+/// Compares random pairs of triangles on a lattice so small that most touch, fold onto or nearly
+/// miss each other.
 ///
 /// The lattice is that of single precision numbers near 300 mm, 2^-15 mm apart: no gap of a real
 /// mesh is smaller. On 6 steps gaps are either 0 or above 2^-15 mm / 130, and sines 0 or above
-/// 1e-4, both well above what `are_disjoint` may take for rounding. So it must agree exactly.
+/// 1e-4, both well above the rounding error that `are_disjoint` allows for. So it must agree
+/// exactly.
 void expect_exact_on_lattice(std::uint32_t shared, int pairs) {
   std::mt19937 random(shared + 1);
   std::array<int, 2> found{};
@@ -95,7 +98,7 @@ TEST(ExactOverlap, IsFoundOfTrianglesThatShareASide) { expect_exact_on_lattice(2
 TEST(ExactOverlap, IsAllThatIsFoundInAMesh) {
   std::set<bool> is_any_found;
   for (std::uint32_t seed = 0; seed < 5; ++seed) {
-    // A square of 12 x 12 vertices 10 mm apart, moved by more and more.
+    // A square of 12 x 12 vertices 10 mm apart, displaced by more for each seed.
     constexpr std::uint32_t side = 12;
     std::mt19937 random(seed);
     const auto moved = [&](std::uint32_t at) {

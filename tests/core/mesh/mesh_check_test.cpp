@@ -11,7 +11,7 @@ namespace {
 
 using Corner = std::array<float, 3>;
 
-/// A cube of 10 mm, two facets a side, counter-clockwise seen from outside.
+/// A cube of 10 mm with two facets a side, which are counter-clockwise seen from outside.
 std::vector<Facet> cube() {
   const auto corner = [](int i) {
     return Corner{i & 1 ? 10.0F : 0.0F, i & 2 ? 10.0F : 0.0F, i & 4 ? 10.0F : 0.0F};
@@ -84,7 +84,7 @@ TEST(MeshCheck, TellsWhereTheSurfaceAboveTheBaseIsFilledIn) {
   EXPECT_DOUBLE_EQ(check.unseen_share(), 0.1);
   ASSERT_FALSE(check.unseen_places().empty());
   for (const Eigen::Vector3d& place : check.unseen_places()) {
-    EXPECT_NEAR(place.z(), 0.010, 0.0021);  // of the top, and half a cell
+    EXPECT_NEAR(place.z(), 0.010, 0.0021);  // the top, within half a cell
   }
 }
 

@@ -1,5 +1,5 @@
-// Surfaces have the same bytes for any number of threads: drawn, simplified, looked through for
-// self-intersections.
+// Marching cubes, simplification and the search for self-intersections give the same bytes for any
+// number of threads.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ constexpr std::array<int, 4> team_sizes = {2, 3, 4, 7};
 
 using Position = std::array<float, 3>;
 
-/// A sphere with bumps of 0.05 mm, so that collapses cost differently all over.
+/// A sphere with bumps of 0.05 mm, so that the costs of edge collapses differ everywhere.
 LayeredMesh bumpy_sphere(std::uint32_t rings) {
   LayeredMesh mesh = sphere(30, rings);
   Random random(5);
@@ -103,7 +103,7 @@ TEST(MeshThreads, SimplifySeveralWindowsAndNoiseAsOneDoes) {
   const CompactTsdf field = random_field(2, 0.4);
   const HoleFilledSdf filled(field, 3);
   const VoxelMask inside = filled.inside();
-  const LayeredMesh shape = bumpy_sphere(120);  // 57,000 triangles: windows have 30,000
+  const LayeredMesh shape = bumpy_sphere(120);  // 57,000 triangles; a window has 30,000
   const auto simplified_by = [&](ThreadTeam& team) {
     std::vector<Facet> facets;
     const auto append = [&](std::span<const Facet> some) {
@@ -126,7 +126,7 @@ TEST(MeshThreads, SimplifySeveralWindowsAndNoiseAsOneDoes) {
 TEST(MeshThreads, FindTheSelfIntersectionsThatOneFinds) {
   LayeredMesh shape = bumpy_sphere(40);
   for (std::size_t i = 0; i < shape.vertices.size(); i += 97) {
-    shape.vertices[i].position[2] += 9;  // through its neighbours
+    shape.vertices[i].position[2] += 9;  // through its neighbours' triangles
   }
   std::vector<Position> positions;
   std::ranges::transform(shape.vertices, std::back_inserter(positions), &MeshVertex::position);

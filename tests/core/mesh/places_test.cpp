@@ -24,7 +24,7 @@ TEST(Places, GrowCoarserWhenThereAreManyInsteadOfMore) {
   for (int i = 0; i < 1000; ++i) {
     places.add({(i + 0.5) * 0.004, 0, 0});
   }
-  // 1,000 cells in a row: 250 of 16 mm.
+  // 1,000 cells of 4 mm in a row are merged into 250 of 16 mm.
   const std::vector<Vector3d> centres = places.centres();
   ASSERT_EQ(centres.size(), 250U);
   EXPECT_NEAR((centres[1] - centres[0]).norm(), 0.016, 1e-12);
@@ -53,7 +53,7 @@ TEST(Places, AreTheSameInWhateverOrderThePointsCome) {
 TEST(Places, CoverALargeFacet) {
   Places places;
   places.add({Vector3d(0, 0, 0.001), Vector3d(0.04, 0, 0.001), Vector3d(0, 0.04, 0.001)});
-  // Half of 10 x 10 cells, and those on its edge.
+  // Half of 10 x 10 cells, plus the cells along the diagonal edge.
   EXPECT_GE(places.centres().size(), 45U);
   EXPECT_LE(places.centres().size(), 66U);
 }

@@ -17,7 +17,7 @@ struct WeightedPlane {
   double area = 0;
 };
 
-/// Random planes about 10 mm from the origin.
+/// Random planes some 10 mm from the origin.
 std::vector<WeightedPlane> random_planes(std::uint32_t seed, int count) {
   std::mt19937 random(seed);
   const auto next = [&] { return static_cast<double>(random() % 2001) / 1000 - 1; };
@@ -84,7 +84,8 @@ TEST(Quadric, HasItsOptimumWhereNoPointBesideIsBetter) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const std::vector<WeightedPlane> planes = random_planes(seed, 6);
     const Vector3 guess{1, 2, 3};
-    // What is minimised: the planes, and the guess with a thousandth of their weight.
+    // The minimised cost: mean square distance to the planes, plus a thousandth of the squared
+    // distance to the guess.
     const auto cost = [&](const Eigen::Vector3d& p) {
       return mean_square_of(planes, p) + 1e-3 * (p - Eigen::Vector3d(1, 2, 3)).squaredNorm();
     };
@@ -137,7 +138,8 @@ TEST(QemSimplify, LosesNoPlane) {
   const double before = total_area();
   qem_simplify(mesh, std::vector<char>(mesh.vertices.size(), 0), {.target_error = 0.1});
   EXPECT_NEAR(total_area(), before, 1e-9 * before);
-  // Each plane counts at its three corners, and the fine sphere is smaller by its chords.
+  // Each plane is counted at its three corners. The mesh's area is smaller than the sphere's, as
+  // its edges are chords.
   EXPECT_NEAR(before, 3 * 4 * std::numbers::pi * 400, 0.005 * before);
 }
 
@@ -170,8 +172,8 @@ TEST(QemSimplify, LeavesNothingOutsideOfItsHeights) {
   }
 }
 
-/// How many triangles a mesh has after all vertices but the first two were locked, and up to a
-/// target that refuses nothing.
+/// Counts a mesh's triangles after a simplification that may collapse the edge 0-1 only, as all
+/// other vertices are locked, and whose target error refuses nothing.
 std::size_t triangles_after_first_edge(std::vector<MeshVertex> vertices,
                                        std::vector<MeshTriangle> triangles) {
   IndexedMesh mesh =
@@ -184,7 +186,7 @@ std::size_t triangles_after_first_edge(std::vector<MeshVertex> vertices,
 }
 
 TEST(QemSimplify, TurnsNoTriangleOver) {
-  // In a plane, the middle of the edge from 0 to 1 lies beyond the line from 2 to 3, if 2 is near.
+  // All vertices lie in a plane. If vertex 2 is near, the middle of edge 0-1 lies beyond line 2-3.
   const auto triangles_after = [](float x, float y) {
     return triangles_after_first_edge({{.position = {0, 0, 1}},
                                        {.position = {4, 0, 1}},
@@ -210,8 +212,8 @@ TEST(QemSimplify, TurnsNoTriangleOver) {
 }
 
 TEST(QemSimplify, CollapsesNoEdgeWhoseEndsHaveAThirdNeighbourInCommon) {
-  // A spike over the triangle 0, 1, 2 of a plane: without 1, two of its sides would lie on each
-  // other.
+  // A spike stands on triangle 0, 1, 2 of a plane. Collapsing edge 0-1 would make two of its sides
+  // coincide.
   const std::vector<MeshVertex> vertices{{.position = {-1, 0, 1}},    {.position = {1, 0, 1}},
                                          {.position = {0, 1.73F, 1}}, {.position = {0, 0.58F, 21}},
                                          {.position = {0, -4, 1}},    {.position = {5, 2, 1}},
@@ -222,7 +224,7 @@ TEST(QemSimplify, CollapsesNoEdgeWhoseEndsHaveAThirdNeighbourInCommon) {
 }
 
 TEST(QemSimplify, LeavesEdgesBetweenTrianglesWithoutArea) {
-  // A closed needle: all vertices on one line, so that no plane tells where a vertex should go.
+  // A closed needle: all vertices lie on one line, so that no plane determines a vertex's position.
   IndexedMesh mesh{.vertices = {}, .quadrics = std::vector<Quadric>(8), .triangles = {}};
   for (int i = 0; i < 8; ++i) {
     mesh.vertices.push_back({.position = {static_cast<float>(i), 0, 1}});

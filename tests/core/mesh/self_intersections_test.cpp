@@ -32,8 +32,8 @@ Boxes boxes_of(const Mesh& mesh, std::size_t already_checked = 0) {
   return boxes;
 }
 
-/// The same by each pair of triangles on its own. `are_disjoint` has its own test, against exact
-/// predicates: this is the oracle of the search and of the fans that it skips.
+/// Brute force over all pairs of triangles: the reference for the search and for the fans that it
+/// skips. `are_disjoint` is tested separately, against exact predicates.
 Boxes boxes_of_pairs(const Mesh& mesh, std::size_t already_checked = 0) {
   const auto box_of = [&](const MeshTriangle& triangle) {
     const auto& [a, b, c] = triangle;
@@ -55,13 +55,13 @@ Boxes boxes_of_pairs(const Mesh& mesh, std::size_t already_checked = 0) {
   return boxes;
 }
 
-/// A torus, 10 mm thick, its vertices moved by up to `max_shift` millimetres along each axis.
+/// A torus, 10 mm thick, whose vertices are moved by up to `max_shift` millimetres along each axis.
 Mesh ring(std::uint32_t seed, float max_shift) {
   constexpr std::uint32_t around = 14;
   constexpr std::uint32_t across = 7;
   std::mt19937 random(seed);
   const auto moved = [&](double at) {
-    // Not by std::uniform_real_distribution, which differs from library to library.
+    // std::uniform_real_distribution would differ between standard libraries.
     return static_cast<float>(at) + max_shift * (static_cast<float>(random() % 2001) / 1000 - 1);
   };
   Mesh mesh;
@@ -82,8 +82,8 @@ Mesh ring(std::uint32_t seed, float max_shift) {
   return mesh;
 }
 
-/// Triangles around the origin, from each direction (degrees, and height at a distance of 10) to
-/// the next; if they are closed, so is the mesh, by those of a point below.
+/// A fan of triangles around the origin between successive directions (degrees, and height at a
+/// distance of 10). A closed fan is made a closed mesh by a second fan around a point below.
 Mesh fan(const std::vector<std::array<double, 2>>& directions, bool is_closed) {
   Mesh mesh{.vertices = {{0, 0, 0}, {0, 0, -40}}, .triangles = {}};
   for (std::uint32_t i = 0; i < directions.size(); ++i) {
@@ -115,11 +115,11 @@ TEST(SelfIntersections, AreOfTwoTrianglesThatMeetOutsideSharedCorners) {
                     .triangles = {{0, 1, 2}, other}};
     return boxes_of(mesh).size();
   };
-  EXPECT_EQ(found({0, 4, 5}), 2U);  // one corner in common
+  EXPECT_EQ(found({0, 4, 5}), 2U);  // one shared corner
   EXPECT_EQ(found({1, 6, 7}), 0U);
-  EXPECT_EQ(found({0, 2, 3}), 2U);  // a side
+  EXPECT_EQ(found({0, 2, 3}), 2U);  // a shared edge
   EXPECT_EQ(found({0, 2, 4}), 0U);
-  EXPECT_EQ(found({4, 5, 6}), 2U);  // none
+  EXPECT_EQ(found({4, 5, 6}), 2U);  // nothing shared
   EXPECT_EQ(found({5, 6, 7}), 0U);
 }
 

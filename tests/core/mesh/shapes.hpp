@@ -13,15 +13,15 @@
 
 namespace octurn {
 
-/// A closed mesh whose vertices lie in layers, so that it can be streamed: triangles join vertices
-/// of one layer or of two that follow each other.
+/// A closed mesh that can be streamed: its vertices lie in layers, and each triangle joins vertices
+/// of one layer or of two successive ones.
 struct LayeredMesh {
   std::vector<MeshVertex> vertices = {};
   std::vector<MeshTriangle> triangles = {};
   std::vector<std::uint32_t> layers = {};  ///< index of each layer's first vertex
 };
 
-/// A sphere around (0, 0, `radius`), millimetres, its vertices in rings of `2 * rings`.
+/// A sphere around (0, 0, `radius`), millimetres, with `2 * rings` vertices a ring.
 inline LayeredMesh sphere(double radius, std::uint32_t rings) {
   const std::uint32_t around = 2 * rings;
   LayeredMesh mesh{.vertices = {{.position = {0, 0, 0}}}, .triangles = {}, .layers = {0}};
@@ -54,7 +54,7 @@ inline LayeredMesh sphere(double radius, std::uint32_t rings) {
   return mesh;
 }
 
-/// Hands a mesh over to a simplifier in pieces of so many layers.
+/// Feeds a mesh to a simplifier in pieces of `layers_per_piece` layers.
 inline void stream(const LayeredMesh& mesh, std::size_t layers_per_piece,
                    StreamSimplifier& simplifier) {
   auto triangle = mesh.triangles.begin();
@@ -72,7 +72,7 @@ inline void stream(const LayeredMesh& mesh, std::size_t layers_per_piece,
   simplifier.finish();
 }
 
-/// Simplifies a mesh that is handed over in pieces of so many layers.
+/// Simplifies a mesh that is streamed in pieces of `layers_per_piece` layers.
 inline std::vector<Facet> simplified(const LayeredMesh& mesh, double target_error,
                                      std::size_t layers_per_piece) {
   std::vector<Facet> facets;

@@ -14,8 +14,8 @@
 namespace octurn {
 namespace {
 
-/// The area-weighted RMS distance of facets from a sphere around (0, 0, radius), by the midpoints
-/// of 16 equal parts of each.
+/// The area-weighted RMS distance of facets from a sphere around (0, 0, radius), sampled at the
+/// midpoints of 16 equal parts of each facet.
 double rms_from_sphere(std::span<const Facet> facets, double radius) {
   constexpr int parts = 4;
   double area = 0;
@@ -66,7 +66,7 @@ TEST(StreamSimplifier, TakesFewerTrianglesForALargerTarget) {
 }
 
 TEST(StreamSimplifier, KeepsASphereManifoldThroughSeveralWindows) {
-  const LayeredMesh fine = sphere(30, 140);  // 78,000 triangles: windows have 30,000
+  const LayeredMesh fine = sphere(30, 140);  // 78,000 triangles; a window has 30,000
   const std::vector<Facet> facets = simplified(fine, 0.05, 1);
   EXPECT_LT(facets.size(), fine.triangles.size() / 2);
   const Topology topology = topology_of(facets);

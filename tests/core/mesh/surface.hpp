@@ -13,7 +13,7 @@
 
 namespace octurn {
 
-/// All facets of the surface around a set.
+/// All facets of the isosurface around a set of voxels.
 inline std::vector<Facet> surface_of(const VoxelMask& set, const HoleFilledSdf& filled) {
   std::vector<MeshVertex> vertices;
   std::vector<Facet> facets;
@@ -30,7 +30,7 @@ inline bool same_bytes(const std::vector<Facet>& a, const std::vector<Facet>& b)
   return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
-/// What a slicer would find in a surface, counted in the most obvious way.
+/// The topology of a surface as a slicer sees it, counted by the simplest method.
 struct Topology {
   bool closed = true;    ///< each directed edge is there once, and its opposite once
   bool manifold = true;  ///< the facets at each vertex form one fan
@@ -40,7 +40,7 @@ struct Topology {
 inline Topology topology_of(std::span<const Facet> facets) {
   using Vertex = std::array<float, 3>;
   std::map<Vertex, int> vertices;
-  std::map<std::pair<int, int>, int> next;  // directed edge (a, b) -> the third corner
+  std::map<std::pair<int, int>, int> next;  // directed edge (a, b) -> third corner
   Topology topology;
   std::map<int, std::map<int, int>> fans;  // vertex -> corner before -> corner after
   for (const Facet& facet : facets) {

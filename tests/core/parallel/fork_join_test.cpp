@@ -15,7 +15,7 @@ namespace {
 TEST(ForkJoin, RunsEachIndexOnAThreadOfItsOwnAndTheFirstOnTheCallers) {
   constexpr int threads = 4;
   std::vector<std::thread::id> ran(threads);
-  std::latch all_run(threads);  // none ends before the last has begun
+  std::latch all_run(threads);  // no task ends before all have begun
   fork_join(threads, [&](int i) {
     ran[static_cast<std::size_t>(i)] = std::this_thread::get_id();
     all_run.arrive_and_wait();

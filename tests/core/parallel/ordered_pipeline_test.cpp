@@ -16,7 +16,7 @@ namespace {
 
 using Source = std::function<std::optional<int>()>;
 
-/// The numbers from 0 up to but without `end`.
+/// The numbers from 0 up to, but not including, `end`.
 Source numbers(int end) {
   return [next = 0, end]() mutable { return next < end ? std::optional(next++) : std::nullopt; };
 }
@@ -50,8 +50,8 @@ TEST(OrderedPipeline, UsesResultsInTheOrderOfTheirPiecesWhateverTheThreads) {
 }
 
 TEST(OrderedPipeline, GoesOnWithOtherPiecesWhileOneIsSlow) {
-  // The first piece ends only when all others of the window were made: with a thread that waited
-  // for its turn to be used, it never would.
+  // The first piece ends only after all others of the window are made. If a thread waited until its
+  // piece is consumed, this would be a deadlock.
   constexpr int window = 4;
   OrderedPipeline<Source, int> pipeline(numbers(window), window);
   std::latch others(window - 1);
@@ -87,7 +87,7 @@ TEST(OrderedPipeline, HoldsNoMorePiecesThanItsWindow) {
   fork_join(8, [&](int) {
     pipeline.run([](int piece, int& result) { result = piece; }, [&](int) { --held; });
   });
-  // A piece is used just before its place in the window is free for another.
+  // A piece is consumed just before its place in the window becomes free.
   EXPECT_LE(most, window);
   EXPECT_EQ(held, 0);
 }
@@ -118,7 +118,7 @@ TEST(OrderedPipeline, EndsOnAllThreadsWhenOneThrows) {
                                  });
                            }),
                  std::runtime_error);
-    EXPECT_LE(used.size(), 50U);  // none after the one that failed
+    EXPECT_LE(used.size(), 50U);  // none after the failed piece
   }
 }
 

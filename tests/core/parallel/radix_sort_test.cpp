@@ -15,7 +15,7 @@ bool same(const std::vector<KeyIndex>& a, const std::vector<KeyIndex>& b) {
   });
 }
 
-/// Keys at random, numbered in the order in which they stand.
+/// Random keys, each with its position as its index.
 std::vector<KeyIndex> random_keys(std::uint32_t count, std::uint32_t mask) {
   std::mt19937 random(count);
   std::vector<KeyIndex> keys;
@@ -26,7 +26,8 @@ std::vector<KeyIndex> random_keys(std::uint32_t count, std::uint32_t mask) {
 }
 
 TEST(RadixSort, IsAStableSortOfTheKeys) {
-  for (const std::uint32_t mask : {0xffffffffU, 0xffffU, 0x7U}) {  // few values: many equal keys
+  for (const std::uint32_t mask :
+       {0xffffffffU, 0xffffU, 0x7U}) {  // a small mask gives many equal keys
     for (const std::uint32_t count : {0U, 1U, 2U, 100U, 10'000U}) {
       std::vector<KeyIndex> sorted = random_keys(count, mask);
       std::vector<KeyIndex> expected = sorted;
@@ -38,7 +39,7 @@ TEST(RadixSort, IsAStableSortOfTheKeys) {
 }
 
 TEST(RadixSort, OrdersByTheLowestDigitsAlone) {
-  // 11 bits are one digit: bit 11 and those above count for nothing.
+  // One digit has 11 bits: bit 11 and above must not matter.
   std::vector<KeyIndex> keys{{.key = 0x800U | 5U, .index = 0},
                              {.key = 0xfff000U | 3U, .index = 1},
                              {.key = 5U, .index = 2},

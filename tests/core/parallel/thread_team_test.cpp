@@ -17,7 +17,7 @@ TEST(ThreadTeam, RunsEachIndexOnAThreadOfItsOwnAndTheFirstOnTheCallers) {
   ThreadTeam team(4);
   ASSERT_EQ(team.size(), 4);
   std::vector<std::thread::id> ran(4);
-  std::latch all_run(4);  // none ends before the last has begun
+  std::latch all_run(4);  // no task ends before all have begun
   team.run([&](int i) {
     ran[static_cast<std::size_t>(i)] = std::this_thread::get_id();
     all_run.arrive_and_wait();
@@ -28,7 +28,7 @@ TEST(ThreadTeam, RunsEachIndexOnAThreadOfItsOwnAndTheFirstOnTheCallers) {
 
 TEST(ThreadTeam, EndsAStepBeforeTheNextBegins) {
   ThreadTeam team(3);
-  std::vector<int> steps(3);  // that each thread has done; read by the others in the next step
+  std::vector<int> steps(3);  // completed by each thread; read by the others in the next step
   for (int step = 0; step < 2000; ++step) {
     std::vector<int> seen(3);
     team.run([&](int i) {

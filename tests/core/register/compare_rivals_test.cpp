@@ -12,7 +12,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// A turn of a rig that stands some 10 mm and 1.6 degrees from where it is told to.
+/// The turn with a configured sensor pose that is off by some 10 mm and 1.6 degrees.
 RegistrationTurn misaligned(RegistrationTurn turn) {
   turn.platform_from_sensor =
       Eigen::Translation3d(0.006, -0.006, 0.0052) *
@@ -21,8 +21,8 @@ RegistrationTurn misaligned(RegistrationTurn turn) {
   return turn;
 }
 
-/// What a figure's turn that was turned over says of two candidates for how it lay: a right one and
-/// one that is turned away from it about its middle.
+/// Compares two candidate poses for the turn of a figure that was turned over: the right one, and a
+/// rival rotated away from it about the points' centroid.
 Rivals rivals(const RegistrationTurn& upright, const RegistrationTurn& over, double rival_deg,
               const Vector3d& axis) {
   const SeenTurn placed = read_turn(upright, 2, {});
@@ -45,13 +45,14 @@ RegistrationTurn over(std::size_t stops) {
   return laid_turn(figure(), stops, turned_over(figure_height));
 }
 
-// A neighbour that seems to fit as well is where few readings left the points' fit.
+// With few readings the fit of points ends in a neighbouring pose that seems to fit as well. The
+// fit of readings takes both to one pose.
 TEST(CompareRivals, AreOneWhereTheReadingsJoinThem) {
   EXPECT_EQ(rivals(upright(6), over(6), 5, Vector3d(1, 1, 1).normalized()).reason, "");
 }
 
-// Where the told pose is wrong, the readings of two neighbours settle 2 degrees and 1.6 mm apart,
-// each uncertain by 1.1 degrees and 1.4 mm. That is one answer, and no symmetry.
+// With a wrong sensor pose, the fits of two neighbours end 2 degrees and 1.6 mm apart, each
+// uncertain by 1.1 degrees and 1.4 mm. They count as one pose, and not as a symmetry.
 TEST(CompareRivals, AreOneWhereTheyDifferByNoMoreThanTheirUncertainty) {
   const Rivals told = rivals(misaligned(upright(3)), misaligned(over(3)), 7, Vector3d::UnitY());
 

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Points 2 mm apart of a face of 4 cm x 4 cm that looks down.
+/// Points 2 mm apart on a face of 4 cm x 4 cm whose normal points down.
 std::vector<SurfacePoint> face(const std::function<double(double, double)>& height) {
   std::vector<SurfacePoint> points;
   for (int i = -10; i < 10; ++i) {
@@ -40,7 +40,7 @@ TEST(Contact, IsNoneFarFromThePlatform) {
   EXPECT_TRUE(find_contact(face([](double, double) { return 0.02; }), here, 1).foot.empty());
 }
 
-// A ball touches at one point, 0.25 mm below the mean of its lowest 8 degrees.
+// A ball touches the platform at one point, 0.25 mm below the mean of the cap within 8 degrees.
 TEST(Contact, IsNoneOfABall) {
   const auto points =
       face([](double x, double y) { return 0.05 - std::sqrt(0.0025 - x * x - y * y); });
@@ -48,7 +48,7 @@ TEST(Contact, IsNoneOfABall) {
   EXPECT_TRUE(find_contact(points, here, 1).foot.empty());
 }
 
-// A bowl stands on its ring: its flat bottom is 3 mm above the platform.
+// A bowl stands on its foot ring, and its flat bottom is 3 mm above the platform.
 TEST(Contact, IsNoneOfAHollowFoot) {
   auto points = face([](double, double) { return 0.003; });
   for (int i = 0; i < 40; ++i) {
@@ -58,8 +58,8 @@ TEST(Contact, IsNoneOfAHollowFoot) {
   EXPECT_TRUE(find_contact(points, here, 1).foot.empty());
 }
 
-// The object's foot moves down, or the platform of the turn that moves comes up: a face that is
-// 3 mm too high.
+// For a face 3 mm too high, either the object's foot moves down, or the platform of the turn being
+// fitted moves up.
 TEST(Contact, MovesTheFootOrThePlatform) {
   const Contact contact = find_contact(face([](double, double) { return 0.003; }), here, 1);
   RigidFit foot;
@@ -68,7 +68,7 @@ TEST(Contact, MovesTheFootOrThePlatform) {
   add_moving_foot(foot, contact, here, 1);
   add_moving_platform(platform, contact, here, 1);
 
-  // What nothing opposes is damped by a ten-thousandth of the weight.
+  // Unconstrained directions are damped by a ten-thousandth of the weight.
   EXPECT_TRUE(foot.motion().translation().isApprox(Vector3d(0, 0, -0.003), 1e-3));
   EXPECT_TRUE(platform.motion().translation().isApprox(Vector3d(0, 0, 0.003), 1e-3));
 }

@@ -10,9 +10,9 @@
 namespace octurn {
 namespace {
 
-constexpr double wall = 0.7;  // metres before each sensor
+constexpr double wall = 0.7;  // metres in front of each sensor
 
-/// Sensors around the turn's origin that look at it, all of which see a wall.
+/// Poses (sensor from turn) of sensors around the turn's origin, all of which look at it.
 std::vector<Eigen::Isometry3d> sensors_around(std::size_t count) {
   std::vector<Eigen::Isometry3d> sensors;
   for (std::size_t i = 0; i < count; ++i) {
@@ -57,7 +57,7 @@ TEST(FreeRays, PassPointsThatLieWellBeforeWhatEnoughStopsSaw) {
       }
       passed += expected >= 2 ? 1 : 0;
     }
-    EXPECT_TRUE(count < 2 || (passed > 20 && passed < 280));  // of both kinds
+    EXPECT_TRUE(count < 2 || (passed > 20 && passed < 280));  // some points pass, some do not
   }
 }
 
@@ -65,9 +65,10 @@ TEST(FreeRays, ReachTheNearestReadingOfABlockThatMostlyHasReadings) {
   DepthFrame frame{.width = 10, .height = 5, .depth = std::vector<std::uint16_t>(50, 7000)};
   frame.depth[3 * 10 + 2] = 6500;  // in the first block
   for (const std::size_t i : {4U, 5U, 6U, 7U, 14U, 15U, 16U, 17U, 24U}) {
-    frame.depth[i] = 0;  // nine of sixteen in the second
+    frame.depth[i] = 0;  // nine of the second block's sixteen pixels
   }
-  // The blocks at the sides have fewer pixels: of 8 that of the first row's end has all.
+  // Blocks at the right and bottom edges are partial: the last of the first row has 8 pixels, all
+  // of them read.
   EXPECT_EQ(find_free_depths(frame), (FreeDepths{6500, 0, 7000, 0, 0, 0}));
 }
 

@@ -9,9 +9,9 @@
 namespace octurn {
 namespace {
 
-constexpr double margin = 0.02;  // a voxel's diagonal, and what a surface must be behind
+constexpr double margin = 0.02;  // metres: a voxel's diagonal, and the margin before a surface
 
-/// Whether a point is free that a turn saw, turned as told.
+/// Whether a point of the object's frame is free according to one turn, placed by its pose.
 bool is_free(const SeenTurn& turn, const Eigen::Isometry3d& object_from_turn,
              const Eigen::Vector3d& point) {
   const std::array turns{PlacedTurn{.turn = &turn, .object_from_turn = object_from_turn}};

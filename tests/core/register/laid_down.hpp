@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// An object that was turned over the X axis by half a turn, about the middle of its height, then
-/// about Z, and lies off the platform's middle.
+/// Object from platform of an object turned over about X by half a turn (at half its height), then
+/// about Z, and put down off the platform's centre.
 inline Eigen::Isometry3d turned_over(double height, double about_z_deg = 35) {
   Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
   object_from_platform.linear() =
@@ -22,7 +22,7 @@ inline Eigen::Isometry3d turned_over(double height, double about_z_deg = 35) {
   return object_from_platform;
 }
 
-/// What a turn sees of an object that lies in that way, on a rig that is known.
+/// The turn of an object that lies in that pose, on a calibrated rig.
 inline RegistrationTurn laid_turn(
     const Shape& object, std::size_t stops,
     const Eigen::Isometry3d& object_from_platform = Eigen::Isometry3d::Identity()) {
@@ -44,7 +44,7 @@ inline Shape cylinder(double radius, double height) {
   };
 }
 
-/// A figure of some 12 cm whose underside is flat: turned over, it stands on its balls.
+/// Height of `figure()`, metres. Its underside is flat; turned over, it stands on its balls.
 inline constexpr double figure_height = 0.12;
 
 }  // namespace octurn

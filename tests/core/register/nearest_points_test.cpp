@@ -19,7 +19,8 @@ TEST(NearestPoints, IsNearlyTheNearestOfAll) {
     points.push_back({.point = random_point(random, 0.06), .normal = Eigen::Vector3d::UnitZ()});
   }
   const NearestPoints nearest(points);
-  // Of a voxel's centre the nearest is exact; a query is at most half of the voxel's diagonal away.
+  // The nearest point is exact at a voxel's centre, and a query is at most half a voxel's diagonal
+  // from that centre.
   constexpr double slack = 2 * 0.0026;
   int near = 0;
   for (int i = 0; i < 500; ++i) {
@@ -64,7 +65,7 @@ TEST(RigidFit, GivesTheMotionThatTakesPointsToTheirPlanes) {
 
   const Eigen::Isometry3d motion = fit.motion();
 
-  // The damping holds back some ten-thousandth of it, the linear rotation squares 0.002.
+  // Damping keeps back a ten-thousandth of the motion; linearising the rotation errs by 0.002^2.
   EXPECT_LT((motion.matrix() - wanted.matrix()).cwiseAbs().maxCoeff(), 1e-5);
 }
 
@@ -82,7 +83,8 @@ TEST(RigidFit, LeavesAloneWhatNothingOpposes) {
   EXPECT_NEAR(motion.translation().head<2>().norm(), 0, 1e-9);
   EXPECT_TRUE(motion.linear().isIdentity(1e-9));
   const RigidFit::Matrix6d covariance = fit.covariance(1);
-  EXPECT_GT(covariance(3, 3), 1000 * covariance(5, 5));  // it may slide, but not rise
+  EXPECT_GT(covariance(3, 3),
+            1000 * covariance(5, 5));  // it may slide, but not move along the normal
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t stops = 8;
 
-/// How far a pose is from the true one, at the object's middle.
+/// Expects a pose to be within these bounds of the true one at the object's centre.
 void expect_near(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& truth, double max_mm,
                  double max_deg) {
   const Eigen::Vector3d middle(0, 0, 0.05);
@@ -24,8 +24,8 @@ void expect_near(const Eigen::Isometry3d& pose, const Eigen::Isometry3d& truth, 
   EXPECT_LT(degrees_from_radians(Eigen::AngleAxisd(error.linear()).angle()), max_deg);
 }
 
-// A Kinect's reading at 0.65 m is uncertain by 0.35 mm here; the figure has some 2,000 independent
-// ones, most of them on curved surfaces.
+// A Kinect's reading at 0.65 m has a sigma of 0.35 mm here; the figure has some 2,000 independent
+// readings, most of them on curved surfaces.
 TEST(RegisterTurns, FindsHowAFigureWasTurnedOver) {
   const Eigen::Isometry3d truth = turned_over(figure_height);
 
@@ -41,7 +41,7 @@ TEST(RegisterTurns, FindsHowAFigureWasTurnedOver) {
   EXPECT_LT(found.poses[1].position_sigma, 0.0003);
 }
 
-/// Some 12 cm long, and smooth all over: balls that run into each other.
+/// A lump some 12 cm long, smooth everywhere: a smooth union of balls.
 Shape lump() {
   return [](const Eigen::Vector3d& p) {
     constexpr double blend = 0.012;  // metres
@@ -54,7 +54,8 @@ Shape lump() {
   };
 }
 
-// Most of what the second turn sees of it, the first one could not: what lies there is no misfit.
+// The first turn could not see most of the surface that the second one sees. Readings there are no
+// misfit.
 TEST(RegisterTurns, FindsASmoothLumpThatSharesLittle) {
   const Eigen::Translation3d middle(0, 0, 0.055);
   const Eigen::Isometry3d truth =
@@ -70,8 +71,8 @@ TEST(RegisterTurns, FindsASmoothLumpThatSharesLittle) {
   EXPECT_LT(found.poses[1].overlap, 0.5);
 }
 
-/// Some 12 x 9 x 7 cm. Half a turn about any of its axes moves its surface by 1 to 3 mm, which is
-/// less than what free space begins at.
+/// A pebble of some 12 x 9 x 7 cm. Half a turn about any of its axes moves its surface by 1 to 3
+/// mm, less than the margin before a surface at which free space begins.
 Shape pebble() {
   return [](const Eigen::Vector3d& p) {
     const Eigen::Array3d radii(0.060, 0.045, 0.033);  // metres
@@ -82,8 +83,8 @@ Shape pebble() {
   };
 }
 
-// A false pose, half a turn off, is contradicted as little as the true one: where both turns saw
-// the surface, it fits worse.
+// Free space contradicts a pose half a turn off as little as the true one. Only its fit is worse,
+// where both turns saw the surface.
 TEST(RegisterTurns, FindsHowANearlySymmetricPebbleWasTurned) {
   const Eigen::Translation3d middle(0, 0, 0.036);
   for (const Eigen::Vector3d& axis :
@@ -146,14 +147,15 @@ TEST(RegisterTurns, RefusesAnEmptyPlatform) {
   EXPECT_NE(found.reason.find("turn 1"), std::string::npos) << found.reason;
 }
 
-/// A prism that has a face for each side, but none that is slanted: turned over, it shares no face
-/// that tells how high it stood. Its plan is no mirror image of itself.
+/// A prism without slanted faces: turned over, no face that both turns see fixes its height. Its
+/// plan has no mirror symmetry.
 Shape prism() {
   const Eigen::Vector3d aside(0.025, 0.02, 0);
   return joined(block({0.1, 0.03, 0.05}), moved(block({0.03, 0.08, 0.05}), aside));
 }
 
-// A platform's plane is known to 0.02 mm, and the mean of a face of some 40 cm2 to better than 0.1.
+// The platform's plane is known to 0.02 mm, the mean of a face of some 40 cm2 to better than 0.1
+// mm.
 TEST(RegisterTurns, SetsAFlatFootOnItsPlatform) {
   const Eigen::Isometry3d truth = turned_over(0.05);
 
@@ -164,7 +166,7 @@ TEST(RegisterTurns, SetsAFlatFootOnItsPlatform) {
   expect_near(found.poses[1].object_from_platform, truth, 0.3, 0.3);
 }
 
-// Each of four poses is right: the true one takes the block to where the found one has it.
+// Four poses are equally right; each maps the block onto itself.
 TEST(RegisterTurns, TellsThatABlockIsSymmetric) {
   const Eigen::Vector3d size(0.09, 0.06, 0.05);
   const Eigen::Isometry3d truth = turned_over(size.z());
@@ -174,7 +176,7 @@ TEST(RegisterTurns, TellsThatABlockIsSymmetric) {
 
   ASSERT_TRUE(found.accepted) << found.reason;
   EXPECT_TRUE(found.poses[1].symmetric);
-  ASSERT_GT(found.candidates.size(), 1U);  // the other three give the same shape, and are none
+  ASSERT_GT(found.candidates.size(), 1U);  // the equivalent three are no candidates
   EXPECT_GT(found.candidates[1].contradiction, found.candidates[0].contradiction + 0.1);
   const Eigen::Isometry3d error = found.poses[1].object_from_platform * truth.inverse();
   for (const double z : {0.0, size.z()}) {
@@ -186,7 +188,7 @@ TEST(RegisterTurns, TellsThatABlockIsSymmetric) {
   }
 }
 
-// Any rotation is right; the middle must stay.
+// Any rotation is right as long as the centre stays in place.
 TEST(RegisterTurns, TellsThatABallIsSymmetric) {
   const Shape round = ball({0, 0, 0.04}, 0.04);
   const Eigen::Isometry3d truth = turned_over(0.08);
@@ -196,7 +198,7 @@ TEST(RegisterTurns, TellsThatABallIsSymmetric) {
 
   ASSERT_TRUE(found.accepted) << found.reason;
   EXPECT_TRUE(found.poses[1].symmetric);
-  // Of all rotations one is taken that shows the underside, for which it was turned over.
+  // The rotation chosen shows the underside, for which the ball was turned over.
   EXPECT_LT(found.poses[1].object_from_platform(2, 2), 0.3);
   const Eigen::Vector3d middle(0, 0, 0.04);
   const Eigen::Vector3d found_middle =
@@ -204,9 +206,9 @@ TEST(RegisterTurns, TellsThatABallIsSymmetric) {
   EXPECT_NEAR((found_middle - middle).norm(), 0, 0.0003);
 }
 
-// How far it was turned about its axis, and which end is up, is open; where the axis is, is not. Of
-// a low one the sensor sees the top at a slant: unless it is read, the sides slide along each
-// other.
+// The angle about the cylinder's axis and its direction are undetermined; the axis's position is
+// not. The sensor sees the top of a low cylinder at a slant; without those readings the sides would
+// slide along each other.
 TEST(RegisterTurns, TellsThatACylinderIsSymmetric) {
   for (const double height : {0.05, 0.07, 0.1}) {
     const Shape round = cylinder(0.03, height);
@@ -227,8 +229,8 @@ TEST(RegisterTurns, TellsThatACylinderIsSymmetric) {
   }
 }
 
-// The first turn shows a square block; only the second one shows the dent in its underside, which
-// may then be at any of four corners.
+// The first turn shows a square block. Only the second turn shows the dent in its underside, so the
+// dent may be at any of four corners.
 TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
   const Shape dented = [whole = block({0.08, 0.08, 0.05}), dent = ball({0.018, 0.018, 0}, 0.015)](
                            const Eigen::Vector3d& p) { return std::max(whole(p), -dent(p)); };
@@ -239,11 +241,11 @@ TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
 
   EXPECT_FALSE(found.accepted);
   EXPECT_NE(found.reason.find("different shapes"), std::string::npos) << found.reason;
-  ASSERT_GE(found.candidates.size(), 4U);  // a corner each
+  ASSERT_GE(found.candidates.size(), 4U);  // one for each corner
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_LT(found.candidates[i].contradiction, 0.1);
   }
-  // A person who has seen the object chooses, and that is not refused for the others.
+  // A person who knows the object chooses one; the other candidates must not refuse it.
   turns[1].told_object_from_platform = found.candidates[2].object_from_platform;
   const Registration told = register_turns(turns);
   ASSERT_TRUE(told.accepted) << told.reason;
@@ -251,7 +253,8 @@ TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
   EXPECT_TRUE(told.candidates.empty());
 }
 
-// Ten degrees and 7 mm off at the middle, as three clicked pairs may be.
+// The told pose is off by ten degrees, and by 7 mm at the centre, as one from three clicked point
+// pairs may be.
 TEST(RegisterTurns, RefinesAPoseThatIsToldRoughly) {
   const Eigen::Isometry3d truth = turned_over(figure_height);
   std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};

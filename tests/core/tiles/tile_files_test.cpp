@@ -19,7 +19,7 @@ ReconstructOptions room_options(Method method) {
       .method = method, .leaf_size = 0.032, .root_size = 1, .threshold = 0.02, .clip = everywhere};
 }
 
-/// The tiles of a small room, in files.
+/// A small room's model, written as one file for each tile.
 class TileFiles : public testing::Test {
  protected:
   void make(const ReconstructOptions& options) {

@@ -56,7 +56,7 @@ MeshCheck check_of(const std::string& stl) {
   return check;
 }
 
-/// The facets of a surface as a set.
+/// The facets of an STL file, sorted, so that surfaces can be compared as sets.
 std::vector<std::string> sorted_facets(const std::string& stl) {
   std::vector<std::string> facets;
   for (std::size_t at = 84; at + sizeof(Facet) <= stl.size(); at += sizeof(Facet)) {
@@ -66,7 +66,7 @@ std::vector<std::string> sorted_facets(const std::string& stl) {
   return facets;
 }
 
-/// The surface of one octree around the whole room, without tiles.
+/// The STL of the surface from one octree around the whole room, without tiles.
 std::string one_octree(const ReconstructOptions& options) {
   const TileLattice lattice(options);
   Octree octree(options.root_size, lattice.levels());
@@ -110,7 +110,7 @@ TEST(Tiles, AppearWhereSomethingIsSeen) {
 
   EXPECT_GT(plan.tiles.size(), 3U);
   EXPECT_LT(plan.tiles.size(), all.tiles.size());
-  // Of 6 x 6 x 5 tiles around the room, those inside are empty.
+  // Of the 6 x 6 x 5 tiles around the room, the 3 x 3 x 2 inner ones hold only air.
   EXPECT_LT(all.tiles.size(), 6U * 6 * 5 - 3 * 3 * 2);
   EXPECT_TRUE(std::ranges::none_of(all.tiles, [](const Tile& tile) {
     return tile.index == TileIndex{.x = 0, .y = 0, .z = 2};  // in the middle of the air
@@ -165,7 +165,7 @@ TEST(Shell, IsAsThickAsToldAndItsFrontLiesOnTheWalls) {
   double lowest_off = 0;
   int corners = 0;
   for (const Facet& facet : facets_of(surface_of(options, 40))) {
-    for (const auto& corner : facet.corners) {  // of the floor, well away from walls and box
+    for (const auto& corner : facet.corners) {  // on the floor, well away from walls and box
       if (std::abs(corner[0] + 200) < 100 && std::abs(corner[1]) < 100 && corner[2] < 200) {
         ++corners;
         const double from_floor = static_cast<double>(corner[2]) - floor_mm;
@@ -180,7 +180,7 @@ TEST(Shell, IsAsThickAsToldAndItsFrontLiesOnTheWalls) {
   EXPECT_DOUBLE_EQ(thickness, 2 * 0.5 / 32);
   EXPECT_GT(corners, 500);
   EXPECT_LT(highest_off, 0.5);  // depth has steps of 0.2 mm
-  EXPECT_LT(lowest_off, 3);     // a fifth of a voxel, between two of which it is interpolated
+  EXPECT_LT(lowest_off, 3);     // a fifth of a voxel: interpolation between two voxels
 }
 
 TEST(Shell, HasTheVolumeOfTheWallsTimesItsThickness) {
@@ -191,7 +191,7 @@ TEST(Shell, HasTheVolumeOfTheWallsTimesItsThickness) {
 
   const MeshCheck check = check_of(surface_of(options, 60));
 
-  // The box adds some, corners of walls too; what its shadow hides is missing.
+  // The box and the corners of the walls add volume; the floor in the box's shadow is missing.
   const double expected = area * shell_thickness(options);
   EXPECT_GT(m3_from_mm3(check.volume_mm3()), 0.95 * expected);
   EXPECT_LT(m3_from_mm3(check.volume_mm3()), 1.25 * expected);

@@ -5,9 +5,10 @@
 namespace octurn {
 namespace {
 
-/// The state of one sample with that weight and distance, and votes of rays that passed through it
-/// and through its block.
-/// @param min_votes  that make free space
+/// The state of one sample with that weight and distance.
+/// @param free_sample  votes of rays that passed through the sample
+/// @param free_block   votes of rays that passed through its block
+/// @param min_votes    number of votes from which on space is free
 VoxelState state_of(float weight, int distance, int free_sample, int free_block,
                     int min_votes = 1) {
   TsdfVolume volume(
@@ -16,7 +17,7 @@ VoxelState state_of(float weight, int distance, int free_sample, int free_block,
   constexpr std::size_t sample = 5 + 8 * 6 + 64 * 3;
   TsdfBrick& brick = *volume.make(index);
   brick.weight[sample] = pack(weight);
-  brick.weight[sample + 1] = pack(1);  // a brick without any surface is not kept
+  brick.weight[sample + 1] = pack(1);  // bricks without a surface are dropped
   brick.distance[sample] = static_cast<std::int16_t>(distance);
   brick.free[sample] = static_cast<std::uint8_t>(free_sample);
   const int voxels = volume.grid().block_voxels();

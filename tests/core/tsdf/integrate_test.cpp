@@ -13,17 +13,17 @@
 namespace octurn {
 namespace {
 
-/// What a volume should hold at the centre of a voxel, computed in the most obvious way: for every
-/// voxel and snapshot, without bricks, blocks or bounds, in doubles.
+/// The expected content of one voxel, computed by plain loops over voxels and snapshots, without
+/// bricks, blocks or bounds, in doubles.
 struct PlainSample {
   double distance = 0;  // metres
   double weight = 0;
-  int free = 0;           // rays; of a volume, votes
-  int clearly_free = 0;   // by more than a block's diagonal
-  bool doubtful = false;  // rounding, or a bound that is allowed to, could decide otherwise
+  int free = 0;           // rays that pass through; in a volume, their votes
+  int clearly_free = 0;   // rays that go on for more than a block's diagonal
+  bool doubtful = false;  // rounding or a conservative bound may give another result
 };
 
-/// The share of a reading's weight that a sample at this signed distance takes.
+/// The share of a reading's weight at a voxel with this signed distance, metres.
 double falloff(double distance, double voxel_side, double truncation) {
   const double behind = std::max(0.0, -distance - voxel_side);
   return std::pow(std::max(0.0, 1 - behind / (truncation - voxel_side)), falloff_power);
@@ -31,7 +31,7 @@ double falloff(double distance, double voxel_side, double truncation) {
 
 void observe(PlainSample& sample, const Eigen::Vector3d& point, const ConditionedDepth& depth,
              const VoxelGrid& grid) {
-  constexpr double doubt = 1e-3;  // pixels, and parts of the truncation
+  constexpr double doubt = 1e-3;  // pixels, or shares of the truncation
   const double truncation = grid.truncation();
   const double free_margin_m = static_cast<double>(free_margin) * truncation;
   const double max_behind_m = static_cast<double>(max_behind) * truncation;
@@ -68,7 +68,8 @@ void observe(PlainSample& sample, const Eigen::Vector3d& point, const Conditione
   if (distance >= truncation) {
     see_through(truncation);
   } else if (distance > -truncation && before > -max_behind_m) {
-    // So far before a grazed surface that the block around may count as free.
+    // At grazing incidence the voxel may lie so far before the surface that its block counts as
+    // free.
     sample.doubtful = sample.doubtful || before > free_margin_m;
     const double weight =
         static_cast<double>(reading.weight) * falloff(distance, grid.voxel_side(), truncation);
@@ -82,7 +83,7 @@ void observe(PlainSample& sample, const Eigen::Vector3d& point, const Conditione
 
 class Integrate : public testing::Test {
  protected:
-  /// Visits every voxel that a snapshot may write to, counted from the field's lowest corner.
+  /// Visits the index of every voxel that a snapshot may write to, from the volume's lowest corner.
   template <typename Visit>
   void for_each_voxel(Visit visit) const {
     const Index3& size = volume_.grid().size();
@@ -148,8 +149,8 @@ TEST_F(Integrate, AveragesWhatThePlainLoopsAverage) {
       return;
     }
     const PlainSample sample = integrated(voxel);
-    // Each snapshot rounds: the sum of weights to 1/4096 of it, the mean of distances to a tick.
-    // And it leaves out weights below 1/2048.
+    // Each snapshot rounds the sum of weights to 1/4096 of itself and the mean of distances to a
+    // tick, and it skips weights below 1/2048.
     ASSERT_NEAR(sample.weight, expected.weight, shots * (expected.weight / 4096 + 1.0 / 2048));
     if (expected.weight > 0.05) {
       ASSERT_NEAR(sample.distance, expected.distance, 8 * shots * tick);
@@ -175,7 +176,7 @@ TEST_F(Integrate, SeesThroughWhatThePlainLoopsSeeThrough) {
     }
   });
   EXPECT_GT(seen_through, 10000);
-  // Blocks that pixels without a reading touch, along outlines, count as free in part: not at all.
+  // A block that pixels without a reading touch, as along outlines, gets no vote at all.
   EXPECT_LT(missed, seen_through / 8);
 }
 

@@ -33,7 +33,7 @@ void set(PartialGrid& grid, int x, int y, int z, float value) {
   grid.known[grid.index(x, y, z)] = 1;
 }
 
-/// The mean of the six neighbours, or of the value itself in place of those beyond the sides.
+/// The mean of the six neighbours; a neighbour beyond the grid's sides has the value itself.
 float mean_of_neighbours(const PartialGrid& grid, int x, int y, int z) {
   const auto clamped = [&](int i, int j, int k) {
     return grid
@@ -45,7 +45,7 @@ float mean_of_neighbours(const PartialGrid& grid, int x, int y, int z) {
          6;
 }
 
-/// The greatest difference of an unknown value from the mean of its neighbours.
+/// The greatest difference between an unknown value and the mean of its neighbours.
 float residual(const PartialGrid& grid) {
   float greatest = 0;
   for_each(grid.size, [&](int x, int y, int z) {
@@ -57,7 +57,7 @@ float residual(const PartialGrid& grid) {
   return greatest;
 }
 
-/// Unknown but for the sides, where the function is given.
+/// A grid whose sides hold the function's values and whose inside is unknown.
 template <typename Function>
 PartialGrid boundary_of(const Index3& size, Function function) {
   PartialGrid grid = empty_grid(size);
@@ -70,7 +70,7 @@ PartialGrid boundary_of(const Index3& size, Function function) {
 }
 
 TEST(LaplaceFill, ContinuesLinearAndQuadraticHarmonicFunctions) {
-  // Both are harmonic, also by differences: the filled values are known exactly.
+  // Both functions are harmonic, also in finite differences: the exact fill is known.
   const auto linear = [](int x, int y, int z) { return static_cast<float>(3 * x - 2 * y + z); };
   const auto saddle = [](int x, int y, int z) {
     return static_cast<float>(x * x - y * y + 2 * x * z);
@@ -82,9 +82,9 @@ TEST(LaplaceFill, ContinuesLinearAndQuadraticHarmonicFunctions) {
     for_each(size,
              [&](int x, int y, int z) { range = std::max(range, std::abs(function(x, y, z))); });
     for_each(size, [&](int x, int y, int z) {
-      // Ten symmetric sweeps are twenty of Gauss-Seidel, each of which reduces the error by the
-      // square of Jacobi's spectral radius, (cos(pi/8) + cos(pi/6) + cos(pi/7)) / 3 = 0.897: all
-      // by 0.805^20 = 0.013, from a first guess within the range.
+      // Ten symmetric sweeps are twenty Gauss-Seidel sweeps. Each reduces the error by the square
+      // of Jacobi's spectral radius, (cos(pi/8) + cos(pi/6) + cos(pi/7)) / 3 = 0.897; together by
+      // 0.805^20 = 0.013, from an initial guess within the range.
       EXPECT_NEAR(filled.values[filled.index(x, y, z)], function(x, y, z), 0.013F * range)
           << x << " " << y << " " << z;
     });
@@ -104,7 +104,7 @@ TEST(LaplaceFill, MakesEveryUnknownValueTheMeanOfItsNeighbours) {
     });
     ASSERT_GT(residual(grid), 100);
     const PartialGrid filled = laplace_fill(grid);
-    // A hundredth of the range of the known values.
+    // A hundredth of the known values' range.
     EXPECT_LT(residual(filled), 10);
     for_each(size, [&](int x, int y, int z) {
       const std::size_t i = grid.index(x, y, z);
@@ -125,8 +125,8 @@ TEST(LaplaceFill, ReachesFarFromTheOnlyKnownValue) {
 }
 
 TEST(LaplaceFill, KeepsAThinShellClosed) {
-  // A sphere one value thick is negative in a space that is known to be positive: nothing between
-  // its values and its middle turns positive, though they are few.
+  // A spherical shell, one value thick, is negative; around it values are known to be positive. No
+  // value inside may turn positive, although the shell has few values.
   const Index3 size{32, 32, 32};
   PartialGrid grid = empty_grid(size);
   for_each(size, [&](int x, int y, int z) {

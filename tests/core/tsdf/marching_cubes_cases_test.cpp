@@ -14,7 +14,7 @@ Eigen::Vector3d corner_at(int corner) {
   return Eigen::Vector3d(corner & 1, corner >> 1 & 1, corner >> 2);
 }
 
-/// The two corners of an edge, the lower one first.
+/// The two corners of an edge, the one with the lower index first.
 std::pair<int, int> corners_of(CubeEdge edge) {
   const int axis = edge / 4;
   const int from = (edge & 1) << (axis + 1) % 3 | (edge >> 1 & 1) << (axis + 2) % 3;
@@ -43,7 +43,7 @@ TEST(MarchingCubesCases, CrossEdgesWhoseEndsDifferAndNoOthers) {
   }
 }
 
-/// The directed edges of a case's triangles that no other triangle of the cube meets.
+/// The directed edges of a case's triangles that no other triangle of the case shares.
 std::set<std::pair<int, int>> boundary(std::size_t pattern) {
   std::set<std::pair<int, int>> open;
   for (std::size_t i = 0; i < marching_cubes_cases[pattern].count; ++i) {
@@ -59,7 +59,7 @@ std::set<std::pair<int, int>> boundary(std::size_t pattern) {
 }
 
 TEST(MarchingCubesCases, MatchTheirNeighboursOnTheFaceThatTheyShare) {
-  // The boundary on the face x = 1 of a cube is, reversed, that on x = 0 of any cube beside it.
+  // A cube's boundary on its face x = 1 is the reverse of its neighbour's boundary on x = 0.
   const auto on_face = [](std::size_t pattern, int axis, int side) {
     std::set<std::pair<std::array<double, 2>, std::array<double, 2>>> lines;
     for (const auto& [a, b] : boundary(pattern)) {
@@ -79,7 +79,7 @@ TEST(MarchingCubesCases, MatchTheirNeighboursOnTheFaceThatTheyShare) {
     return lines;
   };
   for (int axis = 0; axis < 3; ++axis) {
-    // Patterns by the signs of four corners of their face, in the same order on both sides.
+    // The signs of a face's four corners, in the same order for both sides.
     const auto face_signs = [&](std::size_t pattern, int side) {
       int signs = 0;
       for (int i = 0; i < 4; ++i) {
@@ -114,7 +114,7 @@ TEST(MarchingCubesCases, EndOnTheCubesFacesOnly) {
 }
 
 TEST(MarchingCubesCases, FaceAwayFromTheirInsideCorners) {
-  // Of one inside corner: the triangle's normal points away from it. Of one outside corner: to it.
+  // A single triangle's normal points away from an inside corner, and towards an outside corner.
   for (int corner = 0; corner < 8; ++corner) {
     for (const bool inside : {true, false}) {
       const auto pattern = static_cast<std::size_t>(inside ? 1 << corner : 255 - (1 << corner));

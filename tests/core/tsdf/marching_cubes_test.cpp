@@ -16,8 +16,8 @@
 namespace octurn {
 namespace {
 
-/// Looks along each row of voxels, a little beside their centres, and visits each voxel with how
-/// often the surface ahead is left more than it is entered: 1 inside a closed surface, 0 outside.
+/// Casts a ray along each row of voxels, a little beside their centres, and visits each voxel with
+/// its winding number, exits minus entries ahead: 1 inside a closed surface, 0 outside.
 template <typename Visit>
 void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& facets, Visit visit) {
   struct Crossing {
@@ -30,7 +30,8 @@ void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& fac
   const auto centre_mm = [&](int voxel, std::size_t axis) {
     return mm_from_metres(filled.centre(voxel, axis));
   };
-  // Corners lie 0.025 voxels and more from the centres: these rows pass on the same side of all.
+  // Vertices keep at least 0.025 voxels from voxel centres, so a ray beside the centres passes
+  // every vertex on the same side as a ray through them.
   const double beside_y = 0.00113 * voxel_mm;
   const double beside_z = 0.00071 * voxel_mm;
   std::map<std::pair<int, int>, std::vector<Crossing>> rows;
@@ -51,7 +52,8 @@ void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& fac
         if (at_y < least.y() || at_y > most.y()) {
           continue;
         }
-        // Twice the areas, across the row, that the point cuts the facet into.
+        // Twice the areas of the three triangles, projected along the row, between the ray and the
+        // facet's edges.
         const auto area = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
           return (p.y() - at_y) * (q.z() - at_z) - (q.y() - at_y) * (p.z() - at_z);
         };
@@ -79,7 +81,7 @@ void for_each_winding(const HoleFilledSdf& filled, const std::vector<Facet>& fac
   }
 }
 
-/// Parts that no facet joins, counted over the corners they share.
+/// Counts the connected components: facets are connected if they share a corner.
 int parts_of(const std::vector<Facet>& facets) {
   std::map<std::array<float, 3>, std::size_t> names;
   std::vector<std::size_t> parent;
@@ -175,7 +177,8 @@ TEST(MarchingCubes, LiesWhereTheFieldIsZero) {
     const auto corners = facet.corners;
     for (const auto& corner : corners) {
       const Eigen::Vector3d point = Eigen::Vector3f(corner.data()).cast<double>() / 1000;
-      // Along an edge of h the distance bends by h^2 / 8 r; corners keep 0.025 mm from voxels.
+      // Linear interpolation along an edge of length h errs by h^2 / 8 r, and vertices keep 0.025
+      // mm from voxel centres.
       EXPECT_NEAR(shape(point), 0, 0.000012 + 0.000026);
     }
   }

@@ -27,7 +27,7 @@ TEST(MemoryPlan, RefusesBeforeAnythingIsReadWhatItsTablesAloneExceed) {
   ASSERT_NE(error.hint().find("choose a leaf size of "), std::string::npos) << error.hint();
   const double leaf_mm = std::stod(error.hint().substr(error.hint().find("size of ") + 8));
   EXPECT_GT(leaf_mm, 0.1);
-  EXPECT_LE(leaf_mm, 0.8);  // twice that of 64 MB: bricks in the clip box are an eighth of those
+  EXPECT_LE(leaf_mm, 0.8);  // twice the leaf size that fits 64 MB: an eighth of the bricks
   EXPECT_NO_THROW(make_reconstructor(options(leaf_mm / 1000, 128)));
 }
 

@@ -19,8 +19,8 @@ const Eigen::Vector3d middle(0.001, -0.002, 0.03);
 
 using IsSeen = std::function<bool(const Eigen::Vector3d&)>;
 
-/// What snapshots of a ball that see it in some places only leave: samples within a truncation of
-/// its surface.
+/// The TSDF of a ball of which snapshots saw only some places: samples within the truncation of its
+/// surface there.
 CompactTsdf ball_seen_in(const IsSeen& is_seen) {
   TsdfVolume volume(
       VoxelGrid(1.0, 10, {.min = {-0.03, -0.03, 0.0}, .max = {0.03, 0.03, 0.06}}, truncation));
@@ -89,7 +89,7 @@ TEST(ObservedSurface, FacesOutwards) {
   for (const Facet& facet : facets) {
     const auto normal = facet.normal;
     const auto corners =
-        facet.corners;  // a copy: in the facet they lie where STL has them, unaligned
+        facet.corners;  // a copy: a facet has STL's packed layout, so its corners are unaligned
     const Eigen::Vector3d outwards =
         Eigen::Vector3f(corners[0].data()).cast<double>() / 1000 - middle;
     EXPECT_GT(Eigen::Vector3f(normal.data()).cast<double>().dot(outwards), 0);

@@ -1,5 +1,5 @@
-// What a model does not depend on: the order of its snapshots, at any distance of the sensor, and
-// one snapshot that saw something else.
+// A model depends neither on the order of its snapshots, at any distance of the sensor, nor on one
+// faulty snapshot.
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ std::vector<Snapshot> read_all(const SnapshotSource& source) {
   return snapshots;
 }
 
-/// The same seen by a sensor that stands so many times as far from a scene so many times as large,
-/// and whose readings err by up to 2 mm.
+/// The snapshots of a scene and a sensor distance scaled by `times`, with errors of up to 2 mm in
+/// the readings.
 std::vector<Snapshot> scaled(std::vector<Snapshot> snapshots, double times) {
   std::mt19937 random(1);
   for (Snapshot& snapshot : snapshots) {
@@ -42,7 +42,7 @@ std::vector<Snapshot> scaled(std::vector<Snapshot> snapshots, double times) {
 }
 
 /// Fails unless both volumes have the same bricks and votes for free space.
-/// @return the share of observed samples whose distances are more than 0.02 mm apart
+/// @return  the share of observed samples whose distances differ by more than 0.02 mm
 double share_that_differs(const TsdfVolume& one, const TsdfVolume& other) {
   const double ticks = 0.00002 / one.grid().truncation() * TsdfVolume::ticks;
   int compared = 0;

@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// Calls `visit(brick index)` for each brick of a grid but those of its border.
+/// Calls `visit(brick index)` for each brick of a grid except its border.
 template <typename Visit>
 void for_each_inner_brick(const VoxelGrid& grid, Visit visit) {
   for (int z = 1; z + 1 < grid.size().z; ++z) {

@@ -11,7 +11,8 @@
 
 namespace octurn {
 
-/// The distance of a point (metres, platform frame) to an object, positive outside, or less.
+/// Signed distance of a point (metres, platform frame) to an object, positive outside, or a lower
+/// bound of it.
 using Shape = std::function<double(const Eigen::Vector3d&)>;
 
 inline Shape ball(const Eigen::Vector3d& centre, double radius) {
@@ -40,8 +41,8 @@ struct DepthRay {
   Eigen::Vector3d direction;
 };
 
-/// The depth at which a ray meets a shape, which it walks along by the distance to it (Hart 1996,
-/// "Sphere tracing"), or `end` if it does not before.
+/// The depth at which a ray meets a shape, or `end` if that is farther (Hart 1996, "Sphere
+/// tracing").
 inline double depth_along(const DepthRay& ray, const Shape& shape, double begin, double end) {
   const double length = ray.direction.norm();
   double z = begin;
@@ -52,7 +53,7 @@ inline double depth_along(const DepthRay& ray, const Shape& shape, double begin,
   return std::min(z, end);
 }
 
-/// A scan of a shape by an ideal sensor of 240 x 180 samples, 0.7 m away and 25 degrees above: each
+/// A scan of a shape by an ideal sensor of 240 x 180 samples, 0.7 m away and 25 degrees above. Each
 /// ray ends on the shape or on the platform.
 inline SnapshotSource rendered(const Shape& shape, std::size_t count) {
   return {.count = count, .read = [=](std::size_t i) {

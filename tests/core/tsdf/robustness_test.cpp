@@ -1,5 +1,5 @@
-// What the solid method makes of scans that went badly: always one closed part, whose observed
-// surface is still near the true one. Prints what it measures.
+// The solid method on bad scans: the model is always one closed part whose observed surface is near
+// the true one. The tests print the measured errors.
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@
 namespace octurn {
 namespace {
 
-// What a reading errs by, millimetres: the root mean square over the platform at 0.65 m of the mean
-// of ten frames, as kinect_noise_test measures it (simulated_kinect.hpp). Conditioning and the
-// average over snapshots only make it less.
+// Error of a reading, millimetres: root mean square over the platform at 0.65 m of the mean of ten
+// frames, as kinect_noise_test measures it (simulated_kinect.hpp). Conditioning and averaging over
+// snapshots reduce it further.
 constexpr double reading_sigma_mm = 0.57;
 
 /// Fails unless the model is one closed part whose observed surface errs no more than single
-/// readings of normal noise do: on average sqrt(2 / pi) sigma, in 95 of 100 places 1.96 sigma.
-/// @param noise  times a real Kinect's
+/// readings with normal noise: sqrt(2 / pi) sigma on average, 1.96 sigma in 95 of 100 places.
+/// @param noise  as a multiple of a real Kinect's
 void expect_sound(const std::string& what, const std::vector<Snapshot>& snapshots,
                   const SimulatedObject& object, double noise = 1) {
   const double sigma = noise * reading_sigma_mm;
@@ -73,7 +73,7 @@ TEST(Robustness, ToHolesInTheDepth) {
     return static_cast<int>(random() % static_cast<unsigned>(end));
   };
   for (Snapshot& snapshot : snapshots) {
-    for (int hole = 0; hole < 200; ++hole) {  // of 3 to 22 pixels: a third of the image
+    for (int hole = 0; hole < 200; ++hole) {  // 3 to 22 pixels wide: a third of the image in all
       const int left = number(620);
       const int top = number(460);
       const int width = 3 + number(20);
@@ -99,7 +99,7 @@ TEST(Robustness, ToAnObjectTallerThanTheView) {
 }
 
 TEST(Robustness, ToAnEmptyPlatform) {
-  // An object that is too low to count: what is left is the platform, its edge and the table.
+  // An object too low to be reconstructed leaves only the platform, its edge and the table.
   const SimulatedObject object = standing_block({0.004, 0.004, 0.0005});
   EXPECT_TRUE(solid_of(scan_options(), simulated_scan(object)).facets.empty());
   EXPECT_TRUE(solid_of(scan_options(), simulated_scan(object, {.noise = 2})).facets.empty());

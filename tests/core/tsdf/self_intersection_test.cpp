@@ -1,5 +1,5 @@
-// No solid model cuts itself: CGAL looks, which shares no code with Octurn, with exact predicates
-// on the vertices as they are in the file.
+// No solid model intersects itself. The check is CGAL's, which shares no code with Octurn: exact
+// predicates on the vertices as the file has them.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -27,7 +27,7 @@ namespace {
 using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using Mesh = CGAL::Surface_mesh<Point>;
 
-/// The mesh of some facets, welded where corners are bit-equal. Fails if it is not manifold.
+/// Welds facets into a mesh where corners are bit-equal. Fails if the mesh is not manifold.
 Mesh welded(std::span<const Facet> facets) {
   Mesh mesh;
   std::map<std::array<float, 3>, Mesh::Vertex_index> vertices;
@@ -48,7 +48,7 @@ Mesh welded(std::span<const Facet> facets) {
   return mesh;
 }
 
-/// How many pairs of triangles cut each other, or lie on each other.
+/// Counts the pairs of triangles that intersect or overlap.
 std::size_t self_intersections(std::span<const Facet> facets) {
   const Mesh mesh = welded(facets);
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
@@ -70,7 +70,7 @@ void expect_no_cuts(const std::vector<Snapshot>& snapshots) {
 }
 
 TEST(SelfIntersection, IsFoundWhereThereIsOne) {
-  // Two tetrahedra: a tip of one is in the other, or not.
+  // Two tetrahedra: the tip of one is inside the other, or not.
   const auto tetrahedra = [](float apart) {
     std::vector<Facet> facets;
     for (const float x : {0.0F, apart}) {
@@ -120,7 +120,7 @@ TEST(SelfIntersection, IsNotInStoredScans) {
   }
 }
 
-/// A field of noise, its surface as marching cubes make it and with fewer triangles.
+/// A TSDF of noise; its surface from marching cubes, and after simplification.
 class SelfIntersectionOfNoise : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(SelfIntersectionOfNoise, IsNone) {

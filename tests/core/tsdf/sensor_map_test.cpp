@@ -1,4 +1,4 @@
-// What a sensor's own error costs a model, and what a map of it gives back.
+// How much a sensor's fixed error pattern harms a model, and how much of that a sensor map repairs.
 
 #include "octurn/sensor_map.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr SimulatedTurn turn{.snapshots = 8, .frames = 5};
 
-/// What the simulated Kinect, with a pattern like a real one's, sees of a wall.
+/// A wall seen by the simulated Kinect with a real one's error pattern.
 WallView wall_at(double distance) {
   SimulatedKinect kinect(Scene::of_wall(distance), 1, 1, 1);
   WallView view{Intrinsics{}};
@@ -41,8 +41,8 @@ double mean_error_with(const std::vector<WallView>& walls, std::vector<Snapshot>
   return mean_error(snapshots);
 }
 
-// The bounds are what a scanner has to reach: 1.35 times the error without a pattern after one wall
-// at the object's distance, 1.2 times after two.
+// The bounds are required accuracies: 1.35 times the error without a pattern after one wall at the
+// object's distance, 1.2 times after two.
 TEST(SensorMap, GivesAModelBackWhatTheSensorsPatternCost) {
   const double without = mean_error(simulated_scan(robot(), turn));
   SimulatedTurn with_pattern = turn;
@@ -52,7 +52,7 @@ TEST(SensorMap, GivesAModelBackWhatTheSensorsPatternCost) {
   const double after_one = mean_error_with({wall_at(0.66)}, snapshots);
   const double after_two = mean_error_with({wall_at(0.58), wall_at(0.85)}, snapshots);
 
-  EXPECT_GT(as_it_is, 1.4 * without);  // else the pattern is too weak to test anything
+  EXPECT_GT(as_it_is, 1.4 * without);  // the pattern is strong enough to matter
   EXPECT_LT(after_one, 1.35 * without);
   EXPECT_LT(after_two, 1.2 * without);
   RecordProperty("mean_mm", std::to_string(without) + " " + std::to_string(as_it_is) + " " +

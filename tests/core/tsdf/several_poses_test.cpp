@@ -37,7 +37,7 @@ Eigen::Isometry3d turned_over() {
   return pose;
 }
 
-/// Turns of an object that lay in these ways, the one after the other.
+/// The turns of an object in these poses, one after the other.
 SnapshotSource turns_of(const Shape& object, const std::vector<Placement>& placements) {
   std::vector<SnapshotSource> turns;
   for (const Placement& placement : placements) {
@@ -85,7 +85,7 @@ TEST(SolidOfSeveralPoses, HasTheUndersideThatTheSecondPoseSaw) {
 
   EXPECT_TRUE(topology_of(model.facets).manifold);
   EXPECT_EQ(model.count.parts, 1U);
-  // Edges are rounded off by a voxel. One pose would fill in the dent, 16.8 of 298 cm3.
+  // Edges are rounded by a voxel. A single pose would fill in the dent, 16.8 of 298 cm3.
   EXPECT_NEAR(cm3_from_m3(m3_from_mm3(model.check.volume_mm3())), dented_cm3(),
               0.02 * dented_cm3());
   EXPECT_NEAR(model.check.bounds_mm().min.z(), 0, 0.5);
@@ -103,7 +103,7 @@ TEST(SolidOfSeveralPoses, HasAFlatFootWhereNothingSawIt) {
   EXPECT_TRUE(topology_of(model.facets).manifold);
   EXPECT_NEAR(model.check.bounds_mm().min.z(), 0, 1e-3);
   EXPECT_NEAR(cm3_from_m3(m3_from_mm3(model.check.volume_mm3())), 90 * 70 * height, 0.03 * 315);
-  // What nothing saw right above the platform broadens by the width of the truncation, no more.
+  // Unobserved space right above the platform widens the block by the truncation at most.
   const Eigen::Vector3d size = model.check.bounds_mm().max - model.check.bounds_mm().min;
   EXPECT_NEAR(size.x(), 90, 6);
   EXPECT_NEAR(size.y(), 70, 6);
@@ -167,10 +167,10 @@ TEST(IntersectionOfSeveralPoses, CoversTheUndersideThatTheSecondPoseSaw) {
 
   const Model model = model_of(turns_of(dented(), placements), options);
 
-  // Its surface in the dent, as deep as the sensor sees into it: one pose has none there.
+  // The dent has surface as deep as the sensor sees into it; a single pose leaves none there.
   bool in_dent = false;
   for (const Facet& facet : model.facets) {
-    const auto corners = facet.corners;  // a copy: a facet is packed, and its own are not aligned
+    const auto corners = facet.corners;  // a copy: a facet is packed, so its corners are unaligned
     for (const auto& corner : corners) {
       const Eigen::Vector3d at(static_cast<double>(corner[0]), static_cast<double>(corner[1]),
                                static_cast<double>(corner[2]));

@@ -18,7 +18,7 @@
 
 namespace octurn {
 
-/// An object on the simulated platform, whose true surface is known everywhere.
+/// An object on the simulated platform with its exact signed distance.
 struct SimulatedObject {
   Shape distance = {};
   Eigen::AlignedBox3d bounds = {};  // metres; a little larger than the object
@@ -28,7 +28,7 @@ inline SimulatedObject robot() {
   return {.distance = simulator_object_distance, .bounds = simulator_object_bounds()};
 }
 
-/// A shape of `size` over the middle of the platform, or `offset` from there.
+/// A shape of `size` (metres) that stands `offset` from the platform's centre.
 inline SimulatedObject standing(const Shape& shape, const Eigen::Vector3d& size,
                                 const Eigen::Vector3d& offset = Eigen::Vector3d::Zero()) {
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(0.003);
@@ -45,14 +45,14 @@ inline SimulatedObject standing_block(const Eigen::Vector3d& size,
 struct SimulatedTurn {
   int snapshots = 8;
   int frames = 10;       // at each stop, averaged
-  double noise = 1.0;    // times a real Kinect's
-  double pattern = 0.0;  // its fixed error, times a real Kinect's
+  double noise = 1.0;    // as a multiple of a real Kinect's
+  double pattern = 0.0;  // fixed error, as a multiple of a real Kinect's
 };
 
-/// What a simulated Kinect v1 sees of an object in one turn.
+/// The snapshots of one turn of an object by a simulated Kinect v1.
 inline std::vector<Snapshot> simulated_scan(const SimulatedObject& object,
                                             const SimulatedTurn& turn = {}) {
-  constexpr double cell = 0.001;  // metres: its mesh leaves a ball of 5 mm by 0.05 mm
+  constexpr double cell = 0.001;  // metres; the mesh of a 5 mm ball deviates by 0.05 mm
   SimulatedKinect kinect(Scene(surface_net(object.distance, object.bounds, cell)), 1, turn.noise,
                          turn.pattern);
   std::vector<Snapshot> snapshots;
@@ -73,7 +73,7 @@ inline std::vector<Snapshot> simulated_scan(const SimulatedObject& object,
   return snapshots;
 }
 
-/// The settings of a scan as they are where nothing else is said.
+/// A scan's default options.
 inline ReconstructOptions scan_options(double leaf_size = 0.001) {
   return {.method = Method::solid,
           .leaf_size = leaf_size,

@@ -37,9 +37,8 @@ MeshCheck checked(const std::vector<Facet>& facets) {
   return check;
 }
 
-/// The greatest distance of an observed corner to the shape, but for those near the platform,
-/// metres.
-/// @param lowest  metres above the platform
+/// The greatest distance of an observed corner from the shape, metres.
+/// @param lowest  metres above the platform, below which corners are ignored
 double worst_of(const std::vector<Facet>& facets, const Shape& shape, double lowest = 0.006) {
   double worst = 0;
   for (const Facet& facet : facets) {
@@ -67,18 +66,18 @@ TEST(Solid, HasTheVolumeAndTheSurfaceOfABlock) {
   const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
   const MeshCheck check = checked(facets);
   EXPECT_NEAR(check.volume_mm3(), 60 * 40 * 70, 60 * 40 * 70 * 0.02);
-  EXPECT_LT(worst_of(facets, shape), 0.002);  // a voxel, at its rounded edges
+  EXPECT_LT(worst_of(facets, shape), 0.002);  // a voxel, at the rounded edges
   EXPECT_NEAR(check.bounds_mm().max.z(), 70, 0.3);
 }
 
 TEST(Solid, StaysOnABall) {
   const Shape shape = ball({0.01, -0.005, 0.05}, 0.045);
   const std::vector<Facet> facets = part_of(options(), rendered(shape, 8));
-  // Samples are 3 mm apart: planes fitted over five of them lie up to 6^2 / (2 * 45) = 0.4 mm
-  // inside, and where they graze the ball a slanted window reaches three times as far.
+  // Samples are 3 mm apart: planes fitted to five of them lie up to 6^2 / (2 * 45) = 0.4 mm inside
+  // the ball. At grazing incidence the window on the ball is wider, and the error three times that.
   EXPECT_LT(worst_of(facets, shape, 0.022), 0.0012);
-  // Below it single snapshots look past the ball onto the platform. None of them opens space alone,
-  // so the outermost that is observed turns into what is filled within a voxel.
+  // Below the ball, single snapshots see past it onto the platform, and no snapshot alone makes
+  // space free. There the observed surface passes into the filled one within a voxel.
   EXPECT_LT(worst_of(facets, shape), 0.002);
 }
 
@@ -102,7 +101,7 @@ TEST(Solid, SaysWhatNobodySaw) {
   const double half = checked(part_of(options(), once)).filled_share();
   const double whole = checked(part_of(options(), around)).filled_share();
   EXPECT_GT(half, 0.4);
-  EXPECT_LT(whole, 0.25);  // below it, where it nearly touches the platform
+  EXPECT_LT(whole, 0.25);  // the unseen part, near the point that touches the platform
   EXPECT_TRUE(topology_of(part_of(options(), once)).manifold);
 }
 
@@ -110,7 +109,7 @@ TEST(Solid, DoesNotFollowAnErrantReading) {
   const SnapshotSource good = rendered(block({0.06, 0.04, 0.07}), 8);
   const SnapshotSource bad{.count = good.count, .read = [&](std::size_t i) {
                              Snapshot snapshot = good.read(i);
-                             if (i == 3) {  // a patch of 4 x 4 samples, 4 cm before the block
+                             if (i == 3) {  // a patch of 4 x 4 samples, 4 cm in front of the block
                                for (int v = 75; v < 79; ++v) {
                                  for (int u = 118; u < 122; ++u) {
                                    auto& depth =
@@ -165,7 +164,7 @@ TEST(Solid, GivesTheSameBytesInSlabs) {
   tight.memory_limit = std::size_t{32} << 20U;
   EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
   EXPECT_GT(reads, all.count);
-  tight.threads = 4;  // whose memory the volume would lack
+  tight.threads = 4;  // their buffers would take memory from the volume
   EXPECT_TRUE(same_bytes(part_of(tight, counted), whole));
   tight.threads = 1;
 
@@ -197,7 +196,7 @@ TEST(Solid, IsMadeOnceIfItIsCountedFirst) {
     return reads;
   };
   EXPECT_EQ(reads_of(options().target_error), 0U);  // slabs are built once
-  EXPECT_GT(reads_of(0), 0U);                       // 183,000 facets do not fit, and are made again
+  EXPECT_GT(reads_of(0), 0U);                       // 183,000 facets do not fit: slabs are rebuilt
 }
 
 TEST(Solid, CountsAnewWhatIsAddedLater) {
@@ -259,8 +258,8 @@ TEST(Solid, ClosesWhatIsTallerThanTheClipBox) {
   low.clip.max.z() = 0.05;
   const std::vector<Facet> facets = part_of(low, rendered(block({0.06, 0.04, 0.1}), 8));
   EXPECT_TRUE(topology_of(facets).manifold);
-  // The block is observed up to the box's top, within a voxel. Above it the unknown is filled, but
-  // no further than to the brick above the one that holds the top, whose border is free.
+  // The block is observed up to the clip box's top, within a voxel. Filling continues it at most
+  // to the bottom of the next brick above, as that border brick is free.
   const double voxel = 1000.0 / 512;
   const double brick = 8 * voxel;
   EXPECT_GT(checked(facets).bounds_mm().max.z(), 50 - voxel);

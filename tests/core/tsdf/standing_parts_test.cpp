@@ -21,7 +21,7 @@ namespace octurn {
 namespace {
 
 constexpr double leaf_size = 0.002;  // metres
-constexpr int levels = 9;            // of which a root of 1 m has leaves below that size
+constexpr int levels = 9;            // at which a root of 1 m has leaves below that size
 constexpr double ball_radius = 0.045;
 
 Box make_clip(double bottom) { return {.min = {-0.14, -0.14, bottom}, .max = {0.14, 0.14, 0.4}}; }
@@ -50,7 +50,7 @@ MeshCheck check(const Made& made) {
   return check;
 }
 
-/// Two blocks, the one beside the axis an eighth as large.
+/// A block on the axis, and one beside the axis with an eighth of its volume.
 SnapshotSource two_blocks(std::size_t count) {
   const Shape large = block({0.06, 0.04, 0.05});
   const Shape small = block({0.02, 0.03, 0.025});
@@ -62,7 +62,7 @@ SnapshotSource two_blocks(std::size_t count) {
       count);
 }
 
-/// A ball that rests on the platform, seen by a sensor with errors of up to 4 mm.
+/// A ball on the platform, seen by a sensor with errors of up to 4 mm.
 SnapshotSource noisy_ball(std::size_t count) {
   return {.count = count,
           .read = [clean = rendered(ball({0, 0, ball_radius}, ball_radius), count)](std::size_t i) {
@@ -91,7 +91,7 @@ TEST(StandingParts, AreClosedShellsIfAllAreKept) {
   EXPECT_TRUE(topology.manifold);
   EXPECT_EQ(topology.euler, 4);  // two shells without holes
   EXPECT_EQ(made.count.parts, 2U);
-  EXPECT_LT(made.count.dropped_leaves, 20U);  // crumbs
+  EXPECT_LT(made.count.dropped_leaves, 20U);  // isolated voxels only
   const double volume = 60 * 40 * 50 + 20 * 30 * 25;
   EXPECT_NEAR(check(made).volume_mm3(), volume, volume * 0.03);
 }
@@ -123,15 +123,14 @@ TEST(StandingParts, ReachThePlatformWhereNobodySawTheirFoot) {
   const Made made = make(snapshots, Parts::main, bottom);
   EXPECT_TRUE(topology_of(made.facets).manifold);
   EXPECT_EQ(check(made).bounds_mm().min.z(), 0);
-  // What no ray passed through below a ball, at 25 degrees or more, is a cone's frustum around
-  // where it rests: 2 % of it.
+  // Rays at 25 degrees or more leave a cone frustum below the ball unobserved, 2 % of its volume.
   const double ball_mm3 = 4.0 / 3 * std::numbers::pi * 45 * 45 * 45;
   EXPECT_NEAR(check(made).volume_mm3(), ball_mm3, 0.06 * ball_mm3);
   EXPECT_EQ(make(snapshots, Parts::all, bottom).count.parts, 1U);
 }
 
 TEST(StandingParts, HaveNoFootWhereRaysPassedBelow) {
-  // 25 mm above the platform, which the sensor sees below it.
+  // The ball floats 25 mm above the platform, which the sensor sees below it.
   const Made made = make(rendered(ball({0, 0, 0.045}, 0.02), 8), Parts::main);
   EXPECT_GT(check(made).bounds_mm().min.z(), 15);
 }

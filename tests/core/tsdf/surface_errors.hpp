@@ -12,7 +12,7 @@
 
 namespace octurn {
 
-/// How far the observed surface is from the true one, each facet by its area, millimetres.
+/// Area-weighted distances of the observed surface from the true one, millimetres.
 struct Errors {
   double mean = 0;
   double p95 = 0;
@@ -32,7 +32,7 @@ inline Errors errors_of(const std::vector<Facet>& facets, const Shape& truth) {
     const Eigen::Vector3d b = Eigen::Vector3f(corners[1].data()).cast<double>();
     const Eigen::Vector3d c = Eigen::Vector3f(corners[2].data()).cast<double>();
     const Eigen::Vector3d middle = (a + b + c) / 3;
-    if (facet.attributes == filled_in || middle.z() < 6) {  // the clip box begins at 5
+    if (facet.attributes == filled_in || middle.z() < 6) {  // mm; the clip box begins at 5
       continue;
     }
     const Part part{.error = std::abs(mm_from_metres(truth(middle / 1000))),

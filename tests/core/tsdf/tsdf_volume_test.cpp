@@ -22,7 +22,7 @@ TEST(VoxelGrid, CoversTheClipBoxAndAnEmptyBorder) {
   const Box box = grid.box();
   EXPECT_EQ(grid.voxel_side(), 1.0 / 1024);
   for (int axis = 0; axis < 3; ++axis) {
-    // The border's brick lies wholly outside the clip box, and touches the brick of its side.
+    // The border brick lies outside the clip box, next to the brick that holds the box's side.
     EXPECT_LE(box.min[axis] + brick, clip_box.min[axis]);
     EXPECT_GE(box.max[axis] - brick, clip_box.max[axis]);
     EXPECT_GT(box.max[axis] - 2 * brick, clip_box.max[axis] - brick);
@@ -50,7 +50,7 @@ TEST(TsdfVolume, DropsLayersFromTheTopWhereItsBudgetEnds) {
       }
     }
   }
-  // Beside the block, the indices of the bricks that were dropped, to be used again.
+  // The block of bricks, and the free list with the indices of the dropped bricks.
   EXPECT_LE(volume.bytes(), one_block + BlockPool<TsdfBrick>::block_items * sizeof(std::uint32_t));
   EXPECT_EQ(volume.layers().low, 0);
   EXPECT_LT(volume.layers().end, size.z);

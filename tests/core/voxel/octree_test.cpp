@@ -16,7 +16,7 @@ TEST(Octree, LeavesAreTheFirstLevelAtOrBelowTheMinimumLeafSize) {
   EXPECT_EQ(Octree::level_for(1.0, 0.005), 8);  // 3.9 mm: the same tree for 4 mm and 5 mm
   EXPECT_EQ(Octree::level_for(1.0, 0.004), 8);
   EXPECT_EQ(Octree::level_for(1.0, 0.001), 10);
-  EXPECT_EQ(Octree::level_for(1.0, 0.25), 2);  // at it, exactly
+  EXPECT_EQ(Octree::level_for(1.0, 0.25), 2);  // exactly the minimum leaf size
   EXPECT_EQ(Octree::level_for(1.0, 1.0), 0);
 }
 

@@ -26,14 +26,14 @@ void add_block(VoxelMask& set, const Index3& low, const Index3& end) {
   }
 }
 
-/// Empty, of more than one word a row, and not at the lattice's origin.
+/// An empty mask with several words a row, away from the lattice's origin.
 VoxelMask empty_set() { return VoxelMask({16, 32, 8}, {16 + 200, 32 + 40, 8 + 40}); }
 
 TEST(VoxelMask, RemovesANeedleInAnyDirection) {
   VoxelMask set = empty_set();
   add_block(set, {60, 10, 0}, {70, 20, 10});
   const std::uint64_t block = set.count();
-  add_block(set, {70, 15, 5}, {150, 16, 6});  // through the words of a row
+  add_block(set, {70, 15, 5}, {150, 16, 6});  // across the words of a row
   add_block(set, {65, 20, 5}, {66, 35, 6});
   add_block(set, {65, 15, 10}, {66, 16, 30});
   EXPECT_GT(set.count(), block + 100);
@@ -80,7 +80,7 @@ TEST(VoxelMask, HoldsTheSameVoxelsWhenCropped) {
   EXPECT_EQ(empty_set().cropped().count(), 0U);
 }
 
-/// Noise of that density, in a box of more than one word a row.
+/// Random voxels of that density, in a mask with several words a row.
 VoxelMask noise(std::uint32_t seed, double density) {
   VoxelMask mask({-70, 3, 0}, {0, 3 + 14, 12});
   std::mt19937 random(seed);
@@ -96,7 +96,7 @@ VoxelMask noise(std::uint32_t seed, double density) {
   return mask;
 }
 
-using Label = std::vector<int>;  // by x + size.x (y + size.y z); -1: not in the set
+using Label = std::vector<int>;  // indexed by x + size.x (y + size.y z); -1: not in the set
 
 /// Connected components by a plain flood fill, numbered from 0.
 /// @param max_steps  1: neighbours share a face; 2: a face or an edge
@@ -170,7 +170,7 @@ TEST(VoxelMask, FillsTheCavitiesThatAFloodFromOutsideDoesNotReach) {
     });
     filled += after.count() - before.count();
   }
-  EXPECT_GT(filled, 20U);  // so that masks without cavities do not pass
+  EXPECT_GT(filled, 20U);  // so that masks without cavities fail
 }
 
 /// A box of voxels, from `low` up to but not including `end`.
@@ -202,7 +202,7 @@ TEST(VoxelMask, KeepsWhatStandsOnTheBaseBelowALargerThingButNotASpeck) {
 TEST(VoxelMask, KeepsTheComponentThatAFloodFillFindsLargestWithTheBaseWeighed) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     VoxelMask before = noise(seed, 0.1 + 0.03 * seed);
-    if (seed % 2 == 0) {  // nothing at the base: the largest of all
+    if (seed % 2 == 0) {  // nothing at the base: the largest component is kept
       for (int y = 0; y < before.size().y; ++y) {
         std::ranges::fill(before.row(y, 0), 0U);
       }

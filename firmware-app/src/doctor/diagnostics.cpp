@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{16} << 10U;  // of the system, bytes
-constexpr std::size_t max_scans_bytes = std::size_t{1} << 20U;  // bytes
+constexpr std::size_t max_file_bytes = std::size_t{16} << 10U;  // of each system file
+constexpr std::size_t max_scans_bytes = std::size_t{1} << 20U;  // of scans.json
 
 // None of these identifies a machine: no serial number, address or host name.
 constexpr std::array system_files{
@@ -59,8 +59,8 @@ ArchivedFile json_file(std::string name, const json& content) {
           .content = content.dump(1, ' ', false, json::error_handler_t::replace) + "\n"};
 }
 
-/// Paths of the shared libraries that this process has loaded, links resolved: most of these names
-/// end with a version.
+/// Paths of the shared libraries that this process has loaded, with links resolved: most file names
+/// then end with a version.
 std::set<std::string> loaded_libraries(const fs::path& root) {
   std::set<std::string> libraries;
   std::ifstream maps(root / "proc/self/maps");

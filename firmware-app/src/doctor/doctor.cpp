@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-// Like the pulses of half a second at full speed.
+// Number and interval of the pulses in half a second at full speed.
 constexpr int wake_ups = 400;
 constexpr std::chrono::microseconds wake_up_interval(1250);
 
@@ -33,7 +33,7 @@ std::string real_time_refusal() {
   return "";
 }
 
-/// The lines of turntable and lasers.
+/// The GPIO lines of turntable and lasers.
 std::vector<NamedLine> lines_of_rig(const RigOptions& rig) {
   std::vector<NamedLine> lines = lines_of(*rig.stepper);
   if (rig.laser) {
@@ -55,14 +55,14 @@ std::vector<Finding> check_turntable(const DoctorInput& input) {
           check_wake_ups(lateness, late_after)};
 }
 
-/// What is wrong with the files that the page's settings and the sensor's pose are kept in.
+/// Errors of the files with the page's settings and the sensor's pose; empty if there are none.
 std::string stored_trouble(const DoctorInput& input) {
   const std::string damage = find_damaged_calibration(input.config.data).value_or("");
   const bool both = !damage.empty() && !input.settings_trouble.empty();
   return input.settings_trouble + (both ? "; " : "") + damage;
 }
 
-/// The pose of the sensor in metres of its own, without the scale of its depths.
+/// The sensor's pose in the sensor's own metres, without the depth scale.
 Eigen::Isometry3d unscaled_pose(const ScanSettings& settings) {
   Eigen::Isometry3d pose = settings.platform_from_sensor;
   pose.translation() /= settings.depth_scale;

@@ -20,7 +20,7 @@ struct DoctorInput {
   RigOptions rig = {};
   Config config = {};                                  ///< in force
   std::string settings_trouble = {};                   ///< of the page's settings; empty: none
-  std::optional<std::uint64_t> usual_scan_bytes = {};  ///< as earlier scans were, if there are any
+  std::optional<std::uint64_t> usual_scan_bytes = {};  ///< by earlier scans; nothing: none exist
   LineOwner lines = LineOwner::another;
   std::filesystem::path root = "/";  ///< folder with /dev, /proc, /run and /sys
 };
@@ -32,7 +32,7 @@ DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
 /// Runs all checks, the sensor's first. Never moves the motor.
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading);
 
-/// What the checks of the computer, which disturb nobody, have to warn of.
+/// Returns the warnings and faults of the machine checks, which use neither sensor nor turntable.
 std::vector<Finding> find_machine_warnings(const DoctorInput& input);
 
 /// Runs all checks in a daemon, on its own scanner. The sensor is read between scans only: during a

@@ -7,13 +7,13 @@
 
 namespace octurn {
 
-/// What the page can do about a finding by itself.
+/// A remedy for a finding that the page offers as a button.
 enum class Action {
   none,
   measure_turn,   ///< solve the sensor's pose with one turn of the platform
-  set_pose,       ///< set it by hand, where it is too far off for a turn
-  open_settings,  ///< look through the settings and save them
-  choose_scans,   ///< delete some
+  set_pose,       ///< set the pose by hand, as it is too far off for a turn
+  open_settings,  ///< review the settings and save them
+  choose_scans,   ///< choose scans to delete
 };
 
 /// Result of one check of the doctor.
@@ -24,8 +24,8 @@ struct Finding {
     fault,    ///< scans do not work, or will soon not
     unknown,  ///< not measured; no fault
   };
-  std::string check = {};  ///< for programs: "frame-rate"
-  std::string name = {};   ///< for people: "Frame rate"
+  std::string check = {};  ///< identifier: "frame-rate"
+  std::string name = {};   ///< display name: "Frame rate"
   State state = State::unknown;
   std::string measured = {};  ///< with units
   std::string advice = {};    ///< what to do, in one sentence; empty: nothing
@@ -33,7 +33,7 @@ struct Finding {
   friend bool operator==(const Finding&, const Finding&) = default;
 };
 
-/// One check of the doctor, and the maker of its findings.
+/// One check of the doctor. Its functions make its findings.
 struct Check {
   std::string_view id;
   std::string_view name;
@@ -46,7 +46,7 @@ struct Check {
 
 std::string_view to_string(Finding::State state);
 
-/// Its name for programs: "measure-turn"; empty for none.
+/// The identifier of an action in JSON: "measure-turn"; empty for none.
 std::string_view to_string(Action action);
 
 /// The worst state: fault or warning if any finding has it, otherwise ok.
@@ -55,7 +55,7 @@ Finding::State overall_state(std::span<const Finding> findings);
 /// A number with `digits` digits after the point. Zero has no sign.
 std::string rounded(double value, int digits);
 
-/// A size for people, in powers of 1000 as disks are sold: "512 MB", "12.3 GB".
+/// A size as text in decimal units, as disks are sold: "512 MB", "12.3 GB".
 std::string readable_bytes(double bytes);
 
 /// The report of `octurn doctor --json` and of the API. Version and time are part of it, so that a

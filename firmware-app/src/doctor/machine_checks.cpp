@@ -31,7 +31,7 @@ constexpr const char* not_known = "not known on this machine";
 
 constexpr std::uint64_t few_scans = 5;
 
-// A model with leaves of 1 mm takes less. Below this the kernel itself runs short.
+// A model with a leaf size of 1 mm takes less. Below this the kernel itself runs short.
 constexpr double min_memory = bytes_from_mb(64);
 
 // A Raspberry Pi lowers its clock at 80 degrees; some models lower it a little at 60.

@@ -15,10 +15,10 @@ namespace octurn {
 /// @param trouble  of ConfigStore
 Finding check_settings(const std::string& trouble);
 
-/// What a scan takes of the disk, bytes.
+/// Disk space of a scan, in bytes.
 struct ScanBytes {
-  std::uint64_t largest = 0;  ///< without as much a scan does not start
-  std::uint64_t usual = 0;    ///< stays when it has ended
+  std::uint64_t largest = 0;  ///< maximum; a scan starts only with this much free
+  std::uint64_t usual = 0;    ///< expected size of a finished scan
 };
 
 /// Whether the disk has room for several scans.

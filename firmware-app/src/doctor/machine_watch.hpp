@@ -15,26 +15,26 @@
 
 namespace octurn {
 
-/// How the machine is, told without being asked for.
+/// Health of the machine, for the status.
 struct MachineHealth {
   std::uint64_t disk_free_bytes = 0;
   std::vector<Finding> warnings = {};  ///< warnings and faults
   friend bool operator==(const MachineHealth&, const MachineHealth&) = default;
 };
 
-/// How often a MachineWatch looks. Free space is one system call; the warnings read a dozen files,
-/// and a supply that fails is still told soon.
+/// Polling intervals of a MachineWatch. Free space takes one system call, the warnings a dozen
+/// files; 30 s still report a failing power supply soon.
 struct WatchIntervals {
   std::chrono::milliseconds disk{1000};
   std::chrono::milliseconds warnings{30'000};
 };
 
-/// Looks at the disk and the machine again and again, on a thread of its own: a disk that hangs
-/// keeps no reader of the status waiting. Any thread may call `health`.
+/// Polls disk and machine on its own thread, so that a hanging disk does not block readers of the
+/// status. Any thread may call `health`.
 class MachineWatch {
  public:
-  /// Both are called on the watch's thread, after a first time on the caller's. A figure that
-  /// cannot be read stays as it was, and the log tells why.
+  /// Sources of the health. The constructor calls both once, then the watch's thread does. After an
+  /// exception the old values stay, and the log says why.
   struct Looks {
     std::function<std::uint64_t()> free_bytes;
     std::function<std::vector<Finding>()> warnings;
@@ -42,7 +42,7 @@ class MachineWatch {
 
   explicit MachineWatch(Looks looks, const WatchIntervals& intervals = {});
 
-  /// The same object for as long as nothing has changed. Touches no disk.
+  /// Returns the same object until something changes. Touches no disk.
   std::shared_ptr<const MachineHealth> health() const { return health_.get(); }
 
  private:
@@ -54,7 +54,7 @@ class MachineWatch {
   Looks looks_;
   WatchIntervals intervals_;
   std::optional<Time> warnings_looked_ = {};
-  std::string trouble_ = {};  // why the last look failed; empty: it did not
+  std::string trouble_ = {};  // why the last poll failed; empty: it succeeded
   Latest<MachineHealth> health_;
   std::jthread thread_;  // the last member, so that it ends before what it uses goes away
 };

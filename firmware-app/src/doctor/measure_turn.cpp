@@ -18,21 +18,22 @@ using Clock = std::chrono::steady_clock;
 constexpr int frames_at_look = 6;
 constexpr int max_stale_frames = 100;
 
-// Moves that the motor is told one after the other until the platform is seen to turn: enough for
-// gears of 1, 4 and 12 times the gear ratio that is set.
+// Commanded moves, tried in turn until the platform is seen to move: enough for gears of 1, 4 and
+// 12 times the configured gear ratio.
 constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
-constexpr double seen_move_deg = 10;  // aim of each later move, degrees of the platform
-constexpr int few_moves = 4;          // of which two may be seen wrongly
-constexpr int more_moves = 8;         // their median is right to some percent
-constexpr double widest_deg = 40;     // a first move with a gear that is six times another
-constexpr double expected_deg = 6;    // about what is expected
-constexpr double still_deg = 1;       // at a first move
-constexpr double closing_deg = 32;    // nine percent of a turn
-constexpr double settled_deg = 2;     // so near, a comparison does not depend on the pose
+constexpr double seen_move_deg = 10;  // target of each later move, degrees of the platform
+constexpr int few_moves = 4;          // the median tolerates two wrong measurements
+constexpr int more_moves = 8;         // their median is accurate to some percent
+constexpr double widest_deg =
+    40;  // search range of first moves: the gear ratio may be six times off
+constexpr double expected_deg = 6;  // search range about an expected angle
+constexpr double still_deg = 1;     // a first move below it counts as standing still
+constexpr double closing_deg = 32;  // search range after a turn: 9 % of it
+constexpr double settled_deg = 2;   // a comparison so close does not depend on the pose
 constexpr int closing_looks = 3;
 constexpr int play_rounds = 3;
-constexpr double approach_deg = 15;  // more than any gears' play
-// Least angle between two looks that are compared: the sensor's fixed pattern is the same in both,
+constexpr double approach_deg = 15;  // more than the backlash of any gears
+// Minimum angle between two compared frames: the sensor's fixed-pattern error is the same in both,
 // and biases smaller angles towards 0.
 constexpr double apart_deg = 8;
 constexpr double min_sharpness = 0.08;
@@ -53,7 +54,8 @@ AngleRange around(double deg, double half_width_deg) {
   return {.min_deg = deg - half_width_deg, .max_deg = deg + half_width_deg};
 }
 
-/// Moves by told angles from where the platform stands at first, and compares looks.
+/// Moves the motor to commanded angles from the starting position ("told"), and compares the depth
+/// frames ("looks") taken there.
 class TurnMeter {
  public:
   TurnMeter(Rig& rig, View view, const std::stop_token& stop,
@@ -98,7 +100,7 @@ void TurnMeter::move_to(double told_deg) {
   }
 }
 
-/// The mean of some frames of the platform at rest.
+/// Returns the mean of `frames_at_look` frames of the platform at rest.
 DepthFrame TurnMeter::look() {
   DepthSensor& sensor = rig_.sensor();
   const Clock::time_point settled = Clock::now();
@@ -125,7 +127,8 @@ DepthFrame TurnMeter::look_at(double told_deg) {
   return look();
 }
 
-/// Looks at a told angle that the motor comes to forwards, with its gears in touch.
+/// Takes a frame at a commanded angle that is approached forwards, so that the backlash is taken
+/// up.
 DepthFrame TurnMeter::look_from_below(double told_deg, double rate) {
   if (told_deg <= told_deg_) {
     move_to(told_deg - approach_deg / std::abs(rate));
@@ -142,8 +145,8 @@ double TurnMeter::seen(const DepthFrame& from, const DepthFrame& to, const Angle
   return rotation->deg;
 }
 
-/// Moves forwards, all alike. @return degrees that the platform turns for one that the motor is
-/// told
+/// Makes equal moves forwards. @return median rate: degrees of the platform for each commanded
+/// degree
 double TurnMeter::median_rate(int moves, double move_deg, const AngleRange& range) {
   std::vector<double> rates;
   DepthFrame before = look();
@@ -155,7 +158,8 @@ double TurnMeter::median_rate(int moves, double move_deg, const AngleRange& rang
   return median(std::move(rates));
 }
 
-/// The same by moves that are found to be of a good size. @return 0 if the platform stands still
+/// Measures the rate with moves that are adapted to a good size.
+/// @return the rate; 0 if the platform stands still
 double TurnMeter::measure_rate() {
   for (const double move_deg : first_moves_deg) {
     const double first = median_rate(few_moves, move_deg, around(0, widest_deg));
@@ -172,8 +176,8 @@ double TurnMeter::measure_rate() {
   return 0;
 }
 
-/// Goes to where the platform should look nearly as at the beginning, and corrects that by what it
-/// sees. @return the rate over that whole turn
+/// Moves by a whole turn and `apart_deg`, and corrects the rate by the angle measured to the first
+/// frame. @return the rate over that whole turn
 double TurnMeter::measure_whole(double rate) {
   const double sign = rate > 0 ? 1 : -1;
   double range_deg = closing_deg;
@@ -190,9 +194,9 @@ double TurnMeter::measure_whole(double rate) {
   return rate;
 }
 
-/// Goes on and back some times, and compares where it was and is with a place a little further on.
-/// @return by how much a move back falls short, degrees: the median, as a sensor whose pose is not
-/// quite right is wrong by a degree now and then
+/// Moves on and back some times, and measures the angle to a position a little further on before
+/// and after. @return by how much a move back falls short, degrees: the median, as an inexact pose
+/// causes errors of a degree now and then
 double TurnMeter::measure_play(double rate) {
   const double there_deg = told_deg_;
   const double on_deg = apart_deg / std::abs(rate);
@@ -209,7 +213,7 @@ double TurnMeter::measure_play(double rate) {
   return rate > 0 ? short_deg : -short_deg;
 }
 
-/// @return how far from where it began the platform stands where the motor is told to be back
+/// Commands the starting angle again. @return the platform's offset from it, degrees
 double TurnMeter::measure_return(double rate) {
   const double on_deg = apart_deg / std::abs(rate);
   const DepthFrame now = look_from_below(on_deg, rate);

@@ -8,22 +8,24 @@
 
 namespace octurn {
 
-/// How the platform moves, by what the sensor sees of an object on it.
+/// Motion of the platform, measured from depth frames of an object on it.
 struct TurnMeasurement {
-  double turn_deg = 0;    ///< for each turn that the motor is told, counter-clockwise; 0: it stands
-  double play_deg = 0;    ///< that a move backwards falls short by
-  double return_deg = 0;  ///< how far from where it began it stands after all moves
+  double turn_deg = 0;    ///< per commanded full turn, counter-clockwise; 0: it does not move
+  double play_deg = 0;    ///< backlash: by how much a move backwards falls short
+  double return_deg = 0;  ///< offset from the starting angle after all moves
 };
 
-/// Turns the platform once and looks: small moves first, which tell how far a move goes and in
-/// which direction, then one to where it should look as at the beginning; then one there and back,
-/// for the play; and back to the beginning. Each comparison finds the axis itself: with a pose that
-/// is 15 mm and 2 degrees off, and a sensor with a Kinect's fixed pattern, a turn of 270 degrees is
-/// found to half a degree, and the play to one. From 20 mm or 3 degrees on it can be any: then
-/// calibrate first.
+/// Measures one turn of the platform. Small moves give size and direction of a move, a whole turn
+/// refines the size, moves forth and back give the backlash, and a return to the starting angle
+/// shows lost steps.
 ///
-/// @param platform_from_sensor  and clip box: where to look for the object
-/// @param on_progress           told how much is done, from 0 to 1
+/// Each comparison of two frames estimates the axis, too. With a pose that is 15 mm and 2 degrees
+/// off, and a Kinect's fixed-pattern error, a turn of 270 degrees is measured to half a degree, and
+/// the backlash to one. From errors of 20 mm or 3 degrees on, the result is arbitrary: calibrate
+/// first.
+///
+/// @param platform_from_sensor  the sensor's pose; with `clip` it selects the object
+/// @param on_progress           called with the share that is done, from 0 to 1
 /// @throws Stopped              once `stop` is requested
 /// @throws Error "sensor-blind" if there is no object, or it looks the same from all sides
 /// @throws Error                if a device fails

@@ -17,12 +17,12 @@ constexpr const char* place_it =
 
 constexpr int few_rays = 500;  // a platform of 28 cm, 2 m away, has ten times as many
 
-// With its noise, a platform this high reaches into a clip box that begins at 5 mm. So does the
-// rim, 14 cm from the axis, of one that is tilted by so much.
+// Limits of a warning. With its noise, a platform that is this much too high reaches into a clip
+// box that begins at 5 mm. So does the rim, 14 cm from the axis, of one that is tilted this much.
 constexpr double much_too_high = 0.004;
 constexpr double much_tilted = radians_from_degrees(1.5);
 
-// A turn measures up to 40 mm and 6 degrees.
+// Limits of a fault: a calibration turn measures up to 40 mm and 6 degrees.
 constexpr double too_high = 0.035;
 constexpr double too_tilted = radians_from_degrees(5);
 
@@ -39,15 +39,14 @@ std::string percent(int part, int whole) {
   return std::to_string(whole == 0 ? 0 : 100 * part / whole) + " %";
 }
 
-/// The value that `share` of the others lie below. @param values  at least one; put in another
-/// order
+/// The quantile of values at a share from 0 to 1. @param values  at least one; reordered
 double quantile(std::vector<double>& values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + at);
   return values[static_cast<std::size_t>(at)];
 }
 
-/// A pixel's ray in the platform frame: `direction` is the way of one metre of depth.
+/// A pixel's ray in the platform frame; `direction` is its displacement for a metre of depth.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -89,7 +88,7 @@ double mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Adds how far each depth is from their mean.
+/// Adds the absolute deviation of each depth from the mean.
 void add_deviations(std::vector<double>& deviations, const std::vector<double>& depths,
                     double mean_depth) {
   for (const double depth : depths) {
@@ -97,7 +96,7 @@ void add_deviations(std::vector<double>& deviations, const std::vector<double>& 
   }
 }
 
-/// The side of the platform that is the higher, as seen from behind the sensor.
+/// The higher side of the platform, as seen from behind the sensor.
 std::string higher_side(const Eigen::Vector2d& slope) {
   if (std::abs(slope.x()) > std::abs(slope.y())) {
     return slope.x() > 0 ? "right" : "left";
@@ -105,8 +104,8 @@ std::string higher_side(const Eigen::Vector2d& slope) {
   return slope.y() > 0 ? "far" : "near";
 }
 
-/// How high and how level it is: "2.3 mm above where the calibration has it and tilted by 0.8
-/// degrees, the far side up".
+/// Describes height and tilt: "2.3 mm above where the calibration has it and tilted by 0.8 degrees,
+/// the far side up".
 std::string place_text(const PlatformSurface& surface) {
   const std::string height = mm(std::abs(surface.height)) +
                              (surface.height < 0 ? " below" : " above") +
@@ -147,7 +146,7 @@ PlatformView measure_platform(const SensorSample& sample, const Box& clip,
     }
   }
   if (!deviations.empty()) {
-    // That part of a normal distribution is within its standard deviation.
+    // 68.3 % of a normal distribution lie within one standard deviation of the mean.
     view.noise = quantile(deviations, 0.683);
   }
   if (!sample.frames.empty()) {

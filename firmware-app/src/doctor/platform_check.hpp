@@ -10,14 +10,14 @@
 
 namespace octurn {
 
-/// What the sensor sees of the platform. Counts pixels whose rays, by the calibration, meet the
+/// The platform as the sensor measures it. Counts pixels whose rays, by the calibration, meet the
 /// platform's surface inside the clip box.
 struct PlatformView {
   int rays = 0;        ///< pixels whose rays meet the platform
   int readings = 0;    ///< of `rays`: with a depth in at least half of the frames
   int on_surface = 0;  ///< of `readings`: within `surface_tolerance` of the platform
   double noise = 0;    ///< standard deviation of a pixel's depths, metres (68.3 % quantile)
-  /// The plane through what is seen near it; nothing if there is none.
+  /// The plane fitted to readings near the platform; nothing if there is none.
   std::optional<PlatformSurface> surface = {};
 };
 

@@ -15,19 +15,19 @@ using Points = std::vector<Eigen::Vector3d>;
 
 constexpr int smooth_radius = 4;         // pixels
 constexpr double max_step = 0.008;       // metres
-constexpr int pixel_step = 2;            // in both directions: thousands of readings are enough
-constexpr std::size_t min_points = 150;  // a thing of 2 cm at 0.7 m has as many
-constexpr double half_fit = 0.005;       // metres: three of the steps of depth of a Kinect at 0.7 m
-// Below it lies the platform, which looks the same from all sides and stands still, with its noise
-// and where the pose is some degrees off.
+constexpr int pixel_step = 2;            // in both directions: thousands of points are enough
+constexpr std::size_t min_points = 150;  // those of an object of 2 cm at 0.7 m
+constexpr double half_fit = 0.005;       // metres: three depth steps of a Kinect at 0.7 m
+// Excludes the platform, which looks the same at every angle, with its noise and a pose that is
+// some degrees off.
 constexpr double min_height = 0.02;  // metres
 constexpr double coarse_step_deg = 1;
 constexpr double min_step_deg = 0.02;
 constexpr double beside_deg = 4;
 
-/// The mean of the readings around a pixel that are of the same surface as its own.
-/// @param same_surface  in the frame's units: what differs by more is another surface
-/// @return 0 if it has no reading
+/// The mean of the readings around a pixel that are on the same surface as its own.
+/// @param same_surface  maximum difference on one surface, in the frame's units
+/// @return 0 if the pixel has no reading
 int mean_around(const DepthFrame& frame, int u, int v, int same_surface) {
   const auto at = [&](int column, int row) {
     return static_cast<int>(
@@ -53,7 +53,7 @@ int mean_around(const DepthFrame& frame, int u, int v, int same_surface) {
   return centre + sum / count;
 }
 
-/// A pixel's reading as a point of the platform's frame, metres; not a number where there is none.
+/// A pixel's reading as a point in the platform frame, metres; NaN if there is no reading.
 Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v) {
   const Intrinsics& lens = view.intrinsics;
   const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
@@ -63,9 +63,9 @@ Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v
   return view.platform_from_sensor * (z * pixel_ray(lens, u, v));
 }
 
-/// Smooths away the sensor's quantisation: its steps of depth stand still while the object turns,
-/// and would bias the rotation towards none. Each reading inside the clip box becomes the mean of
-/// those around it on the same surface.
+/// Smooths the sensor's depth quantisation: its steps stay in place while the object turns, and
+/// would bias the rotation towards 0. Each reading inside the clip box becomes the mean of those
+/// around it on the same surface.
 DepthFrame smoothed(const View& view, const DepthFrame& frame) {
   const auto same_surface = static_cast<int>(max_step / view.intrinsics.depth_unit);
   DepthFrame smooth = frame;
@@ -81,7 +81,7 @@ DepthFrame smoothed(const View& view, const DepthFrame& frame) {
   return smooth;
 }
 
-/// Readings inside the clip box, in the platform's frame.
+/// Points inside the clip box and above the platform, in the platform frame.
 Points points_in(const View& view, const DepthFrame& frame) {
   Points points;
   for (int v = 0; v < frame.height; v += pixel_step) {
@@ -95,9 +95,9 @@ Points points_in(const View& view, const DepthFrame& frame) {
   return points;
 }
 
-/// How badly a point of the optical frame fits the surface that a frame sees there, from 0 to 1
-/// (Geman and McClure 1985). Near 0 it is a square, so that the sensor's steps of depth, which
-/// stand still, do not hold the object.
+/// Robust misfit of a point in the sensor's frame to a depth frame, from 0 to 1 (Geman and McClure
+/// 1985). It is quadratic near 0, so that the sensor's depth steps, which do not move, do not bias
+/// the rotation towards 0.
 double misfit(const Intrinsics& lens, const DepthFrame& frame, const Eigen::Vector3d& point) {
   const double u = std::round(lens.cx + lens.fx * point.x() / point.z());
   const double v = std::round(lens.cy + lens.fy * point.y() / point.z());
@@ -111,8 +111,8 @@ double misfit(const Intrinsics& lens, const DepthFrame& frame, const Eigen::Vect
   return seen > 0 ? square / (square + half_fit * half_fit) : 1;
 }
 
-/// A motion of the platform: a rotation about the axis of `View`, and a shift that makes it one
-/// about the true axis.
+/// A motion of the platform: a rotation about the z axis of the platform frame of `View`, and a
+/// translation that makes it a rotation about the true axis.
 struct PlanarMotion {
   double deg = 0;
   double x = 0;  ///< metres
@@ -127,7 +127,7 @@ Eigen::Isometry3d to_isometry(const PlanarMotion& motion) {
   return moved;
 }
 
-/// Mean misfit of moved points to what a frame sees.
+/// Mean misfit of moved points to a depth frame.
 double mean_misfit(const View& view, const Points& points, const DepthFrame& frame,
                    const Eigen::Isometry3d& motion) {
   const Eigen::Isometry3d moved = view.platform_from_sensor.inverse() * motion;
@@ -138,7 +138,7 @@ double mean_misfit(const View& view, const Points& points, const DepthFrame& fra
   return sum / static_cast<double>(points.size());
 }
 
-/// The two looks, and how badly they agree for a motion from the first to the second.
+/// Two depth frames, and their mutual misfit for a motion from the first to the second.
 class Looks {
  public:
   Looks(const View& view, const DepthFrame& from, const DepthFrame& to)
@@ -167,7 +167,7 @@ class Looks {
   Points points_to_;
 };
 
-/// A motion, and how badly the looks agree for it.
+/// A motion, and the misfit of the frames for it.
 struct Candidate {
   PlanarMotion motion = {};
   double disagreement = 0;
@@ -184,7 +184,7 @@ Candidate best_rotation(const Looks& looks, const AngleRange& range) {
   return best;
 }
 
-/// Pattern search (Hooke and Jeeves 1961) from a candidate on, in angle and shift.
+/// Refines a candidate in angle and translation by pattern search (Hooke and Jeeves 1961).
 Candidate refined(const Looks& looks, Candidate best) {
   PlanarMotion step{.deg = 2, .x = 0.004, .y = 0.004};
   while (step.deg > min_step_deg) {

@@ -7,31 +7,31 @@
 
 namespace octurn {
 
-/// What a sensor on a rig sees of the object, and from where.
+/// Geometry of a sensor that looks at an object on the platform.
 struct View {
   Intrinsics intrinsics = {};
-  Eigen::Isometry3d platform_from_sensor = {};  ///< metres; need be right to some millimetres only
+  Eigen::Isometry3d platform_from_sensor = {};  ///< metres; errors of some millimetres are allowed
   Box clip = {};                                ///< around the object, platform frame, metres
 };
 
-/// Where a rotation is searched for, degrees counter-clockwise seen from above.
+/// Search range of a rotation, in degrees counter-clockwise seen from above.
 struct AngleRange {
   double min_deg = 0;
   double max_deg = 0;
 };
 
-/// The rotation about the platform's axis between two looks at the same object.
+/// The rotation about the platform's axis between two depth frames of the same object.
 struct SeenRotation {
   double deg = 0;  ///< counter-clockwise seen from above
-  /// How much worse the looks agree four degrees beside it, as a share of how well they agree at
-  /// it. An object that looks the same from all sides has 0.
+  /// Relative increase of the misfit four degrees beside the rotation. 0 for an object that looks
+  /// the same from all sides.
   double sharpness = 0;
 };
 
-/// Measures how the platform turned from one look to another, by turning the readings of each to
-/// the other and comparing depths.
+/// Measures the platform's rotation between two depth frames: transforms the points of each into
+/// the other, and minimizes the misfit of depths.
 ///
-/// @return nothing if either look sees too little of an object
+/// @return nothing if either frame shows too little of an object
 std::optional<SeenRotation> seen_rotation(const View& view, const DepthFrame& from,
                                           const DepthFrame& to, const AngleRange& range);
 

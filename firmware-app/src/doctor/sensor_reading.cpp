@@ -37,7 +37,7 @@ std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& s
 }
 
 /// @return nothing if `stop` is requested first
-/// @throws Error  that says what is wrong with the camera, the room or a laser
+/// @throws Error  with the fault of the camera, the room's light or a laser
 std::optional<CameraSample> sample_camera(Rig& rig, const std::stop_token& stop) {
   const auto taken = take_pictures_here(rig, stop, {});
   if (!taken) {

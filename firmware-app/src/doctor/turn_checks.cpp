@@ -15,15 +15,16 @@ constexpr Check whole_turn{"turn-whole", "A whole turn"};
 constexpr Check play{"turn-play", "Play of the gears"};
 constexpr Check back{"turn-return", "Return"};
 
-constexpr double not_whole_deg = 1.5;  // three times what the sensor is wrong by
+constexpr double not_whole_deg = 1.5;  // three times the measurement's error
 constexpr double much_play_deg = 0.6;
 constexpr double far_off_deg = 0.6;
-constexpr double power_share = 0.01;  // so near a power of two, the driver makes other microsteps
+constexpr double power_share = 0.01;  // tolerance of a ratio of microsteps
 constexpr double whole_share = 0.003;
 
 std::string degrees(double deg) { return rounded(deg, 1) + " degrees"; }
 
-/// A ratio as a person would write it: whole if it is nearly so, else with three decimals.
+/// Rounds a ratio for octurn.json: to a whole number if it is nearly one, otherwise to three
+/// decimals.
 double plain_ratio(double ratio) {
   const double whole = std::round(ratio);
   return whole >= 1 && std::abs(ratio - whole) < whole_share * whole
@@ -31,7 +32,7 @@ double plain_ratio(double ratio) {
              : std::round(ratio * 1e3) / 1e3;
 }
 
-/// The microsteps that the driver makes, if they explain a turn that is not whole.
+/// The driver's actual microsteps, if they explain a turn of `share` whole turns.
 std::optional<int> other_microsteps(int microsteps, double share) {
   for (const int other : std::array{1, 2, 4, 8, 16}) {
     const double explained = static_cast<double>(microsteps) / other;
@@ -77,7 +78,7 @@ TurnFinding check_play(const TurnMeasurement& turn, const StepperSettings& setti
   if (turn.play_deg <= much_play_deg) {
     return {.finding = play.ok(measured)};
   }
-  // One and a half times the play that is left with the steps that are set.
+  // 1.5 times the backlash that remains with the steps in force.
   const double seen_steps =
       turn.play_deg / std::abs(turn.turn_deg) * motion_of(settings).steps_per_turn;
   const int steps = settings.take_up_steps + static_cast<int>(std::ceil(1.5 * seen_steps));

@@ -9,14 +9,14 @@
 
 namespace octurn {
 
-/// A finding about the turntable's motion, and the setting that cures it.
+/// A finding about the turntable's motion, and the setting that corrects it.
 struct TurnFinding {
   Finding finding = {};
   nlohmann::json set = nlohmann::json::object();  ///< of "turntable" in octurn.json; empty: none
 };
 
-/// What a measured turn says of direction, size of a turn, play and return.
-/// @param settings  that the turn was made with
+/// Checks direction, size of a turn, backlash and return of a measured turn.
+/// @param settings  in force during the measurement
 std::vector<TurnFinding> check_turn(const TurnMeasurement& turn, const StepperSettings& settings);
 
 }  // namespace octurn

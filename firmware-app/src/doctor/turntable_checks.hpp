@@ -15,7 +15,7 @@ using HeaderState = std::variant<HeaderUse, Failure>;
 
 /// Who holds the GPIO lines whose consumer is called "octurn".
 enum class LineOwner {
-  this_program,  ///< or a daemon of it, whose turntable they drive
+  this_program,  ///< or its daemon, to drive the turntable
   another,
 };
 
@@ -25,11 +25,11 @@ HeaderState read_gpio_header(const std::vector<NamedLine>& lines);
 Finding check_gpio_chip(const HeaderState& header);
 Finding check_gpio_lines(const HeaderState& header, LineOwner owner);
 
-/// Whether the thread that makes the pulses would wake up in time, now, beside all else that runs.
-/// @param limit  how late a wake-up may be
+/// Whether the thread that makes the pulses wakes up in time under the machine's present load.
+/// @param limit  maximum lateness of a wake-up
 Finding check_wake_ups(const Lateness& lateness, std::chrono::steady_clock::duration limit);
 
-/// The finding in place of both for a simulated turntable.
+/// The finding that replaces those of the GPIO for a simulated turntable.
 Finding check_simulated_turntable();
 
 }  // namespace octurn

@@ -50,13 +50,13 @@ bool TurntableRunner::start(TurntableState::Doing doing, Job job) {
     state_.test = TurnTest{};
   }
   stop_ = {};
-  // The thread before has done its last work under this lock.
+  // This joins the previous thread, which no longer needs the lock: `end` was its last use.
   thread_ = std::jthread(
       [this, job = std::move(job), stop = stop_.get_token()] { carry_out(job, stop); });
   return true;
 }
 
-/// Has the scanner's worker do a job. Stops with either token: this one, or the worker's.
+/// Has the scanner's worker do a job, until `stop` or the worker's own token requests a stop.
 void TurntableRunner::carry_out(const Job& job, const std::stop_token& stop) {
   std::optional<Failure> failure;
   try {
@@ -69,7 +69,7 @@ void TurntableRunner::carry_out(const Job& job, const std::stop_token& stop) {
           try {
             job(rig, either.get_token());
             rig.release_turntable();
-          } catch (const Error&) {  // so that the next use opens the devices again
+          } catch (const Error&) {  // the next use reopens the devices
             rig.close_sensor();
             rig.close_turntable();
             throw;

@@ -14,7 +14,7 @@
 
 namespace octurn {
 
-/// A test of the turntable, on its way or as it ended.
+/// A test of the turntable that runs or has ended.
 struct TurnTest {
   enum class State { running, done, failed, cancelled };
   State state = State::running;
@@ -23,7 +23,7 @@ struct TurnTest {
   std::optional<Failure> failure = {};
 };
 
-/// What the turntable is asked to do besides scans.
+/// State of the turntable's jogs and tests.
 struct TurntableState {
   enum class Doing { nothing, jogging, testing };
   Doing doing = Doing::nothing;
@@ -31,8 +31,8 @@ struct TurntableState {
   std::optional<TurnTest> test = {};    ///< the last one
 };
 
-/// Jogs and tests the turntable of a Scanner, between its scans and one thing at a time, on a
-/// thread of its own that waits for the scanner's. Any thread may call anything.
+/// Jogs and tests the turntable of a Scanner between its scans, one job at a time. Its thread waits
+/// for the scanner's worker. Thread-safe.
 class TurntableRunner {
  public:
   TurntableRunner(Scanner& scanner, const ScanStore& store) : scanner_(scanner), store_(store) {}
@@ -43,13 +43,13 @@ class TurntableRunner {
   TurntableState state() const;
 
   /// Turns the platform by an angle, counter-clockwise seen from above.
-  /// @return false if it jogs, tests or scans
+  /// @return false if a jog, a test or a scan runs
   bool jog(double deg);
 
-  /// Measures a turn. @param config  in force @return false as above
+  /// Starts a test, which measures a turn. @param config  in force @return false as `jog`
   bool test(const Config& config);
 
-  /// Asks what is being done to stop.
+  /// Asks the jog or test to stop.
   void stop();
 
  private:

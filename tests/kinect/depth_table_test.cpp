@@ -8,8 +8,7 @@
 namespace octurn {
 namespace {
 
-/// The formula solved for the depth: z = 10 b d / (b - m), in tenths of a millimetre; nothing below
-/// infinity if b <= m.
+/// The formula solved for the depth, z = b d / (b - m), in units of 0.1 mm; infinite if b <= m.
 double exact_depth(const KinectParameters& unit, int reading) {
   const double m = (reading / 4.0 - unit.shift - 0.375) * unit.reference_pixel_cm;
   return m < unit.baseline_cm
@@ -46,13 +45,13 @@ TEST(DepthTable, AgreesWithWhatFitsRealFrames) {
   const DepthTable table = depth_table({});
   for (int reading = 0; reading < 1000; ++reading) {
     const double depth = 3454890 / (1089.40 - reading);
-    // Half a unit, and what a unit of the last digits of both constants makes.
+    // Rounding to half a unit, and one unit in the last digit of both constants.
     const double tolerance = 0.5 + depth * (1.0 / 345489 + 0.01 / (1089.40 - reading));
     EXPECT_NEAR(table[static_cast<std::size_t>(reading)], depth, tolerance) << reading;
   }
 }
 
-/// The same on every machine: a model made of it has the same bits.
+// The table is the same on every machine, so that models are the same to the bit.
 TEST(DepthTable, HasTheSameBitsEverywhere) {
   std::uint32_t hash = 2166136261U;  // FNV-1a
   for (const std::uint16_t depth : depth_table({})) {

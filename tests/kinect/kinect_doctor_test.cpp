@@ -1,4 +1,4 @@
-// What octurn doctor finds at an emulated Kinect.
+// octurn doctor's findings with an emulated Kinect.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using nlohmann::json;
 /// A wall at 0.8 m.
 Readings wall() { return Readings(std::size_t{640} * 480, 657); }
 
-/// What the doctor says of a check.
+/// The doctor's finding of one check.
 json finding(const char* check) {
   const TemporaryFolder folder;
   Program doctor({octurn_program(), "doctor", "--simulate", "--sensor", "kinect://", "--json",
@@ -34,7 +34,7 @@ json finding(const char* check) {
 
 TEST(KinectDoctor, ComparesTheTiltWithTheCalibration) {
   KinectOnDesk desk({wall()});
-  desk->acceleration[2] = -819;  // as much forward and down as up: it looks 45 degrees down
+  desk->acceleration[2] = -819;  // pitched down by 45 degrees: as large as the upward component
   const json tilt = finding("tilt");
   EXPECT_EQ(tilt["measured"], "pitch -45.0°, roll 0.0°; calibrated at -25.0°, 0.0°");
   EXPECT_EQ(tilt["state"], "fault");

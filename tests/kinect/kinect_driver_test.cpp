@@ -1,4 +1,4 @@
-// Octurn's Kinect driver from end to end: an emulated USB bus below unmodified libfreenect, and the
+// Octurn's Kinect driver end to end: an emulated USB bus, unmodified libfreenect on it, and the
 // program's sensor on top.
 
 #include <OpenNI.h>
@@ -29,8 +29,7 @@ TEST(KinectDriver, IsFoundAsAnySensor) {
   EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
 }
 
-// Frame n of the sensor begins n periods after the first of them, or later where a busy machine
-// holds the driver up.
+// Frame n begins at least n periods after the first one; a busy machine may delay the driver.
 TEST(KinectDriver, SendsThirtyFramesASecond) {
   KinectOnDesk desk(plain_frames(2));
   constexpr std::chrono::microseconds period(267 * 125);  // Camera::microframes_in_frame
@@ -48,7 +47,8 @@ TEST(KinectDriver, SendsThirtyFramesASecond) {
   EXPECT_EQ(desk->video_starts, 0);
 }
 
-// The driver numbers the frames that it hands over, and these tell which of the sensor's they are.
+// The driver numbers the frames that it delivers; each frame's readings show its number on the
+// sensor.
 TEST(KinectDriver, DropsNoFrameOfTheSensors) {
   constexpr int different = 20;
   const KinectOnDesk desk(plain_frames(different));
@@ -65,7 +65,7 @@ TEST(KinectDriver, DropsNoFrameOfTheSensors) {
     ASSERT_EQ(stream.readFrame(&frame), openni::STATUS_OK);
     index = frame.getFrameIndex();
     const auto* depths = static_cast<const std::uint16_t*>(frame.getData());
-    // The next reading is 15 tenths of a millimetre away.
+    // Successive readings differ by 15 units of 0.1 mm.
     ASSERT_NEAR(depths[pixels / 2], depth_of(600 + (index - 1) % different), 2) << index;
   }
   stream.destroy();
@@ -83,8 +83,7 @@ TEST(KinectDriver, ConvertsEveryReading) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const auto reading = static_cast<int>(i % 2048);
     const double depth = depth_of(reading);
-    if (reading <
-        1036) {  // beyond lie 6.47 m: one step of the constants' last digit is a tenth there
+    if (reading < 1036) {  // up to 6.47 m, where a unit in the constants' last digit makes 0.1 mm
       ASSERT_NEAR(frame.depth[i], depth, 0.5 + depth * depth * 1e-8) << reading;
     } else if (reading >= 1037) {
       ASSERT_EQ(frame.depth[i], 0) << reading;
@@ -96,7 +95,7 @@ TEST(KinectDriver, StampsFramesByTheSteadyClock) {
   const KinectOnDesk desk({frame_of(700)});
   const auto sensor = open_sensor("kinect://");
   const auto before = steady_clock::now();
-  next_frame(*sensor);  // it may have begun before
+  next_frame(*sensor);  // this frame may have begun before `before`
   const auto first = sensor->read({})->time;
   EXPECT_GT(first, before);
   EXPECT_LE(first, steady_clock::now());
@@ -114,7 +113,7 @@ TEST(KinectDriver, UsesTheParametersOfTheUnit) {
   const double mm = 10 * (shift * 121.5 / (7.62 - shift) + 121.5);
   EXPECT_NEAR(next_frame(*sensor).depth[0], 10 * mm, 0.5 + 0.01);  // parameters are floats
   EXPECT_NEAR(sensor->intrinsics().fx, 121.5 / (2 * 0.1047), 1e-2);
-  EXPECT_GT(std::abs(10 * mm - depth_of(500)), 50);  // a typical unit's would not pass
+  EXPECT_GT(std::abs(10 * mm - depth_of(500)), 50);  // a typical unit's parameters would fail
 }
 
 TEST(KinectDriver, RefusesParametersThatMakeNoSense) {
@@ -139,7 +138,7 @@ TEST(KinectDriver, TellsItsTilt) {
 
   const std::optional<Tilt> tilt = sensor->tilt();
   ASSERT_TRUE(tilt.has_value());
-  EXPECT_NEAR(tilt->pitch, pitch, 1 / g);  // a count
+  EXPECT_NEAR(tilt->pitch, pitch, 1 / g);  // one count of the accelerometer
   EXPECT_NEAR(tilt->roll, roll, 1 / g);
 }
 
@@ -172,7 +171,7 @@ TEST(KinectDriver, TakesAKinectForWindowsInNearModeWithoutTilt) {
   expect_depth_without_firmware(KinectModel::for_windows);
 }
 
-/// The readings from which a real Kinect's whole millimetres, cut off and not rounded, have come.
+/// Recovers the readings from a real Kinect's depths, which are truncated to whole millimetres.
 Readings readings_from_mm(std::span<const std::uint16_t> depths_mm) {
   Readings readings(pixels, 2047);
   std::ranges::transform(depths_mm, readings.begin(), [](std::uint16_t depth_mm) {
@@ -186,7 +185,7 @@ TEST(KinectDriver, GivesTheDepthsOfARealKinect) {
   const auto sensor = open_sensor("kinect://");
   const DepthFrame frame = next_frame(*sensor);
   for (std::size_t i = 0; i < real_depths_mm.size(); ++i) {
-    // Tenths round up to the next millimetre where the depth is within half a tenth of it.
+    // Rounding to 0.1 mm may reach the next whole millimetre.
     ASSERT_GE(frame.depth[i], 10 * real_depths_mm[i]);
     ASSERT_LE(frame.depth[i], 10 * real_depths_mm[i] + 10);
   }

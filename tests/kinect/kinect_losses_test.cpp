@@ -1,4 +1,4 @@
-// What Octurn's Kinect driver loses and does not hand over: packets, frames, and the whole sensor.
+// Losses that Octurn's Kinect driver must not pass on as data: packets, frames, the whole sensor.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ struct Loss {
   int cut = -1;
 };
 
-/// Of three frames one is damaged so, again and again.
+/// Damages every third frame in this way, and expects that no damaged frame is delivered.
 void expect_no_damaged_pixel(const Loss& loss) {
   KinectOnDesk desk(plain_frames(12));
   desk->speed = 2;
@@ -80,7 +80,7 @@ TEST(KinectLosses, IsLostWhenUnpluggedAndFoundWhenPluggedInAgain) {
       desk.unplug();
       const Error error = error_thrown_by([&] {
         for (;;) {
-          next_frame(*sensor);  // there may be one that came before
+          next_frame(*sensor);  // frames that arrived before may remain
         }
       });
       EXPECT_EQ(error.code(), ErrorCode::sensor_lost);

@@ -16,8 +16,8 @@ namespace octurn {
 /// Raw readings of one frame, row by row.
 using Readings = std::vector<std::uint16_t>;
 
-/// An emulated Kinect for this test and the programs that it starts. It sees the same frames over
-/// and over.
+/// An emulated Kinect for this test and the programs that it starts. It repeats a sequence of
+/// frames.
 class KinectOnDesk {
  public:
   explicit KinectOnDesk(const std::vector<Readings>& frames) {

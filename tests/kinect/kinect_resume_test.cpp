@@ -1,4 +1,4 @@
-// Scans of the daemon that its emulated Kinect leaves in the lurch.
+// Scans of the daemon during which its emulated Kinect fails.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ class KinectFaults : public ::testing::TestWithParam<std::tuple<Fault, int>> {
   static const Fault& fault() { return std::get<0>(GetParam()); }
   static int stop() { return std::get<1>(GetParam()); }
 
-  /// What a scan is once the Kinect has failed after so many snapshots.
+  /// Lets the Kinect fail after at least `snapshots` snapshots. @return the scan once it is as
+  /// wanted
   json scan_until(const Daemon& daemon, const std::string& scan, int snapshots,
                   const std::function<bool(const json&)>& wanted) {
     daemon.wait_until(scan, [&](const json& now) { return now["snapshots_done"] >= snapshots; });

@@ -1,4 +1,4 @@
-// Whole runs of the program on an emulated Kinect, which looks at what the simulated one sees.
+// Whole runs of the program on an emulated Kinect that is fed with the simulated one's view.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The same depths, but for what the last digits of the constants make.
+/// Expects equal depths up to rounding and a unit in the last digit of the constants.
 void expect_same_depths(const DepthFrame& one, const DepthFrame& other) {
   ASSERT_EQ(one.depth.size(), other.depth.size());
   for (std::size_t i = 0; i < one.depth.size(); ++i) {

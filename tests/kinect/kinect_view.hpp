@@ -9,13 +9,13 @@
 
 namespace octurn {
 
-/// What a simulated Kinect sees.
+/// A noiseless frame of the simulated Kinect.
 inline DepthFrame simulated_frame() {
   const auto sensor = open_sensor("octurn-simulator://?noise=0&pattern=0&misalignment=0");
   return sensor->read({}).value().frame;
 }
 
-/// The readings that an emulated Kinect has to see for it.
+/// The raw readings from which an emulated Kinect gives that frame.
 inline Readings readings_of(const DepthFrame& frame) {
   Readings readings;
   for (const std::uint16_t depth : frame.depth) {

@@ -13,7 +13,7 @@ inline constexpr std::size_t pixels = std::size_t{640} * 480;
 
 inline Readings frame_of(std::uint16_t reading) { return Readings(pixels, reading); }
 
-/// Frames that tell themselves apart: all of one reading each.
+/// Distinguishable frames: each consists of a single reading of its own.
 inline std::vector<Readings> plain_frames(int count) {
   std::vector<Readings> frames;
   for (int i = 0; i < count; ++i) {
@@ -22,7 +22,7 @@ inline std::vector<Readings> plain_frames(int count) {
   return frames;
 }
 
-/// z = 345489 / (1089.40 - reading) mm, in tenths.
+/// Depth of a raw reading, units of 0.1 mm: z = 345489 / (1089.40 - reading) mm.
 inline double depth_of(int reading) { return 3454890 / (1089.40 - reading); }
 
 inline DepthFrame next_frame(DepthSensor& sensor) { return sensor.read({}).value().frame; }

@@ -5,8 +5,8 @@
 
 namespace octurn {
 
-/// Every depth, in whole millimetres, that a Kinect v1 gave in eight frames: learn0, 10, 14, 18,
-/// 22, 26, 30 and 34 of PointCloudLibrary/data, segmentation/mOSD.
+/// All distinct depths of a Kinect v1, whole millimetres, in eight frames: learn0, 10, 14, 18, 22,
+/// 26, 30 and 34 of PointCloudLibrary/data, segmentation/mOSD.
 inline constexpr std::array<std::uint16_t, 390> real_depths_mm = {
     578,  579,  580,  581,  582,  583,  584,  585,  586,  587,  588,  589,  590,  591,  592,  593,
     594,  595,  596,  597,  598,  599,  600,  601,  602,  603,  604,  605,  606,  607,  608,  609,

@@ -1,5 +1,5 @@
-// The emulated Kinect as the kernel's vhci_hcd sees it, whose end of the connection is played here
-// by Linux, Documentation/usb/usbip_protocol.rst.
+// The emulated Kinect as the kernel's vhci_hcd sees it. The tests play the kernel's end of the
+// connection (Linux, Documentation/usb/usbip_protocol.rst).
 
 #include "kinect/emulated/usbip_device.hpp"
 
@@ -35,7 +35,7 @@ std::uint32_t word(const Bytes& bytes, std::size_t number) {
 struct Reply {
   Bytes header = {};
   Bytes data = {};
-  std::vector<std::uint32_t> packets = {};  // bytes of each
+  std::vector<std::uint32_t> packets = {};  // bytes of each packet
 
   std::uint32_t status() const { return word(header, 5); }
 };
@@ -68,7 +68,7 @@ class UsbipDeviceTest : public ::testing::Test {
 
   Bytes receive(std::size_t count) {
     Bytes bytes(count);
-    if (count > 0) {  // or recv waits for something to come
+    if (count > 0) {  // recv of 0 bytes would block
       EXPECT_EQ(::recv(host_.number(), bytes.data(), count, MSG_WAITALL),
                 static_cast<ssize_t>(count));
     }
@@ -134,7 +134,7 @@ class UsbipDeviceTest : public ::testing::Test {
     return reply;
   }
 
-  /// All that comes on the depth endpoint in a frame's time: 267 microframes.
+  /// All packets of the depth endpoint in one frame's 267 microframes.
   Reply frame_of_packets() {
     Reply all;
     for (const std::uint32_t count : {100U, 100U, 67U}) {
@@ -168,7 +168,7 @@ TEST_F(UsbipDeviceTest, TellsWhatItIs) {
 
 TEST_F(UsbipDeviceTest, HasTwoEndpointsWhosePacketsHold1920Bytes) {
   const Reply begin = control({0x80, 6, 0, 2, 0, 0, 9, 0});
-  ASSERT_EQ(begin.data.size(), 9);  // no more than was asked for
+  ASSERT_EQ(begin.data.size(), 9);  // no longer than requested
   const Reply all = control({0x80, 6, 0, 2, 0, 0, begin.data[2], 0});
   ASSERT_EQ(all.data.size(), begin.data[2]);
   std::vector<int> packet_bytes;
@@ -185,13 +185,13 @@ TEST_F(UsbipDeviceTest, HasTwoEndpointsWhosePacketsHold1920Bytes) {
 TEST_F(UsbipDeviceTest, TakesItsConfigurationAndStallsOnWhatItHasNot) {
   EXPECT_EQ(control({0x00, 9, 1, 0, 0, 0, 0, 0}).status(), 0);
   EXPECT_EQ(control({0x80, 8, 0, 0, 0, 0, 1, 0}).data, Bytes{1});
-  EXPECT_EQ(control({0x80, 6, 0, 6, 0, 0, 10, 0}).status(), stall);           // no other speed
-  EXPECT_EQ(control({0x40, 0, 0, 0, 0, 0, 8, 0}, Bytes(8)).status(), stall);  // no command
+  EXPECT_EQ(control({0x80, 6, 0, 6, 0, 0, 10, 0}).status(), stall);  // there is no other speed
+  EXPECT_EQ(control({0x40, 0, 0, 0, 0, 0, 8, 0}, Bytes(8)).status(), stall);  // not a command
 }
 
 TEST_F(UsbipDeviceTest, AnswersCommandsByTheirTag) {
   set_register(0x13, 0x42);
-  control({0xC0, 0, 0, 0, 0, 0, 0, 2});  // what the write was answered with
+  control({0xC0, 0, 0, 0, 0, 0, 0, 2});  // discards the reply to the write
   control({0x40, 0, 0, 0, 0, 0, 10, 0}, {'G', 'M', 1, 0, 2, 0, 9, 0, 0x13, 0});
   EXPECT_EQ(control({0xC0, 0, 0, 0, 0, 0, 0, 2}).data,
             (Bytes{'R', 'B', 2, 0, 2, 0, 9, 0, 0, 0, 0x42, 0}));
@@ -228,7 +228,7 @@ TEST_F(UsbipDeviceTest, SendsItsFramesInPackets) {
 TEST_F(UsbipDeviceTest, SendsNoDepthUnlessItIsAskedFor) {
   EXPECT_TRUE(frame_of_packets().data.empty());
   set_register(0x06, 2);
-  EXPECT_TRUE(submit_packets(++sequence_, 16, 1));  // the endpoint of video
+  EXPECT_TRUE(submit_packets(++sequence_, 16, 1));  // on the video endpoint
   EXPECT_TRUE(device_->complete(*device_->due()));
   EXPECT_TRUE(packets(16).data.empty());
 }

@@ -13,7 +13,7 @@
 
 namespace octurn {
 
-// A ball above the platform, as an ideal sensor sees it: each ray met with the sphere's equation.
+// A ball above the platform, seen by an ideal sensor: each ray is intersected with the sphere.
 
 inline const Eigen::Vector3d ball_centre{0.01, -0.005, 0.06};  // metres, platform frame
 inline constexpr double ball_radius = 0.05;
@@ -56,13 +56,13 @@ inline double ball_angle(std::size_t i, std::size_t count) {
   return 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
 }
 
-/// A turn of so many snapshots.
+/// One turn of `count` snapshots.
 inline SnapshotSource ball_scan(std::size_t count) {
   return {.count = count,
           .read = [count](std::size_t i) { return ball_snapshot(ball_angle(i, count)); }};
 }
 
-/// The same as a scan folder, at the size of a Kinect's image.
+/// Writes such a turn as a scan folder, at the size of a Kinect's image.
 inline void write_ball_scan(const std::filesystem::path& folder, int count) {
   Scan scan{.sensor_name = "test",
             .intrinsics = {},

@@ -5,7 +5,7 @@
 
 namespace octurn {
 
-/// FNV-1a (Fowler, Noll and Vo), 64 bits: tells whether bytes are the same without keeping them.
+/// A 64-bit FNV-1a hash (Fowler, Noll and Vo), to compare bytes without keeping them.
 class Checksum {
  public:
   void add(std::string_view bytes) {

@@ -22,7 +22,7 @@ inline nlohmann::json parsed(const Reply& reply) {
   return nlohmann::json::parse(reply.body, nullptr, false);
 }
 
-/// `octurn serve` on the simulated rig, much faster than life, on a free port of this machine.
+/// `octurn serve` on the simulated rig, much faster than real time, on a free local port.
 class Daemon {
  public:
   explicit Daemon(const std::filesystem::path& folder, std::vector<std::string> more = {},
@@ -50,7 +50,7 @@ class Daemon {
   int port() const { return port_; }
   Program& program() { return program_; }
 
-  /// The most memory that it has had resident so far, bytes.
+  /// Peak resident memory so far, bytes.
   std::size_t peak_memory() const {
     const std::string status =
         content_of("/proc/" + std::to_string(program_.process()) + "/status");
@@ -72,7 +72,7 @@ class Daemon {
     return reply.header("Location");
   }
 
-  /// Waits until a scan is as wanted; what it is then, wanted or not after `patience`.
+  /// Waits until a scan is as wanted, at most for `patience`. @return the scan's last state
   nlohmann::json wait_until(const std::string& scan,
                             const std::function<bool(const nlohmann::json&)>& wanted) const {
     const auto deadline = std::chrono::steady_clock::now() + patience;

@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// What a proof is for.
+/// The request that a digest proof covers.
 struct ProvenRequest {
   std::string method = "GET";
   std::string target = "/";
@@ -19,7 +19,7 @@ inline std::string quoted_field(const std::string& challenge, const std::string&
   return challenge.substr(begin, challenge.find('"', begin) - begin);
 }
 
-/// The Authorization of a client that thinks that this is the password.
+/// The Authorization header of a client that uses this password.
 inline std::string proof_of(const std::string& password, const std::string& nonce,
                             const ProvenRequest& request = {}) {
   std::string count = std::to_string(request.uses);

@@ -18,7 +18,7 @@
 
 namespace octurn {
 
-/// What came back over a connection until its end.
+/// The response that came over a connection until its end.
 struct Reply {
   int status = 0;  ///< 0: no answer
   Headers headers = {};
@@ -42,7 +42,7 @@ inline sockaddr_in internet_address(std::uint32_t host, int port) {
   return address;
 }
 
-/// Connects as a client of another address: all of 127.0.0.0/8 are this machine's.
+/// Connects from another client address; all of 127.0.0.0/8 are local.
 inline FileDescriptor connected_from(std::uint32_t client, int port) {
   FileDescriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const sockaddr_in own = internet_address(client, 0);
@@ -61,14 +61,14 @@ inline void send_text(const FileDescriptor& socket, std::string_view text) {
   while (!text.empty()) {
     const ssize_t sent = ::send(socket.number(), text.data(), text.size(), MSG_NOSIGNAL);
     if (sent <= 0) {
-      return;  // the server has heard enough; what it says is still to be read
+      return;  // the server stopped reading; its response can still be read
     }
     text.remove_prefix(static_cast<std::size_t>(sent));
   }
 }
 
-/// What comes until the server closes the connection. A server that keeps it open and silent for
-/// `patience` fails the test.
+/// Reads until the server closes the connection. The test fails if the server keeps the connection
+/// open and silent for `patience`.
 inline std::string receive_all(const FileDescriptor& socket) {
   std::string text;
   std::string part(65536, '\0');
@@ -98,14 +98,14 @@ inline Reply reply_from(std::string_view text) {
   return reply;
 }
 
-/// Sends a text as it is, and reads the answer to its end.
+/// Sends a text verbatim, and reads the response until the connection ends.
 inline Reply reply_to(int port, std::string_view text) {
   const FileDescriptor socket = connected(port);
   send_text(socket, text);
   return reply_from(receive_all(socket));
 }
 
-/// Sends a request as the page would.
+/// Sends a request with the headers that the page would send.
 inline Reply request(int port, std::string_view method, std::string_view path,
                      std::string_view body = "", const Headers& headers = {}) {
   std::string text;

@@ -13,8 +13,8 @@
 
 namespace octurn {
 
-/// A JPEG of a picture's luminance, with the same difference of blue and of red everywhere.
-/// @param subsampling  TJSAMP_444, TJSAMP_422, ...; of TJSAMP_GRAY without colours
+/// A JPEG of a picture's luminance with constant chrominance Cb (`blue`) and Cr (`red`).
+/// @param subsampling  TJSAMP_444, TJSAMP_422, ...; TJSAMP_GRAY has no chrominance
 inline std::vector<std::uint8_t> jpeg_of(const Picture& picture, int subsampling,
                                          std::uint8_t blue = 128, std::uint8_t red = 128) {
   const int stride = picture.width + 16;
@@ -23,7 +23,7 @@ inline std::vector<std::uint8_t> jpeg_of(const Picture& picture, int subsampling
                                                   std::vector<std::uint8_t>(size, blue),
                                                   std::vector<std::uint8_t>(size, red)};
   for (int y = 0; y < picture.height + 16; ++y) {
-    for (int x = 0; x < stride; ++x) {  // the last row and column go on
+    for (int x = 0; x < stride; ++x) {  // pads by repeating the last row and column
       planes[0][static_cast<std::size_t>(y * stride + x)] =
           picture.samples[static_cast<std::size_t>(std::min(y, picture.height - 1) * picture.width +
                                                    std::min(x, picture.width - 1))];
@@ -49,7 +49,7 @@ inline std::vector<std::uint8_t> jpeg_of(const Picture& picture, int subsampling
   return jpeg;
 }
 
-/// Leaves out a JPEG's Huffman tables.
+/// Removes a JPEG's Huffman tables.
 inline std::vector<std::uint8_t> without_tables(std::vector<std::uint8_t> jpeg) {
   constexpr std::uint8_t huffman_tables = 0xc4;
   constexpr std::uint8_t start_of_scan = 0xda;

@@ -4,12 +4,12 @@
 
 namespace octurn {
 
-/// Arrays in one another, "[[[]]]" for 3.
+/// Nested arrays: "[[[]]]" for a depth of 3.
 inline std::string nested_arrays(std::size_t depth) {
   return std::string(depth, '[') + std::string(depth, ']');
 }
 
-/// Objects in one another, `{"a":{"a":{}}}` for 3.
+/// Nested objects: `{"a":{"a":{}}}` for a depth of 3.
 inline std::string nested_objects(std::size_t depth) {
   std::string text;
   for (std::size_t level = 1; level < depth; ++level) {

@@ -25,21 +25,20 @@
 
 namespace octurn {
 
-/// The path of `octurn`, which is built beside the tests. As a macro it would keep ccache from
-/// giving them to another clone.
+/// The path of `octurn`, which is built beside the tests. A macro with the path would prevent
+/// ccache from sharing the objects between clones.
 inline std::string octurn_program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octurn";
 }
 
-/// What the kernel holds a program to.
+/// Resource limits of a program (setrlimit).
 struct ProgramLimits {
-  std::optional<rlim_t> file_bytes = {};  ///< of each file it writes: a disk that is full
-  std::optional<rlim_t> data_bytes = {};  ///< of private memory, touched or not, all threads'
-                                          ///< stacks but the first one's included
+  std::optional<rlim_t> file_bytes = {};  ///< per file, to simulate a full disk
+  std::optional<rlim_t> data_bytes = {};  ///< private memory, touched or not, with the stacks of
+                                          ///< all threads but the first
 };
 
-/// A program that a test has started, with its two outputs. Killed, if it still runs, when the test
-/// ends.
+/// A child process with its standard output and error. The destructor kills it if it still runs.
 class Program {
  public:
   explicit Program(std::vector<std::string> command, const ProgramLimits& limits = {}) {
@@ -76,7 +75,7 @@ class Program {
 
   void send_signal(int signal) const { ::kill(process_, signal); }
 
-  /// The next line of its standard output; empty at the end, or if none comes within `patience`.
+  /// Reads a line of its standard output; empty at the end, or if none comes within `patience`.
   std::string read_line() {
     std::string line;
     char letter = 0;
@@ -96,7 +95,7 @@ class Program {
     return wait([&](std::string_view part) { output_ += part; });
   }
 
-  /// The same, with its output handed on piece by piece, and kept nowhere.
+  /// Waits for its end, and passes its output to `output` piece by piece instead of keeping it.
   template <typename Sink>
   int wait(Sink output) {
     read_to_end(output);
@@ -105,12 +104,12 @@ class Program {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
 
-  /// What it has written, after `wait`.
+  /// Its standard output, complete after `wait`.
   const std::string& output() const { return output_; }
   const std::string& errors() const { return errors_; }
 
-  /// The most memory that was resident, after `wait`, as `time -v` tells it. The kernel counts from
-  /// the fork, so it is not less than what the test itself had then.
+  /// Peak resident memory, available after `wait`, as in `time -v`. The kernel counts from the
+  /// fork, so it is at least the test program's own resident memory at that time.
   std::size_t peak_memory_bytes() const {
     return static_cast<std::size_t>(usage_.ru_maxrss) * 1024;  // Linux counts in kilobytes
   }

@@ -16,15 +16,15 @@
 
 namespace octurn {
 
-/// A room with furniture, as an ideal sensor sees it that is carried through it: each ray met with
-/// the room's box from inside, and with the furniture's boxes from outside.
+/// A room with furniture, seen by an ideal sensor that is carried through it. Each ray is
+/// intersected with the room's box from inside and with the furniture's boxes from outside.
 struct Room {
   Box walls = {};                   ///< metres
   std::vector<Box> furniture = {};  ///< metres
   Intrinsics lens = {};
 };
 
-/// 6 x 5 x 2.5 m, seen by a Kinect. No side lies on a leaf's.
+/// A room of 6 x 5 x 2.5 m, seen by a Kinect. No side coincides with a leaf's face.
 inline Room large_room() {
   return {.walls = {.min = {-3.013, -2.507, 0.103}, .max = {2.987, 2.493, 2.603}},
           .furniture = {{.min = {-2.9, -1.8, 0.1}, .max = {-0.9, -0.9, 0.55}},   // a sofa
@@ -35,7 +35,7 @@ inline Room large_room() {
           .lens = {.depth_unit = 0.0002}};
 }
 
-/// A chamber of 1.2 x 1 x 0.9 m with a box in it, seen by few samples, so that tests are quick.
+/// A chamber of 1.2 x 1 x 0.9 m with a box in it, seen in few samples to keep tests fast.
 inline Room small_room() {
   return {.walls = {.min = {-0.613, -0.507, 0.053}, .max = {0.587, 0.493, 0.953}},
           .furniture = {{.min = {0.1, 0.1, 0.05}, .max = {0.35, 0.3, 0.4}}},
@@ -48,8 +48,8 @@ inline Room small_room() {
                    .depth_unit = 0.0002}};
 }
 
-/// Distance along a ray, in lengths of it, to where it enters and leaves a box; entered after left
-/// if it misses it.
+/// The distances along a ray, in lengths of `ray`, at which it enters and leaves a box. The first
+/// is greater than the second if the ray misses the box.
 inline std::array<double, 2> meet(const Box& box, const Eigen::Vector3d& eye,
                                   const Eigen::Vector3d& ray) {
   double enters = std::numeric_limits<double>::lowest();
@@ -63,7 +63,7 @@ inline std::array<double, 2> meet(const Box& box, const Eigen::Vector3d& eye,
   return {enters, leaves};
 }
 
-/// The pose of snapshot `i`: somewhere around the room's middle, looking to all sides in turn.
+/// The pose of snapshot `i`: near the room's centre, with headings that cover all sides.
 inline Eigen::Isometry3d room_pose(const Room& room, int i) {
   constexpr double golden_angle = 2.399963;
   constexpr std::array pitches_deg{-35.0, 5.0, -15.0, 30.0, -55.0, 15.0, -5.0};
@@ -113,7 +113,7 @@ inline SnapshotSource room_scan(const Room& room, std::size_t count) {
           .read = [room](std::size_t i) { return room_snapshot(room, static_cast<int>(i)); }};
 }
 
-/// The same as a scan folder with free poses.
+/// Writes a scan of the room as a scan folder with free poses.
 inline void write_room_scan(const std::filesystem::path& folder, const Room& room, int count) {
   Scan scan{.sensor_name = "test", .intrinsics = room.lens, .clip = everywhere};
   for (int i = 0; i < count; ++i) {

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// A scan folder: a square of 8 cm that lies across the platform's middle, tilted towards the
-/// sensor, seen at so many stops. Made of depth images of one distance, so it needs no sensor.
+/// Writes a scan folder: a horizontal square of 8 cm over the platform's centre, seen from above at
+/// each stop. Its depth images hold a single distance, so it needs no sensor.
 inline Scan write_small_scan(const std::filesystem::path& folder, int snapshots) {
   Scan scan{.sensor_name = "test",
             .clip = {.min = {-0.14, -0.14, 0.002}, .max = {0.14, 0.14, 0.4}}};

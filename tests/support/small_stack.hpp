@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// Runs `action`, which must not throw, on a thread with the stack that civetweb gives its own.
-/// More recursion than that ends the test program. Other processors need more for any thread.
+/// Runs `action`, which must not throw, on a thread with civetweb's stack size. Deeper recursion
+/// crashes the test program. Some processors have a larger minimum stack size.
 inline void run_on_small_stack(std::function<void()> action) {
   const auto stack_bytes =
       std::max(std::size_t{102'400}, static_cast<std::size_t>(::sysconf(_SC_THREAD_STACK_MIN)));

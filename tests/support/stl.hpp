@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// The number of triangles of a binary STL, or -1 if its size is not what that number makes it.
+/// The number of triangles of a binary STL, or -1 if its size does not match that number.
 inline std::int64_t triangles_of_whole_stl(std::string_view stl) {
   std::uint32_t count = 0;
   if (stl.size() < 84) {
@@ -19,8 +19,8 @@ inline std::int64_t triangles_of_whole_stl(std::string_view stl) {
   return stl.size() == 84 + std::size_t{50} * count ? std::int64_t{count} : -1;
 }
 
-/// Edges of a binary STL that are not met by exactly as many the other way round, corners compared
-/// bit by bit: 0 for a closed surface.
+/// Counts the directed edges of a binary STL that are not balanced by as many opposite ones.
+/// Corners are compared bit by bit; 0 means a closed surface.
 inline int open_edges(std::string_view stl) {
   std::map<std::pair<std::string_view, std::string_view>, int> balance;
   for (std::size_t facet = 84; facet + 50 <= stl.size(); facet += 50) {

@@ -11,7 +11,7 @@
 
 namespace octurn {
 
-/// An empty folder of a test's own, gone with everything in it when the test ends.
+/// An empty folder, which the destructor deletes with its content.
 class TemporaryFolder {
  public:
   TemporaryFolder() {

@@ -8,8 +8,8 @@
 
 namespace octurn {
 
-/// The Error that `action` throws, whose message has to be one line. Without one the test fails,
-/// and the Error returned is of an unknown kind.
+/// Returns the Error that `action` throws; its message has to be one line. If nothing is thrown,
+/// the test fails and the returned Error is of an unknown kind.
 template <typename Action>
 Error error_thrown_by(const Action& action) {
   try {

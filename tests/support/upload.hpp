@@ -9,7 +9,7 @@ namespace octurn {
 
 constexpr const char* update_path = "/api/v1/update";
 
-/// What comes before an update. @param more  headers, each with its line end
+/// The request head of an update. @param more  further headers, each with its line end
 inline std::string head_of_upload(std::size_t bytes, const std::string& more = "",
                                   const std::string& query = "") {
   return std::string("PUT ") + update_path + query + " HTTP/1.1\r\nHost: localhost\r\n" +
@@ -17,7 +17,7 @@ inline std::string head_of_upload(std::size_t bytes, const std::string& more = "
          "\r\n" + more + "\r\n";
 }
 
-/// Sends an update.
+/// Uploads an update bundle.
 inline Reply upload(const Daemon& daemon, const std::string& bundle, const std::string& more = "",
                     const std::string& query = "") {
   return reply_to(daemon.port(), head_of_upload(bundle.size(), more, query) + bundle);

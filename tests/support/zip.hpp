@@ -14,7 +14,7 @@
 
 namespace octurn {
 
-/// The files of a zip archive, in their order; none if it is not a whole one.
+/// The files of a zip archive in their order; none if the archive is invalid.
 inline std::vector<ArchivedFile> unzipped(std::string_view archive) {
   const TemporaryFolder folder;
   put(folder.path() / "a.zip", archive);
@@ -28,14 +28,14 @@ inline std::vector<ArchivedFile> unzipped(std::string_view archive) {
     EXPECT_EQ(unzOpenCurrentFile(zip), UNZ_OK);
     EXPECT_EQ(unzReadCurrentFile(zip, content.data(), static_cast<unsigned>(content.size())),
               static_cast<int>(content.size()));
-    EXPECT_EQ(unzCloseCurrentFile(zip), UNZ_OK);  // or its checksum is wrong
+    EXPECT_EQ(unzCloseCurrentFile(zip), UNZ_OK);  // verifies the checksum
     files.push_back({.name = name.data(), .content = std::move(content)});
   }
   unzClose(zip);
   return files;
 }
 
-/// The content of one of them; empty, and a failure of the test, if there is none.
+/// The content of a file in an archive. If there is none, the test fails and the content is empty.
 inline std::string content_in(const std::vector<ArchivedFile>& files, std::string_view name) {
   for (const ArchivedFile& file : files) {
     if (file.name == name) {
@@ -46,7 +46,7 @@ inline std::string content_in(const std::vector<ArchivedFile>& files, std::strin
   return "";
 }
 
-/// The same of a file of JSON.
+/// The parsed content of a JSON file in an archive.
 inline nlohmann::json json_in(const std::vector<ArchivedFile>& files, std::string_view name) {
   return nlohmann::json::parse(content_in(files, name), nullptr, false);
 }

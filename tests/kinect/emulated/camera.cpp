@@ -20,7 +20,7 @@ std::uint16_t get16(std::span<const std::uint8_t> from, std::size_t at) {
                                : std::uint16_t{0};
 }
 
-/// 11 bits for each reading, the first in the highest bits.
+/// Packs readings into 11 bits each, the first in the most significant bits.
 std::vector<std::uint8_t> packed(std::span<const Camera::Reading> readings) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(frame_bytes);
@@ -44,7 +44,7 @@ bool Camera::command(std::span<const std::uint8_t> message) {
     return false;
   }
   const std::vector<std::uint8_t> body = answer(get16(message, 4), message.subspan(8));
-  reply_.assign(message.begin(), message.begin() + 8);  // command and tag come back as they are
+  reply_.assign(message.begin(), message.begin() + 8);  // the reply echoes command and tag
   reply_[0] = 'R';
   reply_[1] = 'B';
   put16(reply_, 2, static_cast<std::uint16_t>(body.size() / 2));
@@ -64,14 +64,14 @@ std::vector<std::uint8_t> Camera::answer(std::uint16_t command,
     case 0x03:
       write_register(get16(body, 0), get16(body, 2));
       break;
-    case 0x04: {  // the parameters of its factory
+    case 0x04: {  // factory calibration
       reply.resize(is_1414 ? 322 : 334);
       const std::array<float, 4> plane = {kinect_.baseline_cm, 2.3F, kinect_.reference_distance_cm,
                                           kinect_.reference_pixel_cm};
       std::memcpy(&reply[94], plane.data(), sizeof plane);
       break;
     }
-    case 0x16:  // parameters of its algorithms
+    case 0x16:  // algorithm parameters
       reply.resize(get16(body, 0) == 0x40 ? 118 : get16(body, 0) == 0x41 ? 8 : 4);
       if (get16(body, 0) == 0) {
         put16(reply, 2, kinect_.shift);
@@ -143,7 +143,7 @@ void Camera::begin_frame() {
   packed_ = packed(frames_(frame_));
 }
 
-/// Whether a packet of this frame goes with those that this frame or the one before loses.
+/// Whether a packet of this frame is among those that this frame or the previous one loses.
 bool Camera::is_lost(int packet) const {
   const auto loses = [this](int frame, int number) {
     return frame >= 0 && frame % kinect_.loss_period == 0 && number >= kinect_.first_lost &&

@@ -13,27 +13,27 @@
 
 namespace octurn {
 
-/// The camera of a Kinect v1 as it speaks over USB: commands and their replies by control
-/// transfers, and depth in isochronous packets, one for each microframe of 125 us.
+/// The USB side of a Kinect v1's camera: commands and replies by control transfers, and depth in
+/// isochronous packets, one for each microframe of 125 us.
 class Camera {
  public:
   using Reading = std::uint16_t;
   static constexpr std::size_t pixels = std::size_t{640} * 480;
-  /// What is seen in each frame since the stream began: a view that lives until the next call.
+  /// Returns the readings of a frame, counted since the stream began; valid until the next call.
   using Frames = std::function<std::span<const Reading>(int frame)>;
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 
   Camera(EmulatedKinect& kinect, Frames frames) : kinect_(kinect), frames_(std::move(frames)) {}
 
-  /// Takes a command. @return whether it is one
+  /// Accepts a command. @return false if the message is no command
   bool command(std::span<const std::uint8_t> message);
 
-  /// Hands over the reply to the last command.
+  /// Moves out the reply to the last command.
   std::vector<std::uint8_t> take_reply() { return std::exchange(reply_, {}); }
 
-  /// What comes on the depth endpoint in the next microframe.
-  /// @return bytes written to `packet`, 0 if none comes
+  /// Writes the depth endpoint's packet of the next microframe.
+  /// @return bytes written to `packet`, 0 if that microframe has no packet
   int next_packet(std::span<std::uint8_t> packet);
 
  private:
@@ -47,13 +47,13 @@ class Camera {
   std::map<std::uint16_t, std::uint16_t> registers_ = {};
   std::vector<std::uint8_t> reply_ = {};
   std::vector<std::uint8_t> packed_ = {};  // the frame that is being sent, 11 bits a reading
-  int frame_ = -1;                         // since the stream began
-  int microframe_ = 0;                     // of the frame
+  int frame_ = -1;                         // counted since the stream began
+  int microframe_ = 0;                     // counted within the frame
   bool frame_is_damaged_ = false;
   std::uint8_t sequence_ = 0;
 };
 
-/// The same frames again and again. @param frames  a whole number of them, at least one
+/// Repeats a sequence of frames. @param frames  readings of one or more whole frames
 Camera::Frames over_and_over(std::span<const Camera::Reading> frames);
 
 }  // namespace octurn

@@ -13,7 +13,7 @@
 #include "kinect/emulated/mapped_file.hpp"
 #include "kinect/emulated/usb_parts.hpp"
 
-// What libusb's headers leave open: its stand-in's devices, and its view of the bus.
+// The types that libusb's headers leave incomplete: devices, and a program's view of the bus.
 
 struct libusb_device {
   libusb_context* context = nullptr;
@@ -22,12 +22,12 @@ struct libusb_device {
 
 struct libusb_device_handle {
   libusb_device* device = nullptr;
-  int plugged_times = 0;  // when it was opened
+  int plugged_times = 0;  // the device's count when the handle was opened
 };
 
 /// A program's view of the bus. libfreenect uses each from one thread at a time.
 struct libusb_context {
-  /// The Kinect that the environment names.
+  /// The Kinect of the folder in the environment variable.
   struct Bus {
     explicit Bus(const std::filesystem::path& folder)
         : control(folder / "kinect"), frames(folder / "frames") {}
@@ -42,8 +42,8 @@ struct libusb_context {
   std::array<libusb_device, 3> devices = {};
   std::deque<libusb_transfer*> waiting = {};
   std::deque<libusb_transfer*> cancelled = {};
-  std::chrono::steady_clock::time_point begin = {};  // of the microframes that transfers wait for
-  std::int64_t microframes = 0;                      // since then
+  std::chrono::steady_clock::time_point begin = {};  // start of the current run of transfers
+  std::int64_t microframes = 0;                      // completed since `begin`
 };
 
 /// Whether the device was unplugged since it was opened.

@@ -1,9 +1,9 @@
-// A stand-in for libusb-1.0, as far as libfreenect and OpenNI2's drivers use it: its bus has one
-// emulated Kinect, or nothing. A program that finds it first (by LD_LIBRARY_PATH) has that bus in
-// place of the machine's; everything above is as it would be with a real one.
+// A replacement of libusb-1.0, as far as libfreenect and OpenNI2's drivers use it. Its bus has one
+// emulated Kinect or nothing. A program that loads it first (LD_LIBRARY_PATH) sees that bus instead
+// of the machine's; all layers above are the real ones.
 
 //
-// Here are its devices and what is said to them by control transfers.
+// This file has the devices and their control transfers.
 
 #include <libusb.h>
 
@@ -20,7 +20,7 @@ using octurn::KinectPart;
 
 namespace {
 
-constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to a request that a device has not
+constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to an unsupported request
 
 }  // namespace
 
@@ -78,7 +78,7 @@ int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor
   return 0;
 }
 
-/// Of one interface: an audio device that has no firmware yet.
+/// Returns a configuration with one interface, as an audio device without firmware has.
 int libusb_get_active_config_descriptor(libusb_device* /*device*/,
                                         libusb_config_descriptor** configuration) {
   auto made = std::make_unique<libusb_config_descriptor>();

@@ -1,4 +1,4 @@
-// The transfers of libusb's stand-in, in which depth comes as time goes by.
+// The transfers of the libusb replacement, which deliver depth in real time.
 
 #include <libusb.h>
 #include <sys/time.h>
@@ -26,7 +26,7 @@ steady_clock::time_point due(const libusb_context& context) {
                              real * std::chrono::duration<double>(microframe));
 }
 
-/// Gives a transfer back with what came on its endpoint: depth on 0x82, nothing on others.
+/// Completes the oldest transfer: with depth packets on endpoint 0x82, with empty ones on others.
 void complete(libusb_context& context) {
   libusb_transfer* transfer = context.waiting.front();
   context.waiting.pop_front();
@@ -45,7 +45,7 @@ void complete(libusb_context& context) {
   transfer->callback(transfer);
 }
 
-/// @return whether there were any
+/// Ends all transfers with a status. @return whether there were any
 bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status status) {
   const bool any = !transfers.empty();
   while (!transfers.empty()) {
@@ -57,9 +57,9 @@ bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status s
   return any;
 }
 
-/// Gives back what is over. A program that a busy machine keeps waiting gets all that it missed, as
-/// no real device would give it: only tests decide what is lost.
-/// @return whether there was any
+/// Ends the transfers that are due. Unlike a real device, the emulation never drops data for a
+/// program that a busy machine delays: losses are up to the tests.
+/// @return whether any transfer ended
 bool handle_events(libusb_context& context) {
   if (give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
     return true;

@@ -13,7 +13,7 @@
 
 namespace octurn {
 
-/// A file in memory, shared with every other process that maps it.
+/// A file mapped into memory, shared with every process that maps it.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& file) : size_(std::filesystem::file_size(file)) {
@@ -29,7 +29,7 @@ class MappedFile {
 
   void* data() const { return data_; }
 
-  /// The value that someone has made in it.
+  /// The file's content as a value, which must have been constructed in it.
   template <typename Value>
   Value& as() const {
     return *static_cast<Value*>(data_);

@@ -11,7 +11,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint8_t low(std::uint16_t value) { return static_cast<std::uint8_t>(value & 0xFFU); }
 constexpr std::uint8_t high(std::uint16_t value) { return static_cast<std::uint8_t>(value >> 8U); }
 
-/// Acceleration, high bytes first.
+/// The motor's state with the acceleration, big-endian.
 std::size_t reply_of_motor(const EmulatedKinect& kinect, std::span<std::uint8_t> reply) {
   std::array<std::uint8_t, 10> state = {};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -47,15 +47,15 @@ Bytes device_descriptor(KinectPart part, KinectModel model) {
           1};
 }
 
-/// One interface of the vendor's own class; the camera's has an endpoint for video and one for
-/// depth.
+/// A configuration with one vendor-specific interface. The camera's interface has an endpoint for
+/// video and one for depth.
 Bytes configuration_descriptor(KinectPart part) {
   const bool is_camera = part == KinectPart::camera;
   const std::uint8_t endpoints = is_camera ? 2 : 0;
   const auto total = static_cast<std::uint8_t>(18 + 7 * endpoints);
   Bytes bytes = {9, 2, total, 0, 1, 1, 0, 0xC0, 50, 9, 4, 0, 0, endpoints, 0xFF, 0, 0, 0};
   for (std::uint8_t endpoint = 0x81; endpoint < 0x81 + endpoints; ++endpoint) {
-    // wMaxPacketSize: 960 bytes, and one more transaction in each microframe
+    // wMaxPacketSize: 960 bytes, one additional transaction per microframe
     bytes.insert(bytes.end(), {7, 5, endpoint, 1, low(0x0800 + 960), high(0x0800 + 960), 1});
   }
   return bytes;
@@ -79,7 +79,7 @@ std::optional<Bytes> descriptor(KinectPart part, std::uint16_t value, KinectMode
     case 3:
       switch (index) {
         case 0:
-          return Bytes{4, 3, 0x09, 0x04};  // English
+          return Bytes{4, 3, 0x09, 0x04};  // language: US English
         case 1:
           return string_descriptor(part == KinectPart::camera  ? "Xbox NUI Camera"
                                    : part == KinectPart::motor ? "Xbox NUI Motor"

@@ -12,7 +12,7 @@
 
 namespace octurn {
 
-/// A Kinect is a hub with up to three USB devices on it.
+/// The USB devices of a Kinect, which is a hub with up to three of them.
 enum class KinectPart { camera, motor, audio };
 
 inline constexpr std::string_view kinect_serial_number = "A00000000000000A";
@@ -35,14 +35,14 @@ struct UsbSetup {
   bool is_in() const { return (type & 0x80U) != 0; }
 };
 
-/// Carries out a vendor's request, of which a Kinect has few.
-/// @param data  that comes with it, or the room for its reply
-/// @return bytes transferred; nothing if the device stalls, as it does on what it has not
+/// Carries out a vendor request.
+/// @param data  the request's data, or the buffer for its reply
+/// @return bytes transferred; nothing if the device stalls, as on an unsupported request
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
                                           const EmulatedKinect& kinect, Camera& camera,
                                           std::span<std::uint8_t> data);
 
-/// Answers a standard request (USB 2.0, 9.4), as what enumerates devices sends them.
+/// Answers a standard request (USB 2.0, 9.4), as a host sends it to enumerate devices.
 /// @return the reply, no longer than was asked for; nothing if the device stalls
 std::optional<std::vector<std::uint8_t>> standard_request(KinectPart part, const UsbSetup& setup,
                                                           KinectModel model);

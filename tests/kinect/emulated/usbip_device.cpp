@@ -9,7 +9,7 @@
 namespace octurn {
 namespace {
 
-// Messages are 48 bytes, of 32-bit words with the high byte first, and data and packets after them.
+// A message is a header of 48 bytes, big-endian 32-bit words, followed by data and packets.
 constexpr std::size_t header_bytes = 48;
 constexpr std::size_t setup_at = 40;
 constexpr std::size_t packet_bytes = 16;
@@ -18,8 +18,8 @@ enum Word : std::size_t {
   sequence = 1,
   direction = 3,
   endpoint = 4,
-  status = 5,        // of a reply; the transfer that CMD_UNLINK is about
-  buffer_bytes = 6,  // actual bytes, in a reply
+  status = 5,        // of a reply; in CMD_UNLINK the transfer to unlink
+  buffer_bytes = 6,  // in a reply, the bytes transferred
   packets = 8,
 };
 constexpr std::uint32_t submit = 1;
@@ -28,7 +28,7 @@ constexpr std::uint32_t submitted = 3;
 constexpr std::uint32_t unlinked = 4;
 constexpr std::uint32_t not_isochronous = 0xFFFFFFFF;
 
-// The kernel's errno values, as a device's end sends them.
+// Negative errno values of the kernel, as the device's side sends them.
 constexpr std::uint32_t stalled = 0U - EPIPE;
 constexpr std::uint32_t was_unlinked = 0U - ECONNRESET;
 
@@ -49,7 +49,7 @@ void put_word(std::span<std::uint8_t> bytes, std::size_t number, std::uint32_t v
 }
 
 UsbSetup setup_of(std::span<const std::uint8_t> header) {
-  const auto at = header.subspan(setup_at);  // words of 16 bits with the low byte first
+  const auto at = header.subspan(setup_at);  // little-endian 16-bit words
   const auto two = [&](std::size_t i) {
     return static_cast<std::uint16_t>(at[i] | at[i + 1] << 8);
   };
@@ -64,7 +64,7 @@ std::vector<std::uint8_t> reply_to(std::uint32_t reply, std::uint32_t of, std::u
   return message;
 }
 
-/// @return false if the other end closed before all came
+/// Reads exactly `bytes.size()` bytes. @return false if the peer closed before that
 bool receive(int socket, std::span<std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::recv(socket, bytes.data(), bytes.size(), 0);
@@ -171,7 +171,7 @@ bool UsbipDevice::complete(Clock::time_point now) {
   std::vector<std::uint8_t> descriptors(count * packet_bytes);
   std::uint32_t offset = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    // Data follow each other without the gaps that they have in the transfer's buffer.
+    // Packets' data are contiguous in the message, without the gaps of the transfer's buffer.
     const std::size_t end = message.size();
     message.resize(end + transfer.packet_bytes[i]);
     const auto bytes =

@@ -14,39 +14,39 @@
 
 namespace octurn {
 
-/// A USB device of an emulated Kinect at its end of a USB/IP connection, from where a real one's
-/// server has been asked for it: what follows is a USB bus as messages (Linux,
-/// Documentation/usb/usbip_protocol.rst). At the other end is the kernel's vhci_hcd, above which
-/// everything is as with a real Kinect.
+/// A USB device of an emulated Kinect: the server's side of a USB/IP connection after the import
+/// handshake, when USB transfers travel as messages (Linux, Documentation/usb/usbip_protocol.rst).
+/// The peer is the kernel's vhci_hcd; all layers above it are those of a real Kinect.
 class UsbipDevice {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param socket  a stream; the device is plugged in as long as it is open at both ends
+  /// @param socket  a stream socket; the device is plugged in while both ends are open
   UsbipDevice(KinectPart part, EmulatedKinect& kinect, Camera& camera, FileDescriptor socket)
       : part_(part), kinect_(kinect), camera_(camera), socket_(std::move(socket)) {}
 
   int socket() const { return socket_.number(); }
 
-  /// Takes one message, and waits until it is whole. Control transfers are answered at once.
-  /// @return false if the other end has gone, or sent what is no message
+  /// Reads one message, and blocks until it is complete. Control transfers are answered at once.
+  /// @return false if the peer closed, or sent an invalid message
   bool take_message();
 
-  /// When the isochronous transfer that waits longest is over; nothing if none waits. A frame takes
-  /// 1/30 s over the Kinect's speed. A machine that is too busy gets its frames later, and whole:
-  /// only tests decide what is lost.
+  /// When the oldest pending isochronous transfer is due; nothing if none is pending. A frame takes
+  /// 1/30 s divided by the Kinect's speed. A busy machine gets frames late but complete: losses are
+  /// up to the tests.
   std::optional<Clock::time_point> due() const;
 
-  /// Gives that transfer back: with what came on the depth endpoint, or on the other one, nothing.
-  /// @return false if the other end has gone
+  /// Completes that transfer: with depth packets on the depth endpoint, with empty ones on the
+  /// other.
+  /// @return false if the peer closed
   bool complete(Clock::time_point now);
 
  private:
-  /// An isochronous transfer that waits for its time.
+  /// A pending isochronous transfer.
   struct Transfer {
     std::uint32_t sequence = 0;
     std::uint32_t endpoint = 0;
-    std::vector<std::uint32_t> packet_bytes = {};  // room for each packet
+    std::vector<std::uint32_t> packet_bytes = {};  // capacity of each packet
     Clock::time_point due = {};
   };
 
@@ -61,7 +61,7 @@ class UsbipDevice {
   Camera& camera_;
   FileDescriptor socket_;
   std::deque<Transfer> waiting_ = {};
-  Clock::time_point over_ = {};  // the last of the transfers before
+  Clock::time_point over_ = {};  // end of the last completed transfer
 };
 
 }  // namespace octurn

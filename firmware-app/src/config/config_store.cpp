@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A configuration with the options of the command line.
+/// Applies the options of the command line to a configuration.
 Config with_options(Config config, const json& given) {
   JsonObject keys(given, ErrorCode::bad_settings, "");
   read_fields(keys, network_fields(config));
@@ -107,9 +107,10 @@ void ConfigStore::replace(const json& values) {
   set(values);
 }
 
-/// Checks the settings, stores them, and puts in force what can be; `mutex_` is held.
+/// Checks and stores the settings. Those that need no restart take effect. The caller holds
+/// `mutex_`.
 void ConfigStore::set(const json& values) {
-  const Config next = wanted(values);  // or they are refused
+  const Config next = wanted(values);  // throws if they are invalid
   write_stored_settings(preset_.data, values);
   stored_ = {.values = values};
   in_force_.scan = next.scan;

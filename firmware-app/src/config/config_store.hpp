@@ -11,32 +11,32 @@
 
 namespace octurn {
 
-/// What the page's settings stand between.
+/// The layers of the configuration below and above the page's settings.
 struct ConfigLayers {
   Config file = {};                                 ///< octurn.json, over the defaults
   nlohmann::json given = nlohmann::json::object();  ///< command line, by its keys in octurn.json
 };
 
-/// The configuration in force, of four layers: the defaults, octurn.json, the page's settings.json
-/// in the folder `data`, and the command line. Keeps what the page sets. A scan's settings and the
-/// names of this host are in force at once, all else with the next ConfigStore. Any thread may call
-/// anything.
+/// The configuration in force, merged of four layers: the defaults, octurn.json, the page's
+/// settings.json in the folder `data`, and the command line. Stores the page's settings. A scan's
+/// settings and the host names take effect at once, all others in the next ConfigStore.
+/// Thread-safe.
 class ConfigStore {
  public:
-  /// A damaged settings.json is no error: `trouble` then tells of it.
-  /// @throws Error "bad-settings"  of the command line
+  /// A damaged settings.json does not throw: `trouble` then describes it.
+  /// @throws Error "bad-settings"  for an option of the command line
   explicit ConfigStore(ConfigLayers layers);
 
-  /// What is in force.
+  /// The configuration in force.
   Config config() const;
 
-  /// Without the page's settings: what a key that is removed goes back to.
+  /// The configuration without the page's settings: the values of keys that the page removes.
   const Config& preset() const { return preset_; }
 
-  /// What the page has set.
+  /// The settings that the page has set.
   nlohmann::json stored() const;
 
-  /// What is wrong with settings.json; empty: nothing.
+  /// The error in settings.json; empty if there is none.
   std::string trouble() const;
 
   /// Merges a change into the page's settings; null removes a key.
@@ -49,11 +49,12 @@ class ConfigStore {
   /// Keys whose setting is not in force yet, such as "turntable.gear_ratio".
   std::vector<std::string> restart_needed() const;
 
-  /// The daemon serves: the settings are good. @throws Error "disk-full", "write-failed"
+  /// Stores the settings as good: the daemon serves with them.
+  /// @throws Error "disk-full", "write-failed"
   void keep_as_good() const;
 
-  /// Puts the settings that the daemon served with last in the place of those that it cannot serve
-  /// with. @return false if they are the same
+  /// Restores the settings that the daemon last served with.
+  /// @return false if they are the current ones
   bool return_to_last_good();
 
  private:
@@ -67,14 +68,14 @@ class ConfigStore {
   Config in_force_;
 };
 
-/// Who may open the page, as the page itself has set it; over `password_file` if it is there.
+/// The password file that the page writes. If it exists, it overrides `password_file`.
 std::filesystem::path own_password_file(const Config& config);
 
-/// Whether a setting is in force at once. @param key  in octurn.json, an outermost one
+/// Whether a setting takes effect without a restart. @param key  top-level key of octurn.json
 bool applies_at_once(std::string_view key);
 
-/// JSON Schema of octurn.json, with "x-restart" for keys that wait for the next start. Without what
-/// the rig is built of: that is measured beside it, and the page cannot set it.
+/// JSON Schema of octurn.json. "x-restart" is true for keys that take effect at the next start.
+/// Leaves out the keys that describe the rig's construction, which the page cannot set.
 nlohmann::json config_schema();
 
 }  // namespace octurn

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr const char* settings_file = "settings.json";
 constexpr const char* last_good_file = "settings.last.json";
-constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a body has 64 KiB at most
+constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a request has at most 64 KiB
 
 [[noreturn]] void refuse_fixed(const std::string& key) {
   throw Error(ErrorCode::bad_settings, "\"" + key + "\": cannot be set from the page",
@@ -41,10 +41,10 @@ void refuse_fixed(const json& values) {
   }
 }
 
-/// What a file holds, and what is wrong with it.
+/// The content of a settings file, or the error in it.
 struct FileContent {
   std::optional<json> values = {};
-  std::string trouble = {};  ///< empty: nothing, or there is no file
+  std::string trouble = {};  ///< empty: no error, or no file
 };
 
 FileContent read_object(const fs::path& file) {
@@ -65,7 +65,7 @@ FileContent read_object(const fs::path& file) {
   return content;
 }
 
-/// @return why the settings are refused; empty: they are not
+/// @return why the settings are refused; empty if they are accepted
 std::string refusal(const Config& base, const json& values) {
   try {
     with_settings(base, values);
@@ -75,7 +75,7 @@ std::string refusal(const Config& base, const json& values) {
   }
 }
 
-/// A change for each setting, however deep it stands.
+/// Splits settings into changes of one setting each, also within nested objects.
 std::vector<json> single_settings(const json& values) {
   std::vector<json> singles;
   for (const auto& [key, value] : values.items()) {
@@ -90,7 +90,7 @@ std::vector<json> single_settings(const json& values) {
   return singles;
 }
 
-/// Settings without those that are refused: of a later version, or no longer in agreement with
+/// Keeps the settings that are accepted. Others may be of a later version, or contradict
 /// octurn.json.
 json usable_part(const Config& base, const json& values) {
   json usable = json::object();

@@ -17,8 +17,8 @@ struct TimedFrame {
   std::chrono::steady_clock::time_point time = {};
 };
 
-/// A depth camera: a Kinect v1, a simulated one, any sensor that OpenNI2 knows, or a recording in
-/// place of one. Used by one thread at a time.
+/// A depth camera: a Kinect v1, a simulated one, any sensor that OpenNI2 supports, or a recording
+/// in place of one. Used by one thread at a time.
 class DepthSensor {
  public:
   DepthSensor() = default;
@@ -29,8 +29,8 @@ class DepthSensor {
   virtual const std::string& name() const = 0;
   virtual const Intrinsics& intrinsics() const = 0;
 
-  /// What tells this sensor from others of its kind: its serial number, else where on USB it is
-  /// plugged in; empty if neither is known.
+  /// Identifies this sensor among others of its kind: its serial number, else its USB port; empty
+  /// if neither is known.
   virtual std::string serial() const = 0;
 
   /// Waits for the next frame.
@@ -39,15 +39,15 @@ class DepthSensor {
   ///               if the device is gone
   virtual std::optional<TimedFrame> read(const std::stop_token& stop) = 0;
 
-  /// The attitude by its accelerometer; nothing if it has none that can be read.
+  /// The attitude from the accelerometer; nothing if the sensor has none that can be read.
   virtual std::optional<Tilt> tilt() const = 0;
 
   /// The number of damaged frames that were dropped since it was opened; nothing if it does not
   /// count them.
   virtual std::optional<int> damaged_frames() const = 0;
 
-  /// Tells a simulated sensor or a recording the platform's angle. A recording begins with its
-  /// first frame of that angle again. Other sensors ignore it.
+  /// Sets the platform's angle in a simulated sensor or a recording. A recording restarts with its
+  /// first frame of that angle. Other sensors ignore it.
   /// @param angle  radians, counter-clockwise seen from above
   virtual void show_angle(double angle) = 0;
 
@@ -57,7 +57,7 @@ class DepthSensor {
   virtual void show_wall(std::optional<double> distance);
 
   /// Turns the object of a simulated sensor over. Other sensors ignore it: a person does it.
-  /// @param pose  which way it lies, 0: as it stood at first
+  /// @param pose  number of the pose; 0 is the initial one
   virtual void lay_object(int pose);
 };
 

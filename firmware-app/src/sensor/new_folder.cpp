@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
               "Name a folder that does not exist yet, where this program may write.");
 }
 
-/// Has the disk of that folder write everything that it was given.
+/// Writes the folder's file system to disk (syncfs(2)).
 void sync_disk_of(const fs::path& folder) {
   const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!opened.is_open() || ::syncfs(opened.number()) != 0) {

@@ -4,8 +4,8 @@
 
 namespace octurn {
 
-/// A folder that appears whole or not at all: under a temporary name beside its own until it is
-/// committed. Destroyed before that, it leaves nothing behind.
+/// A folder that appears whole or not at all. It has a temporary name beside its own until it is
+/// committed; the destructor removes an uncommitted one.
 class NewFolder {
  public:
   /// @throws Error "write-failed"  if the folder exists or cannot be made
@@ -14,10 +14,10 @@ class NewFolder {
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
-  /// Where its files are until it is committed.
+  /// The temporary folder, to write files into.
   const std::filesystem::path& path() const { return temporary_; }
 
-  /// Gives the folder its name; returns when it is on the disk. @throws Error "write-failed"
+  /// Renames the folder to its own name; returns once it is on disk. @throws Error "write-failed"
   void commit();
 
  private:

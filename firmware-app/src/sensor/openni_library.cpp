@@ -11,12 +11,12 @@ namespace {
 constexpr const char* simulation_hint =
     "Check the simulator's settings, and that its mesh is an STL file in millimetres.";
 
-/// OpenNI2 writes the address into its error text, and past the end of that text's 1,024 bytes.
+/// OpenNI2 copies the URI into its error text, and overflows that buffer of 1,024 bytes.
 constexpr std::size_t max_uri_length = 512;
 
-/// The first sensor that was there when OpenNI2 started, or else any Kinect: it may have been
-/// plugged in since. Simulated sensors that were opened before stay on OpenNI2's list and are
-/// skipped.
+/// URI of the first sensor on OpenNI2's list, which is filled when OpenNI2 starts; else of any
+/// Kinect, which may have been plugged in since. Skips simulated sensors: once opened, they stay on
+/// the list.
 std::string any_sensor() {
   openni::Array<openni::DeviceInfo> devices;
   openni::OpenNI::enumerateDevices(&devices);
@@ -67,8 +67,8 @@ void open_device(openni::Device& device, const std::string& uri) {
 }
 
 /// Loading changes the working directory of the process for a moment. The drivers are never
-/// unloaded: PSLink and PS1080, which OpenNI2 brings along, cancel their threads then, and take
-/// away the code that these are still in. That was a SIGSEGV at some of the ends of the program.
+/// unloaded: PSLink and PS1080, which come with OpenNI2, cancel their threads, and unloading unmaps
+/// the code that these still run. Some exits of the program crashed by that (SIGSEGV).
 void load_sensor_drivers() {
   [[maybe_unused]] static const bool loaded = [] {
     expect_ok(openni::OpenNI::initialize(), "load OpenNI2's drivers");

@@ -13,7 +13,7 @@ inline constexpr const char* missing_sensor_hint =
 /// The last failure in the words of OpenNI2 and its drivers, on one line.
 std::string openni_error_text();
 
-/// @param doing  what `status` answers, as in "sensor: cannot start its depth stream"
+/// @param doing  the action that returned `status`: "sensor: cannot start its depth stream"
 /// @throws Error "sensor-failed"  unless the status is STATUS_OK
 void expect_ok(openni::Status status, const char* doing);
 

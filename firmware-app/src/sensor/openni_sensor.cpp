@@ -22,12 +22,12 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// The longest time that a stop request waits for: a frame.
+/// The longest delay of a stop request: a frame's period.
 constexpr std::chrono::milliseconds poll_interval = std::chrono::milliseconds(33);
-/// By the sensor's clock. A file has no clock: what takes longer than that is a player that hangs.
+/// Timeouts of a frame: by the sensor's clock; and of a file's player, which may hang.
 constexpr std::chrono::milliseconds longest_silence = std::chrono::milliseconds(2000);
 constexpr std::chrono::milliseconds longest_file_read = std::chrono::seconds(30);
-/// Of OpenNI2's player of files, while it has no stream to serve.
+/// Sleep of OpenNI2's file player while no stream is started.
 constexpr std::chrono::milliseconds player_pause = std::chrono::milliseconds(10);
 
 /// Depth formats that Octurn reads, the finest first, with their units in metres.
@@ -39,7 +39,7 @@ constexpr std::array<DepthFormat, 2> depth_formats = {
     DepthFormat{openni::PIXEL_FORMAT_DEPTH_100_UM, metres_from_mm(0.1)},
     DepthFormat{openni::PIXEL_FORMAT_DEPTH_1_MM, metres_from_mm(1)}};
 
-/// Whether a device's driver is one of Octurn's: these stamp frames by the steady clock.
+/// Whether a device's driver is one of Octurn's, whose frames have timestamps of the steady clock.
 bool has_octurns_driver(std::string_view uri) {
   return uri.starts_with(simulator_scheme) || uri.starts_with(kinect_scheme);
 }
@@ -86,7 +86,7 @@ Intrinsics to_intrinsics(const openni::VideoStream& stream) {
           .depth_unit = format->unit};
 }
 
-/// A Kinect for Windows sees nothing nearer than 0.8 m unless it is in near mode, and a rig is
+/// Sets near mode on a Kinect for Windows: without it depth begins at 0.8 m, and a rig is
 /// smaller.
 void prepare_kinect(openni::Device& device) {
   if (device.isPropertySupported(near_mode_property)) {
@@ -178,7 +178,7 @@ void OpenNiSensor::open_stream() {
   expect_ok(stream_.start(), "start its depth stream");
 }
 
-/// Has each frame of a file read on demand, and none skipped.
+/// Makes OpenNI2 read each frame of a file on demand and skip none.
 void OpenNiSensor::prepare_file() {
   openni::PlaybackControl* playback = device_.getPlaybackControl();
   expect_ok(playback->setSpeed(-1), "read it frame by frame");
@@ -193,8 +193,8 @@ void OpenNiSensor::prepare_file() {
   }
 }
 
-/// The player of files looks through its list of streams without a lock, again and again after the
-/// last frame. Once no stream is started it sleeps 10 ms between two looks: the stream goes then.
+/// After the last frame OpenNI2's file player keeps iterating over its streams without a lock. With
+/// no stream started it sleeps 10 ms between two iterations: the stream is destroyed meanwhile.
 void OpenNiSensor::close() {
   if (device_.isFile()) {
     stream_.stop();
@@ -228,8 +228,8 @@ std::chrono::duration<double> OpenNiSensor::sensor_time() const {
                    : steady_clock::now().time_since_epoch();
 }
 
-/// A file begins again after its last frame. It is opened again for that: seeking in a file crashes
-/// OpenNI2 2.2.0.33.
+/// A file restarts after its last frame. It is opened again for that, because seeking in a file
+/// crashes OpenNI2 2.2.0.33.
 std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
   if (device_.isFile()) {
     if (frames_left_ == 0) {
@@ -244,7 +244,7 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
   const auto begin = sensor_time();
   openni::VideoStream* stream = &stream_;
   while (!stop.stop_requested()) {
-    // Taken before the wait: a frame that has come by now ends it, however late this thread runs.
+    // Measured before the wait: a frame that has arrived is read, however late this thread wakes.
     const auto silence = sensor_time() - begin;
     int ready = 0;
     if (openni::OpenNI::waitForAnyStream(
@@ -266,7 +266,7 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
 
 std::optional<Tilt> OpenNiSensor::tilt() const { return property_of<Tilt>(device_, tilt_property); }
 
-/// OpenNI2 puts the place on USB into the URI of a sensor without a serial number.
+/// Without a serial number the URI identifies the sensor: OpenNI2 puts its USB port there.
 std::string OpenNiSensor::serial() const {
   std::array<char, ONI_MAX_STR> text = {};
   int size = sizeof text;

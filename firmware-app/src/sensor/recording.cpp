@@ -152,7 +152,7 @@ RecordingWriter::RecordingWriter(const fs::path& folder, std::string sensor_name
       recording_{.sensor_name = std::move(sensor_name),
                  .sensor_serial = std::move(sensor_serial),
                  .intrinsics = intrinsics} {
-  std::error_code ignored;  // if it cannot be made, its first frame says why
+  std::error_code ignored;  // writing the first frame reports a failure
   fs::create_directory(folder_.path() / "frames", ignored);
 }
 

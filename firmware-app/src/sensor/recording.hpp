@@ -14,23 +14,24 @@
 
 namespace octurn {
 
-/// One frame of a recording, without its depth.
+/// Metadata of a recorded frame.
 struct RecordedFrame {
-  std::chrono::duration<double> time = {};  ///< of its exposure, since the first one's
+  std::chrono::duration<double> time = {};  ///< of its exposure, since the first frame's
   double angle = 0;                         ///< of the platform, radians
   std::optional<Tilt> tilt = {};
 };
 
-/// What a sensor has seen: a folder with `recording.json` and, for each frame in order, its depth
-/// as a PNG like those of a scan folder (`frames/000000.png`).
+/// A sensor's recorded frames: a folder with `recording.json` and, for each frame in order, its
+/// depth as a PNG like those of a scan folder (`frames/000000.png`).
 ///
 /// `{"format": "octurn-recording", "version": 1, "sensor": {"name": "Kinect v1", "width": 640,
 /// "height": 480, "fx": 575.8, "fy": 575.8, "cx": 320, "cy": 240, "depth_unit_m": 0.0001},
-/// "frames": [{"time_s": 0, "angle_deg": 0, "pitch_deg": -25, "roll_deg": 0}, ...]}`, the last two
-/// only where the sensor has told them; "sensor" also has its "serial", if it has told that.
+/// "frames": [{"time_s": 0, "angle_deg": 0, "pitch_deg": -25, "roll_deg": 0}, ...]}`. "pitch_deg"
+/// and "roll_deg" are left out if the sensor measures no tilt. "sensor" also has "serial" if that
+/// is known.
 struct Recording {
   std::string sensor_name = {};
-  std::string sensor_serial = {};  ///< empty if it told none
+  std::string sensor_serial = {};  ///< empty if unknown
   Intrinsics intrinsics = {};
   std::vector<RecordedFrame> frames = {};
 };
@@ -54,10 +55,10 @@ class RecordingWriter {
   RecordingWriter(const std::filesystem::path& folder, std::string sensor_name,
                   std::string sensor_serial, const Intrinsics& intrinsics);
 
-  /// Appends a frame. @throws Error  if the disk does not take it
+  /// Appends a frame. @throws Error "write-failed"
   void write(const DepthFrame& frame, const RecordedFrame& about);
 
-  /// Gives the folder its name; returns when it is on the disk. @throws Error  as above
+  /// Renames the folder to its own name; returns once it is on disk. @throws Error "write-failed"
   void commit();
 
  private:

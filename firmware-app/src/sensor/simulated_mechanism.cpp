@@ -26,10 +26,11 @@ class SensorOnMechanism final : public DepthSensor {
   void lay_object(int pose) override { sensor_->lay_object(pose); }
 
   void show_angle(double angle) override {
-    // Told angles may be wrapped: between two of them there is never half a turn.
+    // `angle` may be wrapped. Successive angles differ by less than half a turn.
     motor_ += mechanism_.rate * std::remainder(angle - told_, 2 * std::numbers::pi);
     told_ = angle;
-    // A wheel that turns on pushes the platform at once, one that turns back only after its play.
+    // Backlash: a motor that keeps its direction moves the platform at once, a reversed one only
+    // after the play.
     const double behind = mechanism_.rate < 0 ? -mechanism_.play : 0;
     platform_ = std::clamp(platform_, motor_ + behind, motor_ + behind + mechanism_.play);
     sensor_->show_angle(platform_);
@@ -38,7 +39,7 @@ class SensorOnMechanism final : public DepthSensor {
  private:
   std::unique_ptr<DepthSensor> sensor_;
   SimulatedMechanism mechanism_;
-  double told_ = 0;  // radians, as all of these
+  double told_ = 0;  // radians, like the next two
   double motor_ = 0;
   double platform_ = 0;
 };

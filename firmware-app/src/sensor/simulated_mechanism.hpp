@@ -6,13 +6,13 @@
 
 namespace octurn {
 
-/// How a simulated platform follows its motor; by default as it is told.
+/// How a simulated platform follows its motor; by default without faults.
 struct SimulatedMechanism {
-  double rate = 1;  ///< turns of the platform for one that the motor is told; < 0: clockwise
-  double play = 0;  ///< of the gears, radians of the platform
+  double rate = 1;  ///< turns of the platform per commanded turn; < 0: the wrong way round
+  double play = 0;  ///< backlash of the gears, radians at the platform
 };
 
-/// A simulated sensor that sees the platform where such a mechanism has it.
+/// Wraps a simulated sensor so that it sees the platform at the mechanism's angle.
 std::unique_ptr<DepthSensor> on_mechanism(std::unique_ptr<DepthSensor> sensor,
                                           const SimulatedMechanism& mechanism);
 

@@ -11,15 +11,15 @@ namespace octurn {
 /// The version of libgpiod.
 std::string gpiod_version();
 
-/// A line that this program drives, and its first level.
+/// An output line and its initial level.
 struct OutputLine {
   unsigned offset = 0;  ///< on its chip
   bool high = false;
 };
 
-/// A GPIO chip of the kernel and the lines of it that this program drives. libgpiod 1 and 2 share
-/// no function: gpio_chip_v1.cpp and gpio_chip_v2.cpp implement this class, one of which is
-/// compiled.
+/// A GPIO chip of the kernel and those of its lines that this program drives. libgpiod 1 and 2 have
+/// different interfaces: gpio_chip_v1.cpp and gpio_chip_v2.cpp both implement this class, and one
+/// of them is compiled.
 ///
 /// Every function throws std::system_error with the kernel's errno.
 class GpioChip {
@@ -36,7 +36,7 @@ class GpioChip {
   /// The offset of the line of that name; nothing if the chip has none.
   std::optional<unsigned> offset_of(const std::string& name) const;
 
-  /// The consumer of a line by the kernel's account; nothing if the line is free.
+  /// The consumer of a line as the kernel reports it; nothing if the line is free.
   std::optional<std::string> user_of(unsigned offset) const;
 
   /// Requests all lines at once as outputs, for the lifetime of this object. Called once.

@@ -8,7 +8,7 @@
 namespace octurn {
 namespace {
 
-/// Frees what libgpiod has made, by the function that it has for it.
+/// Deleter of a libgpiod object by the free function of its type.
 template <auto free>
 struct Free {
   template <typename Handle>
@@ -21,7 +21,7 @@ using Owned = std::unique_ptr<Handle, Free<free>>;
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
-/// @return what libgpiod has made @throws std::system_error  if it has not
+/// Checks a new object of libgpiod. @throws std::system_error  if it is null
 template <typename Handle>
 Handle* made(Handle* handle) {
   return handle != nullptr ? handle : (fail(), handle);

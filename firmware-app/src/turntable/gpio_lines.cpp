@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The kernel's labels of the chip behind the header: Pi 3 and older, Pi 4, Pi 5. The number of its
-/// device differs from kernel to kernel.
+/// The kernel's labels of the header's chip: Pi 3 and older, Pi 4, Pi 5. The number N of its
+/// /dev/gpiochipN differs from kernel to kernel.
 constexpr std::array<const char*, 3> header_labels = {"pinctrl-bcm2835", "pinctrl-bcm2711",
                                                       "pinctrl-rp1"};
 

@@ -8,13 +8,13 @@
 
 namespace octurn {
 
-/// A line of the GPIO header by the kernel's name for it, and its first level.
+/// A line of the GPIO header by the kernel's name for it, and its initial level.
 struct NamedLine {
   std::string name = {};  ///< "GPIO17", the pins' names in the Pi's documentation
   bool high = false;
 };
 
-/// The kernel's account of a line.
+/// A line's state as the kernel reports it.
 struct LineUse {
   std::string name = {};
   bool exists = true;
@@ -29,7 +29,7 @@ struct HeaderUse {
 
 /// Reads the use of lines of the header without requesting any.
 /// @throws Error "turntable-missing"  if this machine has no such header
-/// @throws Error "turntable-failed"   if its chip may not be used
+/// @throws Error "turntable-failed"   if its chip cannot be accessed
 HeaderUse read_header_use(const std::vector<NamedLine>& lines);
 
 /// This program's name as the consumer of a line.
@@ -38,9 +38,8 @@ inline constexpr const char* gpio_user = "octurn";
 /// Drives lines of a Raspberry Pi's GPIO header as long as the returned chip lives. Released lines
 /// become inputs again.
 /// @throws Error "turntable-missing"  if this machine has no such header
-/// @throws Error "turntable-failed"   if a line does not exist, is in use, or may not be used;
-/// names
-///                                    the line and its user
+/// @throws Error "turntable-failed"   if a line does not exist, is in use or cannot be accessed:
+///                                    names the line and its user
 GpioChip drive_header(const std::vector<NamedLine>& lines);
 
 }  // namespace octurn

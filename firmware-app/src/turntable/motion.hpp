@@ -5,18 +5,18 @@
 
 namespace octurn {
 
-/// A turntable's motion: even acceleration from the start speed, and its mirror image before the
-/// end. A step is a microstep of the motor's driver.
+/// A turntable's motion: constant acceleration from the start speed, and the same deceleration
+/// before the end. A step is a microstep of the motor's driver.
 struct Motion {
   int steps_per_turn = 800;             // quarter steps of a 1.8 degree motor
-  double start_steps_per_second = 200;  // a stepper can start at once at this speed
+  double start_steps_per_second = 200;  // below the pull-in rate: a stepper starts without a ramp
   double top_steps_per_second = 800;
   double ramp_steps_per_second2 = 2000;
   std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
 };
 
-/// The trapezoidal speed profile of one move, step by step: even acceleration up to the top speed
-/// or to the middle of a short move, and its mirror image down again.
+/// The trapezoidal speed profile of one move, step by step: constant acceleration up to the top
+/// speed or to the middle of a short move, then the same deceleration.
 class SpeedProfile {
  public:
   SpeedProfile(const Motion& motion, std::int64_t steps);
@@ -26,7 +26,8 @@ class SpeedProfile {
   /// Advances by one step. @return the duration of that step, seconds
   double next_step();
 
-  /// Tells that the last step took longer than planned: the next ones accelerate again from there.
+  /// Reports that the last step took longer than planned. The next steps accelerate from the speed
+  /// that it had.
   /// @param step_time  seconds
   void slowed_to(double step_time);
 

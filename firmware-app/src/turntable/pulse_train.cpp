@@ -34,7 +34,7 @@ void PulseTrain::done(Time time) {
   next_ = Change{.high = false, .due = time + shortest_level};
 }
 
-/// @param low_since  when the line fell, or the beginning
+/// @param low_since  time of the falling edge, or of the start
 void PulseTrain::plan_rise(Time low_since) {
   if (profile_.steps_left() == 0) {
     next_.reset();

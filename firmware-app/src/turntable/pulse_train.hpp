@@ -8,21 +8,21 @@
 
 namespace octurn {
 
-/// From here on a pulse is late. A wake-up takes up to 0.1 ms on a Pi; at 800 steps/s, 0.5 ms more
-/// than the 1.25 ms of a step take a quarter of the speed.
+/// The delay from which a pulse counts as late. A wake-up takes up to 0.1 ms on a Pi. At 800
+/// steps/s, whose step takes 1.25 ms, a delay of 0.5 ms costs more than a quarter of the speed.
 inline constexpr std::chrono::microseconds late_after(500);
 
-/// Pulses that came late because the system had no time for this program.
+/// Count and longest delay of pulses that were late because the system scheduled their thread late.
 struct LatePulses {
   int count = 0;
   std::chrono::steady_clock::duration longest = {};
 };
 
-/// The pulses of one move on the STEP line of an A4988, which steps as the line rises.
+/// The pulses of one move on the STEP line of an A4988, which steps on a rising edge.
 ///
-/// Each change of the line is planned from the time at which the last one was done, so a late pulse
-/// is never caught up: bunched pulses lose steps, late ones do not. The speed that the motor lost
-/// by then it gains again along the ramp.
+/// Each edge is scheduled from the time of the last one, so that a delay is never caught up: pulses
+/// too close together lose steps, late ones do not. The motor regains the lost speed along the
+/// ramp.
 class PulseTrain {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -37,7 +37,7 @@ class PulseTrain {
   /// The next change of the line; nothing after the last pulse.
   const std::optional<Change>& next() const { return next_; }
 
-  /// Tells that the next change was made, and when.
+  /// Reports that the next change was made. @param time  of the change
   void done(Time time);
 
   const LatePulses& late() const { return late_; }
@@ -46,8 +46,8 @@ class PulseTrain {
   void plan_rise(Time low_since);
 
   SpeedProfile profile_;
-  Time risen_ = {};         // the last pulse, or the beginning
-  Time planned_rise_ = {};  // the next one, if nothing delays it
+  Time risen_ = {};         // the last rising edge, or the start
+  Time planned_rise_ = {};  // the next rising edge, without delays
   std::optional<Change> next_ = {};
   LatePulses late_ = {};
 };

@@ -35,7 +35,7 @@ bool SimulatedTurntable::move_to(std::int64_t position, std::stop_token stop) {
     }
     stand_at(reached);
   }
-  stand_at(position);  // also after no move at all
+  stand_at(position);  // reports the angle also if there was nothing to move
   return sleep_for(stop, real_time(duration<double>(motion_.settle_time).count()));
 }
 

@@ -9,14 +9,14 @@
 
 namespace octurn {
 
-/// A turntable that takes the time of a real one. It moves nothing: a listener is told its angle.
+/// A turntable that moves nothing, but takes a real one's time and reports its angle.
 class SimulatedTurntable final : public Turntable {
  public:
-  /// @param turned    told the platform's angle (radians, counter-clockwise seen from above, not
-  ///                  wrapped) every 10 ms of a move and at its end, by the thread that moves it.
-  ///                  The angles depend on simulated time alone: a busy machine tells them later
-  /// @param speed     times faster than life
-  /// @param position  at the beginning
+  /// @param turned    receives the platform's angle (radians, counter-clockwise seen from above,
+  ///                  not wrapped) every 10 ms of a move and at its end, on the moving thread. The
+  ///                  angles depend on simulated time only: on a busy machine they come later
+  /// @param speed     simulated seconds in a real one
+  /// @param position  the initial one, microsteps
   explicit SimulatedTurntable(std::function<void(double)> turned, double speed = 1,
                               Motion motion = {}, std::int64_t position = 0);
 

@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// The rotor jumps by up to two full steps and swings when its current comes on.
+// When its current is switched on, the rotor jumps by up to two full steps and swings.
 constexpr auto grip_time = 100ms;
 
 }  // namespace
@@ -48,7 +48,7 @@ bool Stepper::move_to(std::int64_t position, std::stop_token stop) {
     std::unique_lock lock(mutex_);
     order_ = &order;
     wake_.notify_all();
-    wake_.wait(lock, [&] { return order.done; });  // within a step of a stop request
+    wake_.wait(lock, [&] { return order.done; });  // returns within a step of a stop request
   }
   if (order.failure) {
     throw to_error(*order.failure);

@@ -16,15 +16,15 @@
 
 namespace octurn {
 
-/// A stepper's position, and the side on which its gears touch.
+/// A stepper's position, and whether its gears touch on the side of counter-clockwise moves.
 struct BacklashState {
   std::int64_t position = 0;
   bool backlash_taken_up =
-      false;  ///< the last move was counter-clockwise, and the motor held since
+      false;  ///< the last move was counter-clockwise, and the motor has been on since
 };
 
-/// The positions to go to for a target, in order. Every target is reached counter-clockwise, so
-/// that the gears always touch on the same side.
+/// Returns the positions to visit on the way to a target, in order. Every target is approached
+/// counter-clockwise, so that the gears always touch on the same side.
 /// @param take_up_steps  more than the gears' backlash, microsteps; 0: they have none
 std::vector<std::int64_t> plan_moves(std::int64_t target, const BacklashState& from,
                                      int take_up_steps);
@@ -42,7 +42,7 @@ class Stepper final : public Turntable {
 
   /// @param set_line  sets a line of the driver; called by one thread at a time. Its exceptions
   ///                  leave through `move_to` and `release`
-  /// @param position  at the beginning
+  /// @param position  the initial one, microsteps
   Stepper(const StepperSettings& settings, SetLine set_line, std::int64_t position = 0);
   ~Stepper() override = default;
   Stepper(const Stepper&) = delete;

@@ -16,14 +16,14 @@ struct StepperLines {
   std::string step = "GPIO17";
   std::string direction = "GPIO27";
   std::string enable = "GPIO5";              ///< pulled up while the Pi boots, as GPIO0 to 8 are
-  std::vector<std::string> microsteps = {};  ///< MS1, MS2 and MS3; none: they are wired
+  std::vector<std::string> microsteps = {};  ///< MS1, MS2 and MS3; empty: wired to fixed levels
 };
 
 /// The stepper's wiring, gear and motion; `fields` explains each of them.
 struct StepperSettings {
   StepperLines lines = {};
-  int microsteps = 4;     ///< of a full step: 1, 2, 4, 8 or 16
-  int full_steps = 200;   ///< of a turn of the motor
+  int microsteps = 4;     ///< in a full step: 1, 2, 4, 8 or 16
+  int full_steps = 200;   ///< in a turn of the motor
   double gear_ratio = 1;  ///< turns of the motor for one of the platform
   bool reversed = false;  ///< DIR high turns the platform clockwise
   double speed_steps_per_second = 800;
@@ -45,14 +45,14 @@ nlohmann::json to_json(const StepperSettings& settings);
 struct Field;
 std::vector<Field> fields(StepperSettings& settings);
 
-/// Refuses settings that do not go together, and lowers a start speed that was not given to the
-/// speed. @param keys  in which they were given
+/// Refuses settings that contradict each other. Lowers a default start speed to the speed if that
+/// is less. @param keys  JSON of the settings
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings);
 
-/// The motion in microsteps; those of a turn of the platform are rounded to a whole number.
+/// The motion in microsteps; the microsteps of a platform's turn are rounded to a whole number.
 Motion motion_of(const StepperSettings& settings);
 
-/// The lines in the order of `Stepper::Line`, then MS1 to MS3; the motor is off.
+/// The lines in the order of `Stepper::Line`, then MS1 to MS3, at levels that keep the motor off.
 std::vector<NamedLine> lines_of(const StepperSettings& settings);
 
 }  // namespace octurn

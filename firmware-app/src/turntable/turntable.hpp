@@ -5,8 +5,9 @@
 
 namespace octurn {
 
-/// A platform turned by a stepper. Positions are whole microsteps, so that a turn sums exactly, and
-/// never wrap: 64 bits last for 5e11 turns of the finest gear. Used by one thread at a time.
+/// A platform turned by a stepper. Positions are whole microsteps, so that turns add up without
+/// rounding. They never wrap: 64 bits last for 5e11 turns of the finest gear. Used by one thread at
+/// a time.
 class Turntable {
  public:
   virtual ~Turntable() = default;
@@ -16,7 +17,7 @@ class Turntable {
 
   /// Turns to a position (microsteps, counter-clockwise seen from above), waits until the platform
   /// has settled, and holds it there.
-  /// @return false if a stop was requested first; `position` then tells where it stands
+  /// @return false if a stop was requested first; `position` is then where it stopped
   /// @throws Error  if the motor cannot be driven
   virtual bool move_to(std::int64_t position, std::stop_token stop) = 0;
 

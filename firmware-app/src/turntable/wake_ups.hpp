@@ -5,12 +5,12 @@
 
 namespace octurn {
 
-/// How long after its time a thread woke up, for each of its wake-ups, the shortest first.
+/// Delays of a thread's wake-ups after their due times, ascending.
 using Lateness = std::vector<std::chrono::steady_clock::duration>;
 
-/// Has a thread with the priority of the stepper's, as far as the system grants that, wake up at
-/// even intervals, as for pulses. Takes count * interval.
-/// @param count  of wake-ups, at least 1
+/// Measures the wake-ups of a thread at even intervals, as for pulses, with the priority of the
+/// stepper's thread as far as the system grants it. Takes count * interval.
+/// @param count  number of wake-ups, at least 1
 Lateness measure_wake_ups(int count, std::chrono::microseconds interval);
 
 }  // namespace octurn

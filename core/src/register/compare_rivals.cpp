@@ -19,13 +19,13 @@ constexpr double min_lead = 0.10;
 constexpr double similar_overlap = 0.85;  // of the best one's
 constexpr double similar_residual = 1.3;
 
-constexpr double near_angle = 0.26;  // radians, 15 degrees: what a fit to the readings still joins
+constexpr double near_angle = 0.26;        // radians, 15 degrees: reach of a fit to the readings
 constexpr double joined_angle = 0.01;      // radians
 constexpr double joined_distance = 0.001;  // metres
-constexpr double joined_sigmas = 3;        // of the difference, where that is more
+constexpr double joined_sigmas = 3;        // sigma of the difference, where that is more
 
-/// Whether a candidate fits about as well as the best one, with about its overlap: one that slid
-/// aside has less.
+/// Whether a candidate fits about as well as the best one, with about the same overlap: a pose that
+/// slid along the surface has less.
 bool is_rival(const PoseCandidate& candidate, const PoseCandidate& best) {
   return fits_alike(candidate, best) && candidate.overlap >= similar_overlap * best.overlap;
 }
@@ -34,8 +34,9 @@ double angle_between(const Isometry3d& one, const Isometry3d& other) {
   return Eigen::AngleAxisd(one.linear().transpose() * other.linear()).angle();
 }
 
-/// Whether a fit to the readings takes two candidates to one pose, within three sigmas of the fits.
-/// Points of few or noisy stops leave a pose open by some degrees; the readings fix it better.
+/// Whether refinement on the readings takes two candidates to the same pose, within three sigma.
+/// The mean points of few or noisy stops leave some degrees of a pose undetermined; the readings
+/// determine it better.
 bool readings_join(const Target& target, const SeenTurn& turn, const Vector3d& middle,
                    const Isometry3d& one, const Isometry3d& other, int threads,
                    const std::stop_token& stop) {

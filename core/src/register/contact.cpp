@@ -8,14 +8,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_gap = 0.012;       // metres between foot and platform, before they are fitted
-constexpr double min_facing = 0.99;     // cosine between the foot's normal and the way down
+constexpr double max_gap = 0.012;       // metres between foot and platform before the fit
+constexpr double min_facing = 0.99;     // cosine between the foot's normal and straight down
 constexpr double min_area_cells = 100;  // of 2 mm: 4 cm2
 constexpr double max_spread = 0.0003;   // metres, of the foot's heights
 constexpr double max_below = 0.0015;    // metres below the foot that noise explains
 constexpr double max_below_share = 0.02;
 
-/// Adds n . x = const of a foot's points, whose distance from their platform is to be 0.
+/// Adds a point-to-plane equation for each point of a foot: its distance from the platform is 0.
+/// @param side  1 if the foot moves, -1 if the platform moves
 void add_rows(RigidFit& fit, const Contact& contact, const Eigen::Isometry3d& object_from_points,
               double side, double of_weight) {
   const Vector3d normal = object_from_points.linear() * contact.up;

@@ -18,25 +18,27 @@ using Eigen::Isometry3d;
 
 constexpr std::size_t rough_points = 300;
 constexpr std::size_t joined_points = 500;
-constexpr int joined_iterations = 12;  // after which most have come to a few poses
+constexpr int joined_iterations = 12;  // by then most have converged to a few poses
 constexpr std::size_t refined_points = 1500;
 constexpr int rough_iterations = 6;
 constexpr std::size_t refined_poses = 60;
 constexpr int iterations = 40;
-constexpr std::size_t max_shapes = 5;     // that a person can choose from
-constexpr std::size_t shapes_turned = 2;  // best ones, of which half turns are tried as well
+constexpr std::size_t max_shapes = 5;     // from which a person can choose
+constexpr std::size_t shapes_turned = 2;  // best candidates whose half turns are tried, too
 
-// A candidate that is contradicted by so much more than the best one is refined no further. Among
-// the rest are more than a person can choose from.
+// A candidate whose contradiction exceeds the best one's by more is refined no further. The minimum
+// leaves more candidates than a person can choose from.
 constexpr double contradicted_far_more = 0.4;
 constexpr std::size_t min_refined = 16;
 
-// Between candidates that are contradicted by about as much, what both turns saw decides. A nearly
-// symmetric object's false poses reach no place that was seen empty, but they fit worse.
+// Candidates whose contradiction exceeds the smallest by less are sorted by their residual: false
+// poses of a nearly symmetric object do not reach into free space, but fit worse.
 constexpr double contradicted_alike = 0.10;
-constexpr double contradicted_square = 5e-7;  // metres^2 that the share of 1 adds to the residual's
+constexpr double contradicted_square =
+    5e-7;  // metres^2 that a contradiction of 1 adds to the residual's square
 
-/// How much a pose of a turn contradicts what the target's turns saw, and they what it saw.
+/// The contradiction of a pose: the largest share of the turn's points in free space of a placed
+/// turn, plus the share of the target's points in free space of the turn.
 double contradiction(const Target& target, const SeenTurn& turn,
                      const std::vector<SurfacePoint>& points,
                      const std::vector<SurfacePoint>& target_points, const Isometry3d& pose) {
@@ -48,7 +50,7 @@ double contradiction(const Target& target, const SeenTurn& turn,
   return worst + contradicted_share(turn, target_points, pose.inverse());
 }
 
-/// @param points  some of the turn's
+/// @param points  a subset of the turn's points
 Stands make_stands(const Target& target, const SeenTurn& turn,
                    const std::vector<SurfacePoint>& points, std::size_t point_count) {
   const auto share = [](const auto& some, const auto& all) {
@@ -65,7 +67,8 @@ Stands make_stands(const Target& target, const SeenTurn& turn,
   return stands;
 }
 
-/// Refines and judges candidates with so many points. @return the distinct ones, the best first
+/// Refines candidates on `point_count` points, and measures their contradiction.
+/// @return distinct candidates, the least contradicted first
 std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const Target& target,
                                   const SeenTurn& turn, std::size_t point_count, int steps,
                                   int threads, const std::stop_token& stop) {
@@ -85,8 +88,7 @@ std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const T
   return distinct(candidates, find_middle(points));
 }
 
-/// Drops what is contradicted too much to be refined. @param candidates  the least contradicted
-/// first
+/// Drops candidates with too large a contradiction. @param candidates  the least contradicted first
 void drop_contradicted(std::vector<PoseCandidate>& candidates) {
   const auto end = std::ranges::find_if(candidates, [&](const PoseCandidate& candidate) {
     return candidate.contradiction > candidates.front().contradiction + contradicted_far_more;
@@ -95,8 +97,8 @@ void drop_contradicted(std::vector<PoseCandidate>& candidates) {
   candidates.resize(std::min(candidates.size(), count));
 }
 
-/// Moves those of the candidates, the least contradicted first, that are contradicted by about as
-/// much as the first into the order of how well they fit.
+/// Sorts the candidates that are contradicted about as much as the first one by their residual.
+/// @param candidates  the least contradicted first
 void order_by_fit(std::vector<PoseCandidate>& candidates) {
   const auto alike_end = std::ranges::find_if(candidates, [&](const PoseCandidate& candidate) {
     return candidate.contradiction > candidates.front().contradiction + contradicted_alike;
@@ -106,9 +108,9 @@ void order_by_fit(std::vector<PoseCandidate>& candidates) {
   });
 }
 
-/// A candidate by half turns of the whole object about its principal axes, as both turns show it. A
-/// nearly symmetric object fits in these poses as well, so that a search by some points may find
-/// one of them alone.
+/// Rotates a candidate by half turns about the principal axes of the points of target and turn. A
+/// nearly symmetric object fits in these poses as well, and a search with a subset of the points
+/// may find only one of them.
 std::vector<PoseCandidate> half_turns(const Target& target, const SeenTurn& turn,
                                       const PoseCandidate& candidate) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -138,7 +140,7 @@ std::vector<PoseCandidate> half_turns(const Target& target, const SeenTurn& turn
   return turned;
 }
 
-/// Adds the half turns of the best candidates. @return the distinct ones, the best first
+/// Adds the half turns of the best candidates. @return distinct candidates, the best first
 std::vector<PoseCandidate> with_half_turns(std::vector<PoseCandidate> candidates,
                                            const Target& target, const SeenTurn& turn, int threads,
                                            const std::stop_token& stop) {
@@ -154,7 +156,7 @@ std::vector<PoseCandidate> with_half_turns(std::vector<PoseCandidate> candidates
   return candidates;
 }
 
-/// Poses in which target and turn may fit, roughly.
+/// Searches all rotations for poses in which target and turn may fit.
 std::vector<PoseCandidate> searched(const Target& target, const SeenTurn& turn,
                                     const NearestPoints& points, int threads,
                                     const std::stop_token& stop) {

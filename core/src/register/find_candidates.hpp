@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// What all placed turns saw, in the object's frame.
+/// The placed turns, and the points of all of them in the object's frame.
 struct Target {
   std::vector<PlacedTurn> turns;
   NearestPoints points;
@@ -16,21 +16,22 @@ struct Target {
 
 Target make_target(std::vector<PlacedTurn> turns);
 
-/// Looks for the poses of a turn that fit, in all rotations, each refined and judged by free space.
-/// @param points  what the turn saw
-/// @return the distinct ones, the least contradicted first
+/// Searches all rotations for poses in which a turn fits. Each is refined and ranked by free space.
+/// @param points  of the turn
+/// @return distinct candidates, the least contradicted first; where contradictions are about equal,
+/// the smallest residual first
 /// @throws Stopped
 std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn& turn,
                                            const NearestPoints& points, int threads,
                                            const std::stop_token& stop);
 
-/// Refines and judges one pose of a turn, which is right to a centimetre and some 15 degrees.
-/// @param start  object's frame from the turn's
+/// Refines an estimate of a turn's pose, and measures its contradiction.
+/// @param start  frame of the turn to the object's frame, within a centimetre and some 15 degrees
 PoseCandidate refine_candidate(const Target& target, const SeenTurn& turn,
                                const Eigen::Isometry3d& start);
 
-/// The first few candidates, of those that give the same shape the first.
-/// @param turn  what the turn saw
+/// Returns the first candidate of each shape, at most five.
+/// @param turn  points of the turn
 std::vector<PoseCandidate> without_same_shapes(const std::vector<PoseCandidate>& candidates,
                                                const Target& target, const NearestPoints& turn);
 

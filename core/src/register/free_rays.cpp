@@ -12,12 +12,12 @@ namespace {
 
 constexpr int block = 4;  // pixels along a side
 constexpr int half_block = block * block / 2;
-constexpr double free_margin = 0.006;  // metres that a surface must be behind a free point
+constexpr double free_margin = 0.006;  // metres: minimum distance of a surface behind a free point
 
 std::size_t blocks(int pixels) { return static_cast<std::size_t>((pixels + block - 1) / block); }
 
-/// Adds a row of pixels: of each column the smallest reading less 1, which makes none the largest,
-/// and how many there are.
+/// Adds a row of pixels to the minimum and the number of the readings in each column. Minima are of
+/// readings less 1, so that 0 (no reading) wraps to the largest value.
 OCTURN_VECTOR_LEVELS
 void add_row(const std::uint16_t* row, std::size_t width, std::uint16_t* min,
              std::uint16_t* count) {

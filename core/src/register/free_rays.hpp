@@ -11,14 +11,14 @@
 
 namespace octurn {
 
-/// Of blocks of 4 x 4 pixels the smallest reading, in depth units; 0 where fewer than half of the
-/// pixels have one.
+/// The minimum reading of each block of 4 x 4 pixels, in depth units, row by row; 0 where fewer
+/// than half of the pixels have a reading.
 using FreeDepths = std::vector<std::uint16_t>;
 
-/// @param frame  of the size that its intrinsics say
+/// @param frame  of the intrinsics' size
 FreeDepths find_free_depths(const DepthFrame& frame);
 
-/// How far the rays of all stops of a turn were free.
+/// The free space along the rays of all stops of a turn.
 class FreeRays {
  public:
   FreeRays() = default;
@@ -29,8 +29,8 @@ class FreeRays {
   FreeRays(const Intrinsics& lens, std::span<const Eigen::Isometry3d> sensors_from_turn,
            std::vector<FreeDepths> depths);
 
-  /// Whether at least so many stops saw something well behind a point, and nothing in front of
-  /// that. @param point  metres, the turn's frame
+  /// Whether at least `min_stops` stops see through a point: all readings of the block of pixels
+  /// that it projects to are more than 6 mm behind it. @param point  metres, the turn's frame
   bool pass(const Eigen::Vector3d& point, int min_stops) const;
 
  private:
@@ -38,12 +38,12 @@ class FreeRays {
   template <typename Value>
   using Each = std::array<Value, at_once>;
 
-  /// The poses of some stops, entry by entry, so that they are multiplied at once.
+  /// The poses of eight stops as a structure of arrays, for SIMD.
   struct Poses {
     std::array<std::array<Each<double>, 4>, 3> rows = {};
   };
-  /// Where these stops see a point: pixels, whose middles lie at a half, and metres along the
-  /// optical axis.
+  /// The projections of a point into these stops: pixels, whose centres lie at a half, and metres
+  /// along the optical axis.
   struct Seen {
     Each<double> u;
     Each<double> v;

@@ -11,16 +11,16 @@
 
 namespace octurn {
 
-/// The space that several turns saw to be empty, as a coarse voxel grid around their points.
+/// The free space of several turns, as a coarse voxel grid around their points.
 class FreeSpace {
  public:
-  /// Space more than a centimetre outside the box of the turns' points counts as empty.
+  /// Space more than a centimetre outside the box of the turns' points counts as free.
   ///
   /// @param turns  placed in one frame, which is the grid's
   /// @throws Stopped
   FreeSpace(std::span<const PlacedTurn> turns, int threads, const std::stop_token& stop);
 
-  /// Whether a point lies in a voxel of empty space. @param point  metres
+  /// Whether a point lies in a voxel of free space. @param point  metres
   bool is_free(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d at = (point - low_) * (1 / voxel_side);
     return !is_inside(at, size_) || free_[index(at.cast<int>())] != 0;
@@ -38,7 +38,7 @@ class FreeSpace {
 
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<std::uint8_t> free_ = {};  // bytes, as threads write neighbours
+  std::vector<std::uint8_t> free_ = {};  // not bits, as threads write neighbouring voxels
 };
 
 }  // namespace octurn

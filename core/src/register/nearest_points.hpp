@@ -8,16 +8,19 @@
 
 namespace octurn {
 
-/// Whether a place lies in a volume of so many voxels. @param at  in voxels from its corner
+/// Whether a point lies in a voxel grid.
+/// @param at    in voxels, from the grid's lowest corner
+/// @param size  in voxels
 inline bool is_inside(const Eigen::Vector3d& at, const Eigen::Vector3i& size) {
   return at.x() >= 0 && at.y() >= 0 && at.z() >= 0 && at.x() < size.x() && at.y() < size.y() &&
          at.z() < size.z();
 }
 
-/// A volume around points that knows the nearest of them to each voxel.
+/// Nearest-neighbour lookup in constant time: a voxel grid that stores the point nearest to each
+/// voxel.
 class NearestPoints {
  public:
-  /// Metres: what is farther from all points is far.
+  /// Metres: maximum distance of a neighbour.
   static constexpr double cap = 0.012;
 
   explicit NearestPoints(std::vector<SurfacePoint> points);
@@ -27,7 +30,8 @@ class NearestPoints {
   /// The middle of the points' bounding box.
   Eigen::Vector3d middle() const { return middle_; }
 
-  /// The nearest point, to within a voxel of 3 mm; null if all are far.
+  /// Returns the point nearest to the centre of the 3 mm voxel around `point`; null if none is
+  /// within `cap`.
   const SurfacePoint* find(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d at = (point - low_) * (1 / voxel_side);
     if (!is_inside(at, size_)) {

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double min_breadth = 0.003;  // metres, root mean square: what lies on a line turns freely
+constexpr double min_breadth = 0.003;  // metres, rms: the rotation about a line of points is free
 
 }  // namespace
 

@@ -27,23 +27,23 @@ constexpr std::size_t rough_kept = 500;
 constexpr std::size_t fine_points = 300;
 constexpr int fine_shifts = 1;
 constexpr std::size_t kept = 100;
-constexpr double search_agreement = 0.3;  // cosine, rotations are 15 degrees apart
+constexpr double search_agreement = 0.3;  // cosine between normals: rotations are 15 degrees apart
 constexpr double min_agreement = 0.6;     // cosine between two normals of one surface
-constexpr double far_limit = 0.012;       // metres, at the first iterations
+constexpr double far_limit = 0.012;       // metres, at the first iteration
 constexpr double near_limit = 0.004;      // at the last
-constexpr int approach = 8;               // iterations from the one to the other
+constexpr int approach = 8;               // iterations from the first limit to the last
 constexpr double cauchy_scale = 0.002;
 constexpr double settled = 1e-5;  // metres
 constexpr double contact_weight =
     4;  // of a foot's point: a platform is known better than a reading
 
-// Two poses that are nearer are the same.
+// Poses that differ by less count as one.
 constexpr double same_angle_deg = 4;
 constexpr double same_shift = 0.005;  // metres
 
-/// The rotation of an index: evenly spread over all of them.
+/// Rotation `i` of a set that covers all rotations evenly (Alexa 2022).
 Eigen::Matrix3d to_rotation(std::size_t i) {
-  constexpr double psi = 1.533751168755204288118041;  // psi^4 = psi + 4, as the paper has it
+  constexpr double psi = 1.533751168755204288118041;  // psi^4 = psi + 4
   const double s = static_cast<double>(i) + 0.5;
   const double part = s / static_cast<double>(rotations);
   const double alpha = 2 * std::numbers::pi * s / std::numbers::sqrt2;
@@ -65,14 +65,15 @@ std::vector<SurfacePoint> turned(const std::vector<SurfacePoint>& points,
   return turned;
 }
 
-/// How badly shifted points fit one side of a search.
+/// How badly points fit one side of a search.
 struct Misfit {
-  double distance = 0;                     ///< metres, mean, capped
-  Vector3d to_surface = Vector3d::Zero();  ///< mean, of those near a surface that looks their way
+  double distance = 0;  ///< metres, mean, capped
+  Vector3d to_surface =
+      Vector3d::Zero();  ///< metres, mean over points near a surface of like normal
 };
 
-/// Points where this side saw neither surface nor empty space count 0: one turn sees the underside
-/// that the other hid.
+/// Points in unknown space, neither surface nor free, count 0: one turn sees the underside that is
+/// hidden in the other.
 Misfit measure_misfit(const SearchedSide& side, const std::vector<SurfacePoint>& points,
                       const Vector3d& shift) {
   Misfit misfit;
@@ -94,13 +95,14 @@ Misfit measure_misfit(const SearchedSide& side, const std::vector<SurfacePoint>&
   return misfit;
 }
 
-/// Some points of both sides of a search.
+/// A subset of the points of both sides.
 struct Sample {
   std::vector<SurfacePoint> target;
   std::vector<SurfacePoint> turn;
 };
 
-/// Shifts a candidate to where both sides fit best, and measures how well.
+/// Shifts a candidate `shifts` times by the mean offset to the target's surface, and measures its
+/// distance in both directions.
 void shift(PoseCandidate& candidate, const SearchedSide& target, const SearchedSide& turn,
            const Sample& sample, int shifts) {
   Eigen::Isometry3d& pose = candidate.target_from_points;
@@ -114,7 +116,7 @@ void shift(PoseCandidate& candidate, const SearchedSide& target, const SearchedS
       measure_misfit(turn, turned(sample.target, back.linear()), back.translation()).distance;
 }
 
-/// Shifts all candidates, and keeps the best.
+/// Shifts all candidates, and keeps the `count` best.
 void keep_best(std::vector<PoseCandidate>& candidates, const SearchedSide& target,
                const SearchedSide& turn, const Sample& sample, int shifts, std::size_t count,
                int threads, const std::stop_token& stop) {
@@ -137,7 +139,8 @@ void keep_best(std::vector<PoseCandidate>& candidates, const SearchedSide& targe
   candidates = std::move(best);
 }
 
-/// Of each rotation, with the middle on the middle.
+/// One candidate for each rotation, which puts the turn's bounding box on the centre of the
+/// target's.
 std::vector<PoseCandidate> centred_candidates(const SearchedSide& target, const Sample& sample) {
   std::vector<PoseCandidate> candidates(rotations);
   for (std::size_t i = 0; i < rotations; ++i) {
@@ -148,7 +151,7 @@ std::vector<PoseCandidate> centred_candidates(const SearchedSide& target, const 
   return candidates;
 }
 
-/// Sums the distances of the points that lie within `limit` of the target.
+/// Builds the normal equations of the points that lie within `limit` (metres) of the target.
 RigidFit fit(const NearestPoints& target, const std::vector<SurfacePoint>& points,
              const Eigen::Isometry3d& pose, double limit) {
   RigidFit fit{.middle = target.middle()};

@@ -19,17 +19,17 @@ constexpr int max_iterations = 10;
 constexpr double settled = 1e-6;           // metres
 constexpr double readings_wanted = 300;    // of a stop
 constexpr int max_step = 6;                // pixels
-constexpr double min_cosine = 0.5;         // between a normal and the way to the sensor
+constexpr double min_cosine = 0.5;         // between a normal and the direction to the sensor
 constexpr double min_agreement = 0.7;      // cosine between two normals of one surface
 constexpr double max_distance = 0.004;     // metres
 constexpr double cauchy_scale = 0.0015;    // metres
-constexpr double correlated_pixels = 200;  // the sensor's errors are alike in some 14 x 14 pixels
-constexpr double contact_weight = 20;      // of a cell of a flat foot: a mean of many readings
+constexpr double correlated_pixels = 200;  // about 14 x 14 pixels share the sensor's error
+constexpr double contact_weight = 20;      // of a foot's point, the mean of many readings
 
 /// Readings of all stops of a turn.
 struct Readings {
   std::vector<std::vector<SurfacePoint>> of_stops = {};
-  double per_patch = 1;  ///< that lie where the sensor's errors are alike
+  double per_patch = 1;  ///< readings in a patch of pixels that share the sensor's error
 };
 
 Readings take_readings(const SeenTurn& turn) {
@@ -52,9 +52,9 @@ struct Match {
   SurfacePoint surface;  ///< frame of the other turn
 };
 
-/// Calls `visit(Match)` for each stop of `other` that saw a reading's place.
-/// @param other_from_reading  from the frame of the reading's turn
-/// @return whether any did
+/// Calls `visit(Match)` for each stop of `other` that sees a surface at the reading.
+/// @param other_from_reading  frame of the reading's turn to frame of `other`
+/// @return whether any stop does
 template <typename Visit>
 bool match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d& other_from_reading,
            Visit visit) {
@@ -89,7 +89,7 @@ struct StopFit {
   }
 };
 
-/// What is compared, and from where.
+/// The turns of a fit and their readings. Rotations are about `middle`.
 struct Comparison {
   std::span<const PlacedTurn> placed;
   const SeenTurn& turn;
@@ -98,7 +98,7 @@ struct Comparison {
   Vector3d middle;
 };
 
-/// The readings of one of the turn's own stops, with what the placed turns saw.
+/// Compares the turn's readings at one stop with the surfaces that the placed turns saw.
 void add_own(StopFit& fit, const Comparison& compared, std::size_t stop, const Isometry3d& pose) {
   for (const PlacedTurn& placed : compared.placed) {
     const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
@@ -113,7 +113,7 @@ void add_own(StopFit& fit, const Comparison& compared, std::size_t stop, const I
   }
 }
 
-/// The readings of a placed turn's stop, with what the turn itself saw: its surface moves.
+/// Compares a placed turn's readings at one stop with the surface of the turn, which moves.
 void add_placed(StopFit& fit, const Comparison& compared, std::size_t which, std::size_t stop,
                 const Isometry3d& pose) {
   const PlacedTurn& placed = compared.placed[which];
@@ -128,11 +128,12 @@ void add_placed(StopFit& fit, const Comparison& compared, std::size_t which, std
   }
 }
 
-/// Over all stops. Their sums are added in their order, so that threads change no bit.
+/// Compares all stops. Sums are added in the order of the stops, so that the result does not depend
+/// on the number of threads.
 StopFit compare(const Comparison& compared, const Isometry3d& pose, int threads,
                 const std::stop_token& stop) {
   struct Work {
-    std::size_t placed = 0;  // behind the last: the turn itself
+    std::size_t placed = 0;  // index; past the last: the turn itself
     std::size_t stop = 0;
   };
   std::vector<Work> work;
@@ -167,7 +168,7 @@ StopFit compare(const Comparison& compared, const Isometry3d& pose, int threads,
   return all;
 }
 
-/// What flat feet say that stood on platforms.
+/// Adds the constraints that flat feet lie on their platforms.
 void add_contacts(RigidFit& fit, const Comparison& compared, const Isometry3d& pose) {
   for (const PlacedTurn& placed : compared.placed) {
     const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
@@ -178,8 +179,9 @@ void add_contacts(RigidFit& fit, const Comparison& compared, const Isometry3d& p
   }
 }
 
-/// Comparisons per independent one. A patch of pixels that share one error is in the comparisons of
-/// its own readings, and in as many as the surface that other readings are compared with.
+/// The number of comparisons per independent one. A patch of pixels that share one error takes part
+/// in the comparisons of its own readings, and in as many as the surface for other readings: hence
+/// the factor 2.
 double find_correlation(const StopFit& fit, double readings_per_patch) {
   const auto pairs = static_cast<double>(fit.distances.size());
   return 2 * readings_per_patch * pairs /

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// A turn whose place in the object's frame is known.
+/// A turn whose pose in the object's frame is known.
 struct PlacedTurn {
   const SeenTurn* turn = nullptr;
   Eigen::Isometry3d object_from_turn = Eigen::Isometry3d::Identity();
@@ -26,8 +26,8 @@ struct ReadingFit {
 /// Refines a turn's pose on readings: each reading of its stops is compared with the surface that
 /// stops of the placed turns saw there, and the other way round (Gauss-Newton, point to plane).
 ///
-/// @param start   object's frame from the turn's
-/// @param middle  of what the turn saw, object's frame
+/// @param start   frame of the turn to the object's frame
+/// @param middle  metres, object's frame: centre of the turn's points, about which it is rotated
 ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn,
                         const Eigen::Isometry3d& start, const Eigen::Vector3d& middle, int threads,
                         const std::stop_token& stop);

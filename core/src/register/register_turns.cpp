@@ -21,19 +21,19 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t min_points = 300;     // of a turn: 3 cm2 to 12 cm2 of surface
-constexpr std::size_t shown_points = 4000;  // of a turn, for people to look at
+constexpr std::size_t min_points = 300;     // of a turn, 3 to 12 cm2 of surface
+constexpr std::size_t shown_points = 4000;  // of a turn, for display
 
-// A pose is accepted below this contradiction.
+// Thresholds for accepting a pose.
 constexpr double max_contradiction = 0.2;
 constexpr double min_overlap = 0.15;
 constexpr double max_residual = 0.0015;  // metres
 
-// Axes in the platform's plane about which a symmetric object is tried to be turned over.
+// Number of horizontal axes about which half turns of a symmetric object are tried.
 constexpr int turns_over = 8;
 constexpr double max_upright =
-    0.3;  // cosine between the two upward axes; below, the underside shows
-constexpr double max_worse = 1.15;  // times the best one's residual: noise explains so much
+    0.3;                            // cosine between both upward axes; below it the underside shows
+constexpr double max_worse = 1.15;  // times the best residual: noise explains as much
 
 std::string text(const char* format, double value) {
   std::array<char, 96> buffer{};
@@ -43,7 +43,7 @@ std::string text(const char* format, double value) {
 
 std::string percent(double share) { return text("%.0f %%", 100 * share); }
 
-/// How a turn fits, or why not.
+/// The result of placing one turn: its pose, or the reason for a refusal.
 struct Answer {
   RegisteredPose pose = {};
   std::string reason = {};  // empty if it fits
@@ -63,7 +63,7 @@ std::string refuse(const PoseCandidate& best) {
   return {};
 }
 
-/// The poses that a person can choose from.
+/// The candidates from which a person can choose: one for each shape.
 std::vector<RegistrationCandidate> to_choice(const std::vector<PoseCandidate>& candidates,
                                              const Target& target, const NearestPoints& turn) {
   std::vector<RegistrationCandidate> choice;
@@ -76,7 +76,7 @@ std::vector<RegistrationCandidate> to_choice(const std::vector<PoseCandidate>& c
   return choice;
 }
 
-/// The accepted candidate, refined on readings.
+/// Refines the accepted candidate on the readings.
 RegisteredPose refined(const Target& target, const SeenTurn& turn, const PoseCandidate& best,
                        const Vector3d& turn_middle, int threads, const std::stop_token& stop) {
   const ReadingFit fit = fit_readings(target.turns, turn, best.target_from_points,
@@ -89,8 +89,9 @@ RegisteredPose refined(const Target& target, const SeenTurn& turn, const PoseCan
           .contradiction = best.contradiction};
 }
 
-/// A pose of a symmetric object that fits as well as the best one and has the object's top down. A
-/// person who turns an object over wants its underside seen, so that an upright answer is wrong.
+/// Returns a pose of a symmetric object that fits as well as `best` and has the object upside down,
+/// or `best` if there is none. The object was turned over to scan its underside, so an upright pose
+/// is wrong.
 PoseCandidate turned_over(const Target& target, const SeenTurn& turn, const NearestPoints& points,
                           const PoseCandidate& best) {
   const Vector3d middle = best.target_from_points * points.middle();
@@ -109,14 +110,14 @@ PoseCandidate turned_over(const Target& target, const SeenTurn& turn, const Near
   return best;
 }
 
-/// Whether a pose leaves the turn's way up nearly as it was in the first placed turn.
+/// Whether the same side of the object is up as in the placed turn; false if several are placed.
 bool is_upright(const Target& target, const PoseCandidate& candidate) {
   return target.turns.size() == 1 &&
          candidate.target_from_points.linear().col(2).dot(
              target.turns.front().object_from_turn.linear().col(2)) > max_upright;
 }
 
-/// Looks for the turn's pose.
+/// Searches all rotations for the turn's pose.
 Answer search(const Target& target, const SeenTurn& turn, int threads,
               const std::stop_token& stop) {
   const NearestPoints points(turn.points);
@@ -141,7 +142,7 @@ Answer search(const Target& target, const SeenTurn& turn, int threads,
   return answer;
 }
 
-/// Refines the pose that a person has told.
+/// Refines the pose that a person estimated.
 Answer refine_told(const Target& target, const SeenTurn& turn, const Isometry3d& told, int threads,
                    const std::stop_token& stop) {
   const PoseCandidate candidate = refine_candidate(target, turn, told);
@@ -173,9 +174,9 @@ std::vector<PlacedTurn> placed_turns(const std::vector<SeenTurn>& seen,
   return placed;
 }
 
-/// Places turn after turn on those placed so far, until none of the rest fits.
+/// Registers turns one by one to the turns placed so far, until no other turn fits.
 /// @param[out] candidates  of the last turn
-/// @return of the first that does not fit, its number and why
+/// @return number of the first turn that does not fit, and the reason; nothing if all fit
 std::optional<std::pair<std::size_t, std::string>> place_all(
     std::span<const RegistrationTurn> turns, const std::vector<SeenTurn>& seen,
     std::vector<std::optional<RegisteredPose>>& poses,

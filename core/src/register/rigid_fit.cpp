@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 constexpr double max_motion = 0.1;  // radians or metres
 constexpr double lever = 0.05;      // metres
 
-// A prior that keeps free motions small, such as a vase's turn about its axis: a share of the total
-// weight that opposes every motion, at the lever.
+// Damping that keeps undetermined motions small, such as a vase's rotation about its axis. It is a
+// share of the total weight; rotations are damped by their motion at the lever.
 constexpr double damping = 1e-4;
 
 }  // namespace
@@ -24,7 +24,7 @@ void RigidFit::add(const Vector3d& point, const Vector3d& normal, double distanc
   Vector6d row;
   row << (point - middle).cross(normal), normal;
   const Vector6d weighed = of_weight * row;
-  // The lower half, by pairs of rows: whole columns would be half as much again.
+  // Only the lower triangle, in pairs of columns: whole columns would take 50 % more operations.
   normal_matrix.col(0) += row[0] * weighed;
   normal_matrix.col(1) += row[1] * weighed;
   normal_matrix.col(2).tail<4>() += row[2] * weighed.tail<4>();

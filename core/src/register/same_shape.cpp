@@ -15,14 +15,14 @@ constexpr std::size_t compared_points = 1500;
 
 // Tolerances of a point on a surface.
 constexpr double same_surface = 0.0015;  // metres, along the normal
-constexpr double residuals_apart = 3;    // the same, if the turns differ by more
-constexpr double points_to_surface = 2;  // whatever the normal: near an edge there are two
-constexpr double foot = 0.002;           // metres from a platform: a flat foot is made there
-// Of a ball that a Kinect saw, up to 0.9 % lie off: mixed readings, here and there.
+constexpr double residuals_apart = 3;    // times the residual, where that is more
+constexpr double points_to_surface = 2;  // times that, in any direction: an edge has two normals
+constexpr double foot = 0.002;  // metres from a platform, where the object gets a flat base
+// On a ball scanned by a Kinect up to 0.9 % of the points lie off the surface: mixed pixels.
 constexpr double max_other_share = 0.02;
 
-/// Share of points that neither of two surfaces has.
-/// @param b_from_points  the second surface's frame from the points'
+/// The share of the points that lie on neither of two surfaces.
+/// @param a_from_points, b_from_points  frame of the points to frame of the surface
 /// @param tolerance      metres, along the normal
 double other_share(const NearestPoints& a, const Isometry3d& a_from_points, const NearestPoints& b,
                    const Isometry3d& b_from_points, const std::vector<SurfacePoint>& points,

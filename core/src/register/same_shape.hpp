@@ -5,14 +5,13 @@
 
 namespace octurn {
 
-/// Whether two poses of a turn give the same shape: nearly all points of the turn, placed by one
-/// pose, lie on a surface that is there with the other. The tolerance is at least the residual that
-/// target and turn have where they overlap.
+/// Whether two poses of a turn give the same shape: 98 % of the turn's points, placed by either
+/// pose, lie on the target or on the turn placed by the other pose. The tolerance is 1.5 mm, or
+/// three times the residual if that is more.
 ///
-/// @param target  what other turns saw
-/// @param turn    what the turn saw, in its own frame
-/// @param one     refined: its residual counts
-/// @param other   the same
+/// @param target      points of the placed turns
+/// @param turn        points of the turn, in its own frame
+/// @param one, other  refined, as the smaller residual sets the tolerance
 bool same_shape(const NearestPoints& target, const NearestPoints& turn, const PoseCandidate& one,
                 const PoseCandidate& other);
 

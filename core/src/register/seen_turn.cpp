@@ -18,13 +18,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double platform_margin = 0.004;  // metres: readings below may be the platform's
+constexpr double platform_margin = 0.004;  // metres: lower readings may be the platform's
 constexpr double cell_side = 0.002;        // metres
-constexpr std::size_t many_stops = 16;     // of which every other pixel is enough
+constexpr std::size_t many_stops = 16;     // from here on every other pixel is enough
 constexpr std::size_t min_readings = 3;    // in a cell
-constexpr double min_agreement = 0.7;      // length of the mean of a cell's normals
-constexpr double max_below = 0.004;        // metres below a platform where nothing can be
-constexpr int min_witnesses = 2;           // stops that saw through a point
+constexpr double min_agreement = 0.7;      // length of the mean normal of a cell
+constexpr double max_below = 0.004;        // metres: a point lower than this is inside the platform
+constexpr int min_witnesses = 2;           // stops that see through a point
 
 struct Cell {
   Vector3d point = Vector3d::Zero();

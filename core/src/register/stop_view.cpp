@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Metres of depth among the 5 x 5 pixels: more is an edge. At 0.65 m a face that is seen under 20
-// degrees falls by 13 mm over them, and the top of a low object is such a face.
+// Maximum depth range of a 5 x 5 window, metres; a larger one is a depth edge. At 0.65 m the range
+// is 13 mm on a face at a grazing angle of 20 degrees, such as the top of a low object.
 constexpr double max_step = 0.018;
 constexpr double min_cosine = 0.35;  // between normal and ray
 
@@ -45,7 +45,7 @@ StopView::StopView(const DepthFrame& frame, const Intrinsics& intrinsics,
   keep_object(frame);
 }
 
-/// Keeps the rectangle of the pixels that are the object's.
+/// Stores the rectangle of the depth image that contains the object's pixels.
 void StopView::keep_object(const DepthFrame& frame) {
   std::array<Vector3d, 8> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -64,8 +64,8 @@ void StopView::keep_object(const DepthFrame& frame) {
   }
 }
 
-/// The surface at a pixel of the rectangle, by the plane through its neighbours: the inverse depth
-/// of a plane is linear in the image.
+/// Returns the surface at a pixel of the rectangle, from a plane fitted to the 5 x 5 pixels around
+/// it: the inverse depth of a plane is linear in the image.
 std::optional<SurfacePoint> StopView::read(int u, int v) const {
   if (u < normal_reach || v < normal_reach || u >= window_.width - normal_reach ||
       v >= window_.height - normal_reach) {

@@ -17,7 +17,8 @@ struct SurfacePoint {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// Of each reading the inverse depth, 1/m; 0 of none. A table, as each is asked for 25 times over.
+/// Tabulates the inverse depth of every possible reading, 1/m; 0 for no reading. A table saves
+/// divisions, as each reading is used in 25 windows.
 std::vector<double> to_inverse_depths(double depth_unit);
 
 /// One stop of a turn: the rectangle of its depth image that shows the object. Points are in the
@@ -34,18 +35,19 @@ class StopView {
 
   const Eigen::Isometry3d& sensor_from_turn() const { return sensor_from_turn_; }
 
-  /// Where the sensor stood.
+  /// The sensor's position, metres, frame of the turn.
   const Eigen::Vector3d& eye() const { return eye_; }
 
-  /// Pixels that are the object's.
+  /// The number of pixels that show the object.
   int pixels() const { return window_.pixels; }
 
-  /// The reading nearest to where a point is seen: on the plane through its neighbours, with that
-  /// plane's normal. On a curved surface such points lie behind it, in all turns alike.
-  /// @return nothing if nothing was read there, near a depth edge, or at a grazing angle
+  /// Returns the surface at the pixel that `point` projects to: point and normal of the plane
+  /// fitted around it. On a curved surface such points lie behind the surface, equally in all
+  /// turns.
+  /// @return nothing if there is no reading, near a depth edge, or at grazing incidence
   std::optional<SurfacePoint> look_up(const Eigen::Vector3d& point) const;
 
-  /// The object's readings, of pixels `step` apart.
+  /// The surface points of the object at every `step`-th pixel of every `step`-th row.
   std::vector<SurfacePoint> readings(int step) const;
 
  private:

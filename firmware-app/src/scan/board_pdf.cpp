@@ -17,7 +17,7 @@ struct Layout {
   double height = 0;
   int columns = 0;
   int rows = 0;
-  double bottom = 0;  // of the board
+  double bottom = 0;  // lower edge of the board
 };
 
 Layout layout_of(Paper paper) {
@@ -73,7 +73,8 @@ void draw_rulers(Drawing& drawing, const Layout& layout, double left) {
   drawing.text(left + 130, below, "Octurn  " + std::to_string(board_square_mm) + " mm  100 %");
 }
 
-/// A PDF of such objects, numbered from 1; the first is the catalogue.
+/// Assembles a PDF file from the bodies of its objects, which are numbered from 1. The first one is
+/// the document catalog.
 std::string to_pdf(const std::vector<std::string>& objects) {
   std::ostringstream out;
   out << "%PDF-1.4\n";
@@ -109,10 +110,10 @@ std::string board_pdf(Paper paper) {
   draw_rulers(drawing, layout, left);
   const std::string commands = drawing.commands();
   std::ostringstream page;
-  // So that a viewer's print dialogue proposes the true size: no scaling.
   page << "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " << layout.width * points_per_mm << ' '
        << layout.height * points_per_mm
        << "] /Resources << /Font << /F 5 0 R >> >> /Contents 4 0 R >>";
+  // PrintScaling None: print dialogues propose the true size.
   return to_pdf(
       {"<< /Type /Catalog /Pages 2 0 R /ViewerPreferences << /PrintScaling /None >> >>",
        "<< /Type /Pages /Kids [3 0 R] /Count 1 >>", page.str(),

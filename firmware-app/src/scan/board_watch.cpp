@@ -19,16 +19,16 @@ using nlohmann::json;
 
 constexpr int wanted_views = 12;
 constexpr int most_views = 40;
-constexpr int still_comparisons = 2;    // of a picture with the one before, in a row
-constexpr double still_share = 0.0025;  // of the width: 2 pixels of 820 from picture to picture
+constexpr int still_comparisons = 2;    // consecutive pictures that match their predecessor
+constexpr double still_share = 0.0025;  // of the width: 2 pixels of 820 between pictures
 constexpr double new_place = 0.15;      // of the width
-constexpr double new_size = 1.25;       // times another hold's
+constexpr double new_size = 1.25;       // ratio to another hold's size
 constexpr double new_tilt_deg = 12;
-constexpr double wanted_tilt_deg = 40;  // between two holds: twice of what is asked at least
-constexpr int views_before_tilt = 4;    // whoever has shown these is told that tilt is missing
-constexpr int missing_cells = 2;        // that do not matter, of 36
+constexpr double wanted_tilt_deg = 40;  // between two holds: twice the minimum of `calibrate_lens`
+constexpr int views_before_tilt = 4;    // views before a missing tilt is reported
+constexpr int missing_cells = 2;        // tolerated cells without a corner, of 36
 
-/// The median distance of a view's corners to the nearest one of another, pixels.
+/// Median distance from a view's corners to the nearest corner of another view, pixels.
 double median_move(const BoardView& view, const BoardView& other) {
   std::vector<double> moves;
   for (const BoardCorner& corner : view) {

@@ -8,49 +8,52 @@
 
 namespace octurn {
 
-/// What the person who holds a board should do next.
+/// Next instruction to the person who holds a calibration board.
 enum class BoardAdvice {
-  show,        ///< no board is seen
-  hold_still,  ///< it moves
-  tilt,        ///< this place was taken already; boards were never tilted far enough
-  reach,       ///< this place was taken already; a part of the picture has never shown a board
-  turn,        ///< this place was taken already: any other place will do
+  show,        ///< no board was detected
+  hold_still,  ///< the board moves
+  tilt,        ///< this place has a view; no two views differ enough in tilt
+  reach,       ///< this place has a view; parts of the picture have no corners yet
+  turn,        ///< this place has a view; any other place will do
 };
 
 /// Feedback for the person who holds a board.
 struct BoardLook {
   BoardAdvice advice = BoardAdvice::show;
-  /// Of the last picture, as shares of its width and height.
+  /// Corners in the last picture, as fractions of its width and height.
   std::vector<Eigen::Vector2d> corners = {};
-  int taken = 0;   ///< views
-  int wanted = 0;  ///< views, at least
+  int taken = 0;   ///< number of views
+  int wanted = 0;  ///< minimum number of views
   LensCoverage coverage = {};
 };
 
-/// A look as the API has it.
+/// JSON of the feedback, for the API.
 nlohmann::json to_json(const BoardLook& look);
 
-/// Takes a view of a board that is held before a camera whenever it stands still in a new place.
+/// Collects views of a board that a person holds in front of a camera. A view is taken when the
+/// board stands still in a new place, or covers new cells of the picture.
 class BoardWatch {
  public:
-  /// @param lens  an estimate of the camera's, from which the boards' tilt is computed
+  /// @param lens  estimate of the camera's intrinsics, used to compute the boards' tilt
   explicit BoardWatch(const Intrinsics& lens);
 
-  /// Looks at the next picture, of the lens's size. @return whether its view was taken
+  /// Processes the next picture, whose size must be that of the lens.
+  /// @return whether its view was taken
   bool see(const Picture& picture);
 
   const BoardLook& look() const { return look_; }
   const std::vector<BoardView>& views() const { return views_; }
 
-  /// Whether all views that are wanted were taken, or so many that more do not help.
+  /// Whether the wanted views are taken and cover tilt and picture, or the maximum number of views
+  /// is reached.
   bool is_complete() const;
 
  private:
   /// Position and orientation of a board.
   struct Hold {
-    Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // pixels, of what is seen
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // pixels: mean of the corners
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    double size = 0;  // pixels, of a square
+    double size = 0;  // pixels: mean side of the squares
   };
 
   bool is_still(const BoardView& view) const;

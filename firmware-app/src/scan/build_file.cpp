@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_build_bytes = std::size_t{1} << 20U;  // a hundred times what is written
+constexpr std::size_t max_build_bytes = std::size_t{1} << 20U;  // 100 times the usual size
 
 }  // namespace
 

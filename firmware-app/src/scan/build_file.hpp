@@ -7,11 +7,11 @@
 
 namespace octurn {
 
-/// The folder of a scan's builds: each has one of its own, named after its number, with `Scan.stl`
-/// and `build.json`.
+/// The folder of a scan's builds. Each build has a subfolder, named after its number, with
+/// `Scan.stl` and `build.json`.
 inline constexpr const char* builds_folder = "builds";
 
-/// In the folder of a build that a scan of another pose made: the scan folder of all its poses.
+/// Subfolder of a build that merges several poses: a scan folder with the snapshots of all of them.
 inline constexpr const char* merged_folder = "scan";
 
 /// The task file in the folder of a build that another process makes. The folder is not a build
@@ -21,10 +21,10 @@ inline constexpr const char* task_file = "task.json";
 /// Writes `folder/build.json`. @throws Error "disk-full", "write-failed"
 void write_build(const std::filesystem::path& folder, const Build& build);
 
-/// The builds of a scan, sorted by number. Unreadable ones are left out.
+/// Reads the builds of a scan, sorted by number. Unreadable ones are logged and left out.
 std::vector<Build> read_builds(const std::filesystem::path& scan);
 
-/// The build in one folder. @throws Error "job-malformed", "read-failed"
+/// Reads the build in one folder. @throws Error "job-malformed", "read-failed"
 Build read_build(const std::filesystem::path& folder, int number);
 
 /// The number in the name of a build's folder; 0 if it is not such a folder.

@@ -19,8 +19,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a model is clipped to: as the settings say; of several poses, each to its own box as long
-/// as the settings have that of the scan.
+/// Returns the model's clip box: that of the settings. If it is the scan's own box, a scan of
+/// several poses has the box that encloses the clip boxes of all poses instead.
 Box clip_of(const Scan& scan, const BuildInput& input) {
   const Box& wanted = input.settings.scan.clip;
   const Box& own = input.job.settings.clip;
@@ -32,9 +32,9 @@ std::vector<CalibrationFinding> calibration_findings(const Job& job) {
   return job.calibration ? job.calibration->findings : std::vector<CalibrationFinding>{};
 }
 
-/// Solves the pose of a scan, if it is to be solved and is not yet.
+/// Solves the sensor's pose if the settings ask for it and the scan has no solved pose.
 /// @param[out] build  gets the calibration
-/// @return what that has found, or what the scan's own has, whose pose is used again
+/// @return the findings of the calibration; those of the scan's own if its solved pose is reused
 std::vector<CalibrationFinding> solve(Scan& scan, Build& build, const BuildInput& input,
                                       int threads, const std::stop_token& stop,
                                       const BuildProgress& progress) {
@@ -55,7 +55,7 @@ std::vector<CalibrationFinding> solve(Scan& scan, Build& build, const BuildInput
   return solution.report.findings;
 }
 
-/// Counts the snapshots that are read, for `progress`.
+/// Wraps a source: reports the number of snapshots read so far to `progress`.
 SnapshotSource counted(SnapshotSource snapshots, const BuildProgress& progress) {
   const auto done = std::make_shared<std::atomic<int>>(0);
   const auto count = static_cast<int>(snapshots.count);
@@ -105,7 +105,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
     return std::nullopt;
   }
   Quality quality = judge(checks.figures(limits.threads), *report, *findings);
-  report->places = {};  // a job's figures are copied for each look at them
+  report->places = {};  // dropped: every request for a job's state copies it
   build.model = {.report = *std::move(report),
                  .build_time = Clock::now() - begin,
                  .quality = std::move(quality)};

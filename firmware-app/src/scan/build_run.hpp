@@ -18,15 +18,15 @@ struct BuildOrder {
 
 /// A build's job on a cluster.
 struct ClusterJob {
-  std::string id = {};      ///< its number on the cluster; empty before it is submitted
-  std::string detail = {};  ///< why it waits, or the cluster's fault; or empty
+  std::string id = {};      ///< number on the cluster; empty before the job is submitted
+  std::string detail = {};  ///< why the job waits, or the cluster's error; may be empty
 };
 
-/// The state of the build that waits or runs, or of the last one.
+/// A build that waits, runs or has ended.
 struct BuildRun {
   enum class State { waiting, running, finished, failed, cancelled };
 
-  std::string scan = {};  ///< its id
+  std::string scan = {};  ///< id of the scan
   int number = 1;         ///< of the build
   State state = State::waiting;
   Phase phase = Phase::starting;
@@ -40,10 +40,10 @@ struct BuildRun {
   bool has_ended() const { return state != State::waiting && state != State::running; }
 };
 
-/// The failure of a build that a scan interrupted, as scans have precedence.
+/// The failure of a build that was stopped because a scan started: scans have precedence.
 Failure displaced_by_scan();
 
-/// Its name in logs: "build 2 of scan 20261122-081500".
+/// The build's name in logs: "build 2 of scan 20261122-081500".
 std::string describe(const BuildRun& run);
 
 /// "waiting", "running", "finished", "failed", "cancelled".

@@ -12,11 +12,11 @@
 
 namespace octurn {
 
-/// The settings of a build: those of a scan that need no new capture.
+/// The settings of a build: the scan settings that need no new capture, and two of its own.
 struct BuildSettings {
-  ScanSettings scan = {};         ///< only those of the model are used
+  ScanSettings scan = {};         ///< only the settings of `model_fields` are used
   std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
-  /// The told pose, optical frame to platform frame, metres; nothing: that of the scan.
+  /// Sensor pose to use instead of the scan's: optical frame to platform frame, metres.
   std::optional<Eigen::Isometry3d> platform_from_sensor = {};
 };
 
@@ -30,7 +30,7 @@ nlohmann::json to_json(const BuildSettings& settings);
 ///                               key
 BuildSettings build_settings_from(const nlohmann::json& object, const BuildSettings& defaults);
 
-/// Reads the settings of a stored build. @throws Error  as above, with the value's code
+/// Reads the settings of a stored build. @throws Error  as above, with the code of `object`
 BuildSettings stored_build_settings_from(const JsonValue& object);
 
 }  // namespace octurn

@@ -16,20 +16,21 @@ namespace octurn {
 struct BuildTask {
   BuildRun run = {};
   bool becomes_model = false;
-  Job job = {};                         ///< of the scan
-  std::filesystem::path folder = {};    ///< the scan's own folder, or that of all its poses merged
+  Job job = {};                       ///< the scan's job
+  std::filesystem::path folder = {};  ///< the scan's folder, or the scan folder of its merged poses
   std::vector<std::string> poses = {};  ///< ids of the scans of other poses in that folder
-  /// The findings of these scans; of one turn they are read when it is built.
+  /// Findings of the scans of all poses; nullopt for one turn, see `BuildInput`.
   std::optional<std::vector<CalibrationFinding>> findings = {};
 };
 
-/// Makes the task of a build of a stored scan. It has the poses of the chosen model.
+/// Makes the task of building a stored scan, with the poses of the scan's chosen model.
 /// @throws Error "no-such-scan", "no-model"
 BuildTask make_task(const ScanStore& store, const BuildRun& run, bool becomes_model);
 
-/// Builds the model of a task. @param file  of the model, which appears whole or not at all
-/// @return nothing if stopped first
-/// @throws Error  as `build_model` for a scan
+/// Builds the model of a task.
+/// @param file  path of the model, which is written atomically
+/// @return nullopt if stopped first
+/// @throws Error  as `build_model` of a BuildInput
 std::optional<Build> build_model(const BuildTask& task, const Limits& limits,
                                  const std::filesystem::path& file, const std::stop_token& stop,
                                  const BuildProgress& progress);
@@ -38,8 +39,8 @@ std::optional<Build> build_model(const BuildTask& task, const Limits& limits,
 /// @throws Error  as `ScanStore::choose_build`
 void choose_built(ScanStore& store, const BuildTask& task);
 
-/// Writes a task and the builder's limits as `folder/task.json`, whole or not at all. @throws Error
-/// "disk-full", "write-failed"
+/// Writes a task and the builder's limits to `folder/task.json`, atomically.
+/// @throws Error "disk-full", "write-failed"
 void write_task(const std::filesystem::path& folder, const BuildTask& task, const Limits& limits);
 
 struct StoredTask {
@@ -47,7 +48,7 @@ struct StoredTask {
   Limits limits = {};
 };
 
-/// @throws Error "job-malformed", "read-failed"
+/// Reads `folder/task.json`. @throws Error "job-malformed", "read-failed"
 StoredTask read_task(const std::filesystem::path& folder);
 
 }  // namespace octurn

@@ -26,9 +26,9 @@ constexpr const char* build_file = "build.json";
 constexpr const char* failure_file = "failure.json";
 constexpr const char* progress_file = "progress.json";
 constexpr std::size_t max_file_bytes = std::size_t{64} << 10U;
-constexpr auto progress_interval = std::chrono::seconds(1);  // so often a file is written for it
+constexpr auto progress_interval = std::chrono::seconds(1);  // minimum time between two writes
 
-/// Writes how far a build is, for who waits. Called on several threads.
+/// Writes a build's progress for the process that waits for it. Thread-safe.
 class ProgressFile {
  public:
   explicit ProgressFile(fs::path folder) : file_(std::move(folder) / progress_file) {}
@@ -51,7 +51,7 @@ class ProgressFile {
   Clock::time_point written_ = {};
 };
 
-/// The JSON of a file; nothing if it is not there, or cannot be read.
+/// Reads a JSON file; nullopt if it is missing or unreadable.
 std::optional<json> read_json(const fs::path& file) {
   try {
     if (const auto text = read_regular_file(file, max_file_bytes)) {
@@ -67,7 +67,7 @@ std::optional<json> read_json(const fs::path& file) {
 
 bool build_task_in(const fs::path& folder, const std::stop_token& stop) {
   std::error_code ignored;
-  fs::remove(folder / failure_file, ignored);  // of an attempt before
+  fs::remove(folder / failure_file, ignored);  // of an earlier attempt
   try {
     const auto [task, limits] = read_task(folder);
     ProgressFile progress(folder);
@@ -117,13 +117,13 @@ void read_progress(const fs::path& folder, BuildRun& run) {
 
 void clear_work_files(const fs::path& folder) {
   clear_unfinished(folder);
-  std::error_code ignored;  // they do no harm
+  std::error_code ignored;  // leftovers are harmless
   for (const std::string& name : names_in(folder)) {
     if (name != "Scan.stl" && name != build_file && name != task_file) {
       fs::remove(folder / name, ignored);
     }
   }
-  fs::remove(folder / task_file, ignored);  // the last, as the next start clears the others away
+  fs::remove(folder / task_file, ignored);  // last: while it exists, the next start repeats this
 }
 
 }  // namespace octurn

@@ -9,24 +9,24 @@
 
 namespace octurn {
 
-/// The JSON of `octurn calibrate --json`: millimetres and degrees.
-/// @param angles  of the stops as told, radians
+/// JSON of a calibration, as `octurn calibrate --json` prints it: millimetres and degrees.
+/// @param angles  commanded angles of the stops, radians
 nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles);
 
-/// The same of a scan by laser line.
+/// The same for a laser-line scan, with the planes of its lasers.
 nlohmann::json to_json(const CalibrationReport& report, const std::vector<double>& angles,
                        const std::vector<Laser>& lasers);
 
-/// A scan's calibration as the API and `job.json` have it.
+/// JSON of a scan's calibration, for the API and `job.json`.
 nlohmann::json to_json(const ScanCalibration& calibration);
 
-/// Findings, as in the API and the files.
+/// JSON of findings, for the API and the files.
 nlohmann::json to_json(const std::vector<CalibrationFinding>& findings);
 
-/// Reads findings from that JSON. @throws Error  with the value's code
+/// Parses that JSON. @throws Error  with the code of `list`
 std::vector<CalibrationFinding> to_findings(const JsonValue& list);
 
-/// The calibration of a `job.json`. @throws Error  of the value's code
+/// Parses the calibration of a `job.json`. @throws Error  with the code of `object`
 ScanCalibration to_scan_calibration(const JsonValue& object);
 
 }  // namespace octurn

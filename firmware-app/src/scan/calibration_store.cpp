@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // a hundred times what is written
+constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // 100 times the usual size
 
 fs::path file_in(const fs::path& data, SensorKind kind) {
   return data / (kind == SensorKind::depth ? "calibration.json" : "laser-calibration.json");
@@ -42,7 +42,7 @@ std::vector<PoseRecord> records_from(const json& document) {
   return records;
 }
 
-/// None if there is no such file. @throws Error "platform-malformed", "read-failed"
+/// Returns no records if the file does not exist. @throws Error "platform-malformed", "read-failed"
 std::vector<PoseRecord> read_records(const fs::path& file) {
   const auto text = read_regular_file(file, max_file_bytes);
   try {
@@ -68,12 +68,12 @@ bool is_told(const PoseRecord& record) {
   return record.origin == PoseOrigin::drawing || record.origin == PoseOrigin::settings;
 }
 
-/// Whether a record is of that camera, or of no camera in particular.
+/// Whether a record applies to that camera. An empty serial number, on either side, matches all.
 bool is_of(const PoseRecord& record, std::string_view camera) {
   return camera.empty() || record.camera.empty() || record.camera == camera;
 }
 
-/// Without the oldest of each camera. @param records  the newest first
+/// Drops each camera's oldest records beyond `max_history`. @param records  newest first
 std::vector<PoseRecord> newest_of_each(const std::vector<PoseRecord>& records) {
   std::map<std::string, std::size_t> count;
   std::vector<PoseRecord> kept;
@@ -88,7 +88,7 @@ std::vector<PoseRecord> newest_of_each(const std::vector<PoseRecord>& records) {
 CalibrationStore::CalibrationStore(fs::path data, SensorKind kind)
     : data_(std::move(data)), kind_(kind), records_(last_good_records(data_, kind)) {}
 
-/// The pose that the settings tell.
+/// Returns the record of the settings' pose.
 PoseRecord CalibrationStore::to_record(const ScanSettings& told) const {
   const Eigen::Isometry3d drawing =
       kind_ == SensorKind::depth ? nominal_platform_from_sensor() : nominal_platform_from_camera();
@@ -139,7 +139,7 @@ void CalibrationStore::add(const PoseRecord& record) {
 
 void CalibrationStore::change(const PoseChange& change, const ScanSettings& told,
                               std::string_view camera) {
-  const std::lock_guard writing(writing_);  // from here on: the record that is changed stays
+  const std::lock_guard writing(writing_);  // from reading the record to writing its change
   PoseRecord record = change.is_settings_pose ? to_record(told) : records(told, camera).front();
   record.at = utc_text(std::chrono::system_clock::now(), rfc3339);
   if (change.platform_from_sensor || change.scale) {

@@ -13,44 +13,45 @@
 
 namespace octurn {
 
-/// A person's change of the pose in force; absent members stay.
+/// A user's change of the pose in force. Absent members change nothing.
 struct PoseChange {
-  bool is_settings_pose = false;  ///< back to the settings' pose, without a scale
+  bool is_settings_pose = false;  ///< resets pose and depth scale to the settings'
   std::optional<Eigen::Isometry3d> platform_from_sensor = {};
-  /// Factor of the depths. Without a new pose the old one is scaled with it, so that the platform
-  /// stays where it is seen.
+  /// Factor of the sensor's depths. Without a new pose, the old one's translation is scaled along,
+  /// so that the platform stays at the same pixels.
   std::optional<double> scale = {};
 };
 
-/// The sensor's pose in force, which overrides that of the settings, and the poses before it, in
-/// `DATA/calibration.json`; `calibration.last.json` is a copy, read if that file is damaged. A rig
-/// with lasers has `laser-calibration.json` and its copy, whose records belong to a camera each, or
-/// to any camera if a person gave the pose. Thread-safe.
+/// The sensor's pose in force, which overrides that of the settings, and the earlier poses. They
+/// are stored in `DATA/calibration.json`; `calibration.last.json` is a copy, read if that file is
+/// damaged. A rig with lasers uses `laser-calibration.json` and its copy. Each of its records
+/// belongs to one camera, or to any camera if a user entered the pose. Thread-safe.
 class CalibrationStore {
  public:
-  static constexpr std::size_t max_history = 10;  ///< records beside the one in force, of a camera
+  static constexpr std::size_t max_history = 10;  ///< earlier records kept per camera
 
-  /// Reads the file; the log names a damaged one.
+  /// Reads the file. If it is damaged, logs that and reads the copy.
   /// @param data  the data folder, which this process has locked
   explicit CalibrationStore(std::filesystem::path data, SensorKind kind = SensorKind::depth);
 
-  /// The record in force, then those before it, the newest first. Reads no disk.
+  /// Returns the record in force, then the earlier ones, newest first. Does not access the disk.
   /// @param told    settings whose pose is in force if there is no record
-  /// @param camera  serial number of the camera whose records are asked for; empty: of all
+  /// @param camera  serial number of the camera whose records are returned; empty: all cameras
   std::vector<PoseRecord> records(const ScanSettings& told, std::string_view camera = {}) const;
 
-  /// Settings for a new scan, with the pose and the scale in force. Reads no disk.
+  /// Returns settings for a new scan: `told` with the pose and the depth scale in force. Does not
+  /// access the disk.
   /// @param camera  as above
   ScanSettings in_force(ScanSettings told, std::string_view camera = {}) const;
 
   /// Puts a pose into force. @throws Error "disk-full", "write-failed"
   void set(const PoseRecord& record);
 
-  /// Applies a person's change. @param told, camera  as above
+  /// Applies a user's change. @param told, camera  as above
   void change(const PoseChange& change, const ScanSettings& told, std::string_view camera = {});
 
-  /// Puts the pose before the one in force back into force. @param camera  as above
-  /// @throws Error "not-found"  if there was none; as `set`
+  /// Restores the pose before the one in force. @param camera  as above
+  /// @throws Error "not-found"  if there is none; and as `set`
   void undo(std::string_view camera = {});
 
  private:
@@ -62,11 +63,12 @@ class CalibrationStore {
   std::filesystem::path data_;
   SensorKind kind_;
   std::mutex writing_;        // serialises changes of the records; locked before mutex_
-  mutable std::mutex mutex_;  // guards records_, and is never held while the disk is used
+  mutable std::mutex mutex_;  // guards records_; never held during disk access
   std::vector<PoseRecord> records_;
 };
 
-/// The fault of a data folder's calibration file; nothing if it is intact or absent.
+/// Returns what is wrong with a data folder's calibration files; nullopt if they are intact or
+/// absent.
 std::optional<std::string> find_damaged_calibration(const std::filesystem::path& data);
 
 }  // namespace octurn

@@ -21,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Adds the readings of one depth image that lie in the slice.
+/// Adds the points of one depth image that lie in the slice.
 void add_frame(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
                const Eigen::Isometry3d& object_from_sensor) {
   for (int v = 0; v < frame.height; ++v) {

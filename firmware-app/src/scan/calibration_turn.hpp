@@ -18,8 +18,8 @@
 
 namespace octurn {
 
-/// Stops of a turn that measures the sensor's pose. With fewer the object is seen from too few
-/// sides; each one more takes 0.6 MB for its depth image.
+/// Number of stops of a turn that measures the sensor's pose. Fewer show too few sides of the
+/// object. Each stop's depth image is held in memory, 0.6 MB.
 inline constexpr int min_calibration_stops = 4;
 inline constexpr int max_calibration_stops = 72;
 inline constexpr int default_calibration_stops = 24;
@@ -27,12 +27,12 @@ inline constexpr int default_calibration_stops = 24;
 /// The sensor's pose as solved from a turn.
 struct TurnReport {
   CalibrationReport calibration = {};
-  std::vector<double> angles = {};  ///< of the stops as told, radians
-  Slice before = {};                ///< with the told pose
-  Slice after = {};                 ///< with the solved one; empty if that is refused
-  std::vector<Laser> told = {};     ///< of a rig with lasers: with the told planes
-  std::vector<Laser> lasers = {};   ///< the same, with the solved ones
-  bool replaces_told = false;       ///< accepted, and more than what the rig was told already
+  std::vector<double> angles = {};  ///< commanded angles of the stops, radians
+  Slice before = {};                ///< with the configured pose
+  Slice after = {};                 ///< with the solved pose; empty if it was refused
+  std::vector<Laser> told = {};     ///< lasers with the configured planes; empty: a depth sensor
+  std::vector<Laser> lasers = {};   ///< lasers with the solved planes
+  bool replaces_told = false;       ///< accepted, and differs from the configured pose or planes
 };
 
 /// The progress and result of a measurement of the rig.
@@ -44,24 +44,24 @@ struct CalibrationRun {
   Kind kind = Kind::turn;
   State state = State::running;
   Phase phase = Phase::turning;
-  int stop = 0;  ///< number done: stops; frames of a wall; views of a board
+  int stop = 0;  ///< number done: stops of a turn, frames of a wall, views of a board
   int stops = 0;
   std::optional<TurnReport> report = {};     ///< of a turn
-  std::optional<SensorMapReport> wall = {};  ///< of a wall; its map has no pixels here
-  std::optional<BoardLook> look = {};        ///< of a lens, while a board is looked at
+  std::optional<SensorMapReport> wall = {};  ///< of a wall; without the map's pixels
+  std::optional<BoardLook> look = {};        ///< of a lens, while views are taken
   std::optional<LensReport> lens = {};       ///< of a lens
   std::string camera = {};                   ///< of a lens: the camera's serial number
   std::optional<Failure> failure = {};
 };
 
-/// A run as the API has it.
+/// JSON of a run, for the API.
 nlohmann::json to_json(const CalibrationRun& run);
 
 /// Takes the depth images of one turn, and solves the sensor's pose from them. Nothing is stored.
 ///
-/// @param settings  `snapshots` are the stops; the told pose is theirs
-/// @param map       of the sensor's own error, by which the depth images are corrected; may be null
-/// @return nothing if stopped first
+/// @param settings  `snapshots` is the number of stops; `platform_from_sensor` the initial pose
+/// @param map       map of the sensor's depth error, which is subtracted; may be null
+/// @return nullopt if stopped first
 /// @throws Error "sensor-...", "turntable-..."
 std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
                                        int threads, Rig& rig, const std::stop_token& stop,

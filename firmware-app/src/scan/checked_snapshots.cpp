@@ -6,7 +6,7 @@
 namespace octurn {
 namespace {
 
-// What is held of each snapshot beside the reconstruction.
+// Memory for each snapshot in addition to the reconstruction.
 constexpr std::size_t check_bytes = 100'000;
 constexpr std::size_t calibration_bytes = 350'000;
 

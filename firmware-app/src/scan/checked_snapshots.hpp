@@ -10,22 +10,23 @@
 
 namespace octurn {
 
-/// Options for a model whose snapshots are also checked, and whose pose may be solved: the memory
-/// that this takes is added to `program_memory`.
+/// Returns options for a model whose snapshots are also checked. `program_memory` includes the
+/// memory of the checks, and of solving the pose if the settings ask for it.
 ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
                                    std::size_t snapshots);
 
-/// Checks the depth images of a scan, each by the platform and clip box of its pose.
+/// Quality checks of a scan's depth images. Each pose has its own platform frame and clip box.
 class PoseChecks {
  public:
-  /// @param placements  of the poses; none: there is one, with that clip box
-  /// @param stops       of all poses
+  /// @param placements  one for each pose; empty: one pose with the clip box `clip`
+  /// @param stops       number of stops, of all poses together
   PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops);
 
-  /// @param stop  below the number of stops. @throws  as `ScanCheck::add`; called as that is
+  /// Adds a stop's snapshot. Threads and errors are as of `ScanCheck::add`.
+  /// @param stop  index, below the number of stops
   void add(std::size_t stop, const Snapshot& snapshot);
 
-  /// The figures of each pose, places in the object's frame.
+  /// Returns the figures of each pose, with places in the object's frame.
   std::vector<ScanFigures> figures(int threads) const;
 
  private:
@@ -33,7 +34,7 @@ class PoseChecks {
   std::vector<std::unique_ptr<ScanCheck>> checks_;
 };
 
-/// The same snapshots; each one that is read is added to `checks`, which must outlive them.
+/// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
 SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
 
 }  // namespace octurn

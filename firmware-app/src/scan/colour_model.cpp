@@ -12,10 +12,10 @@
 namespace octurn {
 namespace {
 
-// The most that is held at a time: the table of vertices, the triangles, normals, places before a
-// camera, and what pictures tell, at half a vertex a triangle.
+// Peak memory: vertex table, triangles, normals, vertices in the camera's frame, and colour sums,
+// at half a vertex per triangle.
 constexpr std::uint64_t bytes_per_triangle = 60;
-// A depth image, a picture, and the same as its file has it.
+// A depth image, a decoded picture, and the bytes of its file.
 constexpr std::uint64_t bytes_per_pixel = 12;
 constexpr std::uint64_t max_file_bytes = std::uint64_t{128} << 20U;
 

@@ -16,10 +16,10 @@ std::filesystem::path colours_file(const std::filesystem::path& model);
 /// Refuses a scan that is not by laser line. @throws Error "bad-settings"
 void expect_pictures(const Scan& scan);
 
-/// Makes that file, whole or not at all, from the pictures of the model's scan.
+/// Computes the colours from the pictures of the model's scan, and writes that file atomically.
 /// @param memory_limit  bytes, of this process; 0: none
-/// @throws Error "memory-limit"  if the model has so many triangles that it might take more; as
-///                               `vertex_colours`, and "disk-full", "write-failed"; Stopped
+/// @throws Error "memory-limit"  if the model has so many triangles that the limit may be exceeded;
+///                               as `vertex_colours`; "disk-full", "write-failed"; Stopped
 void colour_model(const std::filesystem::path& model, const ModelScan& of, std::size_t memory_limit,
                   const std::stop_token& stop);
 

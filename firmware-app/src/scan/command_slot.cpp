@@ -6,23 +6,23 @@
 namespace octurn {
 namespace {
 
-// As Command has them: what is more urgent comes later.
+// Indices in `Command`: a higher rank is more urgent.
 constexpr std::size_t camera_rank = 0;
 constexpr std::size_t check_rank = 1;
 constexpr std::size_t rebuild_rank = 2;
 constexpr std::size_t build_rank = 3;
-constexpr std::size_t scan_rank = 4;  // and of what comes after
+constexpr std::size_t scan_rank = 4;  // also of the alternatives after it
 
 std::size_t to_rank(const Command& command) { return std::min(command.index(), scan_rank); }
 
 }  // namespace
 
-/// Whether nothing of that rank, or a higher one, waits or is carried out; `mutex_` is held.
+/// Whether no command of that rank or a higher one waits or runs; `mutex_` is held.
 bool CommandSlot::rank_is_free(std::size_t rank) const {
   return !ended_ && (!waiting_ || to_rank(waiting_->command) < rank) && (!rank_ || *rank_ < rank);
 }
 
-/// Puts a command into the slot in place of what waits there; `mutex_` is held.
+/// Replaces the waiting command; `mutex_` is held.
 void CommandSlot::put(Command command, std::stop_source stop) {
   if (waiting_) {
     waiting_->stop.request_stop();
@@ -35,7 +35,7 @@ void CommandSlot::put(Command command, std::stop_source stop) {
   changed_.notify_all();
 }
 
-/// Puts a command of that rank there if nothing waits or runs that is as urgent.
+/// Puts a command into the slot unless one of that rank or a higher one waits or runs.
 bool CommandSlot::offer(Command command, std::size_t rank) {
   const std::lock_guard lock(mutex_);
   if (!rank_is_free(rank)) {

@@ -25,14 +25,14 @@ struct CameraCommand {};
 
 /// Check the rig.
 struct DeviceCheckCommand {
-  /// Returns soon after its token has a stop request.
+  /// Must return soon after a stop is requested.
   std::packaged_task<void(Rig& rig, const std::stop_token& stop)> check = {};
 };
 
-/// Make something of a stored scan for a request: a model with other settings, or the colours of
-/// one.
+/// Compute something from a stored scan for an HTTP request: a model with other settings, or the
+/// colours of a model.
 struct RebuildCommand {
-  /// Gives the pipe what it makes, and closes it; asks it whether to stop.
+  /// Writes its result into the pipe, and closes it. Polls the pipe's stop token.
   std::function<void(ModelPipe& pipe)> make = {};
   std::shared_ptr<ModelPipe> pipe = {};
 };
@@ -41,7 +41,7 @@ struct RebuildCommand {
 struct BuildCommand {
   BuildRun run = {};
   bool becomes_model = false;
-  std::optional<PoseChoice> pose = {};  ///< a pose is registered again, for a model of all
+  std::optional<PoseChoice> pose = {};  ///< registers this pose again, and merges all poses
 };
 
 /// Run a scan that has just been created.
@@ -49,25 +49,25 @@ struct ScanCommand {
   Job job = {};
 };
 
-/// Go on with a scan that was paused or interrupted.
+/// Continue a scan that was paused, interrupted or cancelled.
 struct ResumeCommand {
   Job job = {};
 };
 
-/// Measure the sensor's pose with a turn.
+/// Measure the sensor's pose by a turn.
 struct CalibrateCommand {
-  ScanSettings settings = {};  ///< `snapshots` are the stops
+  ScanSettings settings = {};  ///< `snapshots` is the number of stops
 };
 
-/// Look at a wall for the map of the sensor's own error.
+/// Record frames of a flat wall for the map of the sensor's depth error.
 struct WallCommand {
   int frames = 0;
 };
 
-/// Look at a board for the lens of a camera with lasers.
+/// Take pictures of a board to calibrate the lens of a camera with lasers.
 struct LensCommand {};
 
-/// The worker's commands, the least urgent first.
+/// The worker's commands, in ascending order of urgency.
 using Command =
     std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand, ScanCommand,
                  ResumeCommand, CalibrateCommand, WallCommand, LensCommand>;
@@ -75,9 +75,9 @@ using Command =
 /// Why a scan is stopped.
 enum class ScanStop { end, pause };
 
-/// The one command that waits, and the one that the worker carries out. A scan, or a measurement of
-/// the rig, stops any other command that is carried out and replaces the one that waits; a build
-/// replaces a less urgent one that waits. Thread-safe.
+/// A command queue of length one, and the command that the worker executes. A scan, or a
+/// measurement of the rig, stops any other running command and replaces the waiting one. A build
+/// replaces a less urgent waiting one. Any command stops a camera command. Thread-safe.
 class CommandSlot {
  public:
   using Clock = std::chrono::steady_clock;
@@ -91,44 +91,46 @@ class CommandSlot {
   /// already, or after `end`
   bool offer_scan(Command scan);
 
-  /// The same for a build. @return false also if another one waits or is carried out
+  /// The same for a build. @return false also if another build waits or runs
   bool offer_build(BuildCommand build);
 
-  /// The same for a model. One at a time waits until the model before it is done.
-  /// @param stop      ends it
-  /// @param patience  how long to wait for the model before it
-  /// @return false also if a build waits or runs, or the model before it takes too long
+  /// The same for a rebuild. Waits until the previous rebuild is done; only one caller waits at a
+  /// time.
+  /// @param stop      stops the rebuild
+  /// @param patience  maximum wait for the previous rebuild
+  /// @return false also if a build waits or runs, or the previous rebuild takes too long
   bool offer_rebuild(RebuildCommand rebuild, std::stop_source stop, Clock::duration patience);
 
-  /// Waits for a free place. @return false if a scan, a build or a model waits or is made
+  /// Puts a device check into the slot; waits until no other one is there.
+  /// @return false if a scan, a measurement, a build or a rebuild waits or runs, or after `end`
   bool offer_check(DeviceCheckCommand check);
 
-  /// Has the sensor read until that time.
+  /// Makes `take` return camera commands until that time.
   void want_camera(Clock::time_point until);
 
-  /// Asks the scan that waits or runs to stop.
+  /// Asks the waiting or running scan or measurement to stop.
   void stop_scan(ScanStop why);
   /// Why the last scan was stopped.
   ScanStop scan_stop() const;
-  /// The same for a build. @return whether it still waited, and will never begin
+  /// Asks the build to stop. @return whether it was still waiting, and so will never begin
   bool stop_build();
 
-  /// Whether a scan waits or runs.
+  /// Whether a scan or a measurement waits or runs.
   bool has_scan() const;
 
-  /// Whether a scan, a build or a model waits or is made.
+  /// Whether a scan, a measurement, a build or a rebuild waits or runs.
   bool is_occupied() const;
 
-  /// Asks the command that is carried out to stop, and accepts no more.
+  /// Asks the running command to stop, and accepts no more.
   void end();
   bool has_ended() const;
 
   // For the worker.
 
-  /// Waits for a command, and takes it. @return nothing after `patience`, or after `end`
+  /// Waits for a command, and takes it. @return nullopt after `patience`, or after `end`
   std::optional<Taken> take(Clock::duration patience);
 
-  /// The command that was taken is done.
+  /// Reports that the taken command is done.
   void finish();
 
   /// Waits until a command arrives or the current one is asked to stop, for at most `patience`.
@@ -139,14 +141,14 @@ class CommandSlot {
   bool offer(Command command, std::size_t rank);
   void put(Command command, std::stop_source stop);
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable_any changed_;
   std::optional<Taken> waiting_;
-  std::optional<std::size_t> rank_;  // of the command that is carried out
-  std::stop_source stop_;            // of the same
+  std::optional<std::size_t> rank_;  // of the running command
+  std::stop_source stop_;            // of the running command
   ScanStop scan_stop_ = ScanStop::end;
   Clock::time_point camera_wanted_until_ = {};
-  bool rebuild_waits_ = false;  // for the model before it
+  bool rebuild_waits_ = false;  // a caller waits for the previous rebuild
   bool ended_ = false;
 };
 

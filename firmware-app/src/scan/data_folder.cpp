@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A 16-bit depth image that does not compress at all, and a fine model.
+// Upper bounds: an uncompressed 16-bit depth image, and a fine model.
 constexpr std::uint64_t snapshot_bytes = std::uint64_t{640} * 480 * 2;
 constexpr std::uint64_t model_bytes = std::uint64_t{128} << 20U;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-/// The folder itself is what is locked: it needs no file that a full, read-only or failing disk
-/// would refuse, and that somebody could delete.
+/// Opens the folder itself, to be locked. A lock file could be refused by a full, read-only or
+/// failing disk, or be deleted.
 FileDescriptor open_folder(const fs::path& data) {
   return FileDescriptor(::open(data.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
@@ -118,7 +118,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }
 
 void clear_unfinished(const fs::path& folder) {
-  std::error_code ignored;  // what cannot be cleared away does no harm
+  std::error_code ignored;  // leftovers are harmless
   for (const std::string& name : names_in(folder)) {
     if (name.starts_with('.')) {
       fs::remove_all(folder / name, ignored);

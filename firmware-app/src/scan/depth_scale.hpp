@@ -4,8 +4,8 @@
 
 namespace octurn {
 
-/// A sensor's intrinsics with its depth unit scaled. `scan.json` keeps the product as
-/// `depth_unit_m`, so that a stored scan is read without the scale.
+/// Returns intrinsics with a scaled depth unit. `scan.json` stores the product as `depth_unit_m`,
+/// so that readers of a stored scan need no scale.
 inline Intrinsics scaled(Intrinsics lens, double depth_scale) {
   lens.depth_unit *= depth_scale;
   return lens;

@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// The finished ones of the last twenty scans of a store, the newest first, with the bytes that
-/// their snapshots take on the disk.
+/// Returns the last twenty finished scans of a store, newest first, with the sizes of their
+/// snapshots on the disk.
 std::vector<EarlierScan> earlier_scans(const ScanStore& store);
 
 }  // namespace octurn

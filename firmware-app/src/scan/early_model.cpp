@@ -29,7 +29,7 @@ void EarlyModel::give_up() {
   stop_.request_stop();
   if (report_.valid()) {
     report_.wait();
-    report_ = {};  // with what it may have thrown
+    report_ = {};  // drops a stored exception
   }
   file_.reset();
 }

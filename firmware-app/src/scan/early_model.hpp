@@ -11,8 +11,8 @@
 
 namespace octurn {
 
-/// A model that a thread of its own makes before it is known whether the model is wanted: its file
-/// gets its name only in `finish`.
+/// A model that is built speculatively, on its own thread. Its file is temporary until `finish`
+/// renames it.
 class EarlyModel {
  public:
   EarlyModel() = default;
@@ -20,14 +20,15 @@ class EarlyModel {
   EarlyModel(const EarlyModel&) = delete;
   EarlyModel& operator=(const EarlyModel&) = delete;
 
-  /// @param reconstructor  reserved for this until `finish` or `give_up`
+  /// Starts the thread.
+  /// @param reconstructor  used by the thread alone until `finish` or `give_up`
   /// @throws Error "write-failed"  if the folder cannot be written to
   void begin(Reconstructor& reconstructor, SnapshotSource snapshots,
              const std::filesystem::path& file);
 
   bool has_begun() const { return report_.valid(); }
 
-  /// Waits for the model, and gives its file its name. @return nothing if stopped first
+  /// Waits for the model, and renames its file. @return nullopt if stopped first
   /// @throws Error  as `write_model`
   std::optional<ModelReport> finish(const std::stop_token& stop);
 

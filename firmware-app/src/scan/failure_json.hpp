@@ -7,10 +7,10 @@
 
 namespace octurn {
 
-/// A failure as the API and `job.json` have it.
+/// JSON of a failure, for the API and `job.json`.
 nlohmann::json to_json(const Failure& failure);
 
-/// The failure of such JSON. @throws Error  of the value's code
+/// Parses that JSON. @throws Error  with the code of `object`
 Failure to_failure(const JsonValue& object);
 
 }  // namespace octurn

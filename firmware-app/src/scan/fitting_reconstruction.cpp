@@ -36,7 +36,7 @@ FittingReconstruction::FittingReconstruction(const ReconstructOptions& options)
 }
 
 void FittingReconstruction::start_again() {
-  reconstruction_.reset();  // its memory is the next one's
+  reconstruction_.reset();  // frees its memory for the next one
   reconstruction_ = make_reconstructor(options_);
 }
 

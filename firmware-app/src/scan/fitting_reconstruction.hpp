@@ -10,11 +10,11 @@
 
 namespace octurn {
 
-/// Code of the reason that the model is coarser than requested because it exceeded the memory.
+/// Quality code of a model that is coarser than requested because it exceeded the memory limit.
 inline constexpr std::string_view coarser_code = "coarser";
 
-/// The reconstruction of a running scan. It logs if the model may exceed the memory limit, and is
-/// made coarser if it does, so that the snapshots of a turn are not lost.
+/// The reconstruction of a running scan. It logs a warning if the model may exceed the memory
+/// limit. If the limit is exceeded, it restarts with larger leaves, so that the turn is not lost.
 class FittingReconstruction {
  public:
   /// @throws  as `make_reconstructor`, so that impossible options are refused before the platform
@@ -24,10 +24,11 @@ class FittingReconstruction {
   Reconstructor& operator*() { return *reconstruction_; }
   const ReconstructOptions& options() const { return options_; }
 
-  /// Drops all snapshots.
+  /// Restarts the reconstruction without snapshots.
   void start_again();
 
-  /// Starts again one level coarser after an error "memory-limit". @throws  any other error
+  /// Restarts one level coarser after an error "memory-limit".
+  /// @throws Error  `error` if it is another one, or the leaves cannot grow
   void make_coarser(const Error& error);
 
   /// Adds a reason to the verdict if the leaves are larger than requested.

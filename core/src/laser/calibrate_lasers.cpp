@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A rig comes out of true in one of two ways: the camera with its lasers was moved, or a laser was
-// turned in its holder, mostly about the vertical. Each leaves the other as it was told; only if
-// neither explains what is seen, both are free.
+// Priors of three hypotheses on how a rig went out of adjustment: a laser was turned in its holder,
+// mostly about the vertical; the camera was moved with its lasers; or both. The third is tried only
+// if neither of the others explains the measurements.
 const RigTrust trusted_pose{.pose_shift = 0.0002,
                             .pose_turn = radians_from_degrees(0.02),
                             .plane_shift = 0.003,
@@ -33,23 +33,23 @@ const RigTrust trusted_in_part{.pose_shift = 0.005,
                                .plane_shift = 0.0005,
                                .plane_turn = radians_from_degrees(0.1),
                                .plane_tilt = radians_from_degrees(0.1)};
-constexpr double cheaper = 0.95;  // than the simpler explanation
-constexpr double far_cheaper = 0.85;
+constexpr double cheaper = 0.95;      // ratio of costs from which `trusted_planes` is chosen
+constexpr double far_cheaper = 0.85;  // the same for `trusted_in_part`
 
 constexpr std::size_t min_platform_points = 500;
 constexpr std::size_t min_pairs = 500;
-constexpr double max_height = 0.0003;        // metres, median of the platform's lines
+constexpr double max_height = 0.0003;        // metres, median height of lines on the platform
 constexpr double max_disagreement = 0.0004;  // metres, median between two lasers
 constexpr double max_shift = 0.04;           // metres
 constexpr double max_turn_deg = 6;
-constexpr double lever = 0.05;  // metres above the platform, where positions are judged
+constexpr double lever = 0.05;  // metres above the platform, where `position_sigma` holds
 
-// What was told is right if a solution fits better, or worse, by no more than this share. Two
-// lasers disagree by 0.1 mm in a rig that is right; a plane that is off by `least_turn_deg`, 0.03
-// mm at the object, adds a twentieth to that, as much as noise does from turn to turn.
+// The told rig is kept if a solution changes the fit by no more than this share. Two lasers of a
+// correct rig disagree by 0.1 mm; a plane that is off by `least_turn_deg`, 0.03 mm at the object,
+// adds a twentieth to that, as much as noise does from turn to turn.
 constexpr double no_change = 0.05;
 
-// A change that is worth another model.
+// Smallest change of a plane that is worth a new model.
 constexpr double least_shift = 0.00005;  // metres
 constexpr double least_turn_deg = 0.004;
 
@@ -62,13 +62,15 @@ double median_of(std::vector<float> values) {
   return static_cast<double>(*middle);
 }
 
-/// What two lasers disagree by; without an object, how far the platform's lines are from it.
+/// The median distance between the surfaces of two lasers, metres; without an object, of the lines
+/// on the platform from its plane.
 double disagreement(const RigSolution& solution) {
   return solution.between.size() >= min_pairs ? median_of(solution.between)
                                               : median_of(solution.platform);
 }
 
-/// Whether a solution fits as what was told does, to the object and to the platform.
+/// Whether a solution fits no better than the told rig: its disagreement is the same within
+/// `no_change`, and the platform's lines are not flatter by more.
 bool fits_no_better(const RigSolution& solution, const RigSolution& told) {
   const double before = disagreement(told);
   return std::abs(disagreement(solution) - before) <= no_change * before &&
@@ -94,7 +96,7 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// How the axis moves, in the sensor's frame.
+/// Sets the shift, lift and tilt of the axis from the told pose to the solved one.
 void compare_poses(const Eigen::Isometry3d& told, CalibrationReport& report) {
   const Eigen::Isometry3d change = report.platform_from_sensor * told.inverse();
   const Vector3d origin = change.inverse() * Vector3d::Zero();
@@ -113,7 +115,7 @@ void set_sigmas(const RigSolution& solution, CalibrationReport& report) {
 bool moved_a_plane(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
   for (std::size_t i = 0; i < told.size(); ++i) {
     const double turn = angle_between(told[i].normal, solved[i].normal);
-    // Where the plane passes nearest to the camera: 0.1 mm there are as much at the object.
+    // The plane's distance from the camera: it changes by as much as the plane moves at the object.
     const double shift = std::abs(told[i].distance - solved[i].distance);
     if (turn > radians_from_degrees(least_turn_deg) || shift > least_shift) {
       return true;
@@ -122,7 +124,7 @@ bool moved_a_plane(const std::vector<Laser>& told, const std::vector<Laser>& sol
   return false;
 }
 
-/// Why a solution is not to be trusted; empty if it is.
+/// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
                     const std::vector<Laser>& told) {
   if (median_of(solution.platform) > max_height) {
@@ -146,8 +148,8 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
   return "";
 }
 
-/// The scan with at most so many stops, evenly over the turn: more tell little more, and each takes
-/// as long to read again for the model.
+/// Returns the scan with at most 100 stops, evenly spaced over the turn. More stops hardly improve
+/// the fit, and reading a stop takes as long as reading it for the model.
 Scan thinned(const Scan& scan) {
   constexpr std::size_t most_stops = 100;
   const std::size_t step = (scan.shots.size() + most_stops - 1) / most_stops;

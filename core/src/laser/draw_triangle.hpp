@@ -10,14 +10,15 @@ namespace octurn {
 struct ImageCorner {
   double u = 0;  ///< pixels
   double v = 0;
-  double inverse_depth = 0;  ///< 1 / metres: that of a plane is linear in the image
+  double inverse_depth = 0;  ///< 1 / metres; linear in the image on a plane
 };
 
-/// Calls `visit(u, v, shares)` for each pixel whose middle lies in the triangle, with the share of
-/// each corner there. Neither way round is left out.
+/// Rasterises a triangle of either orientation: calls `visit(u, v, shares)` for each pixel whose
+/// centre lies in it, with its barycentric coordinates.
 template <class Visit>
 void visit_pixels(const std::array<ImageCorner, 3>& c, int width, int height, const Visit& visit) {
-  constexpr double slack = 1e-6;  // pixels around a triangle, and pixels^2 of one that is none
+  // In barycentric coordinates; and twice the area of a degenerate triangle, pixels^2.
+  constexpr double slack = 1e-6;
   const double area = (c[1].u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (c[1].v - c[0].v);
   if (std::abs(area) < slack) {
     return;
@@ -38,7 +39,7 @@ void visit_pixels(const std::array<ImageCorner, 3>& c, int width, int height, co
   }
 }
 
-/// The inverse depth at those shares of a triangle's corners, 1 / metres.
+/// Interpolates the inverse depth in a triangle, 1 / metres. @param shares  barycentric coordinates
 inline double inverse_depth_at(const std::array<ImageCorner, 3>& corners,
                                const std::array<double, 3>& shares) {
   return shares[0] * corners[0].inverse_depth + shares[1] * corners[1].inverse_depth +

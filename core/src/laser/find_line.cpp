@@ -15,29 +15,29 @@ namespace {
 constexpr int gain = 16;
 constexpr int reach = 2;  // pixels of the filter to each side
 
-// Grey levels over the dark picture, times the gain.
+// Thresholds on the smoothed difference: grey levels above the dark picture, times the gain.
 constexpr int min_peak = 8 * gain;
-constexpr int noise = 2 * gain;       // that are no light
-constexpr int min_valley = 5 * gain;  // that part two pieces; of a bright one more
-constexpr int valley_share = 5;       // of a peak: a fifth
-constexpr int light_share = 20;       // of a peak, down to which its light is the line's
+constexpr int noise = 2 * gain;       // below it there is no light
+constexpr int min_valley = 5 * gain;  // that separates two lines; bright ones need more
+constexpr int valley_share = 5;       // of a peak, the same: a fifth
+constexpr int light_share = 20;       // of a peak: a line's light ends at a twentieth
 
 constexpr int max_half_width = 40;  // pixels: no line is wider
-constexpr float min_light = 25;     // grey levels in all
+constexpr float min_light = 25;     // grey levels, summed over the line's width
 
-// Glare: where most of so many pixels or more are as bright as a camera tells.
+// Glare: a line with at least this many saturated pixels, which are more than half of its width.
 constexpr int saturated = 250;  // grey levels
 constexpr int min_saturated_pixels = 6;
-constexpr int max_saturated_share = 2;  // half of the pixels
+constexpr int max_saturated_share = 2;  // half of the line's pixels
 
-// A line's standard deviation, where it is more than this times the usual one and so many pixels.
+// Largest standard deviation across a line: `wide` times the median of all, plus `wide_pixels`.
 constexpr double wide = 2.5;
 constexpr double wide_pixels = 0.5;
 
-/// A candidate, and how wide its light is.
+/// A candidate, and the width of its light.
 struct Candidate {
   LineSample sample;
-  float deviation = 0;  // pixels
+  float deviation = 0;  // pixels, standard deviation
 };
 
 /// One row of two pictures.
@@ -119,7 +119,7 @@ Candidate centre_of(const Row& row, int first, int last) {
           .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
 }
 
-/// Whether most of the light is lost above the camera's range, as in a glare.
+/// Whether most of a line's pixels are saturated, as in glare.
 bool is_glare(const Row& row, int first, int last) {
   int count = 0;
   for (int u = first; u <= last; ++u) {
@@ -146,8 +146,8 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
   }
 }
 
-/// Drops candidates that are far wider than most: light from within the object, or from two
-/// surfaces at once.
+/// Drops candidates that are far wider than the median: subsurface scattering, or light from two
+/// surfaces.
 std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
   std::vector<float> widths;
   std::ranges::transform(candidates, std::back_inserter(widths), &Candidate::deviation);
@@ -169,7 +169,7 @@ std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
 }  // namespace
 
 LineScale line_scale(double pixel) {
-  constexpr double fit_reach = 0.0011;  // metres: finer detail is not more than noise
+  constexpr double fit_reach = 0.0011;  // metres: finer detail is noise
   constexpr double edge = 0.0004;       // half a line's width
   constexpr double jump = 0.0012;
   const auto rows = [&](double length, int max) {

@@ -12,7 +12,8 @@
 namespace octurn {
 namespace {
 
-/// How wide a pixel is at the middle of the clip box, seen from the first stop, metres.
+/// Width of a pixel on the platform below the centre of the clip box, seen from the first stop,
+/// metres.
 double pixel_at_object(const Scan& scan) {
   const Box clip = model_clip(scan);
   const Eigen::Vector3d middle = (clip.min + clip.max) / 2;

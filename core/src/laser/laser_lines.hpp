@@ -12,24 +12,24 @@
 
 namespace octurn {
 
-/// The lines in the pictures of a scan folder. A stop's pictures are read when its lines are first
-/// asked for, and only these are kept: 12 bytes for each row that a line crosses.
+/// The laser lines in the pictures of a scan folder. A stop's pictures are read at the first access
+/// to its lines; only the lines are kept, 12 bytes for each row that a line crosses.
 class LaserLines {
  public:
   /// @param scan  by laser line
   LaserLines(std::filesystem::path folder, Scan scan);
 
-  /// What the lines of a whole scan take, bytes.
+  /// Estimates the memory of the lines of a whole scan, bytes.
   static std::size_t expected_bytes(const Scan& scan);
 
   const Scan& scan() const { return scan_; }
 
-  /// The lines of a stop, one for each laser. Called by several threads at once.
+  /// The lines of a stop, one for each laser. Thread-safe.
   /// @throws Error "scan-missing", "snapshot-malformed"
   const std::vector<LineProfile>& at(std::size_t stop) const;
 
-  /// A stop's strips, with the planes and the pose that models are made with; it reads the stops
-  /// before and after it in the same pose, too.
+  /// Returns a stop's strips, with the laser planes and the pose for models. Reads the previous and
+  /// the next stop of the same pose, too.
   /// @throws Error  as above
   Snapshot snapshot(std::size_t stop) const;
 
@@ -39,7 +39,7 @@ class LaserLines {
     std::vector<LineProfile> lines = {};
   };
   struct Beside {
-    std::size_t previous = 0;  // itself, if there is no other stop in its pose
+    std::size_t previous = 0;  // index; the stop itself, if its pose has no other
     std::size_t next = 0;
   };
 

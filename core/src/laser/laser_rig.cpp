@@ -5,7 +5,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How a plane's normal changes with its two turns.
+/// Derivatives of a plane's normal with respect to its two rotations.
 struct PlaneTurns {
   Vector3d about_z;
   Vector3d about_level;

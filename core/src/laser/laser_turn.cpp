@@ -21,20 +21,20 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t max_views = 24;   // one each 15 degrees shows all that registration can use
-constexpr int max_width = 480;          // pixels of a view: of an object of 10 cm, some 0.3 mm each
+constexpr std::size_t max_views = 24;   // one every 15 degrees is enough for registration
+constexpr int max_width = 480;          // pixels of a view, 0.3 mm each on an object of 10 cm
 constexpr double depth_unit = 0.00002;  // metres
 
-// Radians that the platform may turn between a view and a line that is drawn in it. Rays from
-// farther round pass through surface that no line met, and would call it free space.
+// Maximum platform angle between a view and a line that is drawn in it, radians. From a larger
+// angle rays may pass through surface that no line met, and would mark it as free space.
 constexpr double reach = std::numbers::pi / 4;
 
-/// Whether a line that was seen with the platform at one angle is drawn for another.
+/// Whether a line seen at one platform angle is drawn in the view at another.
 bool is_near(double angle, double other) {
   return std::abs(std::remainder(angle - other, 2 * std::numbers::pi)) <= reach;
 }
 
-/// The lens of the same camera with pixels `factor` times as wide.
+/// The intrinsics of the same camera with pixels `factor` times as wide.
 Intrinsics coarser(const Intrinsics& lens, int factor) {
   return {.width = lens.width / factor,
           .height = lens.height / factor,
@@ -45,7 +45,7 @@ Intrinsics coarser(const Intrinsics& lens, int factor) {
           .depth_unit = depth_unit};
 }
 
-/// The nearest surface at each pixel of a camera that stands where that of one stop stood.
+/// A depth buffer seen from the camera's pose at one stop.
 class SurfaceView {
  public:
   SurfaceView(const Intrinsics& lens, const Isometry3d& object_from_sensor)

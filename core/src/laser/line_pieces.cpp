@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t min_rows = 6;  // of a piece
 
-/// The sample of those from `first` to before `end` whose column is nearest, or -1.
+/// Index of the sample in [first, end) whose column is nearest to `u`; -1 if all are farther than
+/// `max_jump`.
 std::int32_t nearest(const std::vector<LineSample>& samples, std::size_t first, std::size_t end,
                      float u, float max_jump) {
   std::int32_t best = -1;
@@ -26,7 +27,7 @@ std::int32_t nearest(const std::vector<LineSample>& samples, std::size_t first, 
   return best;
 }
 
-/// Links each sample to one of the next row, where each is the other's nearest.
+/// Links samples of neighbouring rows that are mutually nearest.
 void link(std::vector<LineSample>& samples, float max_jump) {
   std::size_t first = 0;
   while (first < samples.size()) {
@@ -49,9 +50,10 @@ void link(std::vector<LineSample>& samples, float max_jump) {
   }
 }
 
-/// The value at 0 of the quadratic that fits a piece's columns best around one of its samples.
+/// Returns the column of sample `at`, smoothed by a weighted quadratic fit to the samples around
+/// it.
 float fitted(std::span<const LineSample> piece, std::size_t at, std::size_t rows) {
-  // At an end of the piece the window is moved inwards, and not cut.
+  // At an end of the piece the window is shifted inwards, not cut.
   const std::size_t count = std::min(2 * rows + 1, piece.size());
   const std::size_t first = std::min(at > rows ? at - rows : 0, piece.size() - count);
   std::array<double, 5> s{};  // the sums of w x^k
@@ -79,7 +81,7 @@ float fitted(std::span<const LineSample> piece, std::size_t at, std::size_t rows
   return static_cast<float>(static_cast<double>(piece[at].u) + change);
 }
 
-/// Marks which samples of a piece are kept, and gives them their new columns.
+/// Marks the samples of a piece that are kept, and smooths their columns.
 /// @param chain  indices of its samples, in the order of rows
 void smooth_piece(std::vector<LineSample>& samples, const std::vector<std::size_t>& chain,
                   const LineScale& scale, std::vector<char>& kept) {
@@ -97,7 +99,7 @@ void smooth_piece(std::vector<LineSample>& samples, const std::vector<std::size_
   }
 }
 
-/// Takes out what is not kept, and numbers the links anew.
+/// Removes the samples that are not kept, and renumbers the links.
 std::vector<LineSample> only_kept(const std::vector<LineSample>& samples,
                                   const std::vector<char>& kept) {
   std::vector<std::int32_t> number(samples.size(), -1);

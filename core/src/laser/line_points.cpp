@@ -82,7 +82,7 @@ const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& norm
   std::uint32_t best = 0;
   float best_square = max_distance * max_distance;
   bool found = false;
-  // Cells beside each other along X have keys one after the other.
+  // Neighbouring cells along X have consecutive keys: one search finds all three.
   for (int i = 0; i < 9; ++i) {
     const Cell cell{middle[0] - 1, middle[1] + i % 3 - 1, middle[2] + i / 3 - 1};
     const std::uint64_t last = key_of({middle[0] + 1, cell[1], cell[2]});
@@ -90,7 +90,7 @@ const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& norm
          at != cells_.end() && at->cell <= last; ++at) {
       const LinePoint& other = points_[at->point];
       const float square = (other.point - point).squaredNorm();
-      // Of two as near the first one, whatever the order of the cells is.
+      // Ties go to the lower index, whatever the order of the cells is.
       const bool nearer =
           square < best_square || (found && square == best_square && at->point < best);
       if (nearer && other.normal.dot(normal) > min_agreement) {

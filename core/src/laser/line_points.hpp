@@ -10,7 +10,7 @@
 
 namespace octurn {
 
-/// A ray of a line, and the surface that it met.
+/// A point on a laser's line, and the surface's normal there.
 struct LinePoint {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();   ///< metres, object's frame
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of length one, towards the camera
@@ -18,11 +18,11 @@ struct LinePoint {
   std::uint32_t ray = 0;  ///< index in the stop's profile
 };
 
-/// What one laser shows of an object, to be looked up by place.
+/// The surface points of an object measured with one laser, in a grid for nearest-neighbour search.
 class LinePoints {
  public:
-  /// @param lines  read for all stops
-  /// @param min_height  metres above the platform, as the rig has it: what is lower is its own
+  /// @param lines  already read at all stops
+  /// @param min_height  metres above the rig's platform: lower points may be the platform's
   LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser, double min_height);
 
   const std::vector<LinePoint>& all() const { return points_; }
@@ -37,7 +37,7 @@ class LinePoints {
   std::vector<LinePoint> points_ = {};
   struct Filed {
     std::uint64_t cell = 0;
-    std::uint32_t point = 0;  // its index
+    std::uint32_t point = 0;  // index in `points_`
 
     auto operator<=>(const Filed&) const = default;
   };

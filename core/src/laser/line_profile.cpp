@@ -8,8 +8,8 @@
 namespace octurn {
 namespace {
 
-constexpr double nearest = 0.03;   // metres before the camera
-constexpr double farthest = 3.0;   // farther than a line is seen
+constexpr double nearest = 0.03;   // metres in front of the camera
+constexpr double farthest = 3.0;   // no line is seen farther away
 constexpr double min_sine = 0.02;  // of the angle between ray and plane
 
 }  // namespace

@@ -10,8 +10,7 @@
 
 namespace octurn {
 
-/// Where one laser's line was seen at one stop: the rays of the camera that meet it, freed from the
-/// lens's distortion.
+/// One laser's line at one stop: the camera's rays to it, undistorted.
 struct LineProfile {
   struct Ray {
     float x = 0;  ///< the ray is (x, y, 1), optical frame
@@ -19,8 +18,8 @@ struct LineProfile {
     std::int32_t next = -1;  ///< index of the ray that continues the line in the next row, or -1
   };
 
-  std::vector<Ray> rays = {};  ///< row by row, in each from left to right
-  /// Index of the first ray of each row of the picture, and behind the last row's last ray.
+  std::vector<Ray> rays = {};  ///< sorted by row, then column
+  /// Index of the first ray of each row of the picture; the last entry is the number of rays.
   std::vector<std::int32_t> rows = {};
 
   std::span<const Ray> row(int v) const {
@@ -33,8 +32,8 @@ struct LineProfile {
 LineProfile to_profile(std::span<const LineSample> samples, const Intrinsics& lens,
                        const LaserCamera& camera);
 
-/// Where a ray meets a laser's plane, optical frame, metres: not a number if it does not, before
-/// the camera and within its reach.
+/// The intersection of a ray and a laser's plane, optical frame, metres; NaN if they are nearly
+/// parallel or meet outside 0.03 to 3 m in front of the camera.
 Eigen::Vector3d meet(const LineProfile::Ray& ray, const Laser& laser);
 
 }  // namespace octurn

@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double max_row_side = 0.0025;  // metres, between neighbouring rows of one line
-constexpr double gap = 0.0015;           // metres, beside the way that the platform turned
-constexpr double max_side = 0.01;        // metres, however few the stops are
+constexpr double gap = 0.0015;           // metres, besides the platform's motion there
+constexpr double max_side = 0.01;        // metres, for any number of stops
 
 /// A line's points in the optical frame of the stop whose strip is made, in the order of its rays.
 std::vector<Vector3d> points_of(const PlacedLine& line, const Eigen::Isometry3d& own_from_line) {
@@ -26,7 +26,7 @@ std::vector<Vector3d> points_of(const PlacedLine& line, const Eigen::Isometry3d&
 
 double column(const Vector3d& point) { return point.x() / point.z(); }
 
-/// Joins a stop's line with one beside it.
+/// Joins a stop's line with that of a neighbouring stop.
 class Joint {
  public:
   /// @param first  index of the other line's first point in the strip
@@ -55,9 +55,8 @@ class Joint {
 
  private:
   struct Limits {
-    double side = 0;  // metres
-    double towards =
-        0;  // the sign of the columns' change, on a surface that turned with the platform
+    double side = 0;     // metres, of a triangle
+    double towards = 0;  // change of the column of a point that moves with the platform
   };
 
   Limits limits_at(const Vector3d& point) const {
@@ -74,7 +73,7 @@ class Joint {
     return near(own, other, limits.side) && (column(other) - column(own)) * limits.towards > 0;
   }
 
-  /// The other line's point in that row that is nearest to an own one, if they can be joined.
+  /// Index of the other line's nearest point in row `v` that can be joined with `own`, or -1.
   std::int32_t match(const Vector3d& own, std::size_t v, const Limits& limits) const {
     std::int32_t best = -1;
     double best_square = limits.side * limits.side;

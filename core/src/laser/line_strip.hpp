@@ -7,19 +7,19 @@
 
 namespace octurn {
 
-/// A laser's line at one stop, in its place.
+/// A laser's line at one stop, and its pose.
 struct PlacedLine {
   const LineProfile& profile;
   const Laser& laser;
   Eigen::Isometry3d object_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
 };
 
-/// Joins a line with those of the stops before and after it, each to two triangles for neighbouring
-/// rows and neighbouring lines, as the thesis joins samples (Bennett 2014, where it tells what a
-/// laser would change).
+/// Joins a line with the lines of the previous and the next stop: two triangles for each pair of
+/// neighbouring rows, as neighbouring samples are joined (Bennett 2014, in its discussion of a
+/// laser).
 ///
-/// Left out are triangles with a side that is longer than 1.5 mm and the way that the platform
-/// turned there, as it bridges a gap, and those that the camera sees from behind.
+/// A triangle is left out if a side is longer than 1.5 mm plus the platform's motion there, as it
+/// would bridge a gap, or if the camera sees its back.
 ///
 /// @param previous, next  null where there is none
 LineStrip make_strip(const PlacedLine& own, const PlacedLine* previous, const PlacedLine* next);

@@ -17,23 +17,23 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double platform_radius = 0.14;   // metres, in which lines on the platform are looked for
-constexpr double platform_search = 0.025;  // metres above and below where it was told
-constexpr double height_step = 0.0005;
-constexpr double object_margin = 0.003;   // metres around the object
-constexpr double platform_reach = 0.003;  // metres from the height where most points lie
+constexpr double platform_radius = 0.14;  // metres, within which lines on the platform are searched
+constexpr double platform_search = 0.025;  // metres above and below the told platform
+constexpr double height_step = 0.0005;     // metres, of the histogram of heights
+constexpr double object_margin = 0.003;    // metres around the object
+constexpr double platform_reach = 0.003;   // metres from the most frequent height
 constexpr std::size_t platform_wanted = 6000;
 constexpr std::size_t surface_wanted = 4000;  // of each laser
 constexpr double object_height = 0.004;       // metres above the platform
 constexpr double cost_scale = 0.0001;         // metres
-// Neighbours on a line share speckle and smoothing.
+// Residuals per independent residual: neighbours on a line share speckle and smoothing.
 constexpr double surface_correlation = 10;
 constexpr double platform_correlation = 25;
 
-// Cauchy's scale, metres: far starts first.
+// Cauchy scale of each iteration, metres: wide first, for a start far from the solution.
 constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
                                0.0002, 0.0002, 0.0002, 0.0002, 0.0002};
-// Radians and metres: a thousandth of a millimetre at the object.
+// Converged below this change of each unknown, radians and metres: a micrometre at the object.
 constexpr double at_rest = 0.000002;
 
 double weight_of(double residual, double scale) {
@@ -69,9 +69,11 @@ struct RigSolver::Sums {
     residuals.push_back(static_cast<float>(std::abs(residual)));
   }
 
-  /// In units of the residuals' own variance, so that a prior with its sigma can be added.
+  /// The factor that scales the sums by the residuals' inverse variance, so that priors can be
+  /// added.
+  /// @param correlation  number of residuals per independent residual
   double information(double correlation) const {
-    constexpr double least = 1e-10;  // square metres: 10 micrometres are never known better
+    constexpr double least = 1e-10;  // square metres: 10 micrometres, the best accuracy
     return weight > 0 ? 1 / (std::max(squares / weight, least) * correlation) : 0;
   }
 
@@ -95,8 +97,8 @@ RigSolver::RigSolver(const LaserLines& lines, LaserRig told, int threads,
   find_platform();
 }
 
-/// What the told rig sees within reach of the platform. Sets the pivots, about which turn and shift
-/// of a plane are nearly independent.
+/// Reads all points near the platform, with the told rig. Sets the pivots, about which rotation and
+/// shift of a plane are nearly independent.
 std::vector<RigSolver::Reading> RigSolver::read_all() {
   std::vector<Reading> readings;
   pivots_.clear();
@@ -122,8 +124,8 @@ std::vector<RigSolver::Reading> RigSolver::read_all() {
   return readings;
 }
 
-/// Finds the rays that end on the platform: at the height, near the told one, where most lie, and
-/// farther from the axis than the object reaches, as its foot is nearly as low.
+/// Finds the rays that end on the platform: near the most frequent height, and outside the object's
+/// radius, as its foot is nearly as low.
 void RigSolver::find_platform() {
   std::vector<Reading> readings = read_all();
   const double height = usual_height(readings);
@@ -140,7 +142,7 @@ void RigSolver::find_platform() {
   }
 }
 
-/// The height, within the search, at which most readings lie.
+/// The most frequent height of readings within the search range, metres.
 double RigSolver::usual_height(const std::vector<Reading>& readings) {
   std::vector<std::size_t> counts(static_cast<std::size_t>(2 * platform_search / height_step) + 1);
   for (const Reading& reading : readings) {
@@ -152,7 +154,7 @@ double RigSolver::usual_height(const std::vector<Reading>& readings) {
   return (static_cast<double>(most) + 0.5) * height_step - platform_search;
 }
 
-/// How far from the axis nearly all readings above a height lie.
+/// The radius around the axis that contains 99.5 % of the readings above a height, metres.
 double RigSolver::object_radius(const std::vector<Reading>& readings, double height) {
   std::vector<double> radii;
   for (const Reading& reading : readings) {
@@ -212,13 +214,13 @@ void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) cons
   }
 }
 
-/// The normal equations of a rig, in units of the residuals' variance.
+/// The normal equations of a rig, scaled by the residuals' inverse variance.
 struct RigSolver::Look {
   Eigen::MatrixXd matrix;
   VectorXd right;
 };
 
-/// @param solution  gets how well it fits
+/// @param[out] solution  residuals and cost of the rig
 RigSolver::Look RigSolver::look(const LaserRig& rig, double scale, RigSolution& solution) const {
   throw_if_stopped(stop_);
   const auto unknowns = pose_unknowns + plane_unknowns * static_cast<Index>(rig.lasers.size());

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// How far a rig may be from what was told, one sigma.
+/// The prior on a rig's deviation from the told one: one sigma of each kind of unknown.
 struct RigTrust {
   double pose_shift = 0;   ///< metres
   double pose_turn = 0;    ///< radians
@@ -21,30 +21,30 @@ struct RigTrust {
 /// A solved rig.
 struct RigSolution {
   LaserRig rig = {};
-  Eigen::MatrixXd covariance = {};  ///< of the unknowns of `moved`
-  std::vector<float> between = {};  ///< metres: what two lasers saw of the object lies so far apart
-  std::vector<float> platform = {};  ///< metres: heights of what is seen of the platform
+  Eigen::MatrixXd covariance = {};   ///< of the unknowns of `moved`
+  std::vector<float> between = {};   ///< metres: distances between the surfaces of two lasers
+  std::vector<float> platform = {};  ///< metres: magnitudes of the heights on the platform
   double cost = 0;  ///< mean of ln(1 + (r / 0.1 mm)^2) over both kinds, to compare solutions
 };
 
-/// Solves where camera and lasers stand from the lines of a turn.
+/// Solves the pose of the camera and the planes of the lasers from the lines of a turn.
 ///
-/// Two kinds of residuals, by Gauss-Newton, weighted as Cauchy distributed: a point of one laser's
-/// line, turned back by its stop's angle, must lie on the surface that the other lasers showed of
-/// the object (point to plane); and the lines on the platform must lie at height 0. What was told,
-/// with how far it is trusted, is a third.
+/// Gauss-Newton with Cauchy weights and three kinds of residuals. A point of one laser's line,
+/// rotated back by its stop's angle, must lie on the surface that the other lasers measured (point
+/// to plane). Lines on the platform must lie at height 0. The told rig is a prior with the sigmas
+/// of `RigTrust`.
 class RigSolver {
  public:
   /// Reads all lines. @throws  as `LaserLines::at`
-  /// @param told  where to start
+  /// @param told  start of the iteration and mean of the prior
   RigSolver(const LaserLines& lines, LaserRig told, int threads, const std::stop_token& stop = {});
 
   RigSolution solve(const RigTrust& trust) const;
 
-  /// How what was told fits.
+  /// Evaluates the told rig.
   RigSolution as_told() const;
 
-  /// Points of lines on the platform.
+  /// The number of points on the platform.
   std::size_t platform_points() const { return platform_.size(); }
 
  private:
@@ -55,7 +55,7 @@ class RigSolver {
   struct Reading {
     PlatformPoint point = {};
     double height = 0;  // metres, platform frame as told
-    double radius = 0;  // metres from its axis
+    double radius = 0;  // metres from the platform's axis
   };
   struct Sums;
   struct Look;

@@ -15,14 +15,14 @@
 namespace octurn {
 namespace {
 
-constexpr int margin = 2;                  // pixels around what a view shows
-constexpr int max_side = 4096;             // pixels of a view
-constexpr double own_share = 0.49;         // of a point between two lines: they overlap by a little
-constexpr float min_cosine = 0.15F;        // of incidence: 81 degrees
-constexpr float weight_of_line = 2.0F;     // a point's, which outweighs what one ray sees through
+constexpr int margin = 2;               // pixels around what a view shows
+constexpr int max_side = 4096;          // pixels of a view
+constexpr double own_share = 0.49;      // of the own line at a pixel: neighbours overlap a little
+constexpr float min_cosine = 0.15F;     // of incidence: 81 degrees
+constexpr float weight_of_line = 2.0F;  // of a surface: it outweighs one ray that passes through
 constexpr double platform_slack = 0.0015;  // metres above the platform that may be the platform
 
-/// Whether each point of a strip may make a surface, 1 or 0.
+/// Flags the points of a strip that lie inside the clip boxes: 1, else 0.
 std::vector<char> find_inside(const LineStrip& strip, Box clip_box, const Placement* placement) {
   PointGrid grid{
       .width = static_cast<int>(strip.points.size()), .height = 1, .points = strip.points};
@@ -52,7 +52,7 @@ class StripView {
     }
   }
 
-  /// Nothing if the strip is empty or not before the camera.
+  /// Returns nothing if the strip is empty, too large, or not in front of the camera.
   std::optional<ConditionedDepth> draw() {
     if (!find_window()) {
       return std::nullopt;
@@ -76,7 +76,7 @@ class StripView {
             .inverse_depth = inverse};
   }
 
-  /// Moves the view's window to the strip.
+  /// Fits the view's size and principal point to the strip. @return false if there is no view
   bool find_window() {
     double u0 = 1e9, u1 = -1e9, v0 = 1e9, v1 = -1e9;
     for (const auto* triangles : {&strip_.to_previous, &strip_.to_next}) {
@@ -117,7 +117,7 @@ class StripView {
     }
   }
 
-  /// The plane of a triangle; nothing if it is seen too flat.
+  /// The plane of a triangle; nothing at grazing incidence.
   std::optional<DepthObservation> plane_of(const LineStrip::Triangle& triangle) const {
     const Eigen::Vector3d& p = points_[triangle[0]];
     const Eigen::Vector3d side = points_[triangle[1]] - p;
@@ -170,7 +170,7 @@ class StripView {
   std::vector<DepthObservation> observations_ = {};
 };
 
-/// The view of a laser: Z towards the middle of its own line.
+/// The pose of a laser's view: Z points to the mean of its own line.
 std::optional<Eigen::Isometry3d> laser_from_object(const LineStrip& strip) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   int count = 0;

@@ -7,12 +7,12 @@
 
 namespace octurn {
 
-/// A snapshot's strips as the camera sees them, and as the laser does whose place is told: each ray
+/// Renders a snapshot's strips from the camera, and from each laser whose source is known. Each ray
 /// is free up to the surface.
 ///
-/// Of the surface between two lines each stop's views show the half that is nearer to its own line,
-/// as there its rays are nearly those that the light took. Nothing is smoothed: a strip's triangles
-/// are its tangent planes.
+/// Of the surface between two lines, a stop's views show the half nearer to its own line, where
+/// their rays nearly coincide with the path of the light. Nothing is smoothed: the triangles of a
+/// strip are its tangent planes.
 ///
 /// @param clip       metres, object's frame: outside it strips make no surface, but show free space
 /// @param placement  of one of several poses; null for one pose

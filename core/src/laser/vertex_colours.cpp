@@ -19,19 +19,19 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t max_views = 36;     // of a pose: 10 degrees apart
-constexpr double min_cosine = 0.25;       // flatter than 75 degrees a pixel is a smear
-constexpr double behind_surface = 0.002;  // metres: a pixel's middle is elsewhere than the vertex
-constexpr double min_depth = 0.01;        // metres before the camera
-constexpr float bright_level = 240;       // of what is brightest, once it is brightened
+constexpr double min_cosine = 0.25;       // of incidence, 75 degrees: beyond, pixels are smeared
+constexpr double behind_surface = 0.002;  // metres: depth is drawn at the pixel's centre
+constexpr double min_depth = 0.01;        // metres in front of the camera
+constexpr float bright_level = 240;       // of the brightest colours after brightening
 constexpr Rgb white = {255, 255, 255};
 
-/// What pictures tell of a vertex.
+/// The weighted sum of a vertex's colours in the pictures.
 struct Seen {
   Vector3f sum = Vector3f::Zero();
   float weight = 0;
 };
 
-/// Shots with a picture that is looked at: spread evenly over each pose.
+/// Selects the shots whose pictures are read: evenly spaced over each pose.
 std::vector<std::size_t> chosen_shots(const Scan& scan) {
   std::map<int, std::vector<std::size_t>> poses;
   for (std::size_t shot = 0; shot < scan.shots.size(); ++shot) {
@@ -47,7 +47,7 @@ std::vector<std::size_t> chosen_shots(const Scan& scan) {
   return chosen;
 }
 
-/// Of length one, weighted by the triangles' areas; zero where a vertex has none.
+/// The vertex normals, of length one, weighted by the triangles' areas; zero without triangles.
 std::vector<Vector3f> normals_of(const VertexMesh& mesh) {
   std::vector<Vector3f> normals(mesh.vertices.size(), Vector3f::Zero());
   const auto at = [&](std::uint32_t vertex) {
@@ -63,7 +63,7 @@ std::vector<Vector3f> normals_of(const VertexMesh& mesh) {
   return normals;
 }
 
-/// What a camera without distortion sees of the model: for each pixel 1 / metres, 0 where nothing.
+/// Renders the model's inverse depth with a camera without distortion, 1 / metres; 0 is background.
 std::vector<float> draw(const VertexMesh& mesh, std::span<const Vector3d> in_camera,
                         const Intrinsics& lens) {
   std::vector<float> image(static_cast<std::size_t>(lens.width) *
@@ -91,7 +91,7 @@ std::vector<float> draw(const VertexMesh& mesh, std::span<const Vector3d> in_cam
   return image;
 }
 
-/// The picture's colour there, between its pixels; nothing outside.
+/// Interpolates a picture's colour (bilinear); nothing outside.
 std::optional<Vector3f> colour_at(const ColourPicture& picture, const Eigen::Vector2d& pixel) {
   const double left = std::floor(pixel.x());
   const double top = std::floor(pixel.y());
@@ -110,7 +110,7 @@ std::optional<Vector3f> colour_at(const ColourPicture& picture, const Eigen::Vec
                   y * ((1 - x) * colour(first + width) + x * colour(first + width + 1)));
 }
 
-/// Adds what one picture tells.
+/// Adds the colours of the vertices that one picture sees.
 void look(const VertexMesh& mesh, std::span<const Vector3f> normals, const ColourPicture& picture,
           const Scan& scan, const Eigen::Isometry3d& object_from_sensor, std::span<Seen> seen) {
   const Intrinsics& lens = scan.intrinsics;
@@ -141,7 +141,7 @@ void look(const VertexMesh& mesh, std::span<const Vector3f> normals, const Colou
         static_cast<std::size_t>(rounded.y()) * static_cast<std::size_t>(lens.width) +
         static_cast<std::size_t>(rounded.x());
     if (static_cast<double>(nearest[pixel]) > 1 / std::max(point.z() - behind_surface, min_depth)) {
-      continue;  // something is before it
+      continue;  // occluded
     }
     const double distorting = distortion.distorting_factor((point.head<2>() / point.z()).norm());
     const Vector3d shown(distorting * point.x(), distorting * point.y(), point.z());
@@ -153,7 +153,7 @@ void look(const VertexMesh& mesh, std::span<const Vector3f> normals, const Colou
   }
 }
 
-/// Gives vertices that no picture saw the mean of those around them, from the seen ones outward.
+/// Gives vertices without a colour the mean of their neighbours, from the coloured ones outward.
 void spread(const VertexMesh& mesh, std::span<Seen> seen) {
   for (bool has_changed = true; has_changed;) {
     has_changed = false;
@@ -185,9 +185,9 @@ ColourPicture read_dark_picture(const std::filesystem::path& folder, const Shot&
   return decode_rgb_png(file, std::as_bytes(std::span(png)), lens.width, lens.height);
 }
 
-/// The factor by which colours are brightened: their hues stay.
+/// The factor by which all colours are brightened: hues stay.
 float brightening(std::span<const Seen> seen) {
-  std::vector<float> levels;  // of each vertex, its brightest channel
+  std::vector<float> levels;  // brightest channel of each seen vertex
   for (const Seen& vertex : seen) {
     if (vertex.weight > 0) {
       levels.push_back(vertex.sum.maxCoeff() / vertex.weight);

@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t nearest = 12;   // corners that may be neighbours of one
-constexpr double min_contrast = 8;    // grey levels, between both sides of an edge
-constexpr double min_evenness = 0.3;  // of the contrast along it
+constexpr std::size_t nearest = 12;   // number of candidates for a corner's neighbours
+constexpr double min_contrast = 8;    // grey levels, across an edge
+constexpr double min_evenness = 0.3;  // minimum over maximum contrast along an edge
 constexpr double min_length = 5;      // pixels
-constexpr double max_longer = 3;      // an edge is at most as many times as long as its opposite
+constexpr double max_longer = 3;      // ratio of the lengths of opposite edges
 constexpr double opposite_cosine = -0.8;
 
 struct Neighbour {
@@ -36,11 +36,11 @@ std::vector<Neighbour> nearest_corners(std::span<const Vector2d> corners, std::s
   return others;
 }
 
-/// By how many grey levels it is lighter on the left of the way from one corner to another than on
-/// its right; nothing if that is no edge.
+/// The grey level on the left of the line from one corner to another, less that on its right, where
+/// the contrast is lowest; nothing if the line is no edge.
 std::optional<double> contrast(const GreyImage& image, const Vector2d& from, const Vector2d& to) {
   const Vector2d way = to - from;
-  const Vector2d left(way.y(), -way.x());  // as one looks along it; v is down
+  const Vector2d left(way.y(), -way.x());  // seen along the line; v points down
   const Vector2d aside = left * std::max(0.12, 1.5 / way.norm());
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
@@ -63,7 +63,7 @@ std::optional<double> contrast(const GreyImage& image, const Vector2d& from, con
   return is_edge ? std::optional(least) : std::nullopt;
 }
 
-/// The nearest of an axis's ends, and the nearest of those on its other side.
+/// The nearest neighbour along an axis, and the nearest one in the opposite direction.
 CornerEdges::Ends opposite_ends(std::span<const Vector2d> corners, std::size_t of,
                                 std::span<const Neighbour> along) {
   CornerEdges::Ends ends;

@@ -11,10 +11,10 @@
 
 namespace octurn {
 
-/// The edges of squares that leave a corner. On a board those along one of its axes, in both
-/// directions, have light on their left, those along the other axis darkness.
+/// The four edges between squares that meet in a corner. Seen from the corner, both edges along one
+/// axis of the board have a light square on their left, both edges along the other axis a dark one.
 struct CornerEdges {
-  using Ends = std::array<std::optional<std::size_t>, 2>;  ///< corners; opposite to each other
+  using Ends = std::array<std::optional<std::size_t>, 2>;  ///< corners at two opposite edges' ends
 
   Ends light_left = {};
   Ends dark_left = {};
@@ -22,9 +22,10 @@ struct CornerEdges {
   int count() const;
 };
 
-/// Which corners are neighbours: between them the picture is an edge all along, dark on one side
-/// and light on the other, as it is for no other pair of a board's corners.
+/// Finds neighbouring corners. Only between these is the picture an edge all along, dark on one
+/// side and light on the other.
 /// @param corners  pixels
+/// @return one for each corner
 std::vector<CornerEdges> find_edges(const GreyImage& image,
                                     std::span<const Eigen::Vector2d> corners);
 

@@ -14,12 +14,12 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-constexpr double max_bend = 0.25;  // of a step, from one neighbour to the other
-constexpr double min_sine = 0.15;  // between a board's axes as they are seen
+constexpr double max_bend = 0.25;  // of a step, from the midpoint of two neighbours
+constexpr double min_sine = 0.15;  // of the angle between a board's axes in the picture
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The order of places: by rows.
+/// Orders positions by row, then column.
 struct ByRow {
   bool operator()(const Vector2i& a, const Vector2i& b) const {
     return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x());
@@ -28,7 +28,7 @@ struct ByRow {
 
 using Lattice = std::map<Vector2i, std::size_t, ByRow>;
 
-/// Grows one piece from a corner.
+/// Grows connected pieces of lattice from seed corners by flood fill.
 class Growth {
  public:
   Growth(std::span<const Vector2d> corners, std::span<const CornerEdges> edges)
@@ -36,7 +36,7 @@ class Growth {
 
   bool is_placed(std::size_t corner) const { return places_[corner].has_value(); }
 
-  /// @param seed  that is not placed yet
+  /// @param seed  a corner without a place
   Lattice from(std::size_t seed) {
     Lattice lattice;
     if (const auto axes = axes_of_seed(seed)) {
@@ -53,8 +53,8 @@ class Growth {
  private:
   struct Place {
     Vector2i square = Vector2i::Zero();
-    Vector2d columns = Vector2d::Zero();  // pixels, about to the next column
-    Vector2d rows = Vector2d::Zero();     // the same, to the next row
+    Vector2d columns = Vector2d::Zero();  // pixels, estimated step to the next column
+    Vector2d rows = Vector2d::Zero();     // pixels, estimated step to the next row
   };
 
   Vector2d way(std::size_t from, std::size_t to) const { return corners_[to] - corners_[from]; }
@@ -66,7 +66,7 @@ class Growth {
     }
     Place axes{.columns = way(seed, *edges.light_left[0]), .rows = way(seed, *edges.dark_left[0])};
     if (cross(axes.columns, axes.rows) < 0) {
-      axes.rows = -axes.rows;  // so that a board is seen from before, and not from behind
+      axes.rows = -axes.rows;  // right-handed: the board is seen from the front
     }
     return axes;
   }
@@ -80,7 +80,7 @@ class Growth {
     waiting_.push_back(corner);
   }
 
-  /// Edges along the columns' axis have light on their left at every second corner.
+  /// Edges along X have light on their left at even corners, and those along Y at odd ones.
   void spread(Lattice& lattice, std::size_t corner) {
     const Place here = *places_[corner];
     const bool is_even = (here.square.x() + here.square.y()) % 2 == 0;
@@ -115,7 +115,7 @@ class Growth {
   std::deque<std::size_t> waiting_ = {};
 };
 
-/// Whether a corner lies about in the middle of its neighbours along an axis, if it has both.
+/// Whether a corner lies near the midpoint of its neighbours along an axis; true if one is missing.
 bool is_straight(const Lattice& lattice, std::span<const Vector2d> corners, const Vector2i& square,
                  const Vector2i& axis) {
   const auto before = lattice.find(square - axis);
@@ -135,7 +135,7 @@ std::vector<LatticePlace> grow_lattice(std::span<const Vector2d> corners,
                                        std::span<const CornerEdges> edges) {
   Growth growth(corners, edges);
   Lattice largest;
-  for (int least_edges : {4, 2}) {  // from corners whose axes are surest first
+  for (int least_edges : {4, 2}) {  // seeds with all four edges first: their axes are surest
     for (std::size_t seed = 0; seed < corners.size(); ++seed) {
       if (!growth.is_placed(seed) && edges[seed].count() >= least_edges) {
         if (Lattice piece = growth.from(seed); piece.size() > largest.size()) {

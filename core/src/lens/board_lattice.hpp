@@ -9,14 +9,14 @@
 
 namespace octurn {
 
-/// A corner's place on a board.
+/// A corner's position on a board.
 struct LatticePlace {
   std::size_t corner = 0;
-  Eigen::Vector2i square = Eigen::Vector2i::Zero();  ///< column and row, from any corner
+  Eigen::Vector2i square = Eigen::Vector2i::Zero();  ///< column and row, from an arbitrary origin
 };
 
-/// The largest piece of board that edges tell: corners that hang together, each at a place of its
-/// own. One that its neighbours on both sides do not have about in their middle is left out.
+/// Returns the largest connected lattice of corners, each at a position of its own. A corner that
+/// does not lie near the midpoint of its neighbours is left out.
 /// @param corners  pixels
 std::vector<LatticePlace> grow_lattice(std::span<const Eigen::Vector2d> corners,
                                        std::span<const CornerEdges> edges);

@@ -18,7 +18,7 @@ constexpr std::size_t min_corners = 12;    // of a view: three by four
 constexpr double min_tilt_deg = 20;        // between two boards
 constexpr double max_focal_sigma = 0.003;  // of the focal length
 constexpr double min_coverage = 0.85;
-constexpr double max_rms = 0.6;  // pixels of a picture of the usual width
+constexpr double max_rms = 0.6;  // pixels, at the usual width
 constexpr double usual_width = 820;
 
 std::string number(double value, int digits) {
@@ -29,7 +29,7 @@ std::string number(double value, int digits) {
   return text.str();
 }
 
-/// The normals' largest angle from each other, radians.
+/// The largest angle between the normals of two boards, radians.
 double largest_tilt(const std::vector<Eigen::Isometry3d>& boards) {
   double least = 1;
   for (const Eigen::Isometry3d& one : boards) {
@@ -51,7 +51,7 @@ CameraLens to_lens(const LensNumbers& numbers, int width, int height) {
           .k2 = numbers[5]};
 }
 
-/// Whether each pixel of the picture is that of one ray.
+/// Whether the distortion maps rays to pixels one-to-one within the picture.
 bool is_one_to_one(const CameraLens& lens) {
   const Intrinsics& in = lens.intrinsics;
   const double across = std::max(in.cx, in.width - 1 - in.cx) / in.fx;
@@ -64,7 +64,7 @@ double share_of(const LensCoverage& coverage) {
          static_cast<double>(coverage.size());
 }
 
-/// Why a lens is not to be trusted; empty if it is.
+/// Returns why a lens is refused; empty if it is accepted.
 std::string fault_of(const LensReport& report) {
   const double focal_sigma = std::max(report.sigma.intrinsics.fx / report.lens.intrinsics.fx,
                                       report.sigma.intrinsics.fy / report.lens.intrinsics.fy);
@@ -88,7 +88,7 @@ std::string fault_of(const LensReport& report) {
   return is_one_to_one(report.lens) ? "" : "the distortion that was found folds the picture over";
 }
 
-/// Whether a view's corners tell a homography: enough of them, and not on two lines.
+/// Whether a view's corners determine a homography well: at least 12, over three rows and columns.
 bool is_usable(const BoardView& view) {
   if (view.size() < min_corners) {
     return false;

@@ -11,9 +11,9 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t max_features = 2000;
-constexpr float min_response = 40;  // grey levels: of a corner whose contrast is some 8 of them
+constexpr float min_response = 40;  // grey levels: a corner with a contrast of about 8
 constexpr int ring_radius = 5;      // pixels, of the detector
-constexpr int spread = 3;           // pixels around a maximum without a larger one
+constexpr int spread = 3;           // pixels, radius of the non-maximum suppression
 
 struct Offset {
   int u = 0;
@@ -37,8 +37,9 @@ constexpr std::array<Offset, 16> ring = {{{0, -5},
                                           {-4, -4},
                                           {-2, -5}}};
 
-/// The sum response less the differences across the ring and from its middle's mean: large where
-/// opposite sides of the ring are alike, and those a quarter of a turn away are not.
+/// The ChESS response: sum response, less difference response and mean response (Bennett and
+/// Lasenby 2014). It is large where samples on opposite sides of the ring agree, and samples a
+/// quarter of a turn apart differ.
 float response_at(const GreyImage& image, int u, int v) {
   std::array<float, 16> levels{};
   float sum = 0;
@@ -125,7 +126,7 @@ bool refine_corner(const GreyImage& image, int reach, Eigen::Vector2d& pixel) {
         right += weight * gradient * gradient.dot(way);
       }
     }
-    // Where only one edge passes, the matrix has no inverse.
+    // On a single edge the matrix is nearly singular.
     if (matrix.determinant() < 0.02 * matrix.trace() * matrix.trace()) {
       return false;
     }

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr std::size_t min_corners = 20;
-constexpr int usual_width = 820;  // pixels, in which features are looked for
+constexpr int usual_width = 820;  // pixels: features are detected at about this width
 constexpr int first_reach = 4;    // pixels around a corner, before its squares' size is known
 constexpr int least_reach = 3;
 constexpr int most_reach = 12;
@@ -58,7 +58,7 @@ BoardView find_board(const Picture& picture) {
   for (const LatticePlace& place : places) {
     const double distance = side * nearest_distance(corners, places, place.corner);
     const int reach = std::clamp(static_cast<int>(reach_share * distance), least_reach, most_reach);
-    // The middle of the first block of pixels is that of none of its pixels.
+    // A block's centre lies (side - 1) / 2 pixels from the centre of its first pixel.
     Vector2d pixel = corners[place.corner] * side + Vector2d::Constant((side - 1) / 2.0);
     if (refine_corner(whole, reach, pixel)) {
       view.push_back({.pixel = pixel, .column = place.square.x(), .row = place.square.y()});

@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// A picture in floating point, smoothed.
+/// A grey picture in floating point.
 struct GreyImage {
   int width = 0;                   ///< pixels
   int height = 0;                  ///< pixels
@@ -22,14 +22,15 @@ struct GreyImage {
     return u >= 0 && v >= 0 && u < width - 1 && v < height - 1;
   }
 
-  /// Between four pixels, bilinear. @param u, v  that `holds`
+  /// Interpolates between four pixels (bilinear). @param u, v  inside the image, see `holds`
   double between(double u, double v) const;
 };
 
-/// The picture smoothed by 1 2 1 both ways.
+/// Smooths an image by the binomial filter 1 2 1 along both axes.
 GreyImage smoothed(const GreyImage& image);
 
-/// Means of blocks of side x side pixels. What is left over at the right and below is left out.
+/// Reduces a picture to the means of blocks of side x side pixels. Incomplete blocks at the right
+/// and the bottom are dropped.
 GreyImage reduced(const Picture& picture, int side);
 
 }  // namespace octurn

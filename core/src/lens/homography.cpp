@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 
 Vector2d place_of(const BoardCorner& corner) { return {corner.column, corner.row}; }
 
-/// Moves the points' mean to the origin, and their mean distance from it to the square root of 2.
+/// The transform that moves the points' mean to the origin, and scales their mean distance from it
+/// to the square root of 2.
 Matrix3d normalisation(const std::vector<Vector2d>& points) {
   Vector2d mean = Vector2d::Zero();
   for (const Vector2d& point : points) {

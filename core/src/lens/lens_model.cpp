@@ -14,10 +14,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double usual_focal = 1.0;  // of the picture's width, where the views tell none
+constexpr double usual_focal = 1.0;  // of the picture's width, if the views do not determine it
 
-/// The squares of fx and fy by which the columns of all homographies are perpendicular and of one
-/// length. @param homographies  to pixels from the principal point
+/// Solves the squares of fx and fy for which the first two columns of each homography become
+/// perpendicular and equally long, by least squares.
+/// @param homographies  board to pixels relative to the principal point
 Vector2d focal_squares(const std::vector<Matrix3d>& homographies) {
   Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
   Vector2d right = Vector2d::Zero();
@@ -41,7 +42,7 @@ Eigen::Isometry3d board_pose(const Matrix3d& homography, const LensNumbers& lens
   Matrix3d columns = camera.inverse() * homography;
   columns /= (columns.col(0).norm() + columns.col(1).norm()) / 2;
   if (columns(2, 2) < 0) {
-    columns = -columns;  // a board lies before the camera
+    columns = -columns;  // the board lies in front of the camera
   }
   Matrix3d axes = columns;
   axes.col(2) = columns.col(0).cross(columns.col(1));
@@ -87,14 +88,14 @@ SeenCorner see(const LensNumbers& lens, const Eigen::Isometry3d& camera_from_boa
   seen.pixel = Vector2d(fx * x * factor + lens[2], fy * y * factor + lens[3]);
   seen.by_lens << x * factor, 0, 1, 0, fx * x * square, fx * x * square * square,  //
       0, y * factor, 0, 1, fy * y * square, fy * y * square * square;
-  const double slope = 2 * (k1 + 2 * k2 * square);  // of the factor along x is x times this
+  const double slope = 2 * (k1 + 2 * k2 * square);  // d factor / dx is x times this
   Eigen::Matrix2d by_ray;
   by_ray << fx * (factor + x * x * slope), fx * x * y * slope,  //
       fy * x * y * slope, fy * (factor + y * y * slope);
   Eigen::Matrix<double, 2, 3> by_point;
   by_point << 1, 0, -x, 0, 1, -y;
   by_point = by_ray * by_point / point.z();
-  Matrix3d turning;  // how the point moves with a small rotation w: w x turned
+  Matrix3d turning;  // d point / dw for a small rotation w: w x turned
   turning << 0, turned.z(), -turned.y(), -turned.z(), 0, turned.x(), turned.y(), -turned.x(), 0;
   seen.by_board << by_point * turning, by_point;
   return seen;

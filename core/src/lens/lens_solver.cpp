@@ -67,7 +67,7 @@ Matrix6d damped(Matrix6d matrix, double damping) {
   return matrix;
 }
 
-/// The lens's equations without the boards.
+/// The lens's equations after elimination of the boards (Schur complement).
 std::pair<Matrix6d, Vector6d> reduced(const Equations& equations, double damping) {
   Matrix6d matrix = Matrix6d::Zero();
   Vector6d right = Vector6d::Zero();
@@ -98,7 +98,8 @@ LensAndBoards stepped(const LensAndBoards& from, const Equations& equations, dou
   return to;
 }
 
-/// Whether all boards lie before the camera, and the lens is one.
+/// Whether all numbers are finite, focal lengths are positive, and boards are in front of the
+/// camera.
 bool is_sound(const LensAndBoards& at) {
   return at.lens.allFinite() && at.lens[0] > 0 && at.lens[1] > 0 &&
          std::ranges::all_of(at.camera_from_board, [](const Eigen::Isometry3d& pose) {

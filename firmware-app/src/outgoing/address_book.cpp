@@ -22,7 +22,7 @@ constexpr std::size_t max_text = 500;  // bytes
 constexpr std::size_t id_bytes = 4;
 constexpr std::array kinds{PrinterKind::octoprint, PrinterKind::moonraker, PrinterKind::prusalink};
 
-/// One line of at most 500 bytes; empty if the key is not there.
+/// Reads one line of at most 500 bytes; empty if the key is missing.
 std::string short_text(JsonObject& object, std::string_view key) {
   const auto value = object.value(key);
   if (!value) {
@@ -157,7 +157,7 @@ AddressBook::Entries AddressBook::read(const std::filesystem::path& file) try {
   return {};
 }
 
-/// Stores them before they count.
+/// Writes the file, and then puts the entries into force.
 void AddressBook::store(Entries entries) {
   const json document{{"webhooks", to_array(entries.webhooks)},
                       {"printers", to_array(entries.printers)}};

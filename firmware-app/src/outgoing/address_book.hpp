@@ -12,59 +12,60 @@
 
 namespace octurn {
 
-/// An address that is told what happens.
+/// A web address that receives events by POST.
 struct Webhook {
   std::string id = {};
-  std::string url = {};                  ///< may hold a secret: never told again
-  std::vector<std::string> events = {};  ///< that it is told; empty: all
+  std::string url = {};                  ///< may contain a secret: never sent to clients
+  std::vector<std::string> events = {};  ///< that it receives; empty: all
 };
 
-/// What a webhook can be told.
+/// The events that a webhook can receive.
 extern const std::vector<std::string_view> webhook_events;
 
 enum class PrinterKind { octoprint, moonraker, prusalink };
 
 std::string_view to_string(PrinterKind kind);
 
-/// A print server that takes models.
+/// A print server that receives models.
 struct Printer {
   std::string id = {};
-  std::string name = {};  ///< for people, and no other's
+  std::string name = {};  ///< display name, unique
   PrinterKind kind = PrinterKind::octoprint;
-  std::string url = {};   ///< that the paths of its interface are appended to
-  std::string user = {};  ///< of PrusaLink, for HTTP Digest; empty: the key is sent as it is
-  std::string key = {};   ///< or the password; never told again
+  std::string url = {};   ///< base address of its API
+  std::string user = {};  ///< of PrusaLink, for HTTP Digest; empty: the key is sent in a header
+  std::string key = {};   ///< API key, or the user's password; never sent to clients
 };
 
-/// A webhook, or a printer, as a person describes it.
+/// Reads a webhook, or a printer, without its id.
 /// @throws Error "bad-settings"  that names the key, its value and what is allowed
 Webhook webhook_from(JsonObject& object);
 Printer printer_from(JsonObject& object);
 
-/// Whom this machine tells something, and sends models to, because somebody has set it so. Kept in
-/// a file that only its owner can read. Any thread may call it.
+/// The webhooks and printers that users have added, stored in a file that only its owner can read.
+/// Thread-safe.
 class AddressBook {
  public:
   static constexpr std::size_t max_of_each = 16;
 
-  /// @param file  of an earlier run, if there is one; of one that is malformed nothing counts
+  /// @param file  read if it exists; a malformed file counts as empty
   explicit AddressBook(std::filesystem::path file);
 
   std::vector<Webhook> webhooks() const;
   std::vector<Printer> printers() const;
 
-  /// The one of that id, if there is one.
+  /// The webhook of that id, if there is one.
   std::optional<Webhook> find_webhook(std::string_view id) const;
-  /// The one of that id or name, if there is one.
+  /// The printer of that id or name, if there is one.
   std::optional<Printer> find_printer(std::string_view id_or_name) const;
 
-  /// Adds one, under a new id.
+  /// Adds a webhook or a printer under a new id.
   /// @throws Error "bad-settings" if there are max_of_each, or a printer of that name;
   ///               "disk-full", "write-failed"
   Webhook add(Webhook webhook);
   Printer add(Printer printer);
 
-  /// @return false if there is none @throws Error "disk-full", "write-failed"
+  /// Removes a webhook or a printer. @return false if there is none of that id
+  /// @throws Error "disk-full", "write-failed"
   bool remove_webhook(std::string_view id);
   bool remove_printer(std::string_view id);
 

@@ -17,7 +17,7 @@ constexpr long connect_seconds = 5;
 constexpr long still_seconds = 30;
 constexpr int poll_ms = 1000;
 
-/// Owns an object of libcurl's.
+/// Deleter of a C library's object.
 template <auto release>
 struct Release {
   template <typename T>
@@ -43,7 +43,7 @@ extern "C" std::size_t keep_answer(char* bytes, std::size_t size, std::size_t co
   return size * count;
 }
 
-/// One request on its way, with all that libcurl refers to.
+/// A request in progress, with all objects that libcurl refers to.
 class Transfer {
  public:
   explicit Transfer(const OutgoingRequest& request) : easy_(curl_easy_init()) {
@@ -60,7 +60,7 @@ class Transfer {
 
   CURL* get() const { return easy_.get(); }
 
-  /// What is wrong with the request, before it is made.
+  /// The reason why the request cannot be sent; empty if it can.
   const std::string& trouble() const { return answer_.trouble; }
 
   std::uint64_t sent() const {
@@ -90,7 +90,7 @@ class Transfer {
   }
 
   void limit(const OutgoingRequest& request) {
-    set(CURLOPT_NOSIGNAL, 1L);  // there are other threads
+    set(CURLOPT_NOSIGNAL, 1L);  // signals are not safe with several threads
     set(CURLOPT_QUICK_EXIT, 1L);
     set(CURLOPT_PROTOCOLS_STR, "http,https");
     set(CURLOPT_FOLLOWLOCATION, 0L);
@@ -161,7 +161,7 @@ class Transfer {
   OutgoingAnswer answer_ = {};
 };
 
-/// The result of what has ended.
+/// The result of the transfer; nothing if it has not ended.
 std::optional<CURLcode> result_of(CURLM* multi) {
   int left = 0;
   const CURLMsg* const message = curl_multi_info_read(multi, &left);
@@ -169,7 +169,7 @@ std::optional<CURLcode> result_of(CURLM* multi) {
                                                             : std::nullopt;
 }
 
-/// A part of an address; empty if it has none.
+/// A component of a URL; empty if the URL does not have it.
 std::string part_of(CURLU* address, CURLUPart part) {
   char* text = nullptr;
   std::string found;

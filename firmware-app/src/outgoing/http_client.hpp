@@ -12,41 +12,41 @@
 
 namespace octurn {
 
-/// What another program is asked, over HTTP or HTTPS. It goes to this address and nowhere else: no
-/// proxy, and no redirect is followed.
+/// An HTTP or HTTPS request to another program. It goes to this address and nowhere else: no proxy
+/// is used, and no redirect is followed.
 struct OutgoingRequest {
   std::string method = "GET";
   std::string url = {};
   std::vector<std::string> headers = {};  ///< "X-Api-Key: secret"
   std::string body = {};
-  std::filesystem::path file = {};  ///< in place of the body, if there is one
-  /// If not empty, the file goes under that name as the field `file` of a form (RFC 7578).
+  std::filesystem::path file = {};  ///< sent in place of the body; empty: the body is sent
+  /// If not empty, the file is sent under that name in the field `file` of a form (RFC 7578).
   std::string form_name = {};
-  std::vector<std::pair<std::string, std::string>> fields = {};  ///< that the form has beside it
+  std::vector<std::pair<std::string, std::string>> fields = {};  ///< further ones of the form
   std::string user = {};                                         ///< for HTTP Digest; empty: none
   std::string password = {};
-  std::chrono::milliseconds time_limit = std::chrono::seconds(10);  ///< for all of it
+  std::chrono::milliseconds time_limit = std::chrono::seconds(10);  ///< for the whole exchange
 };
 
-/// What came of it.
+/// The answer to a request, or the reason why there is none.
 struct OutgoingAnswer {
   int status = 0;            ///< of HTTP; 0: there was no answer
   std::string body = {};     ///< its first 64 KiB
-  std::string trouble = {};  ///< why there was no answer, for people
+  std::string trouble = {};  ///< readable reason why there was no answer
 };
 
-/// Asks, and waits for the answer. A connection that takes 5 s to be made, or stands still for 30
-/// s, is given up.
-/// @param stop     ends it at once
-/// @param on_sent  told now and then how many bytes of the body, or of the form, have been sent
+/// Sends a request and waits for the answer. Gives up if connecting takes 5 s, or if no byte moves
+/// for 30 s.
+/// @param stop     aborts the request at once
+/// @param on_sent  called repeatedly with the number of bytes sent of the body or the form
 OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
                    const std::function<void(std::uint64_t)>& on_sent = {});
 
-/// Scheme, host and port of a web address: "http://printer.local:5000"; empty if it is none, or has
-/// a user, a password or a fragment.
+/// The origin (scheme, host, port) of a web address: "http://printer.local:5000". Empty if the
+/// address is malformed, or has a user, a password or a fragment.
 std::string origin_of(const std::string& url);
 
-/// A text as a part of a path (RFC 3986).
+/// Percent-encodes a text as a segment of a path (RFC 3986).
 std::string to_path_part(const std::string& text);
 
 }  // namespace octurn

@@ -4,8 +4,8 @@
 
 namespace octurn {
 
-/// What the module libOcturnHttpClient offers. It is loaded at the first use: libcurl and what it
-/// needs take 5 MB, which a program that asks nobody does not spend.
+/// Functions of the module libOcturnHttpClient. It is loaded at the first use, as libcurl and its
+/// dependencies take 5 MB, which a program without outgoing requests saves.
 struct HttpClientModule {
   OutgoingAnswer (*ask)(const OutgoingRequest& request, const std::stop_token& stop,
                         const std::function<void(std::uint64_t)>& on_sent) = nullptr;

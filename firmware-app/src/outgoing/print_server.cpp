@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-/// An upload may take long, as long as it goes on.
+/// Long, as slow uploads are fine: the HTTP client gives up those that stall.
 constexpr std::chrono::hours upload_limit{1};
 
 OutgoingRequest authorized(const Printer& printer, std::string method, const std::string& path) {
@@ -33,7 +33,7 @@ std::string program_name(PrinterKind kind) {
   return "PrusaLink";
 }
 
-/// What to do where a print server takes no model.
+/// Advice for a print server that does not accept models.
 std::string slicing_hint(PrinterKind kind) {
   std::string hint = program_name(kind);
   hint += kind == PrinterKind::octoprint ? " takes STL where a plug-in slices it."
@@ -91,7 +91,7 @@ std::optional<std::string> usable_storage(const std::string& body) try {
   }
   return std::nullopt;
 } catch (const Error&) {
-  return std::nullopt;  // it is not PrusaLink's answer
+  return std::nullopt;  // not an answer of PrusaLink
 }
 
 std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingAnswer& answer) {

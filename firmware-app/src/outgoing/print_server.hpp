@@ -10,26 +10,26 @@
 
 namespace octurn {
 
-/// Why a printer has not taken a model, for people.
+/// Readable reason why a printer has not accepted a model.
 struct PrinterTrouble {
   std::string detail = {};
   std::string hint = {};
 };
 
-/// The request that has a print server keep a file and print nothing: OctoPrint's
+/// The request that uploads a file to a print server without printing it: OctoPrint's
 /// `POST /api/files/local`, Moonraker's `POST /server/files/upload`, PrusaLink's
 /// `PUT /api/v1/files/STORAGE/NAME`. An older file of that name is replaced.
-/// @param storage  of PrusaLink, such as "/usb"
+/// @param storage  path of PrusaLink's storage, such as "/usb"; others ignore it
 OutgoingRequest upload_request(const Printer& printer, const std::filesystem::path& file,
                                const std::string& name, const std::string& storage);
 
-/// PrusaLink's `GET /api/v1/storage`, which tells where files can be kept.
+/// PrusaLink's `GET /api/v1/storage`, which lists the storages for files.
 OutgoingRequest storage_request(const Printer& printer);
 
-/// The first storage in its answer that can be written to; nothing if there is none.
+/// The path of the first writable storage in the body of that answer; nothing if there is none.
 std::optional<std::string> usable_storage(const std::string& body);
 
-/// What an answer means; nothing: the printer has taken it.
+/// The reason for which an answer refuses an upload; nothing if the printer has accepted it.
 std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingAnswer& answer);
 
 }  // namespace octurn

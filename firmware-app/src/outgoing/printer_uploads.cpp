@@ -33,7 +33,7 @@ std::optional<PrinterUpload> PrinterUploads::start(const std::string& scan, cons
     }
     last_ = begun;
   }
-  // The one before has told its end: it does nothing more, so that this does not wait for it.
+  // The previous worker has set its final state and is about to return: joining it does not block.
   worker_ = std::jthread([this, printer, file, name](const std::stop_token& stop) {
     send(printer, file, name, stop);
   });
@@ -46,7 +46,7 @@ std::optional<PrinterUpload> PrinterUploads::last(std::string_view scan) const {
 }
 
 bool PrinterUploads::cancel(std::string_view scan) {
-  const std::lock_guard starting(starting_);  // worker_ stays the same one
+  const std::lock_guard starting(starting_);  // keeps worker_ from being replaced
   const auto now = last(scan);
   if (!now || now->state != PrinterUpload::State::sending) {
     return false;
@@ -55,7 +55,7 @@ bool PrinterUploads::cancel(std::string_view scan) {
   return true;
 }
 
-/// @return nothing if the printer has taken it
+/// @return nothing if the printer has accepted the file
 std::optional<PrinterTrouble> PrinterUploads::upload(const Printer& printer,
                                                      const std::filesystem::path& file,
                                                      const std::string& name,

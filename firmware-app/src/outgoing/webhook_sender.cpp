@@ -40,7 +40,8 @@ std::string webhook_trouble(const OutgoingAnswer& answer) {
   return answer.status < 300 ? "" : "it answered " + std::to_string(answer.status);
 }
 
-// Too early, too many, or its own fault: RFC 9110, section 15.
+// No answer, a timeout (408), too early (425, RFC 8470), too many requests (429, RFC 6585) or a
+// server error (RFC 9110, section 15.6).
 bool is_worth_another_attempt(const OutgoingAnswer& answer) {
   return answer.status == 0 || answer.status == 408 || answer.status == 425 ||
          answer.status == 429 || answer.status >= 500;

@@ -19,7 +19,7 @@
 
 namespace octurn {
 
-/// Something that webhooks are told of.
+/// An event as it is sent to webhooks.
 struct Happening {
   std::string event = {};  ///< one of webhook_events, or "test"
   std::string body = {};   ///< JSON
@@ -27,38 +27,38 @@ struct Happening {
 
 struct WebhookLimits {
   std::chrono::milliseconds look_interval{1000};
-  std::chrono::milliseconds first_pause{5000};  ///< before it is tried again; then three times that
+  std::chrono::milliseconds first_pause{5000};  ///< before the first retry; then tripled each time
   int max_attempts = 6;
-  std::size_t max_waiting = 64;  ///< of all webhooks; beyond that the oldest is given up
-  std::chrono::milliseconds patience{10000};  ///< of one attempt
+  std::size_t max_waiting = 64;  ///< deliveries of all webhooks; beyond it the oldest is dropped
+  std::chrono::milliseconds patience{10000};  ///< time limit of an attempt
 };
 
-/// What became of the last thing that a webhook was told.
+/// State of the last delivery to a webhook.
 struct WebhookState {
   enum class Outcome { waiting, delivered, failed };
   Outcome outcome = Outcome::waiting;
   std::string event = {};
   std::string time = {};     ///< of the last attempt, RFC 3339; empty: there was none yet
-  std::string trouble = {};  ///< why it was not delivered yet, or is given up
+  std::string trouble = {};  ///< why it is not delivered yet, or was given up
 };
 
 std::string_view to_string(WebhookState::Outcome outcome);
 
-/// Tells the webhooks of an address book what happens, on a thread of its own: nobody waits for
-/// them. What still waits when this ends is lost. Any thread may call it.
+/// Delivers events to the webhooks of an address book on its own thread, so that no caller waits.
+/// Deliveries that still wait at its destruction are lost. Thread-safe.
 class WebhookSender {
  public:
   /// @param book  has to outlive this
-  /// @param look  what has happened since it was called last
+  /// @param look  returns the events since its last call; called on the sender's thread
   WebhookSender(const AddressBook& book, std::function<std::vector<Happening>()> look,
                 const WebhookLimits& limits = {});
   WebhookSender(const WebhookSender&) = delete;
   WebhookSender& operator=(const WebhookSender&) = delete;
 
-  /// Tells one webhook something.
+  /// Queues an event for one webhook.
   void tell(const std::string& id, Happening happening);
 
-  /// Nothing if it was told nothing yet.
+  /// The state of a webhook's last delivery; nothing if there was none yet.
   std::optional<WebhookState> state(std::string_view id) const;
 
  private:
@@ -82,15 +82,15 @@ class WebhookSender {
   const WebhookLimits limits_;
   mutable std::mutex mutex_ = {};  // guards what follows
   std::condition_variable_any added_ = {};
-  std::deque<Delivery> waiting_ = {};  // in the order in which they came
+  std::deque<Delivery> waiting_ = {};  // in the order in which they were queued
   std::map<std::string, WebhookState, std::less<>> states_ = {};
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };
 
-/// Why an answer to a webhook means that it was not taken; empty: it was.
+/// The reason why a delivery with that answer has failed; empty if it has succeeded.
 std::string webhook_trouble(const OutgoingAnswer& answer);
 
-/// Whether it may be taken if it is sent again later.
+/// Whether a failed delivery with that answer may succeed later.
 bool is_worth_another_attempt(const OutgoingAnswer& answer);
 
 }  // namespace octurn

@@ -92,7 +92,7 @@ void in_memory(const Action& action) {
 }  // namespace
 
 Appliance::Appliance(fs::path folder) : folder_(std::move(folder)) {
-  std::error_code ignored;  // without the folder a request says what is wrong
+  std::error_code ignored;  // if the folder is missing, the first request throws
   for (const fs::directory_entry& entry : fs::directory_iterator(request(""), ignored)) {
     if (entry.path().filename().string().starts_with('.')) {
       fs::remove(entry.path(), ignored);
@@ -127,11 +127,11 @@ bool Appliance::is_updating() const {
   return is_receiving_ || is_being_installed(answered_update());
 }
 
-/// The WiFi that was asked for, until root has answered. The request file is no sign of it: root
-/// removes that long before it answers.
+/// The requested WiFi, until root has answered or 30 s have passed. The request file does not show
+/// this: root removes it long before it answers.
 std::optional<WifiRequest> Appliance::unanswered_wifi() const {
   const std::scoped_lock lock(mutex_);
-  std::error_code ignored;  // no answer is older than any request
+  std::error_code ignored;  // the time of a missing answer is the minimum, before any request
   const bool is_waiting = asked_ && std::chrono::steady_clock::now() < asked_->until &&
                           fs::last_write_time(folder_ / "wifi", ignored) < asked_->time;
   return is_waiting ? std::optional(asked_->wifi) : std::nullopt;
@@ -222,7 +222,7 @@ fs::path Appliance::place_for_update(std::uint64_t bytes) const {
     throw Error(ErrorCode::busy, "the last update is still on trial",
                 "Try again in a few minutes.");
   }
-  std::error_code unknown;  // then writing tells
+  std::error_code unknown;  // if set, a lack of space shows when writing
   if (const fs::space_info memory = fs::space(request(""), unknown);
       !unknown && memory.available < bytes) {
     throw_no_space();

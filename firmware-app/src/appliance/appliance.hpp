@@ -39,7 +39,7 @@ struct WifiState {
   std::vector<WifiNetwork> networks = {};
 };
 
-/// Which versions of an update root takes: those that are no older than what runs, or any.
+/// Versions of an update that root accepts: those not older than the running system, or any.
 enum class UpdateAge : std::uint8_t { not_older, any };
 
 /// Interface to the root services of Octurn's image. This program is not root: it writes requests
@@ -56,8 +56,8 @@ class Appliance {
   UpdateState update() const;
   WifiState wifi() const;
 
-  /// Errors that root has logged, of this start and earlier ones, the newest last. Only the end of
-  /// a long log.
+  /// Errors that root has logged in this boot and earlier ones, newest last. Of a long log only the
+  /// end.
   std::string errors() const;
 
   /// Whether an update is being received or installed: the machine may restart at any moment.
@@ -65,7 +65,8 @@ class Appliance {
 
   MachineState machine() const;
 
-  /// Asks root for another name or time zone. @throws Error  if the request cannot be written
+  /// Asks root to change the host name or the time zone.
+  /// @throws Error  if the request cannot be written
   void ask_for_machine(const MachineRequest& request);
 
   /// Asks root to restart this machine, shut it down or set its clock.
@@ -75,7 +76,7 @@ class Appliance {
   /// Asks root to join a WiFi. @throws Error  if the request cannot be written
   void ask_for_wifi(const WifiRequest& request);
 
-  /// An update that is being received. Root gets it whole or not at all. One at a time.
+  /// An update that is being received, one at a time. Root gets it whole or not at all.
   class Upload {
    public:
     static constexpr std::uint64_t max_bytes = std::uint64_t{160} << 20U;
@@ -102,7 +103,7 @@ class Appliance {
 
     Turn turn_;
     AtomicFile file_;
-    std::filesystem::path older_;  // there for root if an older version is asked for
+    std::filesystem::path older_;  // marker file by which root accepts an older version
     UpdateAge age_;
   };
 

@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono;
 
-// Whoever is outside of these has no clock either.
+// A client whose time is outside this range has no valid clock either.
 constexpr sys_seconds earliest = sys_days(year(2026) / January / 1);
 constexpr sys_seconds latest = sys_days(year(2100) / January / 1);
 

@@ -8,13 +8,13 @@
 
 namespace octurn {
 
-/// How a machine is to end.
+/// How the running system is to end.
 enum class PowerEnd { restart, off };
 
-/// What root is asked to do with the machine at once: to end it, or to set its clock.
+/// A request that root carries out at once: restart, power off, or a new time of the clock.
 using ControlRequest = std::variant<PowerEnd, std::chrono::sys_seconds>;
 
-/// The time of a body, `{"unix_s": 1764012345}`: seconds since 1970, of this century.
+/// Reads the time of a body, `{"unix_s": 1764012345}`: Unix time in seconds, from 2026 to 2100.
 /// @throws Error "bad-settings"
 std::chrono::sys_seconds clock_from(const nlohmann::json& body);
 

@@ -23,7 +23,7 @@ bool is_zone_character(char c) {
          std::string_view("_+/-").find(c) != std::string_view::npos;
 }
 
-/// @throws Error "bad-settings"  if it can be no name of a host
+/// @throws Error "bad-settings"  if the value is not a valid host name
 std::string to_host_name(const JsonValue& value) {
   std::string name = value.text();
   std::ranges::transform(name, name.begin(),
@@ -35,7 +35,7 @@ std::string to_host_name(const JsonValue& value) {
   return name;
 }
 
-/// Whether there is such a zone, root looks.
+/// Checks the characters of a zone's name. Root checks whether the zone exists.
 std::string to_zone(const JsonValue& value) {
   std::string zone = value.text();
   if (zone.empty() || zone.size() > max_zone_name ||

@@ -14,7 +14,7 @@
 namespace octurn {
 namespace {
 
-/// Removes the front of a text up to and with the first `separator`.
+/// Removes the front of a text up to and including the first `separator`.
 /// @return the removed text, without the separator
 std::string_view take_until(char separator, std::string_view& text) {
   const std::string_view taken = text.substr(0, text.find(separator));
@@ -62,7 +62,7 @@ std::optional<std::string> unescaped(std::string_view text) {
   return bytes;
 }
 
-/// Whether the JSON library can write the text: it refuses what is no UTF-8.
+/// Whether a text is UTF-8, checked by the JSON library, which refuses to write any other.
 bool is_utf8(const std::string& text) {
   try {
     nlohmann::json(text).dump();
@@ -92,7 +92,7 @@ std::optional<WifiNetwork> network_in(std::string_view line) {
 
 std::vector<WifiNetwork> wifi_networks(std::string_view scan_results) {
   std::vector<WifiNetwork> networks;
-  take_until('\n', scan_results);  // the head of the table
+  take_until('\n', scan_results);  // the header line
   while (!scan_results.empty()) {
     if (auto network = network_in(take_until('\n', scan_results))) {
       networks.push_back(*std::move(network));

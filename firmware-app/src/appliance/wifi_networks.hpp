@@ -10,12 +10,12 @@ namespace octurn {
 struct WifiNetwork {
   std::string name = {};
   int signal_dbm = 0;
-  bool secured = false;  ///< it asks for a password
+  bool secured = false;  ///< needs a password
 };
 
-/// The networks of a table that `wpa_cli scan_results` printed: each name once, as its strongest
-/// station has it, the strongest first. Left out are hidden networks and names that nobody could
-/// type or choose: not UTF-8, with control characters, or with blanks around them.
+/// Parses the table of `wpa_cli scan_results`: each name once, with its strongest access point,
+/// strongest first. Leaves out hidden networks and names that cannot be typed or requested: not
+/// UTF-8, with control characters, or with blanks around them.
 std::vector<WifiNetwork> wifi_networks(std::string_view scan_results);
 
 }  // namespace octurn

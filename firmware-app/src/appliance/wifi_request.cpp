@@ -15,8 +15,8 @@ using nlohmann::json;
 constexpr std::size_t max_wifi_name = 32;                // bytes: IEEE 802.11-2020, 9.4.2.2
 constexpr std::size_t min_password = 8;                  // characters: IEEE 802.11-2020, annex J.4
 constexpr std::size_t max_password = 63;                 // as above
-constexpr std::size_t digits_of_key = 64;                // of the 256 bits that are made of it
-constexpr std::string_view known_password = "********";  // octurn.txt: the password that is known
+constexpr std::size_t digits_of_key = 64;                // hexadecimal digits of a 256-bit key
+constexpr std::string_view known_password = "********";  // octurn.txt: a stored password
 
 bool is_printable_ascii(char c) { return c >= ' ' && c <= '~'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }

@@ -7,21 +7,21 @@
 
 namespace octurn {
 
-/// A WiFi that somebody wants the scanner to join.
+/// A request to join a WiFi.
 struct WifiRequest {
   std::string name = {};
   std::optional<std::string> password = {};  ///< nothing: an open WiFi
   std::string country = {};                  ///< two capital letters
 };
 
-/// Whether a WiFi of that name can be asked for: octurn.txt has it in a line, without quotes.
+/// Whether a WiFi of that name can be requested: octurn.txt has names on one line, without quotes.
 bool is_wifi_name(std::string_view name);
 
 /// Reads {"name", "password", "country"}.
-/// @throws Error "bad-wifi"  which never has the password in it
+/// @throws Error "bad-wifi"  whose texts never contain the password
 WifiRequest wifi_request_from(const nlohmann::json& body);
 
-/// The request as octurn.txt has it.
+/// The request as lines of octurn.txt.
 std::string to_text(const WifiRequest& request);
 
 }  // namespace octurn

@@ -14,12 +14,12 @@ namespace {
 
 // A surface of area A crosses some 1.5 A / side^2 cells, and a mesh has two facets for each vertex.
 constexpr double facets_in_square = 3;
-constexpr double coarser = 1.15;  // of the side, while there are too many facets
+constexpr double coarser = 1.15;  // growth of the side while there are too many facets
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 Corners corners_of(const Facet& facet) {
-  const auto packed = facet.corners;  // which are not aligned in a facet
+  const auto packed = facet.corners;  // a copy: a facet's members are not aligned
   Corners corners;
   std::ranges::transform(packed, corners.begin(), [](const std::array<float, 3>& corner) {
     return Eigen::Vector3f(corner[0], corner[1], corner[2]).cast<double>().eval();
@@ -42,7 +42,7 @@ double area(const FacetFile& facets) {
   return doubled / 2;
 }
 
-/// The occupied cells of a grid, in the order in which they were met, and the facets between them.
+/// The occupied cells of a grid, in order of their first use, and the facets between them.
 class Clusters {
  public:
   /// @param side  of a cell, millimetres
@@ -57,7 +57,7 @@ class Clusters {
     if (cells[0] == cells[1] || cells[1] == cells[2] || cells[2] == cells[0]) {
       return;
     }
-    // Each facet once.
+    // Keeps each facet once: the smallest index first, by a rotation that keeps the orientation.
     std::rotate(cells.begin(), std::ranges::min_element(cells), cells.end());
     if (known_.insert(cells).second) {
       facets_.push_back({.cells = cells, .attributes = facet.attributes});
@@ -95,10 +95,10 @@ class Clusters {
     std::uint16_t attributes = 0;
   };
 
-  /// The number of a corner's cell.
+  /// Adds a corner to the mean of its cell. @return the cell's index
   std::uint32_t add(const Eigen::Vector3d& corner) {
     std::uint64_t place = 0;
-    for (const double coordinate : corner) {  // 21 bits each: a root cube has 2^16 leaves a side
+    for (const double coordinate : corner) {  // 21 bits each: a root cube has 2^16 leaves per side
       const auto cell = static_cast<std::int64_t>(std::floor(coordinate / side_));
       place = place << 21U | (static_cast<std::uint64_t>(cell) & 0x1fffffU);
     }
@@ -113,7 +113,8 @@ class Clusters {
   }
 
   double side_;
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers_ = {};  // of cells, by their places
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_ =
+      {};  // cell indices by packed coordinates
   std::vector<Cell> cells_ = {};
   std::set<std::array<std::uint32_t, 3>> known_ = {};
   std::vector<Between> facets_ = {};

@@ -8,15 +8,17 @@
 
 namespace octurn {
 
-/// The facets of a binary STL on the disk, read in order, as often as wanted, a block at a time.
+/// A binary STL file whose facets can be read in order, in blocks, any number of times.
 class FacetFile {
  public:
-  /// @throws Error "no-model"  if there is no such file, or its size is not that of its facets
+  /// @throws Error "no-model"  if there is no such file, it has no facets, or its size does not
+  /// match
+  ///                           their number
   explicit FacetFile(const std::filesystem::path& file);
 
   std::uint64_t count() const { return count_; }
 
-  /// Hands over all of them. @throws Error "read-failed"  if the disk does not give them
+  /// Passes all facets to the sink, in blocks. @throws Error "read-failed"
   void read(const FacetSink& sink) const;
 
  private:

@@ -26,7 +26,7 @@ constexpr int type_uint = 5125;
 constexpr int array_buffer = 34962;
 constexpr int element_array_buffer = 34963;
 constexpr double metres_in_mm = 0.001;
-constexpr std::size_t heads = 12 + 8 + 8;  // of the file and of its two chunks
+constexpr std::size_t heads = 12 + 8 + 8;  // bytes: headers of the file and of its two chunks
 
 struct Bounds {
   Vertex min = {};
@@ -44,10 +44,10 @@ Bounds bounds_of(std::span<const Vertex> vertices) {
   return bounds;
 }
 
-/// Red, green, blue and opacity, linear: 16 bits, as 8 have too few levels where it is dark.
+/// Linear red, green, blue and opacity. 16 bits each, as 8 have too few dark levels.
 using LinearColour = std::array<std::uint16_t, 4>;
 
-/// Undoes sRGB's transfer function (IEC 61966-2-1).
+/// The linear value of each 8-bit sRGB level (inverse transfer function of IEC 61966-2-1).
 std::array<std::uint16_t, 256> linear_levels() {
   std::array<std::uint16_t, 256> levels{};
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -69,7 +69,7 @@ std::vector<LinearColour> linear(std::span<const Rgb> colours) {
   return all;
 }
 
-/// Adds the colours of vertices to what a description has, behind the positions.
+/// Adds vertex colours to a glTF document. In the buffer they follow the positions.
 void add_colours(json& all, std::size_t count) {
   const std::uint64_t at = all["buffers"][0]["byteLength"];
   const std::uint64_t bytes = count * sizeof(LinearColour);
@@ -85,8 +85,9 @@ void add_colours(json& all, std::size_t count) {
   all["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json::array({1, 1, 1, 1});
 }
 
-/// What the buffer holds: first the indices, then the positions, then the colours, if there are
-/// any.
+/// The glTF document, as text. Its buffer holds the indices, the positions, and the colours if
+/// there are any.
+/// @param colours  number of vertex colours; 0: none
 std::string description(std::uint64_t index_bytes, std::span<const Vertex> vertices,
                         std::size_t colours, const std::string& name) {
   const auto [min, max] = bounds_of(vertices);
@@ -158,7 +159,7 @@ void write_glb(const FacetFile& facets, const std::string& name,
   facets.read([&](std::span<const Facet> block) {
     indices.clear();
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       for (const Vertex& corner : corners) {
         indices.push_back(table.index(corner));
       }

@@ -13,7 +13,7 @@ struct Names {
 };
 
 constexpr std::array formats{
-    Names{MeshFormat::ply, ".ply", "application/octet-stream"},  // none is registered
+    Names{MeshFormat::ply, ".ply", "application/octet-stream"},  // no media type is registered
     Names{MeshFormat::glb, ".glb", "model/gltf-binary"},
     Names{MeshFormat::threemf, ".3mf", "model/3mf"},
 };

@@ -11,7 +11,7 @@
 
 namespace octurn {
 
-/// A format that a model can be had in besides STL.
+/// A format for models besides STL.
 enum class MeshFormat { ply, glb, threemf };
 
 /// The format of files with that extension, such as ".ply".
@@ -20,19 +20,19 @@ std::optional<MeshFormat> mesh_format_of(std::string_view extension);
 /// The media type of a format.
 std::string_view media_type(MeshFormat format);
 
-// Each writer writes the facets of a model, in their order and with the bits of their corners, to a
-// file that appears whole or not at all. Memory is that of a VertexTable and of one block.
-// `colours` are of the vertices of its VertexTable; without them the file has none.
+// Each writer writes the facets of a model in order, with bit-identical coordinates, to a file that
+// appears whole or not at all. Memory is that of a VertexTable and one block of facets. `colours`
+// are those of the VertexTable's vertices; empty: the file has none.
 // All throw Error "disk-full", "write-failed", "read-failed", "memory-limit"; "no-model" if there
 // are not as many colours as vertices.
 
-/// Binary little-endian PLY 1.0, millimetres, Z up. The property `filled` of a face is 1 where hole
+/// Binary little-endian PLY 1.0, millimetres, Z up. The property `filled` of a face is 1 if hole
 /// filling has made it.
 void write_ply(const FacetFile& facets, const std::filesystem::path& target,
                std::span<const Rgb> colours = {});
 
-/// Binary glTF 2.0. Its positions are the model's in millimetres, Z up; its one node turns and
-/// scales them to what glTF has: metres, Y up. Colours are linear there.
+/// Binary glTF 2.0. Positions are in millimetres, Z up; the only node transforms them to the metres
+/// and Y up of glTF. Colours are converted to linear, as glTF requires.
 void write_glb(const FacetFile& facets, const std::string& name,
                const std::filesystem::path& target, std::span<const Rgb> colours = {});
 
@@ -42,7 +42,7 @@ void write_glb(const FacetFile& facets, const std::string& name,
 void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
                const std::filesystem::path& target, std::span<const Rgb> colours = {});
 
-/// Writes a file of that format, by its writer above.
+/// Calls the writer of that format.
 void write_mesh(MeshFormat format, const FacetFile& facets, const std::string& name,
                 const std::string& thumbnail, const std::filesystem::path& target,
                 std::span<const Rgb> colours = {});

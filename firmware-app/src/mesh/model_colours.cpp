@@ -11,7 +11,7 @@ std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::p
   triangles.reserve(facets.count());
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       triangles.push_back(
           {table.index(corners[0]), table.index(corners[1]), table.index(corners[2])});
     }

@@ -21,7 +21,7 @@ struct Face {
 };
 #pragma pack(pop)
 
-/// @param colour  properties of a vertex
+/// @param colour  property lines of a vertex's colour; empty: none
 std::string header(std::size_t vertices, const std::string& colour, std::uint64_t faces) {
   return "ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\nelement vertex " +
          std::to_string(vertices) + "\nproperty float x\nproperty float y\nproperty float z" +
@@ -61,7 +61,7 @@ void write_ply(const FacetFile& facets, const std::filesystem::path& target,
   facets.read([&](std::span<const Facet> block) {
     faces.clear();
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       const std::array<std::uint32_t, 3> indices{table.index(corners[0]), table.index(corners[1]),
                                                  table.index(corners[2])};
       const bool is_filled = facet.attributes == filled_in;

@@ -25,7 +25,7 @@ constexpr std::string_view thumbnail_relationship =
 
 constexpr std::size_t part_bytes = std::size_t{64} << 10U;
 
-/// Text as XML has it; what XML cannot hold is left out.
+/// Escapes text for XML. Control characters, which XML cannot contain, are left out.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -51,7 +51,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// XML that goes into an archive a part at a time.
+/// XML that is written into an archive in parts.
 class XmlStream {
  public:
   explicit XmlStream(ZipWriter& zip) : zip_(zip) {}
@@ -64,7 +64,7 @@ class XmlStream {
     return *this;
   }
 
-  /// The shortest text that is read as the same number.
+  /// Appends the shortest text that parses to the same number.
   template <typename Number>
   XmlStream& number(Number value) {
     std::array<char, 32> digits{};
@@ -85,7 +85,7 @@ class XmlStream {
 constexpr std::string_view materials =
     R"( xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02")";
 
-/// A group with a colour of each vertex, at its index.
+/// Writes a colour group, with the colour of each vertex at the vertex's index.
 void write_colours(XmlStream& xml, std::span<const Rgb> colours) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   xml << R"(<m:colorgroup id="2">)";
@@ -103,7 +103,7 @@ void write_triangles(XmlStream& xml, const FacetFile& facets, const VertexTable&
                      std::span<const Rgb> colours) {
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       const std::array<std::uint32_t, 3> indices{table.index(corners[0]), table.index(corners[1]),
                                                  table.index(corners[2])};
       (xml << "<triangle v1=\"").number(indices[0]);

@@ -16,11 +16,11 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr int side = 256;
-constexpr int fineness = 2;  // samples of a pixel, each way
+constexpr int fineness = 2;  // samples of a pixel along each axis
 constexpr int samples = side * fineness;
 constexpr float margin = 0.06F;  // of the side, around the model
 
-// From the model to the eye, and to the light, in the model's frame; as web/viewer.js has them.
+// Directions from the model to the eye and to the light, in the model's frame, as in web/viewer.js.
 const Vector3f to_eye = Vector3f(0.42F, -0.83F, 0.37F).normalized();
 const Vector3f to_light = Vector3f(-0.05F, -0.72F, 0.69F).normalized();
 constexpr std::array clay{216.0F, 210.0F, 196.0F};
@@ -33,7 +33,8 @@ struct Sample {
   float light = 0;
 };
 
-/// The picture's axes and the depth, in the model's frame: a parallel projection.
+/// View matrix of an orthographic projection: its rows point right, up and to the eye in the
+/// model's frame.
 Eigen::Matrix3f make_view() {
   Eigen::Matrix3f view;
   const Vector3f right = Vector3f::UnitZ().cross(to_eye).normalized();
@@ -43,17 +44,18 @@ Eigen::Matrix3f make_view() {
 
 Vector3f to_vector(const std::array<float, 3>& corner) { return {corner[0], corner[1], corner[2]}; }
 
-/// What the light shows of a facet, 0 to 1.
+/// Lambertian shading of a facet, from `ambient` to 1.
 float light_on(const Vector3f& normal) {
   return ambient + (1 - ambient) * std::max(normal.dot(to_light), 0.0F);
 }
 
-/// Twice the area of a triangle, positive where its corners go counter-clockwise.
+/// Twice the signed area of a triangle in the picture, positive if its corners are
+/// counter-clockwise.
 float area(const Vector3f& a, const Vector3f& b, const Vector3f& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Draws triangles, the nearest of which are seen.
+/// Rasterizes triangles with a depth buffer.
 class Canvas {
  public:
   /// @param box  around the model, in the view's frame
@@ -63,14 +65,14 @@ class Canvas {
   }
 
   void draw(const Facet& facet) {
-    const auto packed = facet.corners;  // which are not aligned in a facet
+    const auto packed = facet.corners;  // a copy: a facet's members are not aligned
     std::array<Vector3f, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       corners[i] = place(packed[i]);
     }
     const float whole = area(corners[0], corners[1], corners[2]);
     if (!(whole > 0)) {
-      return;  // seen from behind, or from its edge
+      return;  // back-facing, or seen edge-on
     }
     const auto normal = facet.normal;
     const float light = light_on(to_vector(normal));
@@ -86,7 +88,7 @@ class Canvas {
   const std::vector<Sample>& picture() const { return picture_; }
 
  private:
-  /// A corner in samples from the picture's lower left, and its depth.
+  /// A corner in samples from the picture's lower left corner, and its depth.
   Vector3f place(const std::array<float, 3>& corner) const {
     const Vector3f seen = (view_ * to_vector(corner) - middle_) * scale_;
     return {seen.x() + samples / 2.0F, seen.y() + samples / 2.0F, seen.z()};
@@ -121,7 +123,7 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
 }
 
-/// A pixel of the mean of its samples; row 0 is the picture's top.
+/// A pixel as the mean of its samples; row 0 is the picture's top.
 Rgba pixel(const std::vector<Sample>& picture, int x, int y) {
   float light = 0;
   int seen = 0;
@@ -150,7 +152,7 @@ std::vector<std::byte> draw_thumbnail(const FacetFile& facets) {
   Eigen::AlignedBox3f box;
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       for (const auto& corner : corners) {
         box.extend(view * to_vector(corner));
       }

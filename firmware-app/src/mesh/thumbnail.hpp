@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// A picture of a model, 256 x 256, as a PNG with a transparent ground: clay, seen from the front
-/// at the right and from above, as the page shows it first. Memory is 6 MB, whatever the model.
+/// Renders a model as a PNG of 256 x 256 pixels with a transparent background: in clay, seen from
+/// the front right and from above, like the page's first view. Memory is 6 MB for any model.
 /// @throws Error "read-failed"
 std::vector<std::byte> draw_thumbnail(const FacetFile& facets);
 

@@ -9,7 +9,7 @@ namespace octurn {
 namespace {
 
 constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t first_slots = 1024;             // a power of two, as all that follow
+constexpr std::size_t first_slots = 1024;             // a power of two, and doubled to grow
 constexpr std::uint64_t max_facets = 40'000'000;      // half a gigabyte of table
 constexpr std::uint64_t mixer = 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio, as Fibonacci hashing
 
@@ -38,7 +38,7 @@ VertexTable::VertexTable(const FacetFile& facets) : slots_(first_slots, empty) {
   }
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      const auto corners = facet.corners;  // which are not aligned in a facet
+      const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       for (const Vertex& corner : corners) {
         insert(corner);
       }
@@ -46,7 +46,7 @@ VertexTable::VertexTable(const FacetFile& facets) : slots_(first_slots, empty) {
   });
 }
 
-/// Where a vertex is in the table, or would be.
+/// The slot of a vertex, or the free slot where it belongs.
 std::size_t VertexTable::find_slot(const Vertex& vertex) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = hash(vertex) & mask;

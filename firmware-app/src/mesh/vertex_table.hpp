@@ -11,9 +11,9 @@ namespace octurn {
 
 using Vertex = std::array<float, 3>;  ///< millimetres, Z up
 
-/// The corners of a mesh, each once, in the order in which its facets have them first: corners are
-/// the same where their bits are, as an STL of this program has neighbours' corners. About 24 bytes
-/// a vertex, so 12 a triangle.
+/// The distinct vertices of a mesh, in order of their first use by a facet. Corners are one vertex
+/// if their bits are equal, as those of neighbouring facets are in an STL of this program. Takes
+/// about 24 bytes a vertex, so 12 a triangle.
 class VertexTable {
  public:
   /// @throws Error "memory-limit"  if the mesh has more than 40 million triangles
@@ -21,7 +21,7 @@ class VertexTable {
 
   std::span<const Vertex> vertices() const { return vertices_; }
 
-  /// @param vertex  that a facet has
+  /// The index of a vertex. @param vertex  a corner of one of the facets
   std::uint32_t index(const Vertex& vertex) const;
 
  private:
@@ -30,7 +30,7 @@ class VertexTable {
   void grow();
 
   std::vector<Vertex> vertices_;
-  std::vector<std::uint32_t> slots_;  // a hash table with linear probing; `empty` where it is free
+  std::vector<std::uint32_t> slots_;  // hash table of indices, linear probing; `empty`: free
 };
 
 }  // namespace octurn

@@ -11,7 +11,7 @@
 namespace octurn {
 namespace {
 
-/// What two tiles differ in; empty if they are of one plan.
+/// Names what two tiles differ in; empty if they belong to one plan.
 std::string difference(const TileHeader& a, const TileHeader& b) {
   const ReconstructOptions& x = a.options;
   const ReconstructOptions& y = b.options;
@@ -36,7 +36,8 @@ std::string difference(const TileHeader& a, const TileHeader& b) {
   return a.plan != b.plan || a.tiles != b.tiles ? "plan" : "";
 }
 
-/// The tiles by their numbers, if each is there and all are of one plan.
+/// Reads all tiles of a plan, sorted by number.
+/// @throws Error  if one is missing, is there twice, or belongs to another plan
 std::vector<StoredTile> read_tiles(std::span<const std::filesystem::path> files) {
   std::vector<std::optional<StoredTile>> by_number;
   std::vector<const std::filesystem::path*> file_of;

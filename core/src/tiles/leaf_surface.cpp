@@ -16,23 +16,23 @@
 namespace octurn {
 namespace {
 
-/// The bricks of one layer of all tiles, counted from where x = y = z = 0.
+/// One layer of bricks of all tiles. Positions are in bricks from the origin of the object's frame.
 struct Layer {
   std::vector<Index3> positions = {};
   std::vector<Brick> bricks = {};
 };
 
-/// Reads tiles of one height layer by layer from below.
+/// Reads the bricks of all tiles layer by layer, from the bottom up.
 class LayerReader {
  public:
   LayerReader(std::span<const StoredTile> tiles, const TileLattice& lattice)
       : tiles_(tiles), bricks_per_side_(lattice.bricks_per_side()) {}
 
-  /// The lowest layer of bricks of all tiles, and the one after the highest.
+  /// The lowest layer of bricks of all tiles, and one past the highest.
   int low() const { return tiles_.front().header().index.z * bricks_per_side_; }
   int end() const { return (tiles_.back().header().index.z + 1) * bricks_per_side_; }
 
-  /// Reads a layer; those of a tile in rising order.
+  /// Reads a layer. Layers must be read one by one in ascending order.
   Layer read(int layer) {
     const int height = layer >= 0 ? layer / bricks_per_side_ : ~(~layer / bricks_per_side_);
     if (height != height_ || open_.empty()) {
@@ -91,8 +91,8 @@ class LayerReader {
   std::vector<Open> open_ = {};
 };
 
-/// Bricks of two layers as `draw_layer` takes them: of the upper one only those that have leaves at
-/// their bottom.
+/// The bricks that `draw_layer` needs: one layer, and the bricks above it with leaves in their
+/// bottom layer.
 std::vector<PlacedBrick> placed(const Layer& here, const Layer& above) {
   std::vector<PlacedBrick> bricks;
   for (std::size_t i = 0; i < here.bricks.size(); ++i) {

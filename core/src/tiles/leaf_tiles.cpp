@@ -26,7 +26,7 @@ Octrees make_octrees(const TileLattice& lattice, std::span<const Tile> tiles) {
   return octrees;
 }
 
-/// Voxelizes triangles into the octrees of all tiles that they reach into.
+/// Voxelizes triangles into the octrees of all tiles that they overlap.
 class TileVoxelizer {
  public:
   TileVoxelizer(const TileLattice& lattice, Octrees& octrees)
@@ -66,7 +66,7 @@ class TileVoxelizer {
   const TileLattice& lattice_;
   Octrees& octrees_;
   TileIndex last_ = {};       // neighbouring triangles mostly lie in the same tile
-  Octree* octree_ = nullptr;  // of that tile; null if it is not one of these
+  Octree* octree_ = nullptr;  // of `last_`; null if that tile is not made
 };
 
 void voxelize(const Snapshot& snapshot, const ReconstructOptions& options,

@@ -9,7 +9,7 @@
 namespace octurn {
 namespace {
 
-/// Those of a source that some tiles take.
+/// The snapshots of a source that the tiles use.
 SnapshotSource part_of(const SnapshotSource& snapshots, std::span<const Tile> tiles) {
   std::set<std::size_t> taken;
   for (const Tile& tile : tiles) {
@@ -22,7 +22,7 @@ SnapshotSource part_of(const SnapshotSource& snapshots, std::span<const Tile> ti
           }};
 }
 
-/// The most tiles from the first one on for which there is room at once.
+/// The longest prefix of the tiles that fits in memory at once. Sets the number of threads.
 std::span<const Tile> first_group(ReconstructOptions& options, std::span<const Tile> tiles) {
   const Tile& largest = *std::ranges::max_element(tiles, {}, &Tile::bytes);
   const TileRoom room = room_for(options, largest);

@@ -10,11 +10,11 @@
 
 namespace octurn {
 
-/// Takes a tile that is done.
+/// Receives a finished tile.
 using TileSink = std::function<void(const Tile& tile, const TileBricks& bricks)>;
 
-/// Reconstructs tiles side by side, as many at once as the memory limit has room for. Of the
-/// snapshots only those are read that one of these tiles takes.
+/// Reconstructs tiles, as many at once as fit in the memory limit. Reads only the snapshots that
+/// one of these tiles uses.
 ///
 /// @param tiles  of one plan, in its order
 /// @param sink   called in that order
@@ -23,12 +23,12 @@ void make_tiles(const ReconstructOptions& options, std::span<const Tile> tiles,
                 const SnapshotSource& snapshots, const TileSink& sink,
                 const std::stop_token& stop = {});
 
-/// By voxel octree intersection: all tiles at once.
+/// Makes all tiles at once, by voxel octree intersection.
 void make_leaf_tiles(const ReconstructOptions& options, std::span<const Tile> tiles,
                      const SnapshotSource& snapshots, const TileSink& sink,
                      const std::stop_token& stop);
 
-/// By the method `solid`: one tile. @param scan_snapshots  how many the whole scan has
+/// Makes one tile, by the method `solid`. @param scan_snapshots  number of the whole scan's
 void make_shell_tile(const ReconstructOptions& options, const Tile& tile,
                      std::size_t scan_snapshots, const SnapshotSource& snapshots,
                      const TileSink& sink, const std::stop_token& stop);

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
-/// What a plan depends on.
+/// The options on which a plan depends.
 json settings_json(const ReconstructOptions& options) {
   json settings{{"method", to_string(options.method)},
                 {"root_size_m", options.root_size},

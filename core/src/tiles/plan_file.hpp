@@ -7,16 +7,16 @@
 
 namespace octurn {
 
-/// Of a depth image, its camera and its pose.
+/// The checksum of a depth image, its intrinsics and its pose.
 std::uint64_t checksum_of(const Snapshot& snapshot);
 
-/// Of the tiles and of all snapshots.
+/// The checksum of the tiles' indices and of all snapshots.
 std::uint64_t checksum_of(const TilePlan& plan);
 
-/// A tile's index as three numbers in a file. @throws Error  of the value, if it is none
+/// Reads a tile's index, an array of three integers. @throws Error  if the value is no index
 TileIndex tile_index_from(const JsonValue& value);
 
-/// A checksum as its digits in a file. @throws Error  of the value, if it is none
+/// Reads a checksum, a string of decimal digits. @throws Error  if the value is no checksum
 std::uint64_t checksum_from(const JsonValue& value);
 
 }  // namespace octurn

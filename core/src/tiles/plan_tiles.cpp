@@ -24,15 +24,16 @@
 namespace octurn {
 namespace {
 
-constexpr int ray_spacing = 16;  // pixels between rays of which is looked what they pass through
+constexpr int ray_spacing = 16;  // pixels between rays that are traced through tiles
 
-/// The bricks in which something is: a bit for each, as a `Brick` has one for each leaf. One set
-/// for all tiles: noise reaches into many tiles, and an octree for each took more than its bricks.
+/// The set of occupied bricks: one bit for each, stored in a `Brick` whose bits stand for bricks
+/// instead of leaves. One set serves all tiles: noise reaches into many tiles, and an octree for
+/// each took more memory than its bricks.
 class SeenBricks {
  public:
   explicit SeenBricks(const TileLattice& lattice) : lattice_(lattice) {}
 
-  /// Adds the bricks of the leaves between two points.
+  /// Adds all bricks of a box. @param low, high  its corners
   void add(const LatticePoint& low, const LatticePoint& high) {
     std::array<int, 3> first{};
     std::array<int, 3> last{};
@@ -61,7 +62,7 @@ class SeenBricks {
     }
   }
 
-  /// Bricks in each tile that has any.
+  /// The number of bricks in each tile that has any.
   std::map<TileIndex, std::uint64_t> per_tile() const {
     const int bits = lattice_.levels() - Brick::levels;
     std::map<TileIndex, std::uint64_t> counts;
@@ -88,12 +89,12 @@ class SeenBricks {
   }
 
   const TileLattice& lattice_;
-  std::map<std::array<int, 3>, Brick> blocks_ = {};  // by place
+  std::map<std::array<int, 3>, Brick> blocks_ = {};  // by coordinates
   std::array<int, 3> first_ = {};
   std::array<int, 3> last_ = {-1, -1, -1};
 };
 
-/// The smallest and the largest of some points, on each axis.
+/// The bounding box of some points: its minimum and maximum corner.
 std::pair<LatticePoint, LatticePoint> bounds(std::initializer_list<LatticePoint> points) {
   std::pair<LatticePoint, LatticePoint> box{*points.begin(), *points.begin()};
   for (const LatticePoint& point : points) {
@@ -119,8 +120,8 @@ void add_triangles(const PointGrid& grid, double threshold, const TileLattice& l
               });
 }
 
-/// Adds what integration may change around each reading: along its ray, from a truncation before it
-/// to as far behind as samples count.
+/// Adds the bricks that integration may change at each reading: along its ray, from one truncation
+/// in front of it to `max_behind` truncations behind it.
 void add_readings(const PointGrid& grid, const Eigen::Vector3f& eye, const TileLattice& lattice,
                   double truncation, SeenBricks& seen) {
   for (const Eigen::Vector3f& point : grid.points) {
@@ -137,7 +138,7 @@ void add_readings(const PointGrid& grid, const Eigen::Vector3f& eye, const TileL
   }
 }
 
-/// The tiles that rays pass through on their way to what they see.
+/// The tiles that rays cross between the sensor and their readings.
 std::set<TileIndex> crossed_tiles(const PointGrid& grid, const Eigen::Vector3f& eye,
                                   const TileLattice& lattice) {
   std::set<TileIndex> tiles;
@@ -163,9 +164,9 @@ std::set<TileIndex> crossed_tiles(const PointGrid& grid, const Eigen::Vector3f& 
   return tiles;
 }
 
-/// What one snapshot sees.
+/// The tiles that one snapshot observes.
 struct Seen {
-  std::set<TileIndex> tiles = {};  // some of which may turn out to have nothing in them
+  std::set<TileIndex> tiles = {};  // may include tiles without a brick
   std::uint64_t checksum = 0;
 };
 

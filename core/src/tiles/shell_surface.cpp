@@ -19,12 +19,12 @@
 namespace octurn {
 namespace {
 
-constexpr double margin_voxels = 8;  // the simplifier's below the upper end of its window
+constexpr double margin_voxels = 8;  // kept below the upper end of the simplifier's window
 constexpr std::size_t run = 256;     // bricks that are read at once
 
 using TilesByIndex = std::map<TileIndex, const StoredTile*>;
 
-/// The bricks of a tile and those of the tiles around it that touch it.
+/// The bricks of a tile, and the bricks of its neighbours that touch it.
 class TileField {
  public:
   TileField(const TileLattice& lattice, const TileIndex& tile)
@@ -83,7 +83,7 @@ class TileField {
   ShellField field_;
 };
 
-/// The field of a tile: its own bricks, and those around it.
+/// Reads the field of a tile: its own bricks, and those around it.
 TileField field_of(const TileLattice& lattice, const TilesByIndex& tiles, const TileIndex& tile) {
   TileField field(lattice, tile);
   for (int z = tile.z - 1; z <= tile.z + 1; ++z) {
@@ -98,7 +98,8 @@ TileField field_of(const TileLattice& lattice, const TilesByIndex& tiles, const 
   return field;
 }
 
-/// Voxels of a mask whose lowest corner is a cube's of the range.
+/// The number of a mask's voxels within a range of cubes: a cube belongs to the voxel at its lowest
+/// corner.
 std::uint64_t voxels_of(const VoxelMask& mask, const CubeRange& range) {
   std::uint64_t count = 0;
   for (int z = range.low.z; z < range.end.z; ++z) {
@@ -117,8 +118,8 @@ std::uint64_t voxels_of(const VoxelMask& mask, const CubeRange& range) {
   return count;
 }
 
-/// The tiles, and those in which nothing is seen but in which surfaces of tiles end: a cube lies in
-/// the tile of its lowest corner.
+/// The tiles, and their neighbours towards -X, -Y and -Z: a cube lies in the tile of its lowest
+/// corner, so that surfaces may end in an empty tile.
 std::set<TileIndex> drawn_tiles(const TilesByIndex& tiles) {
   std::set<TileIndex> drawn;
   for (const auto& [index, tile] : tiles) {
@@ -131,7 +132,8 @@ std::set<TileIndex> drawn_tiles(const TilesByIndex& tiles) {
   return drawn;
 }
 
-/// Draws the cubes of a column, and simplifies their mesh, which is open to the columns beside it.
+/// Draws the cubes of a column, and simplifies their mesh, which is open towards the columns beside
+/// it.
 void draw_column(const VoxelMask& inside, const ShellField& field, const CubeRange& cubes,
                  double target_error, const FacetSink& sink, const std::stop_token& stop) {
   if (target_error > 0) {
@@ -159,7 +161,7 @@ SurfaceCount shell_surface(std::span<const StoredTile> tiles, const FacetSink& s
   }
   const int side = lattice.leaves_per_side();
   const int width = std::min(side, shell_column_side);
-  // Vertices depend on the cubes around theirs: so one voxel more is needed below, two above.
+  // A vertex depends on the cubes around its own: one more voxel is needed below, two above.
   const CubeRange cubes{.low = {1, 1, 1}, .end = {width + 1, width + 1, side + 1}};
   SurfaceCount count;
   const auto draw = [&](const ShellField& field, const Index3& low) {

@@ -14,14 +14,14 @@
 namespace octurn {
 namespace {
 
-// With fewer snapshots each one's rays open space alone, as there is hardly another to agree with.
+// With fewer snapshots one ray is enough to mark free space, as hardly another one can confirm it.
 constexpr std::size_t few_snapshots = 4;
 
 Box moved(const Box& box, const Eigen::Vector3d& by) {
   return {.min = box.min + by, .max = box.max + by};
 }
 
-/// The snapshots in the frame of a tile, in which it is the root cube, conditioned.
+/// The conditioned snapshots in the frame of a tile, in which the tile is the root cube.
 ConditionedSource conditioned(const SnapshotSource& snapshots, const Box& clip,
                               const Eigen::Vector3d& origin, const VoxelGrid& grid) {
   return {.count = snapshots.count, .make = [=, &snapshots](std::size_t index) {
@@ -34,7 +34,7 @@ ConditionedSource conditioned(const SnapshotSource& snapshots, const Box& clip,
           }};
 }
 
-/// The bricks of a TSDF that are the tile's own: all but the border.
+/// The tile's own bricks of a TSDF: all but the border.
 TileBricks own_bricks(const CompactTsdf& tsdf) {
   TileBricks tile;
   const Index3& size = tsdf.grid().size();
@@ -67,8 +67,8 @@ void make_shell_tile(const ReconstructOptions& options, const Tile& tile,
   const ConditionedSource source =
       conditioned(snapshots, options.clip, TileLattice(options).origin(tile.index), grid);
   CompactTsdf tsdf(grid, scan_snapshots < few_snapshots ? votes_of_any_ray : votes_of_surface_ray);
-  {  // The volume goes before the tile's bricks come.
-    // What the plan counted has room; the volume is told no limit, so that threads may share it.
+  {  // Frees the volume before the tile's bricks are made.
+    // The plan's bound fits in the memory limit. A volume without a limit can be shared by threads.
     TsdfVolume volume(grid);
     integrate(volume, source, options.threads, stop);
     tsdf.add(volume, stop);

@@ -91,7 +91,7 @@ std::ifstream open_tile(const std::filesystem::path& file) {
   return stream;
 }
 
-/// @throws Error "scan-malformed"  unless the file ends with the checksum of what is before it
+/// @throws Error "scan-malformed"  unless the file ends with the checksum of all bytes before
 void expect_whole(const std::filesystem::path& file, std::ifstream& stream, std::uint64_t size) {
   std::array<std::byte, std::size_t{1} << 16U> block{};
   Checksum checksum;

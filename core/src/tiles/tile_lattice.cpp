@@ -12,8 +12,8 @@ namespace {
 
 constexpr int max_snap_bits = 7;  // 2^7 units a leaf
 
-// Bricks of the first tile, half of which lie on each side of x = 0, must end there: else tiles of
-// another side would have other bricks.
+// x = 0, the middle of the first tile, must be a boundary of bricks: otherwise tiles of another
+// side would have other bricks.
 constexpr int min_levels = Brick::levels + 1;
 
 int levels_of_tile(const ReconstructOptions& options) {

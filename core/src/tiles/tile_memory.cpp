@@ -18,13 +18,13 @@
 namespace octurn {
 namespace {
 
-// Of each thread, measured with frames of 640 x 480 samples: its snapshot, its points, and what it
-// found; for `solid` its conditioned depth as well.
+// Memory of each thread, measured with frames of 640 x 480 samples: its snapshot, points and
+// results; for `solid` its conditioned depth, too.
 constexpr std::size_t points_bytes = 8 * mebibyte;
 constexpr std::size_t conditioned_bytes = 17 * mebibyte;
 
-// The simplifier's window takes 170 bytes a triangle. It holds a layer of a column and what waits
-// of the layer below, where a brick of a floor has two sides of 128 triangles; or its usual 30,000.
+// The simplifier's window takes 170 bytes a triangle. It holds two layers of a column, in which a
+// brick of a floor has two sides of 128 triangles each, or its usual 30,000 triangles.
 constexpr std::size_t layer_brick_bytes = 2 * 256 * std::size_t{170};
 constexpr std::size_t window_bytes = 5 * mebibyte;
 
@@ -80,7 +80,7 @@ TileRoom room_for(const ReconstructOptions& options, const Tile& tile) {
   if (options.memory_limit == 0) {
     return {.threads = options.threads, .bytes = std::numeric_limits<std::size_t>::max()};
   }
-  // Each thread has octrees of its own, which are merged.
+  // Each thread has its own octrees, which are merged.
   const bool has_copies = options.method == Method::intersection;
   for (int threads = options.threads; threads > 0; --threads) {
     const auto count = static_cast<std::size_t>(threads);
@@ -112,7 +112,8 @@ void expect_surface_room(const ReconstructOptions& options, const TileIndex& til
                          std::span<const TileBrick> bricks) {
   const std::size_t surface = shell_surface_bytes(options, bricks);
   if (options.memory_limit != 0 && options.program_memory + surface > options.memory_limit) {
-    refuse(options, tile, options.program_memory + surface + surface / 4);  // as walls are bumpy
+    refuse(options, tile,
+           options.program_memory + surface + surface / 4);  // margin for bumpy walls
   }
 }
 

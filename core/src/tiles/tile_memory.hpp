@@ -9,25 +9,27 @@
 
 namespace octurn {
 
-/// What tiles take of the memory limit.
+/// The memory of tiles, for the memory limit.
 
-/// Bytes of a tile in which something is in so many bricks.
+/// The memory of a tile with so many occupied bricks, bytes.
 std::size_t tile_bytes(const ReconstructOptions& options, std::uint64_t bricks);
 
-/// Threads for which the limit leaves room, while tiles are found.
-/// @throws Error "memory-limit"  if there is none
+/// The number of threads that fit in the memory limit while tiles are planned.
+/// @throws Error "memory-limit"  if not one fits
 int plan_threads(const ReconstructOptions& options);
 
-/// The same, and the bytes that are left for tiles, while they are made.
+/// The number of threads that fit in the memory limit while tiles are made, and the bytes left for
+/// tiles.
 struct TileRoom {
   int threads = 1;
   std::size_t bytes = 0;
 };
 
-/// @param tile  that must fit. @throws Error "memory-limit"
+/// @param tile  the largest one
+/// @throws Error "memory-limit"  if it does not fit with one thread
 TileRoom room_for(const ReconstructOptions& options, const Tile& tile);
 
-/// Bytes that drawing and simplifying the surface of a tile takes, by the method `solid`.
+/// The memory for drawing and simplifying a tile's surface by the method `solid`, bytes.
 /// @param bricks  of the tile, as in `TileBricks`
 std::size_t shell_surface_bytes(const ReconstructOptions& options,
                                 std::span<const TileBrick> bricks);

@@ -13,7 +13,7 @@
 namespace octurn {
 namespace {
 
-/// @returns the options, if each is in its range
+/// Returns the options. @throws Error "bad-settings"  if one is out of range
 const ReconstructOptions& checked(const ReconstructOptions& options) {
   static_cast<void>(TileLattice(options));
   static_cast<void>(plan_threads(options));
@@ -58,7 +58,7 @@ std::unique_ptr<Reconstructor> make_tiled_reconstructor(const ReconstructOptions
   return std::make_unique<TiledReconstructor>(options, spool);
 }
 
-/// The tiles of one snapshot alone are of no use: they are found when all are known.
+/// Plans nothing yet: a plan needs all snapshots.
 void TiledReconstructor::add(const Snapshot& /*snapshot*/, const std::stop_token& stop) {
   throw_if_stopped(stop);
   ++added_;
@@ -123,7 +123,7 @@ void TiledReconstructor::preview(double /*leaf_size*/, std::uint64_t /*max_facet
 
 namespace {
 
-/// The snapshots, if they are those of a plan.
+/// The snapshots of a plan, whose checksums are verified when they are read.
 SnapshotSource planned(const SnapshotSource& snapshots, const TilePlan& plan) {
   return {.count = snapshots.count, .read = [&snapshots, &plan](std::size_t index) {
             Snapshot snapshot = snapshots.read(index);

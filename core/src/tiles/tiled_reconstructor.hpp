@@ -13,9 +13,9 @@
 
 namespace octurn {
 
-/// Reconstruction of a space, tile by tile: adding snapshots finds out what they see
-/// (`plan_tiles`); the surface is that of tiles (`tile_surface`) which are made side by side, as
-/// many as the memory limit has room for (`make_tiles`), and wait in a file without a name.
+/// Reconstructs a space tile by tile. Adding snapshots plans the tiles (`plan_tiles`). `surface`
+/// makes the tiles, as many at once as fit in the memory limit (`make_tiles`), stores them in an
+/// unnamed file, and draws their surface (`tile_surface`).
 class TiledReconstructor final : public Reconstructor {
  public:
   TiledReconstructor(const ReconstructOptions& options, std::filesystem::path spool);
@@ -25,7 +25,7 @@ class TiledReconstructor final : public Reconstructor {
                        const std::stop_token& stop = {}) override;
   SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
 
-  /// Shows nothing: there is no surface before all snapshots are there.
+  /// Streams nothing: there is no surface before all snapshots are known.
   void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
                const std::stop_token& stop = {}) const override;
 

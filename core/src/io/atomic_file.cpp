@@ -121,8 +121,8 @@ void AtomicFile::put(std::uint64_t offset, std::span<const std::byte> bytes) {
   }
 }
 
-/// Makes writes bypass the page cache, or not. @return whether that changed; a file system without
-/// direct writes refuses them
+/// Sets or clears O_DIRECT, with which writes bypass the page cache.
+/// @return whether it changed; some file systems do not support it
 bool AtomicFile::set_direct(bool direct) {
   const int flags = ::fcntl(descriptor_, F_GETFL);
   const int wanted = direct ? flags | O_DIRECT : flags & ~O_DIRECT;

@@ -6,8 +6,8 @@
 
 namespace octurn {
 
-/// Tells bytes from damaged or other ones; not from forged ones. FNV-1a (Fowler, Noll and Vo 1991),
-/// 64 bits.
+/// Detects accidental changes of bytes, but not forgery: FNV-1a (Fowler, Noll and Vo 1991), 64
+/// bits.
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {

@@ -11,7 +11,7 @@ PngSource of_snapshot(std::string_view name, std::span<const std::byte> png) {
           .hint = "The file is damaged, or not written by a scan."};
 }
 
-/// Refuses another size in pixels. @param source  must outlive what is returned
+/// Returns a function that refuses any other image size. @param source  must outlive the function
 auto expects(const PngSource& source, int width, int height) {
   return [&source, width, height](std::uint32_t w, std::uint32_t h) {
     const auto expected_width = static_cast<std::uint32_t>(width);

@@ -38,7 +38,7 @@ constexpr std::array<Word, 67> words{{
     {ErrorCode::busy, "busy"},
     {ErrorCode::interrupted, "interrupted"},
     {ErrorCode::memory_limit, "memory-limit"},
-    {ErrorCode::model_empty, "empty"},        // as the verdict on a model has it
+    {ErrorCode::model_empty, "empty"},        // as in `QualityReason::code`
     {ErrorCode::model_empty, "model-empty"},  // in job.json of version 0.1
     {ErrorCode::model_too_large, "model-too-large"},
     {ErrorCode::no_model, "no-model"},

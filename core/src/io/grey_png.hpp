@@ -28,21 +28,22 @@ struct GreyPng {
   std::string text = {};                    ///< of the keyword that was asked for; empty if none
 };
 
-/// A PNG to decode, and how it is refused if it is none.
+/// A PNG to decode, and the error for an invalid one.
 struct PngSource {
   std::string_view name = {};  ///< of the file, for messages
   std::span<const std::byte> bytes = {};
   ErrorCode malformed = ErrorCode::snapshot_malformed;
   std::string_view hint = {};
 
+  /// Throws the error. @param what  is wrong with the file
   [[noreturn]] void refuse(const std::string& what) const;
 };
 
 /// Decodes a 16-bit greyscale PNG.
 ///
 /// @param keyword      of the text to return
-/// @param expect_size  told the size in pixels before memory is taken for them; throws if it is
-///                     not the one that is allowed
+/// @param expect_size  called with width and height before pixels are allocated; throws if the size
+///                     is not allowed
 /// @throws Error "source.malformed"  if it is something else, damaged, cut short, or followed by
 ///                                   other bytes
 GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
@@ -54,7 +55,7 @@ GreyPng decode_grey16_png(const PngSource& source, std::string_view keyword,
 std::vector<std::uint8_t> decode_luminance_png(
     const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);
 
-/// Decodes the same to colours; those of a greyscale one are grey.
+/// Decodes an 8-bit PNG, greyscale or RGB, to RGB; greyscale becomes grey.
 /// @throws Error "source.malformed"  as above
 std::vector<Rgb> decode_rgb_png(
     const PngSource& source, const std::function<void(std::uint32_t, std::uint32_t)>& expect_size);

@@ -14,10 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view dark = "dark";     // the picture without a laser
+constexpr std::string_view dark = "dark";     // the picture without laser light
 constexpr std::size_t max_lasers = 8;         // more than any rig has
 constexpr double max_distortion = 100;        // of k1 and k2: wider than any lens
-constexpr double normal_tolerance = 1e-4;     // of decimals in a file
+constexpr double normal_tolerance = 1e-4;     // for rounded decimals in a file
 constexpr double max_source_distance = 0.05;  // metres of a laser from its plane
 constexpr double max_place = 100;             // metres
 
@@ -53,7 +53,7 @@ Laser laser_from(const JsonValue& value) {
   return laser;
 }
 
-/// How far the picture's farthest corner is from the principal point, on normalised coordinates.
+/// The distance of the picture's farthest corner from the principal point, normalised coordinates.
 double corner_radius(const Intrinsics& lens) {
   const double x = std::max(std::abs(lens.cx), std::abs(lens.width - 1 - lens.cx)) / lens.fx;
   const double y = std::max(std::abs(lens.cy), std::abs(lens.height - 1 - lens.cy)) / lens.fy;

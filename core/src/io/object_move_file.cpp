@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 constexpr const char* key = "last_look";
 
-/// The scan.json of a folder. @throws Error  as `read_scan`, if it is no scan's
+/// Reads the scan.json of a folder, and checks that it is a scan's. @throws Error  as `read_scan`
 json read_document(const std::filesystem::path& folder) {
   const std::string text = read_bytes(folder / "scan.json", ErrorCode::scan_missing,
                                       "Name a folder that holds a whole scan.", malformed);

@@ -11,8 +11,8 @@
 
 namespace octurn {
 
-/// Poses, boxes and what was solved, as `scan.json` has them. Reading throws the Error of a value
-/// that is wrong.
+/// The JSON of poses, boxes and solved poses in `scan.json`. Readers throw an Error that names the
+/// wrong value.
 
 Eigen::Vector3d point_from(const JsonValue& array);
 
@@ -24,7 +24,7 @@ nlohmann::json to_json(const Box& box);
 
 nlohmann::json to_json(const SolvedPose& solved);
 
-/// Where the sensor stands: as told, and as solved if that is there.
+/// The sensor's pose: as told, and as solved if it was.
 struct RigPose {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};
@@ -33,8 +33,8 @@ struct RigPose {
 RigPose calibration_from(const JsonValue& calibration);
 nlohmann::json to_json(const RigPose& calibration);
 
-/// The poses of a scan of version 2. @param scan  whose calibration and clip box those have that
-/// tell none of their own
+/// Reads the poses of a scan of version 2.
+/// @param scan  supplies calibration and clip box to poses without their own
 std::vector<ScanPose> poses_from(const JsonValue& poses, const Scan& scan);
 nlohmann::json to_json(const std::vector<ScanPose>& poses);
 

@@ -7,8 +7,8 @@ namespace {
 
 constexpr int max_iterations = 12;    // 4 are enough for a webcam's lens
 constexpr int max_steps = 256;        // along a radius
-constexpr double min_slope = 0.05;    // where a pixel of the picture covers 20 of the scene
-constexpr double max_widening = 4.0;  // of a radius, by taking the distortion out
+constexpr double min_slope = 0.05;    // below it the picture is compressed more than 20-fold
+constexpr double max_widening = 4.0;  // undistorted over distorted radius
 
 }  // namespace
 

@@ -10,19 +10,18 @@ struct RadialDistortion {
   double k1 = 0;
   double k2 = 0;
 
-  /// What the coordinates of a point at that radius are to be multiplied by, to be where it
-  /// appears.
+  /// The factor from undistorted coordinates at `radius` to distorted ones.
   double distorting_factor(double radius) const {
     return 1 + radius * radius * (k1 + radius * radius * k2);
   }
 
-  /// What the coordinates of a point that appears at `distorted_radius` are to be multiplied by, to
-  /// take the distortion out: found by Newton's method.
+  /// The factor from distorted coordinates at `distorted_radius` to undistorted ones, by Newton's
+  /// method.
   /// @param distorted_radius  at most one that passed `is_invertible_to`
   double undistorting_factor(double distorted_radius) const;
 
-  /// Whether each radius up to this one, as it appears, is that of a single point: beyond where the
-  /// distortion folds the picture over, it is not.
+  /// Whether the distortion is one-to-one up to `distorted_radius`: beyond a maximum it folds the
+  /// picture over.
   bool is_invertible_to(double distorted_radius) const;
 
  private:

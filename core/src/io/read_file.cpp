@@ -19,7 +19,7 @@ constexpr std::size_t block_bytes = std::size_t{1} << 16U;
               "Check that this program may read it, and that the disk is sound.");
 }
 
-/// An open file, closed on every way out.
+/// An open file descriptor, closed by the destructor.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file)

@@ -25,7 +25,7 @@ constexpr int max_poses = 1000;
 
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
-/// The root cube that models have by default: the clip box of a scan by laser that tells none.
+/// The default root cube of models: the clip box of a scan by laser line that has none.
 const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
 
 Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCamera>& laser) {
@@ -54,7 +54,8 @@ Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCam
   return shot;
 }
 
-/// A scan whose only pose is the object's frame has that as its own, like one of version 1.
+/// Turns a scan with a single pose, whose frame is the object's, into one without poses, as in
+/// version 1.
 void take_single_pose(Scan& scan) {
   if (scan.poses.size() == 1 &&
       scan.poses.front().object_from_platform->isApprox(Eigen::Isometry3d::Identity())) {
@@ -66,8 +67,8 @@ void take_single_pose(Scan& scan) {
   }
 }
 
-/// Reads calibration, clip box and poses. Where each snapshot tells its own pose, calibration and
-/// clip box may be missing.
+/// Reads calibration, clip box and poses. Calibration and clip box may be missing if each snapshot
+/// has its own pose.
 void read_rig(JsonObject& root, int version, Scan& scan) {
   const bool all_told = std::ranges::all_of(
       scan.shots, [](const Shot& shot) { return shot.object_from_sensor.has_value(); });
@@ -86,7 +87,7 @@ void read_rig(JsonObject& root, int version, Scan& scan) {
   }
 }
 
-/// @throws Error  that names the first solved laser that the sensor has not
+/// @throws Error  that names the first solved laser that the sensor does not have
 void expect_lasers(const Scan& scan, const std::optional<SolvedPose>& solved) {
   if (!scan.laser || !solved) {
     return;
@@ -159,7 +160,7 @@ json shot_json(const Shot& shot, const std::optional<LaserCamera>& laser) {
   return value;
 }
 
-/// A device may call itself by bytes that are no UTF-8; they are replaced.
+/// Bytes of a device's name that are not UTF-8 are replaced.
 void write_document(const std::filesystem::path& folder, const json& document) {
   write_file(folder / "scan.json",
              document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
@@ -244,7 +245,7 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
 
 void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved) {
   const std::string text = read_scan_file(folder / "scan.json");
-  parse_scan(text);  // refuses what is no scan
+  parse_scan(text);  // refuses a file that is not a scan
   json document = parse_json(text, malformed, "scan.json");
   document["calibration"]["solved"] = to_json(solved);
   write_document(folder, document);

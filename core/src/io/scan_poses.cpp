@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// The placement of a pose. @throws Error  that says its number, if it is not known yet
+/// The placement of a pose. @throws Error  with the pose's number, if it is not known yet
 const Eigen::Isometry3d& known(const Scan& scan, int pose) {
   const auto& placement = scan.poses[static_cast<std::size_t>(pose)].object_from_platform;
   if (!placement) {

@@ -11,7 +11,7 @@
 namespace octurn {
 namespace {
 
-constexpr int max_side = 8192;  // pixels; larger images than any depth sensor's are refused
+constexpr int max_side = 8192;                       // pixels; no depth sensor's image is larger
 constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }

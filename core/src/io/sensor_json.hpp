@@ -23,17 +23,18 @@ struct SensorJson {
 SensorJson sensor_from(const JsonValue& object);
 nlohmann::json to_json(const SensorJson& sensor);
 
-/// A file's name inside a folder. @throws Error  if it is absolute, leads out, or is no name
+/// Reads a file's path relative to a folder.
 /// @param must  completes "... must be"
+/// @throws Error  if it is absolute, leaves the folder, or is no file name
 std::string file_inside(const JsonValue& value, const std::string& must);
 
-/// The content of a file of a scan or a wall.
-/// @param missing  code of the error if there is none, and what is to be done about it
-/// @param malformed  code of the error if it is too large
+/// Reads a file of a scan or a wall.
+/// @param missing, hint  code and hint of the error if there is no such file
+/// @param malformed      code of the error if it is too large
 std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std::string_view hint,
                        ErrorCode malformed);
 
-/// The content of a file of a scan folder. @throws Error "scan-missing", "scan-malformed"
+/// Reads a file of a scan folder. @throws Error "scan-missing", "scan-malformed"
 std::string read_scan_file(const std::filesystem::path& file);
 
 }  // namespace octurn

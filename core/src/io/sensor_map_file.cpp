@@ -21,11 +21,11 @@ constexpr const char* hint = "Make it again with `octurn calibrate --wall`.";
 
 constexpr std::uint32_t max_side = 4096;             // pixels
 constexpr std::size_t max_file_bytes = 128U << 20U;  // twice two uncompressed images of that size
-constexpr double step = 1e-5;                        // 1/m, of the samples
-constexpr int zero = 1 << 15;                        // the sample of no error
+constexpr double step = 1e-5;                        // 1/m, a unit of the samples
+constexpr int zero = 1 << 15;                        // the sample of error 0
 constexpr double max_inverse_depth = 100;            // 1/m
 
-/// The samples of a plane of the map.
+/// Appends the samples of a plane of the map.
 void append(std::vector<std::uint16_t>& samples, const std::vector<float>& plane) {
   for (const float error : plane) {
     const double rounded = std::round(static_cast<double>(error) / step) + zero;
@@ -53,7 +53,7 @@ json to_json(const SensorMap& map) {
           {"before", map.before}, {"after", map.after}};
 }
 
-/// What the text says; the planes are still empty, and `far_inverse_depth` is 0 if there is one.
+/// Reads the text of a map. The planes stay empty; `far_inverse_depth` is 0 if there is only one.
 SensorMap from_json(const json& document) {
   JsonObject keys(document, malformed, "");
   if (const JsonValue version = keys.at("version"); version.number() != 1) {

@@ -20,7 +20,8 @@ namespace {
               full ? "Delete scans that are no longer needed, or use a larger disk." : "");
 }
 
-/// Not every file system makes files without a name: there it loses its name at once.
+/// Opens an unnamed file. Where the file system does not support O_TMPFILE, a named one is unlinked
+/// at once.
 int open_unnamed(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) {

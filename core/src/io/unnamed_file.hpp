@@ -7,11 +7,11 @@
 
 namespace octurn {
 
-/// A file without a name, for what does not fit in memory: it is gone when the process ends,
-/// however that happens. Several threads may read at once.
+/// A temporary file without a name, for data that does not fit in memory. It disappears when the
+/// process ends, even by a crash. Several threads may read at once.
 class UnnamedFile {
  public:
-  /// @param folder  on whose disk it lies. @throws Error "write-failed"
+  /// @param folder  on the disk that is to hold the file. @throws Error "disk-full", "write-failed"
   explicit UnnamedFile(const std::filesystem::path& folder);
   ~UnnamedFile();
   UnnamedFile(const UnnamedFile&) = delete;
@@ -22,7 +22,7 @@ class UnnamedFile {
   /// @throws Error "disk-full", "write-failed"
   void append(std::span<const std::byte> bytes);
 
-  /// Reads what was appended. @throws Error "read-failed"
+  /// Reads appended bytes. @throws Error "read-failed"
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:

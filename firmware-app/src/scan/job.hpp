@@ -20,7 +20,7 @@ namespace octurn {
 
 enum class JobState {
   running,
-  paused,  ///< a device failed for too long
+  paused,  ///< by a person, or because a device failed for too long
   finished,
   cancelled,
   failed,
@@ -39,34 +39,34 @@ enum class Phase {
   done,
 };
 
-/// Whether a scan in that state waits to go on where it stopped.
+/// Whether a scan in that state waits to be resumed.
 bool is_resumable(JobState state);
 
 std::string_view to_string(JobState state);
 std::string_view to_string(Phase phase);
 
-/// The state or phase of that name, if there is one.
+/// The state or phase of that name; nullopt for other names.
 std::optional<JobState> job_state_named(std::string_view name);
 std::optional<Phase> phase_named(std::string_view name);
 
-/// The failure of a scan during which the daemon ended.
+/// The failure of a scan that was running when the daemon ended.
 Failure interruption();
 
-/// A finished model, and how long it took once the last snapshot was stored.
+/// A finished model. `build_time` counts from the last stored snapshot.
 struct Model {
   ModelReport report = {};
   std::chrono::duration<double> build_time = {};
-  std::optional<Quality> quality = {};  ///< none of a model that an earlier version has made
+  std::optional<Quality> quality = {};  ///< nullopt: made by an earlier version
 };
 
 /// The sensor's pose as solved from a scan's own snapshots.
 struct ScanCalibration {
   bool accepted = false;
-  bool confirms_told = false;             ///< the told pose is right, and stays
+  bool confirms_told = false;             ///< the configured pose is right, and is kept
   std::string reason = {};                ///< why the solved pose was refused, or empty
   std::optional<SolvedPose> solved = {};  ///< if accepted
   std::vector<CalibrationFinding> findings = {};
-  int rebuilt = 0;  ///< snapshots added again so far
+  int rebuilt = 0;  ///< snapshots added again so far, with the solved pose
 };
 
 ScanCalibration to_scan_calibration(const CalibrationReport& report);
@@ -78,23 +78,23 @@ struct Build {
   BuildSettings settings = {};
   std::optional<ScanCalibration> calibration = {};  ///< if the pose was solved for it
   Model model = {};
-  std::vector<std::string> poses = {};  ///< ids of the scans of other poses that are in it
-  int replaced = 0;  ///< of a build for another pose: the build that was chosen before it
+  std::vector<std::string> poses = {};  ///< ids of the scans of other poses that it merges
+  int replaced = 0;  ///< if it merges poses: number of the build chosen before it
 };
 
-/// Result of registering a turn with those before it.
+/// Result of registering a turn to the earlier ones.
 struct PoseRegistration {
   bool accepted = false;
   std::string reason = {};   ///< why it was refused, for people; empty if accepted
   RegisteredPose pose = {};  ///< of the turn, if accepted
-  std::vector<RegistrationCandidate> candidates = {};  ///< to choose from, the best first
-  /// Index of the candidate that was refined; nothing: refined from pairs of points, or refused.
+  std::vector<RegistrationCandidate> candidates = {};  ///< for a person to choose from, best first
+  /// Index of the candidate that was refined; nullopt: refined from pairs of points, or refused.
   std::optional<std::size_t> candidate = {};
 };
 
 /// Links a scan to an earlier scan of the same object in another pose.
 struct PoseOf {
-  std::string scan = {};                              ///< id of the other one
+  std::string scan = {};                              ///< id of the earlier scan
   std::optional<PoseRegistration> registration = {};  ///< once all snapshots are taken
 };
 
@@ -102,17 +102,17 @@ struct PoseOf {
 struct JobTimes {
   std::string created = {};  ///< UTC, as in ISO 8601
   std::chrono::duration<double> elapsed = {};
-  std::optional<std::chrono::duration<double>> left = {};  ///< expected, from what happened so far
-  /// Of a running scan at a stop where a device fails: how long it still tries that stop again.
+  std::optional<std::chrono::duration<double>> left = {};  ///< estimated remaining time
+  /// While a device fails at a stop of a running scan: time until the scan pauses.
   std::optional<std::chrono::duration<double>> until_pause = {};
-  int late_pulses = 0;  ///< of the motor, which slowed the turn
+  int late_pulses = 0;  ///< motor pulses that came late, and slowed the turn
 };
 
 /// The builds of a scan.
 struct JobBuilds {
   std::vector<Build> all = {};  ///< in order of their numbers
   int chosen = 0;               ///< number of the build whose model is shown; 0: the scan's own
-  bool have_colours = false;    ///< if asked for: the scan's pictures do, of a scan by laser line
+  bool have_colours = false;    ///< models can get colours: laser-line pictures have them
 };
 
 /// A person's name and notes for a scan; empty if there are none.
@@ -131,21 +131,21 @@ struct Job {
   JobTimes times = {};
   ScanSettings settings = {};
   std::optional<Failure> failure = {};  ///< of a running scan: the fault that is being retried
-  std::optional<ScanCalibration> calibration = {};  ///< from the last stop on, unless told
+  std::optional<ScanCalibration> calibration = {};  ///< after the last stop, if solved
   std::optional<Model> model = {};                  ///< made by the scan itself
   JobBuilds builds = {};
   std::optional<PoseOf> pose_of = {};  ///< of a scan of another pose
 };
 
-/// The build of that number; null if there is none.
+/// Returns the build of that number; null if there is none.
 const Build* find_build(const Job& job, int number);
 
-/// The model of the chosen build; null if there is none.
+/// Returns the chosen build's model, else the scan's own; null if there is none.
 const Model* chosen_model(const Job& job);
 
 /// Marks a scan as interrupted, because the program ended or its outcome could not be saved: it can
 /// be resumed.
-/// @param snapshots  number of stored ones
+/// @param snapshots  number of stored snapshots
 Job to_interrupted(Job job, int snapshots);
 
 }  // namespace octurn

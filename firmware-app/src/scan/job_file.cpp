@@ -20,7 +20,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double most = std::numeric_limits<double>::max();
 
-/// @param named  finds the value of a name
+/// @param named  maps a name to its value
 template <typename Value>
 Value parse_name(const JsonValue& name, std::optional<Value> (*named)(std::string_view)) {
   const std::optional<Value> value = named(name.text());
@@ -43,7 +43,7 @@ std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_pose_of(*object));
 }
 
-/// Of a key that earlier versions did not write.
+/// False without the key, which earlier versions did not write.
 bool flag_in(const std::optional<JsonValue>& flag) { return flag && flag->flag(); }
 
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {

@@ -6,11 +6,11 @@
 
 namespace octurn {
 
-/// Rounds to thousandths, as JSON has seconds, millimetres and shares.
+/// Rounds to three decimals, the precision of seconds, millimetres and fractions in JSON.
 double to_thousandths(double value);
 
-/// The number of an optional key, from 0 to `max`; 0 if it is missing or null.
-/// @throws Error  if it is of another kind or out of range
+/// Reads the number of an optional key, from 0 to `max`; 0 if it is missing or null.
+/// @throws Error  if it is not a number, or out of range
 double number_or_zero(JsonObject& keys, std::string_view key, double max);
 
 }  // namespace octurn

@@ -10,17 +10,19 @@
 
 namespace octurn {
 
-/// A cache of decoded depth images, for those that are read twice. Keeps the rectangle with
-/// readings of as many images as fit.
+/// A cache of decoded depth images that are read twice. It stores each image cropped to the
+/// bounding box of its readings, until its memory is full.
 class KeptFrames {
  public:
-  /// @param count  of the images. @param max_bytes  that they may take
+  /// @param count      number of images
+  /// @param max_bytes  maximum size of the stored images
   KeptFrames(std::size_t count, std::size_t max_bytes);
 
-  /// Keeps an image if there is room. Called by several threads at once for different ones.
+  /// Stores an image if there is room. Threads may store images of different indices at the same
+  /// time.
   void keep(std::size_t index, const DepthFrame& frame);
 
-  /// The image as it was; nothing if it is not kept.
+  /// Returns the whole image; nullopt if it is not stored.
   std::optional<DepthFrame> find(std::size_t index) const;
 
  private:

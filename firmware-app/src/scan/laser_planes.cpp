@@ -9,7 +9,7 @@ namespace octurn {
 namespace {
 
 constexpr double max_place = 10;           // metres, as in settings
-constexpr double normal_tolerance = 1e-4;  // of decimals in a file
+constexpr double normal_tolerance = 1e-4;  // rounding of decimals in a file
 
 }  // namespace
 

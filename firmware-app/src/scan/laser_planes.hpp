@@ -8,10 +8,10 @@
 
 namespace octurn {
 
-/// Names and planes of lasers, as files, `--json` and the API have them.
+/// JSON of the lasers' names and planes, for files, `--json` and the API.
 nlohmann::json planes_to_json(const std::vector<Laser>& lasers);
 
-/// The lasers of such JSON, without their sources. @throws Error  of the value's code
+/// Parses that JSON to lasers without `source`. @throws Error  with the code of `list`
 std::vector<Laser> to_planes(const JsonValue& list);
 
 }  // namespace octurn

@@ -12,14 +12,15 @@
 
 namespace octurn {
 
-/// Turns on to the angle of the first stop, and takes one more depth image there, which is in no
-/// model. A device that fails is logged, and does not fail the scan.
-/// @return nothing if a device failed, or stopped first
+/// Takes the last look: turns the platform on to the first stop's angle and takes one more depth
+/// image there. It shows whether the object moved during the turn, and is not part of the model. A
+/// device's failure is logged, and does not fail the scan.
+/// @return nullopt if a device failed, or stopped first
 std::optional<DepthFrame> look_again(Rig& rig, const ScanSettings& settings,
                                      const std::stop_token& stop, const ScanObserver& observer);
 
-/// Measures how the object moved from the first snapshot of a stored scan to that image, and writes
-/// the result into its scan.json. An error is logged.
+/// Measures the object's motion between the first snapshot of a stored scan and that image, and
+/// writes the result into its scan.json. An error is logged.
 void keep_move(const std::filesystem::path& folder, const DepthFrame& again);
 
 /// Adds the finding of a stored scan's last look, if it has one.

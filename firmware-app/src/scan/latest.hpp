@@ -9,8 +9,8 @@
 
 namespace octurn {
 
-/// The latest value of something, published by the worker to any number of readers. A reader's
-/// snapshot of it does not change when the value is replaced.
+/// The latest value of a published state, with any number of readers. A reader gets an immutable
+/// value that stays valid when the state is replaced. Thread-safe.
 template <typename Value>
 class Latest {
  public:
@@ -51,7 +51,7 @@ class Latest {
   }
 
  private:
-  mutable std::mutex mutex_;  // guards value_, the pointer: what it points to never changes
+  mutable std::mutex mutex_;  // guards the pointer value_: the pointee never changes
   mutable std::condition_variable_any changed_;
   std::shared_ptr<const Value> value_ = std::make_shared<const Value>();
 };

@@ -121,7 +121,7 @@ CameraLens lens_in_force(const fs::path& data, std::string_view serial, const Ca
     return told;
   }
   CameraLens lens = kept->lens;
-  lens.intrinsics.depth_unit = told.intrinsics.depth_unit;  // which a camera has not
+  lens.intrinsics.depth_unit = told.intrinsics.depth_unit;  // a camera's lens has none
   return lens;
 }
 

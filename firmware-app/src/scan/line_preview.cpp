@@ -18,7 +18,7 @@ ReconstructOptions coarse(ReconstructOptions options) {
   options.solid.truncation =
       std::max(options.solid.truncation, truncation_leaves * options.leaf_size);
   options.threads = 1;
-  options.memory_limit = 0;  // it takes little, and the model's memory is free until the turn ends
+  options.memory_limit = 0;  // little is used, and the model's is free until the turn ends
   return options;
 }
 
@@ -43,7 +43,7 @@ void LinePreview::add(const Scan& scan) {
     try {
       add_lines(scan, first, end);
     } catch (const Stopped&) {
-    } catch (const Error& error) {  // of a picture that cannot be read: the model leaves it out
+    } catch (const Error& error) {  // a picture is unreadable: the model leaves it out, too
       log::warning("scan", std::string("no preview: ") + error.what());
       has_failed_ = true;
     }
@@ -57,7 +57,7 @@ void LinePreview::wait() const {
   }
 }
 
-/// Each line with those a step before and after it.
+/// Adds each line with its neighbours a step before and after it, where its surface ends.
 void LinePreview::add_lines(const Scan& scan, std::size_t first, std::size_t end) {
   if (!reconstruction_) {
     reconstruction_ = make_reconstructor(options_);

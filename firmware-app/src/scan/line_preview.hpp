@@ -44,13 +44,13 @@ class LinePreview {
   void add_lines(const Scan& scan, std::size_t first, std::size_t end);
 
   const std::filesystem::path& folder_;
-  std::size_t step_;  // from a stop whose line is added to the next
+  std::size_t step_;  // stops between two added lines
   std::stop_token stop_;
   const ScanObserver& observer_;
   ReconstructOptions options_;
-  std::unique_ptr<Reconstructor> reconstruction_ = {};  // once there is something to add
+  std::unique_ptr<Reconstructor> reconstruction_ = {};  // created with the first line
   std::atomic<bool> has_failed_ = false;
-  std::size_t next_ = 1;           // in steps: the line to be added
+  std::size_t next_ = 1;           // index of the next line to add, in steps
   std::future<void> adding_ = {};  // the last member: it ends before what it uses
 };
 

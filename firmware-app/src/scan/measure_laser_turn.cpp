@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scan folder that is gone when this ends; one that a killed program has left is removed first.
+/// A temporary scan folder. The destructor removes it; the constructor removes one that a killed
+/// process left.
 class FolderOfTurn {
  public:
   explicit FolderOfTurn(const fs::path& data) : path_(data / "calibration-turn") { remove(); }
@@ -28,7 +29,7 @@ class FolderOfTurn {
 
  private:
   void remove() {
-    std::error_code ignored;  // writing into it says what is wrong
+    std::error_code ignored;  // writing into it reports the problem
     fs::remove_all(path_, ignored);
   }
 

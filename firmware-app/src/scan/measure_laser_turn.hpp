@@ -8,12 +8,12 @@
 
 namespace octurn {
 
-/// Takes the pictures of one turn with a camera and lasers, and solves its pose and their planes
-/// from them. Nothing is stored.
+/// Takes the pictures of one turn with a camera and lasers, and solves the camera's pose and the
+/// lasers' planes from them. Nothing is stored.
 ///
-/// @param settings  `snapshots` are the stops
-/// @param data      the data folder: the pictures are in a folder there, until this returns
-/// @return nothing if stopped first
+/// @param settings  `snapshots` is the number of stops
+/// @param data      the data folder, which holds the pictures until this returns
+/// @return nullopt if stopped first
 /// @throws Error "sensor-...", "turntable-...", "disk-full", "write-failed"
 std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings,
                                              const std::filesystem::path& data, int threads,

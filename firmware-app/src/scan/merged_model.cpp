@@ -13,7 +13,8 @@ bool has_pose(const Build& build, const std::string& pose) {
   return std::ranges::find(build.poses, pose) != build.poses.end();
 }
 
-/// Keeps a build of all poses in place of those that have the last one otherwise.
+/// Stores and chooses a build of all poses, and removes the builds with the last pose's earlier
+/// registration.
 void replace_builds(ScanStore& store, const Job& first, Build build, const std::string& pose) {
   const auto& all = first.builds.all;
   const auto before =

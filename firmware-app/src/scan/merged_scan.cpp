@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_kept_bytes = 16'000'000;  // of depth images, of all turns
+constexpr std::size_t max_kept_bytes = 16'000'000;  // cached depth images of all turns
 
-// Metres, around what a turn saw in its clip box. Boxes that lie askew to each other span much
-// empty space, which would cost more than the object. Lower readings may be the platform's.
+// Metres, around a turn's points in its clip box: without shrinking, boxes that are rotated against
+// each other span much empty space, which costs more than the object.
 constexpr double clip_margin = 0.020;
-constexpr double min_height = 0.004;
+constexpr double min_height = 0.004;  // metres: lower readings may be the platform's
 
-/// One pose of a scan, as a scan of one turn.
+/// Extracts one pose of a scan, as a scan of one turn.
 Scan to_turn(const Scan& scan, int number) {
   const ScanPose& pose = scan.poses[static_cast<std::size_t>(number)];
   Scan turn = scan;
@@ -70,7 +70,7 @@ void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
   }
 }
 
-/// A file under another name: a link to the same bytes, or a copy.
+/// Makes a hard link to a file; copies it where that fails.
 void link_or_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_hard_link(fs::canonical(from), to, error);
@@ -79,8 +79,8 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// What the object's readings of one stop span that lie in a turn's clip box: metres, platform
-/// frame at angle 0. Every other row and column is enough.
+/// Bounding box of one stop's object points in a turn's clip box: metres, platform frame at angle
+/// 0. Every other row and column is enough.
 Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Intrinsics& lens,
                               const Eigen::Isometry3d& pose, const Box& clip) {
   Eigen::AlignedBox3d extent;
@@ -99,7 +99,7 @@ Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Intrinsics& lens,
   return extent;
 }
 
-/// A turn's clip box without the space at its sides and its top where nothing was seen.
+/// Shrinks the sides and the top of a turn's clip box to the points in it, plus a margin.
 Box drawn_in(const StoredTurn& turn) {
   const Box& clip = turn.scan.clip;
   Eigen::AlignedBox3d extent;
@@ -116,7 +116,7 @@ Box drawn_in(const StoredTurn& turn) {
   return box;
 }
 
-/// Files what a stop saw into a folder, as the stop of that number.
+/// Links a stop's images into a folder, as the stop of index `number`.
 Shot filed(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int number) {
   Shot there = shot;
   if (turn.scan.laser) {
@@ -131,7 +131,8 @@ Shot filed(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int
   return there;
 }
 
-/// What a turn's models are made with, where that is not what the merged scan was told.
+/// Returns a turn's solved pose. Planes that differ from the merged scan's count as solved, too: a
+/// scan has one set of configured planes.
 std::optional<SolvedPose> solved_in(const Scan& merged, const Scan& turn) {
   const auto same_plane = [](const Laser& a, const Laser& b) {
     return a.normal == b.normal && a.distance == b.distance;
@@ -144,7 +145,7 @@ std::optional<SolvedPose> solved_in(const Scan& merged, const Scan& turn) {
                     .lasers = turn.laser->lasers};
 }
 
-/// Files the snapshots of all turns into a folder. @return the scan that they make
+/// Links the snapshots of all turns into a folder. @return the merged scan
 Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
             const Registration& registration) {
   Scan merged = turns.front().scan;
@@ -167,8 +168,8 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
   return merged;
 }
 
-/// Turns that were told the same pose are of one rig, if what they solved agrees: then all get its
-/// mean, which is nearer to the truth than each. Turns that are placed already stay as they are.
+/// Turns with the same configured pose come from one rig if their solved poses agree. Then all get
+/// the mean, which is more accurate than each. Does nothing if a turn is registered already.
 void share_rig(std::vector<StoredTurn>& turns) {
   std::vector<SolvedPose> solved;
   const Eigen::Isometry3d& told = turns.front().scan.platform_from_sensor;
@@ -187,7 +188,7 @@ void share_rig(std::vector<StoredTurn>& turns) {
   }
 }
 
-/// A turn of a sensor that measures depth.
+/// Makes the registration input of a depth sensor's turn.
 RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop) {
   RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
                        .platform_from_sensor = model_pose(turn.scan),
@@ -230,7 +231,7 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
       turn.scan.solved = solution.solved;
     }
   }
-  if (!turns.empty() && !turns.front().scan.laser) {  // a plane goes with the pose of its turn
+  if (!turns.empty() && !turns.front().scan.laser) {  // planes belong to their turn's pose
     share_rig(turns);
   }
 }

@@ -16,35 +16,36 @@ namespace octurn {
 struct StoredTurn {
   std::filesystem::path folder = {};
   Scan scan = {};  ///< of this turn alone: its shots, rig and clip box, and no poses
-  /// The object's pose, if the folder has it.
+  /// The object's pose, if the folder's scan has it.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
-  /// A person's estimate of that pose, to be refined.
+  /// A person's estimate of that pose, which registration refines.
   std::optional<Eigen::Isometry3d> told_object_from_platform = {};
-  /// Depth images that were read already.
+  /// Cached depth images.
   std::shared_ptr<const KeptFrames> kept = {};
-  /// Points inside the clip box, set by registration: metres, platform frame at angle 0.
+  /// Bounding box of each stop's points inside the clip box, set by registration: metres, platform
+  /// frame at angle 0.
   std::vector<Eigen::AlignedBox3d> extents = {};
 };
 
-/// The turns of scan folders, in their order. Only the first folder's object poses are known: each
-/// folder has an object's frame of its own.
+/// Reads the turns of scan folders, in their order. Object poses are read from the first folder
+/// only: each folder has its own object frame.
 /// @throws Error "scan-malformed"  if a scan has no turns, or another sensor than the first; others
 ///                                 as `read_scan`
 std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& folders);
 
-/// Solves the sensor's pose for each turn without a solved one, from its snapshots. The told pose
-/// stays if the solution is refused or confirms it. Turns of one rig share the mean of their solved
-/// poses.
+/// Solves the sensor's pose for each turn without a solved one, from its snapshots. The configured
+/// pose stays if the solution is refused or confirms it. Turns of one rig share the mean of their
+/// solved poses.
 void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
 
-/// Registers the turns, and keeps some of their points. @throws Error, Stopped  as `read_snapshot`
-/// and `register_turns`
+/// Registers the turns, and sets their `extents`. @throws Error, Stopped  as `read_snapshot` and
+/// `register_turns`
 Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop);
 
-/// Writes one scan folder of several poses, whole or not at all: its snapshots are hard links to
-/// those of the turns, or copies where the file system has no such links. The clip box of each pose
-/// is drawn in to what was seen inside it.
+/// Writes one scan folder of several poses, atomically. Its snapshots are hard links to those of
+/// the turns, or copies where the file system has no hard links. The clip box of each pose is
+/// shrunk to the points inside it.
 ///
 /// @param folder  must not exist, or be empty
 /// @throws Error "disk-full", "write-failed"

@@ -7,10 +7,10 @@
 
 namespace octurn {
 
-/// A model as the API, `job.json` and `build.json` have it.
+/// JSON of a model, for the API, `job.json` and `build.json`.
 nlohmann::json to_json(const Model& model);
 
-/// The model of such JSON, also of an earlier version. @throws Error  of the value's code
+/// Parses that JSON, also of earlier versions. @throws Error  with the code of `object`
 Model to_model(const JsonValue& object);
 
 }  // namespace octurn

@@ -17,7 +17,7 @@ void ModelPipe::set_length(std::uint64_t bytes) {
 
 void ModelPipe::write(std::span<const std::byte> bytes) {
   if (bytes.empty()) {
-    return;  // an empty block would be the end
+    return;  // an empty block marks the end
   }
   {
     std::unique_lock lock(mutex_);

@@ -24,7 +24,7 @@ class ModelPipe {
 
   std::stop_source stop() const { return stop_; }
 
-  // The end that makes the model.
+  // For the producer.
 
   void set_length(std::uint64_t bytes);
   /// Waits for room. @throws Stopped  if stopped
@@ -34,16 +34,16 @@ class ModelPipe {
   /// Ends the model with a failure.
   void fail(Failure reason);
 
-  // The end that sends it.
+  // For the consumer.
 
   /// Waits for the length. @throws Error "busy" if stopped before, or the reason of `fail`
   std::uint64_t length();
-  /// Waits for bytes. @return none at the end, or if stopped or failed
+  /// Waits for bytes. @return empty at the end, or if stopped or failed
   std::vector<std::byte> read();
 
  private:
   std::stop_source stop_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable_any changed_;
   std::optional<std::uint64_t> length_;
   std::deque<std::vector<std::byte>> blocks_;
@@ -52,8 +52,8 @@ class ModelPipe {
   std::optional<Failure> failure_;
 };
 
-/// A model that is made while it is sent: the sending end of a pipe. Its destructor stops the
-/// model.
+/// A model that is made while it is sent: the consumer of a pipe. Its destructor stops the
+/// producer.
 class ModelStream {
  public:
   /// Waits until the model's size is known.
@@ -66,10 +66,11 @@ class ModelStream {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Has a stop request if the model will not be completed, as when a scan starts.
+  /// Stop is requested if the model will not be completed, as when a scan starts.
   std::stop_token stop() const { return pipe_->stop().get_token(); }
 
-  /// Passes the STL to `sink`, once. Ends early if `sink` returns false or the model is stopped.
+  /// Passes the bytes of the STL to `sink`; call it once. Ends early if `sink` returns false or the
+  /// model is stopped.
   void send(const std::function<bool(std::span<const std::byte>)>& sink);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace octurn {
 
-/// Reads a stored scan and applies a build's settings to it, before its pose is solved.
+/// Reads a stored scan and applies a build's settings to it. The sensor's pose is not solved yet.
 /// @throws Error "bad-settings"  if the settings have a pose, and the scan has several; and as
 ///                               `read_scan`
 Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings);
@@ -19,7 +19,7 @@ struct ModelScan {
   Scan scan = {};
 };
 
-/// The scan of a model, with the poses of sensor and object that the model was made with.
+/// Returns the scan of a model, with the poses of sensor and object that the model was made with.
 /// @param build  number of the model's build; 0: the scan's own model
 /// @throws Error "no-model"  if there is no such build; and as `read_scan`
 ModelScan scan_of_model(const ScanStore& store, const Job& job, int build);

@@ -8,10 +8,10 @@
 
 namespace octurn {
 
-/// The values of a message as the API and `job.json` have them: an object of numbers and texts.
+/// JSON of a message's values, for the API and `job.json`: an object of numbers and strings.
 nlohmann::json to_json(const Parameters& parameters);
 
-/// The values of such JSON; none of nothing. @throws Error  of the value's code
+/// Parses that JSON; nullopt gives no values. @throws Error  with the code of `object`
 Parameters to_parameters(const std::optional<JsonValue>& object);
 
 }  // namespace octurn

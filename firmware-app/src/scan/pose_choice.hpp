@@ -15,14 +15,14 @@ struct PoseChoice {
   std::string pose = {};  ///< id of the scan
   /// Platform frame at angle 0 to the object's frame, metres: the start of the refinement.
   Eigen::Isometry3d object_from_platform = Eigen::Isometry3d::Identity();
-  std::optional<std::size_t> candidate = {};  ///< of its registration; nothing: from pairs
+  std::optional<std::size_t> candidate = {};  ///< index; nullopt: from pairs of points
 };
 
-/// The choice that a request's body makes: `{"candidate": 1}`, or `{"pairs_mm": [[[x, y, z],
-/// [x, y, z]], ...]}` with at least three pairs of a point in the object's frame and the same in
-/// the platform frame of the pose.
+/// Parses a request's body: `{"candidate": 1}`, or `{"pairs_mm": [[[x, y, z], [x, y, z]], ...]}`
+/// with at least three pairs of a point in the object's frame and the same point in the pose's
+/// platform frame.
 /// @param pose  the scan of that pose
-/// @throws Error "bad-settings"  also if there is no such candidate, or the points lie on a line
+/// @throws Error "bad-settings"  also if there is no such candidate, or the points are collinear
 PoseChoice pose_choice_from(const nlohmann::json& body, const Job& pose);
 
 }  // namespace octurn

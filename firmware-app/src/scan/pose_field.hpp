@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// Access to a pose, metres; it must outlive this.
+/// Returns access to a pose, metres; `value` must outlive it.
 Access pose(Eigen::Isometry3d& value);
 
 }  // namespace octurn

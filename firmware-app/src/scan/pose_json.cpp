@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr double max_coordinate = 10;  // metres; no depth sensor of this kind sees farther
 
-/// @return nothing if they are no rows of numbers in their range
+/// @return nullopt unless these are four rows of four numbers in range
 std::optional<Eigen::Matrix4d> matrix_from(const json& rows) {
   const auto in_range = [](const json& value) {
     return value.is_number() && std::abs(value.get<double>()) <= max_coordinate;

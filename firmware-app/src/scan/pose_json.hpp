@@ -7,11 +7,11 @@
 
 namespace octurn {
 
-/// A pose as JSON has it everywhere: four rows of four numbers, metres.
+/// JSON of a pose, the same in all files and the API: four rows of four numbers, metres.
 nlohmann::json to_rows(const Eigen::Isometry3d& pose);
 
-/// The pose of such rows.
-/// @throws Error  of the value's code, if they are no rotation and translation within 10 m
+/// Parses such rows.
+/// @throws Error  with the code of `rows`, if they are not a rotation and a translation within 10 m
 Eigen::Isometry3d to_pose(const JsonValue& rows);
 
 }  // namespace octurn

@@ -19,7 +19,7 @@ RegistrationCandidate to_candidate(const JsonValue& object) {
           .contradiction = keys.at("contradiction").number(0, 2)};
 }
 
-/// Candidates and choice, which an earlier version did not keep.
+/// Reads the candidates and the chosen one, which earlier versions did not write.
 void read_candidates(JsonObject& keys, PoseRegistration& registration) {
   if (const auto candidates = keys.value("candidates")) {
     for (const JsonValue& candidate : candidates->elements()) {

@@ -7,16 +7,18 @@
 
 namespace octurn {
 
-/// A pose to choose, as the API and `job.json` have it: millimetres.
+/// JSON of a registration's candidate, for the API and `job.json`: its pose in metres, its residual
+/// in millimetres.
 nlohmann::json to_json(const RegistrationCandidate& candidate);
 
-/// How a pose was registered, as the API and `job.json` have it: millimetres and degrees.
+/// JSON of a registration, for the API and `job.json`: poses in metres, residual and sigmas in
+/// millimetres and degrees.
 nlohmann::json to_json(const PoseRegistration& registration);
 
-/// The link of a scan of another pose, as in `job.json` and the API.
+/// JSON of the link from another pose's scan to the first scan, for the API and `job.json`.
 nlohmann::json to_json(const PoseOf& pose_of);
 
-/// The same of a `job.json`. @throws Error  of the value's code
+/// Parses that JSON. @throws Error  with the code of `object`
 PoseOf to_pose_of(const JsonValue& object);
 
 }  // namespace octurn

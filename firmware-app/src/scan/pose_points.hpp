@@ -7,8 +7,8 @@
 
 namespace octurn {
 
-/// A file in the folder of a scan of another pose, for display: some points of this scan, and of
-/// the earlier ones.
+/// A file for display in the folder of another pose's scan: samples of the points of this scan and
+/// of the earlier ones.
 inline constexpr const char* pose_points_file = "pose-points.json";
 
 /// Writes `{"before_mm": [[x, y, z], ...], "pose_mm": [...]}`: points of all turns except the last,

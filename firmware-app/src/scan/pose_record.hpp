@@ -16,7 +16,7 @@ namespace octurn {
 enum class PoseOrigin {
   drawing,   ///< the default: the rig as drawn
   settings,  ///< octurn.json
-  page,      ///< a person, by hand
+  page,      ///< entered by a person on the page
   turn,      ///< solved from a calibration turn
   scan,      ///< solved from a scan
 };
@@ -24,14 +24,14 @@ enum class PoseOrigin {
 /// The origin's name in files: "default", "settings", "page", "turn", "scan".
 std::string_view to_string(PoseOrigin origin);
 
-/// Uncertainty of a solved pose, and its distance from the one before.
+/// Uncertainty of a solved pose, and its distance from the configured one. See `CalibrationReport`.
 struct PoseFigures {
-  double shift = 0;            ///< metres
-  double tilt = 0;             ///< radians
+  double shift = 0;            ///< metres, of the axis on the platform
+  double tilt = 0;             ///< radians, of the axis
   double position_sigma = 0;   ///< metres
   double direction_sigma = 0;  ///< radians
-  double before = 0;           ///< metres: as in `CalibrationReport`
-  double after = 0;            ///< metres: the same
+  double before = 0;           ///< metres: residual with the configured pose
+  double after = 0;            ///< metres: residual with the solved pose
 };
 
 /// A pose of the sensor that is in force, or was.
@@ -39,24 +39,25 @@ struct PoseRecord {
   /// Optical frame to platform frame, metres of scaled depths.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   PoseOrigin origin = PoseOrigin::drawing;
-  std::string at = {};                      ///< UTC, as in ISO 8601; empty: from the beginning
-  std::optional<PoseFigures> figures = {};  ///< of a pose that was solved
-  double scale = 1;                         ///< of the sensor's depths
+  std::string at = {};                      ///< UTC, as in ISO 8601; empty: never changed
+  std::optional<PoseFigures> figures = {};  ///< of a solved pose
+  double scale = 1;                         ///< factor of the sensor's depths
   std::string camera = {};  ///< serial number of a camera with lasers; empty: of a depth sensor
   std::vector<Laser> lasers = {};  ///< their planes with this pose; empty: those of the settings
 };
 
-/// The record of a pose that is accepted now. @param scale  of the depths that it was solved from
+/// Makes the record of an accepted pose, with the current time.
+/// @param scale  factor of the depths from which the pose was solved
 PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, double scale);
 
-/// The same of a camera, whose lasers' planes were solved with it.
+/// The same for a camera with lasers, whose planes were solved with its pose.
 PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, std::string camera,
                      std::vector<Laser> lasers);
 
-/// A record as files and the API have it.
+/// JSON of a record, for files and the API.
 nlohmann::json to_json(const PoseRecord& record);
 
-/// The record of such JSON. @throws Error  of the value's code
+/// Parses that JSON. @throws Error  with the code of `object`
 PoseRecord to_record(const JsonValue& object);
 
 }  // namespace octurn

@@ -7,12 +7,12 @@
 
 namespace octurn {
 
-/// The beginning of every Kinect's URI. Alone it names the first Kinect found; followed by a number
+/// URI scheme of Kinects. Alone it names the first Kinect found; followed by a number
 /// (`kinect://1`), the Kinect of that index, counted from 0.
 inline constexpr std::string_view kinect_scheme = "kinect://";
 
-/// Property of type Tilt, from the Kinect's accelerometer; supported only where it can be read.
-/// Models 1473 and for Windows would need firmware that Octurn may not ship.
+/// Property of type Tilt, from the Kinect's accelerometer. Models 1473 and for Windows do not
+/// support it: their accelerometer needs firmware that Octurn may not ship.
 inline constexpr int tilt_property = 0x4F430011;
 
 /// Property of type OniBool: depth begins at 0.4 m instead of 0.8 m. Only a Kinect for Windows has

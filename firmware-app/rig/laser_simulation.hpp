@@ -16,21 +16,21 @@
 
 namespace octurn {
 
-/// A camera with line lasers before a turning platform, as they stand in truth.
+/// The true geometry of a camera with line lasers in front of a turning platform.
 struct LaserSimulation {
   std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
   std::uint32_t seed = 1;      ///< of noise and speckle: same seed, same pictures
   Intrinsics lens = {};        ///< of the camera
-  double k1 = 0;               ///< of its lens, as of `LaserCamera`
+  double k1 = 0;               ///< radial distortion, as in `LaserCamera`
   double k2 = 0;
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
-  std::vector<Laser> lasers = {};                                          ///< with their sources
+  std::vector<Laser> lasers = {};                                          ///< all have sources
 };
 
-/// A picture, and its pixels in colour.
+/// A grey picture and its colours.
 struct ColourExposure {
   Picture picture = {};
-  std::vector<Rgb> colours = {};  ///< of the picture's luminance, but for rounding
+  std::vector<Rgb> colours = {};  ///< their luminance is the picture's, except for rounding
 };
 
 /// Takes the pictures of a simulated camera. Used by one thread at a time.
@@ -41,24 +41,24 @@ class LaserSimulator {
   LaserSimulator(const LaserSimulator&) = delete;
   LaserSimulator& operator=(const LaserSimulator&) = delete;
 
-  /// Turns the object over. @param pose  which way it lies, 0: as it stood at first
+  /// Turns the object over. @param pose  number of the pose; 0 is the initial one
   virtual void lay_object(int pose) = 0;
 
   /// Takes a picture of the lens's size.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
-  /// @param lit    index of the laser that is on; nothing: none is
+  /// @param lit    index of the laser that is on; nothing: all are off
   virtual Picture expose(double angle, std::optional<std::size_t> lit) = 0;
 
   /// The same with colours.
   virtual ColourExposure expose_in_colour(double angle, std::optional<std::size_t> lit) = 0;
 
-  /// Takes a picture of a printed board that is waved before the camera: it is held still for some
-  /// pictures, each time in another place and another way.
-  /// @param number  of the picture since the board is shown, from 0
+  /// Takes a picture of a printed board that is moved in front of the camera. The board is held
+  /// still for some pictures in each of several poses.
+  /// @param number  index of the picture since the board appeared
   virtual Picture expose_board(int number) = 0;
 };
 
-/// What the module libOcturnLaserSimulator offers, as its symbol `octurn_laser_simulator`.
+/// The interface of the module libOcturnLaserSimulator, its symbol `octurn_laser_simulator`.
 struct LaserSimulatorModule {
   /// @throws Error "mesh-malformed"
   std::unique_ptr<LaserSimulator> (*make)(const LaserSimulation& simulation) = nullptr;

@@ -7,11 +7,10 @@
 
 namespace octurn {
 
-/// The true pose of a simulated sensor whose pose is told to be the drawing's, as somebody has put
-/// it up who went by eye. The platform is then seen too low, so that it stays out of the box of a
-/// model.
-/// @param times  4.7 mm at the platform's centre and 1 degree about it; with 0 the told pose is
-/// true
+/// The true pose of a simulated sensor that was mounted by eye, while the told pose is nominal. The
+/// error makes the platform appear too low, so that it stays outside of a model's clip box.
+/// @param times  factor of the error, 4.7 mm at the platform's centre and 1 degree about it; 0:
+/// none
 /// @return optical frame to platform frame, metres
 inline Eigen::Isometry3d misaligned_platform_from_sensor(double times) {
   const Eigen::Vector3d shift(0.0025, -0.0035, 0.002);

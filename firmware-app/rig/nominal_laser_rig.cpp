@@ -8,7 +8,7 @@
 namespace octurn {
 
 Eigen::Isometry3d nominal_platform_from_camera() {
-  Eigen::Isometry3d platform_from_camera = nominal_platform_from_sensor();  // turned down the same
+  Eigen::Isometry3d platform_from_camera = nominal_platform_from_sensor();  // the same rotation
   platform_from_camera.translation() << 0, -0.28, 0.18;
   return platform_from_camera;
 }

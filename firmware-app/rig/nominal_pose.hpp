@@ -7,8 +7,7 @@
 namespace octurn {
 
 /// The sensor's pose on a rig built to the drawing: 0.62 m in front of the platform's axis, 0.36 m
-/// above its surface, looking 25 degrees down. It is the calibration of a rig that has none of its
-/// own.
+/// above its surface, looking 25 degrees down. It is the default of a rig without a calibration.
 /// @return optical frame to platform frame, metres
 inline Eigen::Isometry3d nominal_platform_from_sensor() {
   constexpr double down = radians_from_degrees(25.0);

@@ -11,7 +11,7 @@
 
 namespace octurn {
 
-/// Settings of a simulated Kinect. They travel as the URI by which OpenNI2 opens it:
+/// Settings of a simulated Kinect, encoded in the URI by which OpenNI2 opens it:
 /// `octurn-simulator://[MESH][?key=value&...]`, with the keys `seed`, `noise`, `pattern`,
 /// `misalignment`, `wall`, `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?` are
 /// written `%25` and `%3F`.
@@ -19,33 +19,33 @@ struct Simulation {
   std::string mesh_file = {};       ///< STL in millimetres, Z up; empty: the simulator's own object
   std::uint32_t seed = 1;           ///< of noise and pattern: same seed, same frames
   double noise = 1.0;               ///< times a real Kinect's; 0 leaves quantisation and shadow
-  double pattern = 1.0;             ///< its own, fixed error, times a real Kinect's; 0: it has none
-  double misalignment = 1.0;        ///< of its true pose, times 5 mm and 1 degree off the told one
-  std::optional<double> wall = {};  ///< metres: it looks at a wall, and at no platform
+  double pattern = 1.0;             ///< fixed pattern error, times a real Kinect's; 0: none
+  double misalignment = 1.0;        ///< true pose's error, times 5 mm and 1 degree; 0: as told
+  std::optional<double> wall = {};  ///< metres to a wall that it faces instead of the platform
   double speed = 1.0;               ///< times 30 frames a second, as far as the processor keeps up
   std::optional<int> silent_after = {};  ///< frames, then none, as if the sensor had hung
   std::optional<int> lost_after = {};    ///< frames, then the device is gone, as if unplugged
 };
 
-/// The beginning of every simulated sensor's URI.
+/// URI scheme of simulated sensors.
 inline constexpr std::string_view simulator_scheme = "octurn-simulator://";
 
 /// Property of type double, written by the program: the platform's angle, radians,
 /// counter-clockwise seen from above. No other device of OpenNI2 has a property of this number.
 inline constexpr int platform_angle_property = 0x4F430001;
 
-/// Property of type double, written by the program: the sensor is turned to a wall so many metres
-/// away, or with 0 back. A sensor that a URI has look at a wall keeps to that.
+/// Property of type double, written by the program: metres to a wall that the sensor is turned to;
+/// 0 turns it back to the platform. A sensor whose URI has a wall ignores it.
 inline constexpr int wall_property = 0x4F430003;
 
-/// Property of type double, written by the program: how the object lies, a whole number; 0 as it
-/// stood at first.
+/// Property of type double, written by the program: the number of the object's pose, a whole number
+/// up to `max_object_pose`; 0 is the initial pose.
 inline constexpr int object_pose_property = 0x4F430004;
 inline constexpr int max_object_pose = 1000;
 
 /// Property of type double: the time by the simulated sensor's own clock, seconds. It advances by
-/// 1/30 s with each frame that was sent or, from `silent_after` on, left out. So a machine that is
-/// too busy to render in time slows this clock down, and only a simulated fault is a silence.
+/// 1/30 s with each frame that was sent or, from `silent_after` on, left out. A machine that is too
+/// busy to render in time slows this clock down, so that only a simulated fault is a silence.
 inline constexpr int sensor_time_property = 0x4F430002;
 
 /// The real time between two frames, on a machine that keeps up.

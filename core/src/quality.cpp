@@ -15,14 +15,14 @@ namespace {
 constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
 constexpr double min_volume = 1e-7;        // cubic metres
 
-// Two stops of a right rig disagree by 0.5 to 0.7 mm at 0.65 m with a Kinect v1, whose noise grows
-// with the square of the distance.
+// Two stops of a correct rig disagree by 0.5 to 0.7 mm at 0.65 m with a Kinect v1, whose noise
+// grows with the square of the distance.
 constexpr double noise_distance = 0.65;       // metres
 constexpr double look_disagreement = 0.0011;  // metres
 constexpr double bad_disagreement = 0.0022;
-constexpr double max_contradicted = 0.1;  // of what a stop saw
+constexpr double max_contradicted = 0.1;  // of a stop's readings
 
-constexpr double look_height = 0.0025;  // metres between platform and z = 0
+constexpr double look_height = 0.0025;  // metres between the platform and z = 0
 constexpr double bad_height = 0.008;
 
 constexpr double look_gap_deg = 100;  // between neighbouring stops: each sees 60 degrees to a side
@@ -108,7 +108,7 @@ void judge_height(Judgement& judgement, const ScanFigures& scan, const ModelRepo
                              " below where it should be, and as much of the object is missing",
                    .hint = "Calibrate the rig.",
                    .parameters = {{"platform_below_mm", mm_from_metres(-platform)}}});
-  } else if (model.parts > 0 && model.bottom > bad_height) {  // a shell ends where nobody saw
+  } else if (model.parts > 0 && model.bottom > bad_height) {  // a hollow shell may end anywhere
     judgement.add(
         Verdict::look,
         {.code = "floats",
@@ -191,7 +191,7 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
   }
 }
 
-/// Judges another side of a model. What is filled in, and what was dropped, is no side's own.
+/// Judges another pose of a model. Filled surface and dropped parts belong to no single pose.
 Quality judge_side(const ScanFigures& scan, const ModelReport& model) {
   Judgement judgement;
   judge_agreement(judgement, scan);
@@ -205,7 +205,7 @@ Quality judge_side(const ScanFigures& scan, const ModelReport& model) {
   return judgement.take();
 }
 
-/// Adds the reasons of another side, counted from 1: each code once.
+/// Adds the reasons of another pose whose codes are new. @param side  number of the pose, from 1
 void add_reasons(Quality& quality, Quality other, std::size_t side) {
   quality.verdict = std::max(quality.verdict, other.verdict);
   for (QualityReason& reason : other.reasons) {
@@ -237,7 +237,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_findings(judgement, findings);
   judge_height(judgement, scan, model);
   judge_coverage(judgement, scan, model);
-  if (scan.platform_height.value_or(0) <= look_height) {  // else they tell of the platform
+  if (scan.platform_height.value_or(0) <= look_height) {  // else they would judge the platform
     judge_box(judgement, scan);
     judge_parts(judgement, scan, model);
   }
@@ -247,7 +247,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings) {
   ScanFigures first = poses.front();
-  // What one side's stops left out, another's may have seen.
+  // Another pose may have seen what lies in a gap between the stops of one.
   first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
   Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {

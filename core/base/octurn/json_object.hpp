@@ -34,7 +34,7 @@ class JsonValue {
 
   /// An array's elements, named "name[0]" and so on. @throws Error  if it is not an array
   std::vector<JsonValue> elements() const;
-  /// The same. @throws Error  if it is not an array of `count` elements
+  /// As above. @throws Error  if it is not an array of `count` elements
   std::vector<JsonValue> elements(std::size_t count) const;
 
   /// Throws an Error that refuses the value. @param must  completes "... must be"

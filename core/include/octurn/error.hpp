@@ -89,7 +89,7 @@ enum class ErrorCode {
 /// The word for programs, such as "scan-malformed".
 std::string_view to_string(ErrorCode code);
 
-/// The code whose word that is, if there is one.
+/// The code of a word, if there is one.
 std::optional<ErrorCode> to_error_code(std::string_view word);
 
 /// The values in a message by name, from which a translated message is made. A name ends with its

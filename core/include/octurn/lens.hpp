@@ -14,7 +14,7 @@ namespace octurn {
 
 /// An inner corner of a chessboard in a picture: where two black and two white squares meet.
 struct BoardCorner {
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< (0, 0) is the middle of the top left one
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< (0, 0) is the middle of the top left pixel
   /// Position on the board in squares, from an arbitrary origin. Columns and rows are oriented as X
   /// and Y of the optical frame are.
   int column = 0;

@@ -50,7 +50,7 @@ struct SolidOptions {
   /// 2.5 voxels, and 3 sigma of the sensor's noise: the default is a Kinect v1's at 0.65 m.
   double truncation = 0.0035;
 
-  /// With several poses `main` is used in any case: what was turned over is one object.
+  /// With several poses `main` is always used: the object that was turned over is one.
   Parts parts = Parts::main;
 };
 

@@ -26,7 +26,7 @@ namespace octurn {
 /// Whether each shot of a scan has its own pose.
 bool has_free_poses(const Scan& scan);
 
-/// The clip box of a scan with free poses that has none: larger than any scan, metres.
+/// The clip box of a scan with free poses that has no other: larger than any scan, metres.
 inline const Box everywhere{.min = Eigen::Vector3d::Constant(-1e6),
                             .max = Eigen::Vector3d::Constant(1e6)};
 
@@ -55,14 +55,14 @@ struct TileIndex {
 /// A tile in which something is seen.
 struct Tile {
   TileIndex index = {};
-  std::vector<std::size_t> snapshots = {};  ///< indices of those that see something in it, sorted
+  std::vector<std::size_t> snapshots = {};  ///< sorted indices of snapshots that observe it
   std::size_t bytes = 0;                    ///< upper bound of its leaves' or voxels' memory
 };
 
 /// The tiles of a scan. A tile's number is its position in `tiles`.
 struct TilePlan {
   std::vector<Tile> tiles = {};               ///< sorted by their indices
-  std::vector<std::uint64_t> snapshots = {};  ///< a checksum of each depth image and its pose
+  std::vector<std::uint64_t> snapshots = {};  ///< checksum of each image, its intrinsics and pose
 };
 
 /// Finds the tiles in which the snapshots see something.

@@ -80,7 +80,7 @@ void clip(PointGrid& grid, const Box& box) {
   const Eigen::Array3f min = box.min.cast<float>();
   const Eigen::Array3f max = box.max.cast<float>();
   for (Eigen::Vector3f& point : grid.points) {
-    // Written so that a point with one coordinate that is no number goes, too.
+    // Written so that a point with any NaN coordinate is dropped, too.
     if (!((point.array() >= min).all() && (point.array() <= max).all())) {
       point = no_point;
     }

@@ -33,9 +33,9 @@ PointGrid world_points(const Snapshot& snapshot);
 /// stay.
 void clip(PointGrid& grid, const Box& box);
 
-/// The same for one of several poses: points outside its own clip box go, and those lower than
-/// 2.5 mm above its platform. What is left and below the first pose's platform, by noise, is lifted
-/// to it.
+/// Clips points for one of several poses: drops points outside the pose's own clip box, or less
+/// than 2.5 mm above its platform. Remaining points that noise puts up to 5 mm below the first
+/// pose's platform are raised to it.
 void clip(PointGrid& grid, const Placement& placement);
 
 }  // namespace octurn

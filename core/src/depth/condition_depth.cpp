@@ -20,14 +20,14 @@ constexpr float min_cosine = 0.15F;          // of incidence: 81 degrees
 constexpr double object_share = 0.9;         // of the depth of the platform's middle
 constexpr double platform_slack = 0.0015;    // metres above the platform that may be the platform
 
-// The same for one of several poses, which need not see the foot, as another pose does. Readings up
-// to `foot_height` may be a mean of object and platform, and count less.
+// Slack for one of several poses, which need not see the foot, as another pose does. Readings up to
+// `foot_height` may mix object and platform, and get less weight.
 constexpr double foot_slack = 0.0025;  // metres
 constexpr float foot_height = 0.007F;  // metres
 
 // A ray that ends on its pose's platform is free this much further than other rays without a
-// surface, as the platform's place is known. The usual margin (`free_margin`) would leave the
-// lowest 3 mm beside the foot unknown, where another pose takes them for the object.
+// surface, as the platform's height is known. With the usual margin (`free_margin`) the lowest 3 mm
+// beside the foot would stay unknown, and another pose would take them for the object.
 constexpr float platform_reach = 0.0045F;  // metres, along the optical axis
 
 DepthImage to_metres(const Snapshot& snapshot) {
@@ -42,7 +42,7 @@ DepthImage to_metres(const Snapshot& snapshot) {
 
 /// The smallest reading in the 3 x 3 window of each pixel of a row: a ray beside an edge is free no
 /// further than the edge.
-/// @param column_min  room for a row
+/// @param column_min  buffer for a row
 void find_min_around(const DepthImage& image, int v, std::vector<float>& column_min,
                      std::vector<float>& min) {
   constexpr float none = std::numeric_limits<float>::max();
@@ -160,7 +160,7 @@ class ObjectVolume {
 /// Stores the surface that was fitted at a ray, unless it is seen at grazing incidence.
 ///
 /// The weight follows the inverse variance of the distance to the plane: depth noise grows with z^2
-/// (Khoshelham and Elberink 2012), and the more readings were averaged, the less is left of it.
+/// (Khoshelham and Elberink 2012), and falls with the number of averaged readings.
 void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intrinsics& intrinsics,
                  const Ray& ray, float reference_depth, float z) {
   if (fit.inverse_depth <= 0) {
@@ -183,9 +183,9 @@ void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intri
   observation.weight = close * close * close * close * share * share / cosine;
 }
 
-/// The depth at which a whole window weighs one, metres. It follows the depth of the platform's
-/// middle, which is the same at all stops of a turn: so weights do not depend on how near the
-/// sensor stands.
+/// The depth at which a whole window has weight 1, metres. It is proportional to the depth of the
+/// platform's middle, which is the same at all stops of a turn, so that weights do not depend on
+/// the sensor's distance.
 /// @param middle  of the platform, metres, object's frame
 double reference_depth_of(const Snapshot& snapshot, const Eigen::Vector3d& middle) {
   const double z = (snapshot.object_from_sensor.inverse() * middle).z();

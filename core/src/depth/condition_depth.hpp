@@ -10,25 +10,25 @@
 namespace octurn {
 
 /// A snapshot conditioned for integration: speckle is removed, noise is smoothed by a plane fitted
-/// at each pixel, and each surface has a weight: its inverse variance, relative to that of a whole
-/// window that faces the sensor where an object stands, at nine tenths of the depth of the
-/// platform's middle.
+/// at each pixel, and each surface has a weight: its inverse variance, relative to a whole window
+/// that faces the sensor at nine tenths of the depth of the platform's middle, where an object
+/// stands.
 class ConditionedDepth {
  public:
   /// @param clip  metres, object's frame: readings outside make no surface, but show free space
   /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
   ConditionedDepth(const Snapshot& snapshot, const Box& clip);
 
-  /// The same of one of several poses: readings outside its own clip box, or lower than 2.5 mm
-  /// above its platform, make no surface either. Those of the next millimetres count less, as they
-  /// mix object and platform.
+  /// Conditions a snapshot of one of several poses: readings outside the pose's own clip box, or
+  /// less than 2.5 mm above its platform, make no surface either. Readings up to 7 mm have less
+  /// weight, as they may mix object and platform.
   ConditionedDepth(const Snapshot& snapshot, const Box& clip, const Placement& placement);
 
-  /// The same of a space without a platform.
-  /// @param reference_depth  metres, at which a whole window weighs one
+  /// Conditions a snapshot of a space without a platform.
+  /// @param reference_depth  metres, at which a whole window has weight 1
   ConditionedDepth(const Snapshot& snapshot, const Box& clip, double reference_depth);
 
-  /// What was observed otherwise.
+  /// Takes observations from elsewhere, such as laser lines.
   /// @param observations  of the intrinsics' size, row by row
   ConditionedDepth(const Intrinsics& intrinsics, const Eigen::Isometry3d& sensor_from_object,
                    std::vector<DepthObservation> observations);
@@ -36,7 +36,7 @@ class ConditionedDepth {
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Eigen::Isometry3d& sensor_from_object() const { return sensor_from_object_; }
 
-  /// @param u,v  a pixel of the image; the two at its edges observe nothing
+  /// @param u,v  a pixel of the image; the outer two rows and columns observe nothing
   const DepthObservation& at(int u, int v) const { return at(v * intrinsics_.width + u); }
 
   /// @param pixel  v * width + u

@@ -8,11 +8,11 @@
 namespace octurn {
 namespace {
 
-/// How far a map goes on outside the two inverse depths that it was measured at, as a share of
+/// Maximum extrapolation beyond the two inverse depths at which a map was measured, as a share of
 /// their difference.
 constexpr double max_extrapolation = 1;
 
-/// @param inverse_depth  that would make that depth, 1/m  @param largest  inverse depth of 1
+/// Converts an inverse depth, 1/m, to depth units. @param largest  inverse depth of one unit, 1/m
 std::uint16_t to_depth(double inverse_depth, double largest) {
   constexpr double deepest = std::numeric_limits<std::uint16_t>::max();
   if (!(inverse_depth * deepest > largest)) {

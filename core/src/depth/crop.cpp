@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-constexpr int margin = 4;      // pixels: conditioning reads three beside a pixel, and rounding
+constexpr int margin = 4;      // pixels: three that conditioning reads, and one for rounding
 constexpr int alignment = 16;  // pixels, of the window's corner: texels of a `DepthPyramid` stay
                                // those of the whole image
 

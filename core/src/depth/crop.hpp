@@ -5,8 +5,8 @@
 namespace octurn {
 
 /// Crops a snapshot to the window of pixels whose rays may meet a box, with a margin for the
-/// windows of conditioning. Returns all of it if no ray does, or if the box reaches up to the
-/// sensor.
+/// windows of conditioning. Returns the whole snapshot if no ray meets the box, or if the box
+/// reaches up to the sensor.
 ///
 /// @param snapshot  of a frame of the intrinsics' size
 /// @param box       metres, object's frame

@@ -14,7 +14,7 @@ constexpr float huge = std::numeric_limits<float>::max();
 
 Eigen::Array4f no_bounds() { return {huge, huge, 0, 0}; }
 
-/// @param u1,v1  behind the last pixel
+/// @param u1,v1  one past the last pixel
 Eigen::Array4f find_bounds(std::span<const DepthObservation> observations, int width, int u0,
                            int v0, int u1, int v1) {
   DepthPyramid::MinMax bounds{
@@ -83,8 +83,7 @@ DepthPyramid::MinMax DepthPyramid::min_max(int u0, int v0, int u1, int v1) const
     ++level;
     ++shift;
   }
-  // Three rows of three texels, some of them twice: their number follows no pattern, so that
-  // branches on it would be mispredicted.
+  // Always 3 x 3 texels, some of them twice: branches on the number needed would be mispredicted.
   static_assert(max_texels == 3);
   const Level& texels = levels_[level];
   const int left = u0 >> shift;

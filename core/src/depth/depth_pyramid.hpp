@@ -20,8 +20,8 @@ class DepthPyramid {
   struct MinMax {
     float min_free = 0;     ///< of `free_space_depth`; 0 if a pixel has none or is no pixel
     float max_free = 0;     ///< of `free_space_depth`
-    float min_surface = 0;  ///< of `free_space_depth` where there is a surface; above
-    float max_surface = 0;  ///< `max_surface` if there is none
+    float min_surface = 0;  ///< the same where there is a surface; the largest float if none
+    float max_surface = 0;  ///< the same where there is a surface; 0 if there is none
   };
 
   /// @param u0,v0,u1,v1  first and last column and row; may lie partly outside the image

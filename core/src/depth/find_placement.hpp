@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// How the object lay in a snapshot of one of several poses.
+/// Returns the object's placement in a snapshot of one of several poses.
 /// @throws std::invalid_argument  if the options do not list it
 inline const Placement& find_placement(const Snapshot& snapshot,
                                        const ReconstructOptions& options) {

@@ -9,8 +9,9 @@ namespace {
 constexpr int reach = fit_window_side / 2;
 constexpr int min_samples = 9;
 
-// Separable weights along u and v. Integration averages snapshots, and wider windows round off more
-// than they gain: with 0.75 and 0.35 beside the middle 36 snapshots lose 0.03 mm of accuracy.
+// Separable weights along u and v. Integration averages snapshots, so that a wider window loses
+// more by rounding off edges than it gains: with 0.75 and 0.35 beside the middle 36 snapshots lose
+// 0.03 mm of accuracy.
 constexpr std::array<float, fit_window_side> window{0.05F, 0.35F, 1.0F, 0.35F, 0.05F};
 
 constexpr float min_determinant = 0.05F;  // of the covariance of u and v, pixels^4: 0 on a line
@@ -40,7 +41,7 @@ struct WeightedPlane {
   }
 
   /// The normal equations of the centred samples, by Cramer's rule.
-  /// @param offset  that `q` was counted from
+  /// @param offset  inverse depth to which the values are relative, 1/m
   std::optional<PlaneFit> solve(float offset, int samples) const {
     const float mean_u = u / w;
     const float mean_v = v / w;
@@ -76,7 +77,7 @@ std::vector<float> to_inverse_depth(const DepthImage& image) {
 std::optional<PlaneFit> fit_plane(const DepthImage& image, const std::vector<float>& inverse_depth,
                                   int u, int v) {
   const float z = image.at(u, v);
-  // Counted from the middle's, so that sums of floats keep their digits.
+  // Values are relative to the middle's, so that sums of floats keep their precision.
   const float offset = inverse_depth[static_cast<std::size_t>(v * image.width + u)];
   WeightedPlane plane;
   int samples = 0;

@@ -12,7 +12,7 @@
 
 namespace octurn {
 
-/// Pixels on each side of one whose normal is fitted: 5 x 5 of them.
+/// Half side of the window for fitting a normal, pixels: 5 x 5.
 inline constexpr int normal_reach = 2;
 
 /// The rectangle of a depth image around an object, with the neighbours that its normals need.
@@ -21,11 +21,12 @@ struct ObjectWindow {
   int top = 0;
   int width = 0;  // 0: no pixel is the object's
   int height = 0;
-  int pixels = 0;  // that are the object's
+  int pixels = 0;  // number of pixels that show the object
 };
 
+/// Finds the rectangle around an object.
 /// @param within     the pixels that can see it
-/// @param is_object  of the point that a pixel sees, metres, optical frame
+/// @param is_object  whether a point (metres, optical frame) is the object's
 template <typename IsObject>
 ObjectWindow find_object(const DepthFrame& frame, const Intrinsics& intrinsics,
                          const PixelRectangle& within, const IsObject& is_object) {
@@ -61,8 +62,8 @@ ObjectWindow find_object(const DepthFrame& frame, const Intrinsics& intrinsics,
           .pixels = pixels};
 }
 
-/// Sums over the 5 x 5 pixels around one: of inverse depths, 1/m, and of these times the pixels'
-/// distances from the middle.
+/// Moments of a 5 x 5 window: sums of inverse depth, 1/m, and of inverse depth times the pixels'
+/// distances from the middle along u and v.
 struct InverseDepthSums {
   static constexpr double count = (2 * normal_reach + 1) * (2 * normal_reach + 1);
 
@@ -74,12 +75,12 @@ struct InverseDepthSums {
 /// The normal of the least-squares plane through 5 x 5 pixels: the inverse depth of a plane is
 /// linear in the image.
 /// @param ray  of the middle, z = 1
-/// @param min_cosine  between the normal and the ray: a surface that is seen flatter is refused
+/// @param min_cosine  of incidence: a surface that is seen at a flatter angle is refused
 /// @return of length one, towards the sensor
 inline std::optional<Eigen::Vector3d> fit_normal(const InverseDepthSums& sums,
                                                  const Intrinsics& intrinsics,
                                                  const Eigen::Vector3d& ray, double min_cosine) {
-  constexpr double squares = 2.0 * (1 + 4) * (2 * normal_reach + 1);  // of du, over the neighbours
+  constexpr double squares = 2.0 * (1 + 4) * (2 * normal_reach + 1);  // sum of du^2 over the window
   const double slope_x = sums.sum_u / squares * intrinsics.fx;
   const double slope_y = sums.sum_v / squares * intrinsics.fy;
   const Eigen::Vector3d away(

@@ -20,8 +20,8 @@ struct PixelRectangle {
   int bottom = 0;
 };
 
-/// The pixels that can see a convex body, and a few around them: all pixels where it reaches behind
-/// the sensor.
+/// The bounding rectangle of a convex body's projection, with a margin; the whole image if the body
+/// reaches behind the sensor.
 /// @param corners  metres, optical frame: the body lies inside their convex hull
 inline PixelRectangle seen_pixels(const Intrinsics& lens,
                                   std::span<const Eigen::Vector3d> corners) {

@@ -10,16 +10,16 @@
 
 namespace octurn {
 
-/// Several threads make results of the pieces of one source, and the results are used one by one in
-/// the order of their pieces. A thread whose result is early stores it and takes the next piece, so
-/// that a slow piece holds up nobody until the window is full.
+/// A parallel pipeline: several threads make results from the pieces of one source, and the results
+/// are used one by one in the order of the pieces. A thread that is early stores its result and
+/// takes the next piece, so that a slow piece blocks no other thread until the window is full.
 ///
-/// Ours, and not TBB's parallel_pipeline, which does the same: that would put a library of 0.25 MB
-/// and its own pool of threads on the appliance in place of these hundred lines.
+/// TBB's parallel_pipeline does the same, but would add a library of 0.25 MB and a second thread
+/// pool to the appliance.
 ///
 /// @tparam Source  called without arguments, by one thread at a time: the next piece as a
 ///                 std::optional, empty when there are no more
-/// @tparam Result  default-constructible; made anew in one that was used before
+/// @tparam Result  default-constructible; an object is reused for later results
 template <typename Source, typename Result>
 class OrderedPipeline {
  public:
@@ -95,7 +95,7 @@ class OrderedPipeline {
     is_using_ = false;
   }
 
-  std::mutex taking_ = {};  // guards the source and how often it was asked
+  std::mutex taking_ = {};  // guards `source_` and `taken_`
   Source source_;
   std::size_t taken_ = 0;
 

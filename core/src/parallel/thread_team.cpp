@@ -5,11 +5,11 @@
 namespace octurn {
 namespace {
 
-// Steps follow each other within microseconds: a thread that looks so often, and lets others run
-// in between, mostly need not be woken.
+// Polls, with a yield in between, before a thread sleeps. Steps follow each other within
+// microseconds, so that it mostly need not be woken.
 constexpr int looks = 100;
 
-/// Waits until an atomic has another value.
+/// Waits while an atomic has a value.
 template <typename Value>
 void wait_while(const std::atomic<Value>& atomic, Value value) {
   for (int i = 0; i < looks; ++i) {
@@ -73,7 +73,7 @@ void ThreadTeam::guarded_call(int i) {
   }
 }
 
-/// What another thread does until the team ends.
+/// The loop of a worker thread, until the team ends.
 void ThreadTeam::take_part(int i) {
   for (std::uint32_t step = 0;; ++step) {
     wait_while(step_, step);

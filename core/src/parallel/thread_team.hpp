@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// Threads that share many short steps, one after the other: like `fork_join`, but they are started
-/// once. They end with the team. Only one thread may use a team, but for one of a single thread.
+/// A thread pool for many short steps, one after the other: like `fork_join`, but threads are
+/// started once, and joined by the destructor. Not thread-safe, except a team of a single thread.
 class ThreadTeam {
  public:
   /// @param threads  at least 1, the caller's among them
@@ -50,7 +50,7 @@ class ThreadTeam {
     });
   }
 
-  /// The half-open range of `count` items that the thread `i` takes, where each takes as many.
+  /// The half-open range of items of thread `i`, if `count` items are divided evenly.
   std::pair<std::size_t, std::size_t> share(std::size_t count, int i) const {
     const auto threads = static_cast<std::size_t>(size());
     const auto at = static_cast<std::size_t>(i);
@@ -70,7 +70,7 @@ class ThreadTeam {
   const void* work_ = nullptr;
   std::vector<std::exception_ptr> failures_;
   std::atomic<std::uint32_t> step_ = 0;  // counts the steps
-  std::atomic<int> busy_ = 0;            // others that are not done with this one
+  std::atomic<int> busy_ = 0;            // workers that have not finished the step
   std::vector<std::jthread> others_ = {};
 };
 

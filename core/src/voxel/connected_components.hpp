@@ -36,7 +36,7 @@ class ConnectedComponents {
   /// The number of runs.
   std::size_t count() const { return runs_.size(); }
 
-  /// Calls `visit(y, z, index, run)` for all of them.
+  /// Calls `visit(y, z, index, run)` for each run, row by row.
   template <typename Visit>
   void for_each(Visit visit) const {
     const Index3& size = mask_.size();
@@ -60,7 +60,7 @@ class ConnectedComponents {
   Of of_;
   const std::stop_token& stop_;
   std::vector<Run> runs_ = {};
-  std::vector<std::uint32_t> first_ = {};  // run of each row
+  std::vector<std::uint32_t> first_ = {};  // index of each row's first run
 };
 
 }  // namespace octurn

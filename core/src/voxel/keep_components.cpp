@@ -10,9 +10,9 @@
 namespace octurn {
 namespace {
 
-// A component that stands on the platform counts with this factor of its volume: the object stands,
-// even below something larger. With a larger factor a speck on the platform would win over a ball
-// whose foot is hardly seen.
+// The volume of a component that stands on the platform is multiplied by this factor: the object
+// stands, even below something larger. With a larger factor a speck on the platform would win over
+// a ball whose foot is hardly seen.
 constexpr std::uint64_t base_weight = 8;
 
 constexpr std::uint64_t no_others = std::numeric_limits<std::uint64_t>::max();

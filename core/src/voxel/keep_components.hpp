@@ -7,8 +7,7 @@
 
 namespace octurn {
 
-/// The number of connected components (6-neighbours) that were removed from a mask, and of their
-/// voxels.
+/// The connected components (6-neighbours) that were removed from a mask, and their voxels.
 struct DroppedComponents {
   std::uint64_t count = 0;
   std::uint64_t voxels = 0;
@@ -20,7 +19,7 @@ struct DroppedComponents {
 DroppedComponents keep_main_component(VoxelMask& mask, int standing_layers = 1,
                                       const std::stop_token& stop = {});
 
-/// Keeps that component, and every other one that stands and has at least `min_voxels`.
+/// Keeps the main component, and every other one that stands and has at least `min_voxels`.
 /// @throws Stopped
 DroppedComponents keep_standing_components(VoxelMask& mask, int standing_layers,
                                            std::uint64_t min_voxels,

@@ -9,7 +9,7 @@ namespace octurn {
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20U;
 
-/// @throws Error "memory-limit"  if the limit is below what a method needs at least
+/// @throws Error "memory-limit"  if the limit is below the minimum that a method needs
 inline void check_memory_limit(std::size_t limit, std::size_t min) {
   if (limit != 0 && limit < min) {
     throw Error(ErrorCode::memory_limit, "memory limit: " + mb_text(limit) + " is too little",

@@ -35,8 +35,8 @@ std::uint64_t VoxelMask::count() const {
   return count;
 }
 
-/// What is left does not depend on the order in which voxels go. So only rows beside one that has
-/// lost voxels are looked at again.
+/// The result does not depend on the order in which voxels are removed, so that only changed rows
+/// and their neighbours are examined again.
 void VoxelMask::remove_spurs(const std::stop_token& stop) {
   std::vector<char> pending(static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z),
                             1);
@@ -91,7 +91,7 @@ bool VoxelMask::remove_spurs_of(int y, int z) {
 }
 
 VoxelMask VoxelMask::cropped() const {
-  std::vector<std::uint64_t> columns(words_);  // of all rows together
+  std::vector<std::uint64_t> columns(words_);  // bitwise or of all rows
   Index3 first{size_.x, size_.y, size_.z};
   Index3 last{-1, -1, -1};
   for (int z = 0; z < size_.z; ++z) {

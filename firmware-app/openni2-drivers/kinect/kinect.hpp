@@ -47,7 +47,7 @@ class Kinect {
 
   bool has_near_mode() const { return has_near_mode_; }
 
-  /// @return false if the depth stream runs: then it cannot be changed
+  /// @return false if the depth stream runs, which does not allow a change, or the device refuses
   bool set_near_mode(bool on);
 
   /// Runs the depth stream until a stop is requested or the device is gone.
@@ -66,7 +66,7 @@ class Kinect {
   };
   using Context = std::unique_ptr<freenect_context, End>;
 
-  /// The frame that is coming, packet by packet.
+  /// The frame that is being received, packet by packet.
   struct Incoming {
     int packets_in_order = 0;  // -1 once one was missing
     std::chrono::steady_clock::time_point begin = {};

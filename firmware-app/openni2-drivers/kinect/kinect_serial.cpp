@@ -13,7 +13,7 @@ struct End {
 
 void pass_over(freenect_context* /*context*/, freenect_loglevel /*level*/, const char* /*text*/) {}
 
-/// The serial number that libfreenect tells; some models tell zeros alone.
+/// The serial number from libfreenect; empty if it has only zeros, as on some models.
 std::string told_serial(int index) {
   freenect_context* opened = nullptr;
   if (freenect_init(&opened, nullptr) < 0) {

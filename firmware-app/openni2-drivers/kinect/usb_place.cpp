@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The word in a file of a device's folder.
+/// Reads the first word of a sysfs attribute.
 std::string word_in(const fs::path& file) {
   std::ifstream stream(file);
   std::string word;

@@ -15,7 +15,7 @@
 
 namespace octurn {
 
-/// A device with one sensor, of depth.
+/// A device whose only sensor is a depth sensor.
 class DepthDevice : public oni::driver::DeviceBase {
  public:
   OniStatus getSensorInfoList(OniSensorInfo** infos, int* count) override;

@@ -20,8 +20,8 @@ OniStatus give_property(const Value& value, void* data, int* size) {
   return ONI_STATUS_OK;
 }
 
-/// Copies a text to OpenNI2, with a 0 at its end.
-/// @return ONI_STATUS_BAD_PARAMETER if the caller has no room for it
+/// Copies a text to OpenNI2, with a terminating NUL.
+/// @return ONI_STATUS_BAD_PARAMETER if the caller's buffer is too small
 inline OniStatus give_text(const std::string& text, void* data, int* size) {
   const auto length = static_cast<int>(text.size()) + 1;
   if (*size < length) {

@@ -6,7 +6,7 @@
 
 namespace octurn {
 
-/// The simulated Kinect's.
+/// Intrinsics of the simulated Kinect.
 inline constexpr Intrinsics camera = {};
 
 constexpr std::size_t pixels(const Intrinsics& intrinsics) {

@@ -24,7 +24,7 @@ Scene make_scene(const Simulation& simulation) {
   return Scene(told_object(simulation.mesh_file), pose);
 }
 
-/// A sensor with another pattern is another sensor.
+/// The serial number identifies the sensor's fixed pattern, which the seed determines.
 std::string serial_of(const Simulation& simulation) {
   const std::string serial = "simulated-" + std::to_string(simulation.seed);
   return simulation.pattern > 0 ? serial : serial + "-perfect";

@@ -7,13 +7,13 @@
 namespace octurn {
 namespace {
 
-/// A camera at the laser's source that has one column, in the laser's plane: its rows are rays of
-/// the fan, 0.2 mm apart at 0.35 m. Across the column its scale only has to keep triangles larger
-/// than what `rasterise` takes for rounding.
+/// Intrinsics of a virtual camera at the laser's source, with one column in the laser's plane. Its
+/// rows are rays of the fan, 0.2 mm apart at 0.35 m. Its fx only has to keep triangles larger than
+/// the ones that `rasterise` drops as degenerate.
 constexpr Intrinsics column{
     .width = 1, .height = 4096, .fx = 1700, .fy = 1700, .cx = 0, .cy = 2047.5};
 
-constexpr double slack = 0.0025;  // 1/m, 0.3 mm at 0.35 m: surfaces must not shade themselves
+constexpr double slack = 0.0025;  // 1/m, 0.3 mm at 0.35 m: surfaces must not shadow themselves
 
 }  // namespace
 

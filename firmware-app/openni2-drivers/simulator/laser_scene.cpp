@@ -13,20 +13,20 @@ namespace {
 
 // Grey levels.
 constexpr float read_noise = 0.4F;
-constexpr float shot_noise = 0.03F;  // squared, for each level of light
-constexpr float black_level = 1;     // what is cut off as black
+constexpr float shot_noise = 0.03F;  // variance for each level of light
+constexpr float black_level = 1;     // subtracted by the camera
 constexpr double room = 4;           // of a white surface that faces the camera
-constexpr double line = 210;         // of a laser's line on a white surface, head on
+constexpr double line = 210;         // peak of a laser's line on a white surface, head on
 
-constexpr double half_width = 0.0004;  // metres of a line, to 1/e^2
-constexpr double farthest = 2.6;       // half widths at which a line is still seen
-constexpr double bright_at = 0.33;     // metres from a laser at which its line has that brightness
-// Variance of a pixel's own area and of the lens's blur, square pixels.
+constexpr double half_width = 0.0004;  // of a line, metres, to 1/e^2
+constexpr double farthest = 2.6;       // half widths at which the line's profile is cut off
+constexpr double bright_at = 0.33;     // metres from the laser at which the peak is `line`
+// Variance of a pixel's area and of the lens's blur, square pixels.
 constexpr double blur = 1.0 / 12 + 0.6 * 0.6;
 constexpr float speckle = 0.25F;  // contrast
 constexpr float flicker = 0.02F;
 
-constexpr double check = 0.008;  // metres, of the object's pattern
+constexpr double check = 0.008;  // side of the object's checks, metres
 constexpr double light_check = 0.95;
 constexpr double dark_check = 0.61;
 constexpr double surroundings_albedo = 0.35;
@@ -42,13 +42,13 @@ std::uint8_t to_grey(float light) {
   return static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L));
 }
 
-/// The hue of the object's paint: once round the axis, with the luminance of white.
+/// The tint of the object's paint: its hue makes one turn about the axis, its luminance is white's.
 Eigen::Vector2f axial_tint(const Eigen::Vector3d& point) {
   const Eigen::Vector2d outwards = point.head<2>();
   return (saturation * outwards / std::max(outwards.norm(), 1e-6)).cast<float>();
 }
 
-/// Red, green and blue of a luminance and its tint: ITU-R BT.601.
+/// Converts luminance and tint to red, green and blue (ITU-R BT.601).
 Rgb to_colour(float light, const Eigen::Vector2f& tint) {
   return {to_grey(light * (1 + 1.402F * tint.y())),
           to_grey(light * (1 - 0.344136F * tint.x() - 0.714136F * tint.y())),
@@ -78,7 +78,7 @@ void LaserScene::lay_object(int pose) {
   }
 }
 
-/// What camera and lasers see while the platform stands.
+/// Renders what camera and lasers see at an angle of the platform.
 void LaserScene::look(double angle) {
   angle_ = angle;
   const Eigen::Isometry3d sensor_from_object =
@@ -103,9 +103,9 @@ void LaserScene::look(double angle) {
   }
 }
 
-/// How inverse depth grows from pixel to pixel, on the side where that is less: on the other there
-/// may be an edge.
-/// @param step  to the next pixel
+/// The slope of inverse depth, 1/m for each pixel: the smaller one-sided difference, as the other
+/// may cross an edge.
+/// @param step  index offset of the next pixel
 double LaserScene::slope(std::size_t pixel, std::ptrdiff_t step, bool is_first,
                          bool is_last) const {
   const float* const here = seen_.data() + pixel;
@@ -148,8 +148,8 @@ double LaserScene::line_light(std::size_t laser, const Patch& patch) const {
   if (lambert <= 0) {
     return 0;
   }
-  // A step of one pixel on the surface, across the line: the normal without its part along the
-  // surface's own normal and the ray. It spreads the line's Gaussian by what a pixel blurs.
+  // The length across the laser's plane of a step of one pixel on the surface. Blur of the pixel
+  // widens the line's Gaussian by it.
   const Intrinsics& lens = simulation_.lens;
   const Eigen::Vector3d ray = patch.point / patch.point.z();
   const auto step = [&](const Eigen::Vector3d& aside) {
@@ -170,11 +170,11 @@ double LaserScene::line_light(std::size_t laser, const Patch& patch) const {
 void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
   const Intrinsics& lens = simulation_.lens;
   const Laser& of = simulation_.lasers[laser];
-  // Speckle is the surface's: it stays as long as the platform stands.
+  // Speckle is fixed to the surface: it does not change while the platform stands.
   const std::uint32_t place =
       mixed(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(angle_) >> 20U),
             static_cast<std::uint32_t>(laser));
-  const double reach = farthest * 2 * half_width;  // metres; blur is less than half of it
+  const double reach = farthest * 2 * half_width;  // metres; twice the cut-off, to include blur
   std::size_t pixel = 0;
   for (int v = 0; v < lens.height; ++v) {
     const std::uint32_t sequence = mixed(place, static_cast<std::uint32_t>(v));
@@ -196,7 +196,7 @@ void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
   }
 }
 
-/// What the camera's pixels take, in grey levels before they are rounded.
+/// The light at the camera's pixels with noise, grey levels before rounding.
 std::vector<float> LaserScene::levels(double angle, std::optional<std::size_t> lit) {
   if (seen_.empty() || angle != angle_) {
     look(angle);

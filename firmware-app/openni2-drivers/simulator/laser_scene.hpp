@@ -17,11 +17,12 @@ namespace octurn {
 /// A camera that looks at a turning platform and its object, in the light of a room and of line
 /// lasers.
 ///
-/// A laser's line has a Gaussian profile, 0.8 mm wide (1/e^2), which a pixel integrates and the
-/// lens blurs. Lambert's law holds. Neither what the camera does not see nor what the laser's own
-/// rays do not reach is lit. There are speckle, an object with checks of 8 mm of two shades, whose
-/// hue goes once round its axis, shot and read noise, and a lamp that flickers by 2 % from picture
-/// to picture. There is no light that scatters, and no gloss. Its lens does not distort.
+/// A laser's line has a Gaussian profile, 0.8 mm wide (1/e^2), which is integrated over a pixel's
+/// area and blurred by the lens. Surfaces are Lambertian. A line is visible where both the camera
+/// and the laser's own rays reach the surface. The object has checks of 8 mm of two shades, and its
+/// hue makes one turn about its axis. There are speckle, shot and read noise, and a lamp that
+/// flickers by 2 % from picture to picture. Scattered light, gloss and lens distortion are not
+/// simulated.
 class LaserScene {
  public:
   explicit LaserScene(const LaserSimulation& simulation);
@@ -32,12 +33,12 @@ class LaserScene {
   ColourExposure expose_in_colour(double angle, std::optional<std::size_t> lit);
 
  private:
-  /// What the camera sees at a pixel.
+  /// The surface at a pixel.
   struct Patch {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();   // metres, optical frame
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // of length one, towards the camera
     double albedo = 0;
-    /// How much blue and red differ from luminance, for each level of that (U and V of BT.601).
+    /// Colour difference of blue and of red, relative to the luminance (U and V of BT.601).
     Eigen::Vector2f tint = Eigen::Vector2f::Zero();
     bool is_seen = false;
   };
@@ -54,11 +55,11 @@ class LaserScene {
   PlacedObject object_;
   WhiteNoise noise_;
   InverseDepth background_;
-  std::vector<LaserFan> fans_at_rest_ = {};  // that meet what does not turn
+  std::vector<LaserFan> fans_at_rest_ = {};  // without the object
   std::vector<LaserFan> fans_ = {};
   InverseDepth seen_ = {};
   std::vector<float> room_light_ = {};       // grey levels
-  std::vector<Eigen::Vector2f> tints_ = {};  // of its pixels
+  std::vector<Eigen::Vector2f> tints_ = {};  // of the pixels
   Eigen::Isometry3d object_from_sensor_ = Eigen::Isometry3d::Identity();
   double angle_ = 0;
   std::uint32_t pictures_ = 0;

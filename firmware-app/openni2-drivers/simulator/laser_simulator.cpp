@@ -21,7 +21,7 @@ std::vector<std::uint8_t> distorted_colours(const std::vector<Rgb>& colours,
   return distorted(std::span(colours.data()->data(), 3 * colours.size()), 3, simulation);
 }
 
-/// A scene, or a board before it, as a lens shows it.
+/// A scene, or a board in front of it, through a lens with distortion.
 class SceneThroughLens final : public LaserSimulator {
  public:
   explicit SceneThroughLens(const LaserSimulation& simulation)

@@ -5,8 +5,8 @@
 namespace octurn {
 
 Eigen::Vector2d ray_at(const LaserSimulation& simulation, double u, double v) {
-  constexpr int steps = 15;       // of a lens of a camera: each leaves less than a tenth
-  constexpr double small = 1e-9;  // of the ray: less than a millionth of a pixel
+  constexpr int steps = 15;       // each leaves less than a tenth of the error of a camera's lens
+  constexpr double small = 1e-9;  // change of the ray: less than a millionth of a pixel
   const Intrinsics& lens = simulation.lens;
   const Eigen::Vector2d shown((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy);
   Eigen::Vector2d ray = shown;

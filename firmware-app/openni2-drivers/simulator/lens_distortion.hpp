@@ -10,11 +10,11 @@
 
 namespace octurn {
 
-/// The ray (x, y, 1) that the simulated lens shows at a pixel.
+/// The ray (x, y, 1) of a pixel: inverts the simulated lens's distortion by fixed-point iteration.
 Eigen::Vector2d ray_at(const LaserSimulation& simulation, double u, double v);
 
-/// What the simulated lens makes of the picture of one without distortion: black where that shows
-/// nothing.
+/// Distorts the picture of a lens without distortion like the simulated lens; black outside of that
+/// picture.
 /// @param samples   of a picture of the lens's size, row by row
 /// @param channels  samples of a pixel
 std::vector<std::uint8_t> distorted(std::span<const std::uint8_t> samples, std::size_t channels,

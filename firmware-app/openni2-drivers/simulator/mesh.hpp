@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// Triangles on shared vertices, metres.
+/// An indexed triangle mesh, metres.
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices = {};
   std::vector<std::array<std::uint32_t, 3>> triangles = {};

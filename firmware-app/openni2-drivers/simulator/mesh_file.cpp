@@ -25,7 +25,7 @@ constexpr float max_coordinate = 10.0F;  // metres; a larger object stands on no
               "Give an STL file, binary or text, in millimetres, Z up.");
 }
 
-/// The words of a text, with their line numbers for messages.
+/// Splits a text into words and counts its lines for error messages.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -151,7 +151,7 @@ void check(const Mesh& mesh, const std::string& name) {
   }
 }
 
-/// The number of facets that the header of a binary STL promises, if there is a header.
+/// The number of facets that the header of a binary STL declares, if there is a header.
 std::optional<std::uint32_t> promised_facets(std::string_view bytes) {
   if (bytes.size() < facets_at) {
     return std::nullopt;

@@ -14,8 +14,8 @@ Mesh read_mesh(const std::string& file);
 /// The same from a file's bytes. @param name  of the file, for messages
 Mesh parse_mesh(std::string_view bytes, const std::string& name);
 
-/// Moves a mesh onto the platform: its bounding box's middle on the axis, its lowest point on the
-/// surface. A mesh that is too large stays too large.
+/// Moves a mesh onto the platform: its bounding box's centre to the axis, its lowest point to the
+/// surface. Does not scale it.
 void stand_on_platform(Mesh& mesh);
 
 }  // namespace octurn

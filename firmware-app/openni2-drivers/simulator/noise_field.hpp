@@ -7,16 +7,16 @@
 namespace octurn {
 
 /// Random numbers over the picture, close to normally distributed with mean 0 and variance 1. They
-/// are correlated as a Kinect's errors are: it correlates windows of about 9 x 3 pixels, and
-/// neighbours share most of their windows.
+/// are spatially correlated like a Kinect's errors: a Kinect matches windows of about 9 x 3 pixels,
+/// and the windows of neighbours overlap.
 ///
-/// The field is larger than the picture, so that every frame can look at another part of it.
+/// The field is larger than the picture, so that every frame can use another part of it.
 class NoiseField {
  public:
   explicit NoiseField(std::uint32_t seed);
 
-  /// One row of a picture that looks at part `part` of the field, `width` = 640 values in units of
-  /// 1/`one`. Parts are drawn at random: any two of them share few places, or none.
+  /// Row `v` of part `part` of the field: 640 values in units of 1/`one`. Parts drawn at random
+  /// rarely coincide: a pixel gets another value in each.
   std::span<const std::int8_t> row(std::uint32_t part, int v) const;
 
   static constexpr float one = 25.0F;
@@ -27,7 +27,7 @@ class NoiseField {
   std::vector<std::int8_t> values_;
 };
 
-/// A well mixed number for each pair, to draw parts by (the finaliser of Murmur3).
+/// Hashes a pair of numbers by the finaliser of MurmurHash3; for random numbers.
 std::uint32_t mixed(std::uint32_t seed, std::uint32_t number);
 
 }  // namespace octurn

@@ -7,10 +7,10 @@
 namespace octurn {
 namespace {
 
-// No two poses are alike, nor nearly so: golden angles spread best (Vogel 1979).
+// Multiples of the golden angle spread evenly (Vogel 1979), so that no two poses are nearly alike.
 constexpr double golden_deg = 137.508;
 constexpr double first_tip_deg = 100;  // of pose 1, about a horizontal axis
-constexpr double more_tip_deg = 25;    // of each pose after it
+constexpr double more_tip_deg = 25;    // added by each further pose
 
 }  // namespace
 

@@ -6,11 +6,11 @@
 
 namespace octurn {
 
-/// Where an object lies that a person has turned over: tipped by more than a right angle, turned
-/// about the platform's axis, a little aside of its centre, and touching its surface.
+/// The pose of an object that a person has turned over: tipped about a horizontal axis, turned
+/// about the platform's axis, moved a little off its centre, and touching its surface.
 ///
-/// @param object  as it stands at first, in the platform's frame at angle 0, metres
-/// @param pose    which way: each number another one; 0: as it stands at first
+/// @param object  in its initial pose, in the platform's frame at angle 0, metres
+/// @param pose    number of the pose; 0 is the initial one
 Eigen::Isometry3d platform_from_object(const Mesh& object, int pose);
 
 }  // namespace octurn

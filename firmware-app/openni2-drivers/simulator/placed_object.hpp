@@ -16,7 +16,7 @@ class PlacedObject {
   const Mesh& mesh() const { return mesh_; }
 
   /// Turns the object over. @param pose  as of `platform_from_object`
-  /// @return false if it lies so already
+  /// @return false if it has this pose already
   bool lay(int pose);
 
   /// @param angle  of the platform, radians, counter-clockwise seen from above
@@ -24,11 +24,11 @@ class PlacedObject {
 
  private:
   Mesh mesh_;
-  int pose_ = 0;  // in which it lies
+  int pose_ = 0;  // number of the current pose
   Eigen::Isometry3d platform_from_object_ = Eigen::Isometry3d::Identity();
 };
 
-/// The object that a simulated rig is told to show.
+/// Reads the object of a simulated rig and places it on the platform.
 /// @param mesh_file  STL in millimetres, Z up; empty: the simulator's own object
 /// @throws Error "mesh-malformed"
 Mesh told_object(const std::string& mesh_file);

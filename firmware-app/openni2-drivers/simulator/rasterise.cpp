@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float nearest = 0.05F;  // metres; a plane in front of the pinhole, where projection holds
+constexpr float nearest = 0.05F;  // distance of the near plane, metres
 
 /// A triangle's corner on the picture: u, v and inverse depth.
 using Corner = Vector3f;
@@ -91,7 +91,7 @@ class Canvas {
 
  private:
   static constexpr float smallest =
-      1e-7F;                             // square pixels; twice the area of what is worth drawing
+      1e-7F;                             // square pixels; twice the area of a degenerate triangle
   static constexpr float slack = 1e-3F;  // square pixels: rounding must not open seams
 
   /// The first pixel whose centre is not before `min`.

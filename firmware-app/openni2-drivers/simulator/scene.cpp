@@ -16,14 +16,14 @@ constexpr double baseline = 0.075;  // metres from the camera to the projector, 
 constexpr int wider = 116;  // pixels; f b / 0.37 m
 constexpr Intrinsics projector = {.width = camera.width + wider, .cx = camera.cx + wider};
 
-/// True where the projector's light falls. Its picture holds the surface that the light meets
-/// first.
+/// Whether the projector lights a point, by shadow mapping: the projector's picture is the inverse
+/// depth of the first surface along each of its rays.
 bool is_lit(const float* projector_row, int u, float inverse_depth) {
   constexpr auto shift = static_cast<float>(camera.fx * baseline);
-  constexpr float slack = 0.0025F;  // 1/m, 1 mm at 0.65 m: surfaces must not shade themselves
+  constexpr float slack = 0.0025F;  // 1/m, 1 mm at 0.65 m: surfaces must not shadow themselves
   const float column = static_cast<float>(u + wider) - shift * inverse_depth;
   if (!(column >= 0)) {
-    return true;  // nearer than the projector's picture and the sensor's range reach
+    return true;  // outside of the projector's picture: nearer than the sensor's range
   }
   const auto left = static_cast<int>(column);
   const float blocking = std::min(projector_row[left], projector_row[left + 1]);

@@ -10,22 +10,21 @@
 
 namespace octurn {
 
-/// A turning platform (a disc of 150 mm radius, 12.7 mm thick) with an object on it, on a table
-/// before a wall, and the two eyes of a Kinect v1 that looks at it: a camera, and a projector
-/// 75 mm to its right. Where the projector's light does not reach there is no depth, so objects
-/// throw a shadow to the left.
+/// A turning platform (a disc of 150 mm radius, 12.7 mm thick) with an object on it, on a table in
+/// front of a wall, before a Kinect v1: a camera, and a projector 75 mm to its right. Surfaces that
+/// the projector does not light have no depth, so objects throw a shadow to the left.
 class Scene {
  public:
   /// @param object  in the platform's frame at angle 0, metres
-  /// @param platform_from_sensor  where the sensor stands in truth
+  /// @param platform_from_sensor  the sensor's true pose
   explicit Scene(Mesh object,
                  const Eigen::Isometry3d& platform_from_sensor = nominal_platform_from_sensor());
 
-  /// A wall instead, and nothing else. @param distance  metres; the sensor looks squarely at it
+  /// Makes a scene of a wall only. @param distance  metres; the sensor looks squarely at the wall
   static Scene of_wall(double distance);
 
   /// Turns the object over. @param pose  as of `platform_from_object`
-  /// @return false if it lies so already
+  /// @return false if it has this pose already
   bool lay_object(int pose) { return object_.lay(pose); }
 
   /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
@@ -33,7 +32,7 @@ class Scene {
   InverseDepth lit_at(double angle) const;
 
  private:
-  /// @param around  what does not turn, in the platform's frame
+  /// @param around  the surroundings, which do not turn, in the platform's frame
   Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor);
 
   PlacedObject object_;

@@ -11,14 +11,15 @@ namespace {
 
 constexpr double readings = 0.8;               // root mean square
 constexpr double correlation = 50;             // pixels, to 1/e
-constexpr double changing = 0.4;               // of the pattern, between 0.65 and 0.9 m
+constexpr double changing = 0.4;               // share that differs between 0.65 and 0.9 m
 constexpr double change = 1 / 0.65 - 1 / 0.9;  // 1/m
 constexpr std::uint32_t waves = 80;
-constexpr int grid = 4;  // pixels between places that are computed: waves are 80 pixels and longer
+constexpr int grid = 4;  // pixels between computed samples: waves are 80 pixels and longer
 
 /// A random, smooth field: the sum of waves in random directions whose wave numbers are drawn so
 /// that the field's correlation is exp(-(d / correlation)^2) ("random Fourier features", Rahimi and
-/// Recht 2007). Its root mean square is 1. On every fourth pixel along both axes, and one beyond.
+/// Recht 2007). Its root mean square is 1. Sampled every `grid` pixels, and once beyond the
+/// picture.
 std::vector<float> smooth_field(std::uint32_t seed) {
   constexpr int columns = camera.width / grid + 1;
   constexpr int rows = camera.height / grid + 1;
@@ -52,7 +53,7 @@ std::vector<float> smooth_field(std::uint32_t seed) {
   return field;
 }
 
-/// Bilinear between the places of a smooth field.
+/// Interpolates a smooth field bilinearly.
 float value_at(const std::vector<float>& field, int u, int v) {
   constexpr int columns = camera.width / grid + 1;
   const float* corner = field.data() + static_cast<std::ptrdiff_t>(v / grid) * columns + u / grid;

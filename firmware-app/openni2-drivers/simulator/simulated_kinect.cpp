@@ -18,7 +18,7 @@ constexpr int blind_columns =
 enum Part : std::uint32_t { pattern_part, edge_u_part, edge_v_part, loss_part, parts };
 
 constexpr float fixed_share =
-    0.2F;  // of the noise's variance is fixed while the scene stands still
+    0.2F;  // of the noise's variance, constant while the scene stands still
 constexpr float never_lost = 1e9F;
 
 /// Noise moves edges by this many pixels (standard deviation), and by `longest_move` at most.
@@ -36,7 +36,7 @@ float spread_of(const Surface& surface) {
   return at_depth * (1 + 0.02F * tangent_squared);
 }
 
-/// The noise at which a pixel is lost, standard deviations.
+/// The noise above which a pixel has no depth, standard deviations.
 float patience_of(const Surface& surface) {
   constexpr float usual = 4.5F;
   constexpr float at_edge = 1.4F;       // a twelfth of the pixels there is lost

@@ -11,12 +11,12 @@
 
 namespace octurn {
 
-/// A Kinect v1 that looks at a scene: 11-bit readings, their noise, lost edges and grazing
-/// surfaces, and no depth in the last 8 columns.
+/// A Kinect v1 in front of a scene: 11-bit readings with noise, without depth at some edges, on
+/// grazing surfaces and in the last 8 columns.
 ///
-/// Its errors have three parts: one that is new in every frame; one that belongs to the place of
-/// the projector's light that falls on a surface, so that it stays as long as the scene does; and
-/// the sensor's own pattern, which stays for ever, and changes with distance.
+/// Its errors have three parts: temporal noise, new in every frame; noise of the projected speckles
+/// that fall on a surface, constant while the scene stands still; and the sensor's fixed pattern,
+/// which never changes and depends on distance.
 ///
 /// Planes of 40 x 40 pixels in eight frames of a real Kinect v1 and in simulated ones
 /// (kinect_noise_test compares them):
@@ -27,16 +27,16 @@ namespace octurn {
 ///     and along columns                            0.50 0.26 0.01 -0.08    0.49 0.24 -0.01 -0.01
 ///     share of upper edges that lose no pixel      0.89                    0.83
 ///
-/// Every depth lies on the steps of 11-bit readings. On the platform at 0.65 m one frame errs by
-/// 1.12 mm (root mean square), the mean of ten by 0.57 and of thirty by 0.51 mm. Its pattern adds a
-/// millimetre.
+/// Depth is quantised by the 11-bit readings. On the platform at 0.65 m the error of one frame is
+/// 1.12 mm (root mean square), of the mean of ten 0.57 mm and of thirty 0.51 mm. The fixed pattern
+/// adds a millimetre.
 class SimulatedKinect {
  public:
-  /// @param scene   that it looks at
-  /// @param seed    of the noise
-  /// @param noise   times a real Kinect's; at 0 readings are only rounded, and nothing is lost
-  ///                but what lies in shadow
-  /// @param pattern  times a real Kinect's; 0: it has none
+  /// @param scene    in front of the sensor
+  /// @param seed     of noise and pattern
+  /// @param noise    factor of a real Kinect's; 0: readings are only rounded, and depth is missing
+  ///                 only in shadow and in the last columns
+  /// @param pattern  factor of a real Kinect's fixed pattern; 0: none
   SimulatedKinect(Scene scene, std::uint32_t seed, double noise, double pattern);
 
   /// Turns the sensor to a wall, and away from its scene. @param distance  metres; 0: back again
@@ -47,15 +47,15 @@ class SimulatedKinect {
 
   /// Takes one frame: 640 x 480 depths in tenths of a millimetre, 0 for none.
   /// @param angle  of the platform, radians
-  /// @param frame  its number: the same gives the same noise
+  /// @param frame  index of the frame, which determines its noise
   void expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth);
 
  private:
-  /// A pixel's view while the platform stands still.
+  /// A pixel's reading and its noise while the platform stands still.
   struct Pixel {
     float reading = 0;   // before it is rounded
     float spread = 0;    // standard deviation from frame to frame, over NoiseField::one
-    float patience = 0;  // the pixel is lost where noise exceeds it, times NoiseField::one
+    float patience = 0;  // noise above which the pixel has no depth, times NoiseField::one
   };
 
   struct Rectangle {
@@ -76,7 +76,7 @@ class SimulatedKinect {
   float noise_;
   NoiseField field_;
   SensorPattern pattern_;
-  std::vector<std::uint16_t> depth_table_;  // of readings
+  std::vector<std::uint16_t> depth_table_;  // depth of each reading
   double angle_ = 0;
   double wall_ = 0;  // metres; 0: it looks at its scene
   InverseDepth lit_;

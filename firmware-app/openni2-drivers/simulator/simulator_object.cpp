@@ -18,7 +18,7 @@ double sphere(const Vector3d& p, const Vector3d& centre, double radius) {
   return (p - centre).norm() - radius;
 }
 
-/// A segment with a round end, `radius` thick.
+/// A line segment from `a` to `b`, thickened by `radius`.
 double capsule(const Vector3d& p, const Vector3d& a, const Vector3d& b, double radius) {
   const Vector3d axis = b - a;
   const double along = std::clamp((p - a).dot(axis) / axis.squaredNorm(), 0.0, 1.0);

@@ -13,9 +13,9 @@ namespace octurn {
 /// The state that a simulated device shares with its stream.
 struct DeviceState {
   std::atomic<double> angle = 0;     // of the platform, radians
-  std::atomic<double> wall = 0;      // metres, that it is turned to; 0: none
-  std::atomic<int> object_pose = 0;  // which way the object lies
-  std::atomic<int> periods = 0;      // of frames, since the device was opened
+  std::atomic<double> wall = 0;      // metres to the wall that the sensor faces; 0: none
+  std::atomic<int> object_pose = 0;  // number of the object's pose
+  std::atomic<int> periods = 0;      // frame periods since the device was opened
   std::atomic<bool> is_lost = false;
 };
 

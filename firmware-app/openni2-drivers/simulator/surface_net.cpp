@@ -9,8 +9,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// The distance at the corners of a lattice of cells. In a block of cells that the surface cannot
-/// reach, all corners hold the distance at the block's middle: the sign is right.
+/// The signed distance at the corners of a lattice of cells. In a block of cells without surface
+/// all corners hold the distance at the block's centre, which has the right sign.
 class Lattice {
  public:
   Lattice(const SignedDistance& distance, const Eigen::AlignedBox3d& bounds, double cell)
@@ -79,7 +79,8 @@ Vector3d gradient(const SignedDistance& distance, const Vector3d& at, double val
   return result;
 }
 
-/// Newton's steps along the gradient, each at most a cell long, until a 100,000th of it is left.
+/// Moves a point onto the surface by Newton steps along the gradient, each at most a cell long,
+/// until it is within a 100,000th of a cell.
 Vector3d onto_surface(const SignedDistance& distance, Vector3d at, double cell) {
   constexpr int max_steps = 4;
   double value = distance(at);
@@ -91,7 +92,8 @@ Vector3d onto_surface(const SignedDistance& distance, Vector3d at, double cell) 
   return at;
 }
 
-/// The mean of the points where the surface crosses the edges of a cell, in cells; nothing if none.
+/// Computes the mean of the points where the surface crosses the edges of a cell, in cells.
+/// @return false if it crosses none
 bool crossing_of(const Lattice& lattice, const Vector3i& cell, Vector3d& mean) {
   if (std::abs(lattice(cell)) > lattice.beyond_a_cell()) {
     return false;

@@ -7,7 +7,8 @@
 
 namespace octurn {
 
-/// Metres, negative inside, and nowhere farther from 0 than the surface is from the point.
+/// A signed distance, metres, negative inside. Its magnitude is at most the distance to the
+/// surface.
 using SignedDistance = std::function<double(const Eigen::Vector3d&)>;
 
 /// Meshes the surface where a signed distance is 0, by surface nets (Gibson 1998, "Constrained
@@ -17,7 +18,7 @@ using SignedDistance = std::function<double(const Eigen::Vector3d&)>;
 ///
 /// @param bounds  holds the whole surface, metres
 /// @param cell    side of a cell, metres
-/// Deterministic. Cost grows with the surface, not with the box: cells far from it are passed by.
+/// Deterministic. Cost grows with the surface, not with the box: cells far from it are skipped.
 Mesh surface_net(const SignedDistance& distance, const Eigen::AlignedBox3d& bounds, double cell);
 
 }  // namespace octurn

@@ -8,7 +8,7 @@ namespace octurn {
 void add_rectangle(Mesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vector3f& side,
                    const Eigen::Vector3f& other_side);
 
-/// The platform and what stands behind it, in the platform's frame, metres.
+/// The platform, its table and the wall behind them, in the platform's frame, metres.
 Mesh surroundings();
 
 }  // namespace octurn

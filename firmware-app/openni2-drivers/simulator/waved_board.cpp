@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double square = 0.015;  // metres
 constexpr int columns = 17;
 constexpr int rows = 12;
-constexpr double margin = 0.6;  // of a square
+constexpr double margin = 0.6;  // width of the white border, squares
 
 // Grey levels.
 constexpr double black = 28;
@@ -31,7 +31,7 @@ constexpr int still_pictures = 5;
 constexpr int moving_pictures = 2;
 constexpr double soft_edge = 1.6;  // pixels, as the lens and a pixel's area blur it
 
-/// Where a board is held: its middle as shares of the picture, its distance, and its turns.
+/// A pose of the board: its centre as fractions of the picture, its distance, and its rotations.
 struct Hold {
   double across = 0.5;
   double down = 0.5;
@@ -96,7 +96,7 @@ Vector2d met_by(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray)
   return (from - way * (from.z() / way.z())).head<2>();
 }
 
-/// 1 inside of the even squares, -1 inside of the odd ones, and between them at their border.
+/// 1 inside of the even squares, -1 inside of the odd ones, interpolated at their border.
 /// @param width  of the border, squares
 double parity(double place, double width) {
   const double border = std::round(place);

@@ -9,14 +9,14 @@
 
 namespace octurn {
 
-/// A printed board that is waved before a camera: 12 by 17 squares of 15 mm with a white margin, in
-/// light that falls off to one side, before a grey room. It is held still for five pictures and
-/// moves for two, through places all over the picture, tilted each way.
+/// A printed board that is moved in front of a camera: 12 by 17 squares of 15 mm with a white
+/// margin, in light that falls off to one side, before a grey room. It is held still for five
+/// pictures and moves for two, through poses all over the picture that are tilted each way.
 class WavedBoard {
  public:
   explicit WavedBoard(const LaserSimulation& simulation);
 
-  /// @param number  of the picture since the board is shown, from 0
+  /// @param number  index of the picture since the board appeared
   Picture picture(int number) const;
 
  private:

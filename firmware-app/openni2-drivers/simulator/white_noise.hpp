@@ -11,8 +11,9 @@ class WhiteNoise {
  public:
   explicit WhiteNoise(std::uint32_t seed);
 
-  /// The number at a place of a sequence. Sequences begin at places of one table that are drawn at
-  /// random. @param place  below 8192
+  /// The number at a place of a sequence. All sequences are parts of one table.
+  /// @param sequence  a random number, which determines where in the table the sequence starts
+  /// @param place     below 8192
   float at(std::uint32_t sequence, std::size_t place) const {
     return values_[((sequence * std::size_t{7919}) + place) % values_.size()];
   }

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The defaults; as a service of systemd, `data` is the folder of its StateDirectory=.
+/// Returns the defaults. In a systemd unit, `data` is the folder that StateDirectory= assigns.
 Config defaults() {
   Config config;
   if (const char* state = std::getenv("STATE_DIRECTORY"); state != nullptr && *state != '\0') {
@@ -23,7 +23,7 @@ Config defaults() {
   return config;
 }
 
-/// The sensor's settings come first: what a scan has by default depends on it.
+/// Reads the sensor's settings first, because other defaults depend on the kind of sensor.
 Config config_from(const json& object, const std::optional<SensorKind>& sensor) {
   JsonObject keys(object, ErrorCode::bad_config, "");
   Config config = defaults();

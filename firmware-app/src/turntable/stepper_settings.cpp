@@ -25,18 +25,18 @@ constexpr std::array<Microstepping, 5> microsteppings = {{{1, {false, false, fal
 
 constexpr int max_full_steps = 1000;
 constexpr double max_ratio = 1000;
-// Steps a second. Slower, a stop request would wait for more than a frame of the sensor; faster,
-// Linux is no longer on time.
+// Steps a second. Below the minimum a stop request would wait for longer than a frame of the
+// sensor; above the maximum Linux does not wake up in time.
 constexpr double min_speed = 40;
 constexpr double max_speed = 5000;
 constexpr double max_ramp = 1e6;
-constexpr int min_steps = 4;  // a quarter turn for each: fewer is no turntable
+constexpr int min_steps = 4;  // in a turn: fewer are no turntable
 constexpr int max_steps = 16'000'000;
 constexpr int max_settle_ms = 10'000;
-constexpr int min_idle_s = 10;  // a stop of a scan takes 3 s, with the most frames
+constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames
 constexpr int max_idle_s = 24 * 3600;
 
-/// The keys of the lines of `lines_of`, in its order.
+/// The settings' keys of the lines that `lines_of` returns, in the same order.
 constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_line",
                                                   "enable_line",     "microstep_lines",
                                                   "microstep_lines", "microstep_lines"};

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::array verdicts{Verdict::good, Verdict::look, Verdict::bad};
 
-/// Whole millimetres.
+/// JSON of places, rounded to whole millimetres.
 json to_places_mm(const std::vector<Eigen::Vector3d>& places) {
   json rows = json::array();
   for (const Eigen::Vector3d& place : places) {

@@ -7,10 +7,10 @@
 
 namespace octurn {
 
-/// A verdict as the API and `job.json` have it.
+/// JSON of a verdict, for the API and `job.json`.
 nlohmann::json to_json(const Quality& quality);
 
-/// The verdict of such JSON. @throws Error  of the value's code
+/// Parses that JSON. @throws Error  with the code of `object`
 Quality to_quality(const JsonValue& object);
 
 }  // namespace octurn

@@ -17,17 +17,17 @@
 
 namespace octurn {
 
-/// Opens a camera and the GPIO lines of its lasers, which are off.
+/// Opens a camera and the GPIO lines of its lasers, with the lasers off.
 /// @throws Error "sensor-missing", "sensor-failed"
 CameraAndLasers open_camera_and_lasers(const LaserSettings& settings);
 
 /// The devices to scan with.
 struct RigOptions {
-  std::string sensor_uri = {};                  ///< for OpenNI2
-  double speed = 1.0;                           ///< of a simulated rig, relative to life
-  std::optional<StepperSettings> stepper = {};  ///< of the real turntable; none: it is simulated
-  double platform_angle_deg = 0;                ///< at the beginning
-  /// Of a camera with line lasers, in place of a depth sensor.
+  std::string sensor_uri = {};                  ///< device URI of OpenNI2
+  double speed = 1.0;                           ///< of a simulated rig, relative to real time
+  std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
+  double platform_angle_deg = 0;                ///< initial angle
+  /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
   /// Functions that open the devices; tests replace them.
   std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> open_sensor =
@@ -36,8 +36,8 @@ struct RigOptions {
   std::function<CameraAndLasers(const LaserSettings&)> open_camera = open_camera_and_lasers;
 };
 
-/// The sensor, or a camera with its lasers in place of it, and the turntable under it. Used by one
-/// thread at a time.
+/// The sensor, or a camera with lasers in its place, and the turntable. Used by one thread at a
+/// time.
 class Rig {
  public:
   explicit Rig(RigOptions options);
@@ -49,17 +49,17 @@ class Rig {
   /// "sensor-other" if the rig has a camera with lasers
   DepthSensor& sensor();
 
-  /// What the rig is told of its camera and lasers; null if it has a depth sensor.
+  /// Settings of the camera and the lasers; null if the rig has a depth sensor.
   const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
 
-  /// Replaces the told lens of the rig's camera.
+  /// Replaces the lens in the camera's settings.
   void use_lens(const CameraLens& lens);
 
-  /// From now on the rig is told another pose of its camera, and other planes of its lasers.
-  /// @param lasers  by their names; one that is not among them has the plane that it had
+  /// Replaces the camera's pose and the lasers' planes in the settings.
+  /// @param lasers  matched by name; a laser that is missing keeps its plane
   void use_pose(const Eigen::Isometry3d& platform_from_sensor, const std::vector<Laser>& lasers);
 
-  /// Opens the camera if it is closed, and with it the lines of its lasers.
+  /// Opens the camera if it is closed, and with it the GPIO lines of its lasers.
   /// @throws Error  as `open_camera_and_lasers`
   Camera& camera();
   Lasers& lasers();
@@ -71,7 +71,7 @@ class Rig {
   /// again.
   void close_sensor();
 
-  /// When the sensor was opened, and began to warm up; nothing while it is closed.
+  /// When the sensor was opened, and began to warm up; nullopt while it is closed.
   std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
     return sensor_ || camera_ ? std::optional(sensor_since_) : std::nullopt;
   }
@@ -96,7 +96,7 @@ class Rig {
  private:
   RigOptions options_;
   int object_pose_ = 0;
-  double closed_angle_deg_;     // the platform's, when the turntable was closed
+  double closed_angle_deg_;     // the platform's angle when the turntable was closed
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;
   std::unique_ptr<DepthSensor> sensor_;

@@ -32,11 +32,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto wait_interval = std::chrono::milliseconds(500);
 
-/// The angle that a reader of scan.json gets, to the last bit: a model built from the folder later
-/// has the same bytes.
+/// Rounds an angle as scan.json does, which has degrees: a model built from the folder later has
+/// the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
 
-/// One scan on its way, or one more attempt at it.
+/// One attempt at a scan, from its next stop to its model.
 class Run {
  public:
   Run(const ScanSettings& settings, const Limits& limits, const std::filesystem::path& folder,
@@ -52,7 +52,7 @@ class Run {
         check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
-  /// @return false if stopped first, as the two that take one do
+  /// @return false if stopped first; so do `take_depth` and `take_lines`
   bool take_snapshots();
   std::vector<CalibrationFinding> calibrate();
   std::optional<Model> build(Clock::time_point captured,
@@ -80,10 +80,10 @@ class Run {
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
   FittingReconstruction reconstruction_;
-  PoseChecks check_;          // of the snapshots that the reconstruction was given
-  int added_ = 0;             // snapshots that the reconstruction was given
+  PoseChecks check_;          // of the snapshots added to the reconstruction
+  int added_ = 0;             // snapshots added to the reconstruction
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
-  EarlyModel early_;          // with the pose that is in force, while another is solved
+  EarlyModel early_;          // with the configured pose, while another is solved
 };
 
 bool Run::take_snapshots() {
@@ -126,7 +126,7 @@ bool Run::take_depth(const Stop& at, double angle) {
   return true;
 }
 
-/// The first stop's surface ends at the last stop's lines: the model waits for these.
+/// Adds lines to the preview only: the model's first surface ends at the last stop's lines.
 bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
   if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
     return false;
@@ -135,7 +135,7 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
   return true;
 }
 
-/// Adds what was stored before: in the order in which it was taken, and while the platform turns.
+/// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
 void Run::resume() {
   expect_same_rig(scan_, settings_, rig_);
   if (!scan_.laser) {
@@ -150,8 +150,8 @@ void Run::add_stored() {
   });
 }
 
-/// Solves the sensor's pose from the snapshots. Where that is another than the told one, what was
-/// built is given up.
+/// Solves the sensor's pose from the snapshots. If it replaces the configured one, the
+/// reconstruction starts again.
 std::vector<CalibrationFinding> Run::calibrate() {
   if (settings_.pose == PoseSource::told || scan_.solved) {
     return {};
@@ -179,7 +179,7 @@ SnapshotSource Run::checked() {
   return checked_snapshots(readable_snapshots(folder_, scan_, stop_), check_);
 }
 
-/// Adds all snapshots as they are stored.
+/// Adds all stored snapshots again, with the pose of `scan_`.
 void Run::rebuild() {
   observer_.on_progress(Phase::rebuilding, done());
   const auto read = std::make_shared<std::atomic<int>>(0);
@@ -195,8 +195,8 @@ void Run::rebuild() {
   observer_.on_rebuilt(done());
 }
 
-/// @param tell  called now and then
-/// @return false if it did not fit: the reconstruction is a coarser one, to which nothing was added
+/// @param tell  called every `wait_interval`
+/// @return false if memory was exceeded: the reconstruction is then coarser, and empty
 template <typename Tell>
 bool Run::wait_for_added(Tell tell) {
   while (adding_.valid() && adding_.wait_for(wait_interval) != std::future_status::ready) {
@@ -217,20 +217,20 @@ bool Run::wait_for_added(Tell tell) {
 template <typename Add>
 void Run::add(Add add_to) {
   if (!wait_for_added([this] { observer_.on_wait(); })) {
-    add_stored();  // what is to be added among it
+    add_stored();  // including the new snapshot
     return;
   }
   added_ = done();
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
     add_to(*reconstruction_);
-    if (done < settings_.snapshots && !stop_.stop_requested()) {  // else comes the model itself
+    if (done < settings_.snapshots && !stop_.stop_requested()) {  // the model itself is next
       observer_.on_added(*reconstruction_, done);
     }
   });
 }
 
-/// Adds what is missing and writes the model, a coarser one where it does not fit.
-/// @return nothing if stopped first
+/// Adds missing snapshots and writes the model; makes it coarser while it exceeds the memory.
+/// @return nullopt if stopped first
 std::optional<ModelReport> Run::write() {
   for (;;) {
     if (added_ < done()) {
@@ -241,7 +241,7 @@ std::optional<ModelReport> Run::write() {
       continue;
     }
     if (stop_.stop_requested()) {
-      return std::nullopt;  // before all was added
+      return std::nullopt;  // not all snapshots were added
     }
     try {
       return early_.has_begun()
@@ -255,8 +255,8 @@ std::optional<ModelReport> Run::write() {
   }
 }
 
-/// Writes the model; where the octree did not fit in memory as a whole, the snapshots are read
-/// again for each part.
+/// Writes the model and rates it. Where the volume does not fit into memory as a whole, the
+/// snapshots are read again for each part.
 /// @param captured  when the last snapshot was stored
 /// @param findings  of the calibration
 std::optional<Model> Run::build(Clock::time_point captured,
@@ -267,7 +267,7 @@ std::optional<Model> Run::build(Clock::time_point captured,
   }
   Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
   reconstruction_.tell(quality);
-  report->places = {};  // a job's figures are copied for each look at them
+  report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),
                .build_time = Clock::now() - captured,
                .quality = std::move(quality)};

@@ -28,7 +28,7 @@ bool is_plain(char c) {
          c == '_';
 }
 
-/// The names of the files of a scan, in an order that is always the same.
+/// Lists the files of a scan, sorted, so that its archive is reproducible.
 std::vector<std::string> files_of(const fs::path& scan) {
   std::vector<std::string> files(single_files.begin(), single_files.end());
   for (const std::string& name : names_in(scan / snapshots)) {

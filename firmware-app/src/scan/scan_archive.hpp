@@ -5,7 +5,7 @@
 
 namespace octurn {
 
-/// Whether a scan's archive may have a file of that name: `scan.json`, `job.json`, `name.txt`,
+/// Whether a scan's archive may contain a file of that name: `scan.json`, `job.json`, `name.txt`,
 /// `notes.txt`, `sensor-map.png`, and PNGs in `snapshots/`.
 bool is_scan_file(std::string_view name);
 
@@ -14,8 +14,8 @@ bool is_scan_file(std::string_view name);
 /// @throws Error "disk-full", "write-failed", "read-failed"
 void write_scan_archive(const std::filesystem::path& scan, const std::filesystem::path& archive);
 
-/// Unpacks such an archive into a folder that exists, and reads it to its last snapshot.
-/// @throws Error "bad-request"  if it is no whole scan; "disk-full", "write-failed"
+/// Unpacks such an archive into an existing folder, and checks it by reading every snapshot.
+/// @throws Error "bad-request"  if the scan is incomplete or damaged; "disk-full", "write-failed"
 void read_scan_archive(const std::filesystem::path& archive, const std::filesystem::path& scan);
 
 }  // namespace octurn

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The time and the id of a folder's name; nothing of what is none of the bin's.
+/// Parses a folder's name into time of deletion and id; nullopt for other names.
 std::optional<std::pair<ScanTime, std::string>> parts_of(const std::string& name) {
   const std::size_t dot = name.find('.');
   if (dot == name.npos || !is_scan_id(name.substr(0, dot)) || !is_scan_id(name.substr(dot + 1))) {
@@ -79,7 +79,7 @@ void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {
     throw_data_error(scan, "move into the bin", error);
   }
   if (error) {
-    return;  // somebody has removed its folder: there is nothing to keep
+    return;  // somebody has removed the folder: there is nothing to keep
   }
   sync_folder(folder_);
   sync_folder(scan.parent_path());
@@ -104,7 +104,7 @@ void ScanBin::remove(std::string_view id) {
   const auto binned = find(id);
   const fs::path leaving = folder_ / ("." + std::string(id));
   std::error_code error;
-  // Renamed first: a scan that is half removed is never seen.
+  // Renamed first, so that a partly removed scan is never listed.
   fs::rename(folder_of(binned.value()), leaving, error);
   if (error && error != std::errc::no_such_file_or_directory) {
     throw_data_error(folder_of(*binned), "remove", error);

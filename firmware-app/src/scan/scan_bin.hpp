@@ -23,10 +23,10 @@ struct BinnedScan {
   ScanTime deleted = {};
 };
 
-/// The scans that were deleted: `DATA/bin/<when>.<id>/`, each a scan's folder as it was, under a
-/// name that tells when. A scan comes and goes by renaming its folder, so it is whole at one of the
-/// two places, whenever the power goes. Any thread may look; what changes the bin is called by one
-/// thread at a time.
+/// The deleted scans: `DATA/bin/<when>.<id>/`, each an unchanged scan folder, named after the time
+/// of deletion. Scans are moved by renaming their folders: after a power cut, a scan is complete in
+/// one of the two places. Const functions are thread-safe; the others are called by one thread at a
+/// time.
 class ScanBin {
  public:
   /// Completes interrupted removals, and reads the bin.
@@ -34,31 +34,31 @@ class ScanBin {
   ScanBin(std::filesystem::path folder,
           const std::function<Job(const std::filesystem::path& folder)>& load);
 
-  /// The last deleted scan first.
+  /// Lists the scans, last deleted first.
   std::vector<BinnedScan> list() const;
   std::optional<BinnedScan> find(std::string_view id) const;
   bool is_empty() const;
 
-  /// The newest id of a scan in it; empty if there is none.
+  /// Returns the newest id of a scan in the bin; empty if there is none.
   std::string newest_id() const;
 
-  /// Takes a scan in. @throws Error "data-failed", "disk-full"
+  /// Moves a scan into the bin. @throws Error "data-failed", "disk-full"
   void take(const std::filesystem::path& scan, const Job& job, ScanTime now);
 
-  /// Puts a scan back where it was. @param id  that is here @throws Error "data-failed"
+  /// Moves a scan back to its folder. @param id  of a scan in the bin @throws Error "data-failed"
   void put_back(std::string_view id, const std::filesystem::path& scan);
 
-  /// Removes a scan for good. @param id  that is here @throws Error "data-failed"
+  /// Removes a scan permanently. @param id  of a scan in the bin @throws Error "data-failed"
   void remove(std::string_view id);
 
-  /// Removes what was deleted before a time.
+  /// Removes the scans that were deleted before a time.
   void remove_before(ScanTime time);
 
  private:
   std::filesystem::path folder_of(const BinnedScan& scan) const;
 
   std::filesystem::path folder_;
-  mutable std::mutex mutex_;  // guards scans_, and is never held while the disk is used
+  mutable std::mutex mutex_;  // guards scans_; never held during disk access
   std::map<std::string, BinnedScan, std::less<>> scans_;  // by id
 };
 

@@ -9,28 +9,28 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::size_t max_looked_at = 5;  // of the scans that are most like the one to come
+constexpr std::size_t max_looked_at = 5;  // number of most similar earlier scans
 
-// Before any scan was made: a Kinect's rate, and what a simulated rig takes for the rest.
+// Defaults before the first scan: a Kinect's frame rate; the others are a simulated rig's.
 constexpr double rate_hz = 30;
 constexpr Seconds unmeasured_stop{0.7};
 constexpr Seconds unmeasured_model{1.0};
 constexpr Seconds unmeasured_snapshot{0.1};
 constexpr double unmeasured_leaf = 0.001;              // metres
-constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's picture, packed
+constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's depth image, as PNG
 constexpr double unmeasured_model_bytes = 1'500'000;   // with those leaves
 
 int frames_of(const ScanSettings& settings) {
   return settings.filter == DepthFilter::basic ? 1 : settings.frames;
 }
 
-/// How much longer, or larger, a model gets with other leaves.
+/// Ratio of a model's build time, or bytes, between two leaf sizes.
 double growth(double leaf, double measured_leaf) {
   return (measured_leaf / leaf) * (measured_leaf / leaf);
 }
 
-/// Those that are most like what is wanted, the newest first, and of the same likeness.
-/// @param unlikeness  0 where it is the same
+/// Returns the scans with the minimum `unlikeness`, newest first, at most `max_looked_at`.
+/// @param unlikeness  of a scan to the one to estimate; 0 if they are alike
 template <typename Unlikeness>
 std::vector<const EarlierScan*> most_alike(const std::vector<const EarlierScan*>& scans,
                                            Unlikeness unlikeness) {

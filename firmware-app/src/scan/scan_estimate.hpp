@@ -10,18 +10,18 @@ namespace octurn {
 
 /// Expected time and disk space of a scan.
 struct ScanEstimate {
-  std::chrono::duration<double> stop = {};   ///< turning there, and its snapshot
+  std::chrono::duration<double> stop = {};   ///< turning to a stop, and its snapshot
   std::chrono::duration<double> build = {};  ///< from the last snapshot to the model
   std::uint64_t bytes = 0;                   ///< on the disk
-  bool is_measured = false;                  ///< from earlier scans of this machine
+  bool is_measured = false;                  ///< based on earlier scans of this machine
 
-  /// Of the whole scan, with the last look.
+  /// Time of the whole scan, including the last look.
   std::chrono::duration<double> total(int snapshots) const {
     return stop * (snapshots + 1) + build;
   }
 };
 
-/// The figures of a finished scan from which another is estimated.
+/// A finished scan, from which another one is estimated.
 struct EarlierScan {
   Job job = {};
   std::uint64_t snapshot_bytes = 0;  ///< on the disk, of all its snapshots
@@ -36,7 +36,7 @@ struct EarlierScan {
 /// @param earlier  the newest first
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings);
 
-/// The middle value; of an even number the higher one of the two in the middle. @param values  any
+/// Returns the median; for an even count the higher of the two middle values; 0 if there are none.
 std::chrono::duration<double> median(std::vector<std::chrono::duration<double>> values);
 
 }  // namespace octurn

@@ -15,10 +15,10 @@ using ScanTime = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::
 /// part of a path.
 bool is_scan_id(std::string_view text);
 
-/// Date and time of day (UTC), and how far into the second. So ids sort by time.
+/// Formats date and time of day (UTC) and the fraction of the second, so that ids sort by time.
 std::string to_scan_id(ScanTime time);
 
-/// @param id  of that form
+/// Returns the time of an id. @param id  of the form that `is_scan_id` checks
 ScanTime to_time(const std::string& id);
 
 }  // namespace octurn

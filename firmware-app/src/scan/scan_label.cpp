@@ -19,7 +19,7 @@ constexpr std::size_t max_bytes = 16384;
 constexpr std::ptrdiff_t max_name = 100;    // characters
 constexpr std::ptrdiff_t max_notes = 2000;  // characters
 
-/// Of UTF-8 text. Every byte of a character but its first has the bits 10 at its top.
+/// Counts code points of UTF-8 text: all bytes but continuation bytes, which begin with bits 10.
 std::ptrdiff_t count_characters(std::string_view text) {
   return std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });

@@ -13,17 +13,17 @@ namespace octurn {
 /// the platform turns.
 struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
-  /// Before each move: where to, degrees.
+  /// Before each move, with the angle of its end, degrees.
   std::function<void(double angle_deg)> on_turn = [](double) {};
   std::function<void(const DepthFrame& frame)> on_frame = [](const DepthFrame&) {};
   std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =
       [](const Reconstructor&, int) {};
-  /// The solved pose of the sensor, and the planes of the lasers, before they are used.
+  /// After the pose, and lasers' planes, were solved or refused, before the result is used.
   std::function<void(const ScanSolution& solution)> on_calibrated = [](const ScanSolution&) {};
-  /// From time to time while the model is built again, with the number of snapshots added.
+  /// Repeatedly while the model is built again, with the number of snapshots added.
   std::function<void(int snapshots)> on_rebuilt = [](int) {};
-  /// From time to time while a snapshot is being added.
+  /// Repeatedly while the scan waits for a snapshot to be added.
   std::function<void()> on_wait = [] {};
 };
 

@@ -23,7 +23,7 @@ ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& setting
   const auto snapshots = static_cast<std::size_t>(settings.snapshots);
   ReconstructOptions options = checked_options(settings, limits, snapshots);
   if (!scan.shots.empty()) {
-    options.clip = scan.clip;  // which lost nothing by being written in millimetres
+    options.clip = scan.clip;  // exact: a resumed scan's settings were stored in millimetres
   }
   Scan whole = scan;
   whole.shots.resize(snapshots);

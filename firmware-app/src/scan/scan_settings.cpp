@@ -23,14 +23,14 @@ constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not 
 constexpr int max_threads = 256;
 constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther
 constexpr double max_root_mm = 10000;
-constexpr double min_leaf_mm = 0.1;   // 16 levels of the largest root are 0.08
-constexpr double min_memory_mb = 17;  // of the intersection of one thread
+constexpr double min_leaf_mm = 0.1;   // roots above 6.5 m need more: octrees have 16 levels
+constexpr double min_memory_mb = 17;  // of the intersection method with one thread
 
-// What the program and its libraries take beside a reconstruction, as measured on x86-64.
+// Memory of program and libraries without a reconstruction, measured on x86-64.
 const auto solid_program_bytes = static_cast<std::size_t>(bytes_from_mb(12));
 const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(10));
 
-/// @return nothing if they are no six numbers in their range, or hold nothing
+/// @return nullopt unless these are six numbers in range that span a box of positive volume
 std::optional<Box> box_from(const json& mm) {
   const auto in_range = [](const json& value) {
     return value.is_number() && std::abs(value.get<double>()) <= max_coordinate_mm;
@@ -242,7 +242,7 @@ void check_leaf(const JsonObject& keys, const ScanSettings& settings) {
 }
 
 void check_clip(const JsonObject& keys, const ScanSettings& settings) {
-  // 1 mm is 1 mm, however it is rounded in metres.
+  // Tolerates the rounding of millimetres to metres.
   const double thinnest = settings.leaf_size * (1 - 1e-9);
   if (((settings.clip.max - settings.clip.min).array() < thinnest).any()) {
     keys.refuse("clip_mm", mm_of(settings.clip), "as thick as leaf_size_mm or thicker");

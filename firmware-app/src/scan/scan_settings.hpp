@@ -13,22 +13,23 @@
 
 namespace octurn {
 
-/// One for each processor.
+/// Returns the number of processors, at least 1.
 int available_threads();
 
-/// Half of the machine's memory, bytes, rounded to whole MB: the rest is for the system.
+/// Returns half of the machine's memory, bytes, rounded down to whole MB: the rest is for the
+/// system.
 std::size_t half_of_memory();
 
-/// The pose of the sensor with which a model is made.
+/// Source of the sensor's pose that a model is made with.
 enum class PoseSource {
   solved,  ///< the scan's solved pose, else one solved from its snapshots if that is accepted
-  told,    ///< the told pose
+  told,    ///< the configured pose
 };
 
 /// The source's name in settings: "auto", "told".
 std::string_view to_string(PoseSource source);
 
-/// Range of the factor of a sensor's depths: one that is farther off has another fault.
+/// Range of the factor of a sensor's depths: a larger error has another cause.
 inline constexpr double min_depth_scale = 0.97;
 inline constexpr double max_depth_scale = 1.03;
 
@@ -39,14 +40,14 @@ struct ScanSettings {
   int frames = 10;  ///< at each stop, for filters that merge frames
   Method method = Method::solid;
   double leaf_size = 0.001;   ///< metres
-  double threshold = 0.0001;  ///< square metres, of a triangle's longest side; intersection
+  double threshold = 0.0001;  ///< square metres: square of a triangle's longest side; intersection
   double target_error = ReconstructOptions{}.target_error;  ///< metres; solid
   Parts parts = Parts::main;                                ///< solid
   double root_size = 1.0;                                   ///< metres
   /// Metres, platform frame. Its bottom is at 5 mm, above the noise of a Kinect v1 on the platform.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
   PoseSource pose = PoseSource::solved;
-  /// As the rig is told: optical frame to platform frame, metres.
+  /// Configured pose: optical frame to platform frame, metres.
   Eigen::Isometry3d platform_from_sensor = nominal_platform_from_sensor();
   double depth_scale = 1;  ///< factor of the sensor's depths
 };
@@ -68,9 +69,9 @@ struct Field;
 
 /// All settings of a scan, each with its key, unit and range.
 std::vector<Field> fields(ScanSettings& settings);
-/// Those of `octurn scan`: all except the sensor's pose.
+/// The settings of `octurn scan`: all except the sensor's pose and depth scale.
 std::vector<Field> scan_fields(ScanSettings& settings);
-/// Those that need no new capture.
+/// The settings of a model, which need no new capture.
 std::vector<Field> model_fields(ScanSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
@@ -78,10 +79,10 @@ std::vector<Field> fields(ModelSettings& settings);
 /// Sets the defaults of a model of a scan by laser line, which is finer than a depth sensor's.
 void use_laser_defaults(ScanSettings& settings);
 
-/// The settings of the reconstruction.
+/// Converts settings to the options of a reconstruction.
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
 
-/// The JSON of settings in the API and the files: lengths in millimetres, each key with its unit.
+/// JSON of settings, for the API and the files: lengths in millimetres, each key with its unit.
 nlohmann::json to_json(const ScanSettings& settings);
 
 /// Reads the settings of a new scan; a missing key has the value of `defaults`.
@@ -93,7 +94,7 @@ ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& def
                            const std::string& name = "");
 
 /// Reads the settings of a stored scan. Its clip box may be thinner than a leaf, as in version 0.1.
-/// @throws Error  as above, with the value's code
+/// @throws Error  as above, with the code of `object`
 ScanSettings stored_settings_from(const JsonValue& object);
 
 /// Refuses a leaf larger than the root. @param keys  the JSON of the settings, for messages

@@ -21,7 +21,7 @@ class AccessKeysTest : public ::testing::Test {
  protected:
   fs::path file() const { return folder_.path() / "keys.json"; }
 
-  /// The status that a request with a key is refused with; 200 if it is let in.
+  /// The status with which a request with a key is refused; 200 if it is accepted.
   int status(const std::string& key, const std::string& method, const std::string& path) const {
     const auto refused = refuse_key(keys_, {.method = method, .path = path}, key);
     return refused ? refused->status : 200;

@@ -86,7 +86,7 @@ TEST(AddressBook, HasNothingOfAMalformedFile) {
   put(folder.path() / "addresses.json", R"({"webhooks": [{"id": "1", "url": "ftp://x/"}]})");
   AddressBook book(folder.path() / "addresses.json");
   EXPECT_TRUE(book.webhooks().empty());
-  book.add(voron());  // and takes new ones
+  book.add(voron());  // still accepts new entries
   EXPECT_EQ(book.printers().size(), 1U);
 }
 
@@ -116,7 +116,7 @@ TEST(Printer, IsReadFromWhatAPersonWrites) {
                                       {"user", "maker"},
                                       {"key", "word"}});
   EXPECT_EQ(printer.kind, PrinterKind::prusalink);
-  EXPECT_EQ(printer.url, "http://mk4.local");  // so that paths can be appended
+  EXPECT_EQ(printer.url, "http://mk4.local");  // without a slash, so that paths can be appended
   EXPECT_EQ(printer.user, "maker");
 }
 

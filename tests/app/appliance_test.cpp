@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder as root makes it.
+/// The appliance's folder as its root services create it.
 class Folder {
  public:
   Folder() { fs::create_directory(requests()); }

@@ -47,11 +47,11 @@ TEST(BoardPdf, HasEachSquareInItsSizeOnThePage) {
     for (const Rectangle& square : squares) {
       EXPECT_DOUBLE_EQ(square.width, 15);
       EXPECT_DOUBLE_EQ(square.height, 15);
-      EXPECT_GE(square.x, 15 - 1e-9);  // a printer prints no nearer to the edge than 5 mm
+      EXPECT_GE(square.x, 15 - 1e-9);  // printers leave a margin of at least 5 mm
       EXPECT_LE(square.x + 15, width - 15 + 1e-9);
       EXPECT_GE(square.y, 25);
       EXPECT_LE(square.y + 15, height - 10);
-      // No two black ones share a side.
+      // No two black squares share a side.
       EXPECT_EQ(std::ranges::count_if(
                     squares,
                     [&](const Rectangle& other) {

@@ -1,5 +1,4 @@
-// What somebody who holds a board is told, and which pictures are taken of it. The board is the
-// simulator's.
+// The advice for a person who holds a board, and the choice of pictures. The board is simulated.
 
 #include "scan/board_watch.hpp"
 
@@ -11,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// A camera of 820 x 616 whose lens distorts, and the board that is waved before it.
+/// A camera of 820 x 616 pixels with lens distortion, and a board that is waved in front of it.
 class BoardBeforeCamera {
  public:
   Picture picture(int number) const { return board_.picture(number); }
@@ -49,7 +48,7 @@ TEST(BoardWatch, TakesABoardThatStandsStillOnce) {
   EXPECT_EQ(watch.look().advice, BoardAdvice::hold_still);
   EXPECT_FALSE(watch.see(board.picture(1)));
   EXPECT_TRUE(watch.see(board.picture(2)));
-  EXPECT_FALSE(watch.see(board.picture(3)));  // in the same place
+  EXPECT_FALSE(watch.see(board.picture(3)));  // the board has not moved
   EXPECT_EQ(watch.look().taken, 1);
   EXPECT_EQ(watch.look().advice, BoardAdvice::reach);
   ASSERT_GT(watch.look().corners.size(), 100U);
@@ -61,7 +60,7 @@ TEST(BoardWatch, TakesABoardThatStandsStillOnce) {
 TEST(BoardWatch, TakesNoBoardThatMoves) {
   const BoardBeforeCamera board;
   BoardWatch watch(LaserSettings{}.lens);
-  for (const int number : {4, 5, 6, 7, 12, 13}) {  // each on the way, or the first of a hold
+  for (const int number : {4, 5, 6, 7, 12, 13}) {  // the board is moving, or has just come to rest
     EXPECT_FALSE(watch.see(board.picture(number))) << number;
     EXPECT_EQ(watch.look().advice, BoardAdvice::hold_still);
   }
@@ -70,7 +69,7 @@ TEST(BoardWatch, TakesNoBoardThatMoves) {
 TEST(BoardWatch, AsksForTiltWhereABoardIsHeldFlat) {
   const BoardBeforeCamera board;
   BoardWatch watch(LaserSettings{}.lens);
-  // The same hold, moved over the picture by whole pixels.
+  // The same view of the board, shifted across the picture by whole pixels.
   const Picture whole = board.picture(0);
   for (int shift = 0; shift <= 60; shift += 15) {
     Picture moved = whole;

@@ -1,4 +1,4 @@
-// The pose of the sensor, changed by several at once.
+// Concurrent changes of the sensor's pose.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace octurn {
 namespace {
 
 TEST(CalibrationStore, KeepsBothOfTwoChangesAtOnce) {
-  constexpr int rounds = 20;  // one is lost in most rounds, where a change is read too early
+  constexpr int rounds = 20;  // a store that reads too early loses a change in most rounds
   for (int round = 0; round < rounds; ++round) {
     const TemporaryFolder folder;
     CalibrationStore store(folder.path());

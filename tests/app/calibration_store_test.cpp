@@ -137,7 +137,7 @@ TEST(CalibrationStore, LeavesThePoseAsItIsWhereItCannotBeWritten) {
   CalibrationStore store(folder.path());
   store.set(record_at(1));
   fs::remove(folder.path() / "calibration.json");
-  fs::create_directory(folder.path() / "calibration.json");  // which no file can replace
+  fs::create_directory(folder.path() / "calibration.json");  // no file can replace a folder
   EXPECT_EQ(code_thrown_by([&] { store.set(record_at(2)); }), "write-failed");
   EXPECT_EQ(x_in_force(store), 1);
 }
@@ -170,7 +170,7 @@ TEST(CalibrationStore, KeepsPosesAndPlanesOfEachCamera) {
   EXPECT_EQ(one.camera, "one");
   ASSERT_EQ(one.lasers.size(), 1U);
   EXPECT_EQ(one.lasers[0].name, "left");
-  EXPECT_EQ(one.lasers[0].normal, Eigen::Vector3d(1, 2, 3).normalized());  // to the last bit
+  EXPECT_EQ(one.lasers[0].normal, Eigen::Vector3d(1, 2, 3).normalized());  // bit-exact
   EXPECT_EQ(one.lasers[0].distance, 0.1);
 }
 
@@ -179,7 +179,7 @@ TEST(CalibrationStore, TakesBackThePoseOfOneCameraAlone) {
   CalibrationStore store(folder.path(), SensorKind::laser_line);
   store.set(record_of("one", 0.1));
   for (int i = 0; i < 20; ++i) {
-    store.set(record_of("two", 0.2));  // more than are kept of a camera
+    store.set(record_of("two", 0.2));  // more records than are kept for one camera
   }
   store.undo("one");
   EXPECT_EQ(store.records({}, "one").size(), 1U);

@@ -1,4 +1,4 @@
-// Scanner::check_devices, and the doctor that it is for.
+// Scanner::check_devices, and octurn doctor, which uses it.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class CheckDevices : public ::testing::Test {
  protected:
   static RigOptions rig() { return {.sensor_uri = fast_sensor, .speed = 20}; }
 
-  /// Reads the sensor for as long as it may. @return a thread that does, and has begun to
+  /// Starts a thread that reads the sensor as long as it may. @return the thread, once it reads
   std::thread borrower() {
     std::thread thread([&] {
       scanner_.check_devices([&](Rig& lent, const std::stop_token& stop) {
@@ -104,7 +104,7 @@ TEST(SensorReading, IsASampleOfWhatTheSensorSees) {
   EXPECT_EQ(sample.times.size(), 60);
   EXPECT_TRUE(std::ranges::is_sorted(sample.times));
   ASSERT_EQ(sample.frames.size(), 10);
-  EXPECT_NE(sample.frames[0].depth, sample.frames[9].depth);  // its noise is new in each
+  EXPECT_NE(sample.frames[0].depth, sample.frames[9].depth);  // each frame has its own noise
 }
 
 TEST(SensorReading, SaysWhyThereIsNoSensor) {

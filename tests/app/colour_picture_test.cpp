@@ -18,7 +18,7 @@ std::vector<Rgb> colours_of(const std::vector<Bytes>& planes, const PixelRows& r
   return colour_picture(spans, rows);
 }
 
-// A red and a blue, and as ITU-R BT.601 has them in full range: Y, U, V.
+// A red and a blue, and their full-range Y, U, V according to ITU-R BT.601.
 constexpr Rgb red = {200, 60, 50};
 constexpr std::uint8_t red_y = 101;
 constexpr std::uint8_t red_u = 99;
@@ -30,12 +30,12 @@ constexpr std::uint8_t blue_v = 104;
 
 void expect_near(const Rgb& seen, const Rgb& expected) {
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_LE(std::abs(seen[i] - expected[i]), 2)  // half a level of U is one of blue
+    EXPECT_LE(std::abs(seen[i] - expected[i]), 2)  // half a level of U is one level of blue
         << "channel " << i << ": " << int{seen[i]} << ", not " << int{expected[i]};
   }
 }
 
-/// A picture of 4 x 2: its left half red, its right half blue, in any layout.
+/// Expects the left half of a picture of 4 x 2 pixels to be red, and the right half blue.
 void expect_red_and_blue(const std::vector<Bytes>& planes, PixelLayout layout, std::size_t stride) {
   SCOPED_TRACE(static_cast<int>(layout));
   const auto seen =
@@ -74,8 +74,8 @@ TEST(ColourPicture, HasNoneWhereThereIsGreyAlone) {
   EXPECT_TRUE(colours_of({{1, 2}}, {.layout = PixelLayout::grey, .width = 2, .height = 1}).empty());
 }
 
-// A line is found in the difference of a picture with a laser, which is the camera's luminance, and
-// the dark one's as it is stored, which is that of its colours.
+// A line is found in the difference of two luminances: the camera's, of the picture with a laser,
+// and the one of the stored dark picture's colours. So both must agree for every colour.
 TEST(ColourPicture, HasTheLuminanceOfTheCameraWhateverTheColour) {
   int colours = 0;
   for (int y = 0; y < 256; y += 5) {

@@ -1,4 +1,4 @@
-// A model with colours has one at each of its vertices, in each format.
+// A coloured model has a colour at each vertex in each format.
 
 #include <gtest/gtest.h>
 #include <minizip/unzip.h>
@@ -17,7 +17,7 @@
 namespace octurn {
 namespace {
 
-/// A corner of a cube of 10 mm, cut off.
+/// The corner cut off a cube, a tetrahedron with three edges of 10 mm.
 std::vector<Facet> tetrahedron() {
   const Vertex o{0, 0, 0};
   const Vertex x{10, 0, 0};
@@ -38,7 +38,7 @@ class ColouredFormats : public testing::Test {
   FacetFile stl() const { return FacetFile(file("Scan.stl")); }
 
   TemporaryFolder folder_;
-  // Of the vertices in the order of the table: o, y, x, z.
+  // Colours of the vertices in the order of the vertex table: o, y, x, z.
   std::vector<Rgb> colours_ = {{0, 0, 0}, {255, 255, 255}, {200, 16, 1}, {188, 188, 188}};
 };
 

@@ -12,13 +12,13 @@ namespace {
 
 using nlohmann::json;
 
-/// The stores that are opened one after the other on one data folder.
+/// Stores that are opened one after the other on the same data folder.
 class ConfigStores : public ::testing::Test {
  protected:
   ConfigStore open(const json& given = json::object()) const {
     ConfigLayers layers{.given = given};
     layers.file.data = folder_.path();
-    layers.file.turntable.gear_ratio = 4;  // octurn.json's
+    layers.file.turntable.gear_ratio = 4;  // from octurn.json
     return ConfigStore(std::move(layers));
   }
   std::filesystem::path file(const char* name) const { return folder_.path() / name; }
@@ -100,7 +100,7 @@ TEST_F(ConfigStores, RefuseTheTurntableALineOfALaser) {
   EXPECT_EQ(error.code(), ErrorCode::bad_settings);
   EXPECT_NE(std::string(error.what()).find("GPIO23"), std::string::npos) << error.what();
   EXPECT_EQ(store.stored(), json::object());
-  open().change(change);  // a rig without lasers has that line to itself
+  open().change(change);  // without lasers that line is free
 }
 
 TEST_F(ConfigStores, PutAScansSettingsInForceAtOnceAndTellOfTheRest) {

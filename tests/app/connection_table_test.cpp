@@ -23,7 +23,7 @@ AcceptedSocket socket_from(const std::string& address, int number) {
           .port = 5000 + number};
 }
 
-/// A table with one connection, whose head is read.
+/// A table with one connection, whose request head is already read.
 struct OneClient {
   ConnectionTable table{limits};
   ConnectionTable::Key key = 0;
@@ -42,7 +42,7 @@ TEST(ConnectionTable, EndsAHeadThatDoesNotComeInTime) {
   const auto endings = table.cut_all_due(start + 10100ms);
   ASSERT_EQ(endings.size(), 1U);
   EXPECT_EQ(endings[0].socket.inode, 101U);
-  EXPECT_TRUE(table.cut_all_due(start + 30s).empty());  // once is enough
+  EXPECT_TRUE(table.cut_all_due(start + 30s).empty());  // a connection is cut only once
 }
 
 TEST(ConnectionTable, CountsOnlyTheTimeThatTheServerWaits) {
@@ -64,13 +64,13 @@ TEST(ConnectionTable, LetsAReaderTakeAsLongAsItKeepsUpWithTheLeastRate) {
 
 TEST(ConnectionTable, EndsAReaderThatFallsBehindWhateverItTookBefore) {
   OneClient client(Wait::reader);
-  client.table.add_bytes(client.key, 1'000'000, start);  // into the kernel's buffers
+  client.table.add_bytes(client.key, 1'000'000, start);  // went into the kernel's buffers
   int second = 1;
   for (; client.table.cut_all_due(start + std::chrono::seconds(second)).empty(); ++second) {
     ASSERT_LT(second, 100);
     client.table.add_bytes(client.key, 50, start + std::chrono::seconds(second));
   }
-  EXPECT_NEAR(second, 20, 2);  // half the rate: half a second of debt each second
+  EXPECT_NEAR(second, 20, 2);  // at half the rate, each second adds half a second of debt
 }
 
 TEST(ConnectionTable, HasNoBytesPayForABodyThatIsSmall) {
@@ -78,7 +78,7 @@ TEST(ConnectionTable, HasNoBytesPayForABodyThatIsSmall) {
   client.table.add_bytes(client.key, 1'000'000, start + 5s);
   const auto endings = client.table.cut_all_due(start + 11s);
   ASSERT_EQ(endings.size(), 1U);
-  EXPECT_EQ(endings[0].cut, Cut::reading);  // so that it can be told
+  EXPECT_EQ(endings[0].cut, Cut::reading);  // only reading ends, so that a response can be sent
   EXPECT_TRUE(client.table.is_cut(client.key));
   EXPECT_TRUE(client.table.cut_all_due(start + 19s).empty());
   const auto after_all = client.table.cut_all_due(start + 21s);
@@ -161,7 +161,7 @@ TEST(ConnectionTable, TakesAHeadThatNoThreadHasReadForOneInTheQueue) {
   EXPECT_TRUE(std::ranges::none_of(table.cut_all_due(start + 1005ms), is_first));
 }
 
-/// Two connections too many, all of which came at `start`, each from another address.
+/// A table with two connections too many, all opened at `start`, each from its own address.
 ConnectionTable table_of_six() {
   ConnectionTable table(limits);
   std::vector<AcceptedSocket> open;
@@ -176,7 +176,7 @@ TEST(ConnectionTable, GivesABusyMachineLongerToReadAHead) {
   ConnectionTable table = table_of_six();
   table.note_lateness(30ms);
   EXPECT_TRUE(table.cut_all_due(start + 200ms).empty());
-  table.note_lateness(-1ms);  // woken before its time
+  table.note_lateness(-1ms);  // woke up early
   EXPECT_TRUE(table.cut_all_due(start + 300ms).empty());
   EXPECT_EQ(table.cut_all_due(start + 400ms).size(), 2U);
 }

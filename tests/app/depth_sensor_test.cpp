@@ -20,7 +20,7 @@ TEST(DepthSensor, FindsOcturnsDriversAndNotTheSystemsSet) {
   EXPECT_EQ(sensor->name(), "Kinect v1 (simulated)");
   const std::string loaded = content_of("/proc/self/maps");
   EXPECT_NE(loaded.find("/lib/octurn/OpenNI2/Drivers/libOcturnSimulator.so.0"), std::string::npos);
-  EXPECT_EQ(loaded.find("libDummyDevice"), std::string::npos);  // which the system's set holds
+  EXPECT_EQ(loaded.find("libDummyDevice"), std::string::npos);  // a driver of the system's OpenNI2
 }
 
 TEST(DepthSensor, FindsNoSimulatedSensorUnlessAskedForIt) {
@@ -41,7 +41,7 @@ TEST(DepthSensor, HasTheIntrinsicsOfAKinect) {
   const Intrinsics& intrinsics = sensor->intrinsics();
   EXPECT_EQ(intrinsics.width, 640);
   EXPECT_EQ(intrinsics.height, 480);
-  EXPECT_NEAR(intrinsics.fx, 575.8, 1e-3);  // OpenNI2 tells fields of view as floats
+  EXPECT_NEAR(intrinsics.fx, 575.8, 1e-3);  // OpenNI2 has fields of view as floats
   EXPECT_NEAR(intrinsics.fy, 575.8, 1e-3);
   EXPECT_EQ(intrinsics.cx, 320);
   EXPECT_EQ(intrinsics.cy, 240);
@@ -58,8 +58,8 @@ TEST(DepthSensor, StampsFramesByTheSteadyClock) {
   EXPECT_LE(second, steady_clock::now());
 }
 
-/// The time between the first frame of a stream and the one `periods` later, or a later one still
-/// where frames were dropped.
+/// The time between the first frame of a stream and the one `periods` later; longer where frames
+/// were dropped.
 steady_clock::duration time_of_periods(int periods, const std::string& speed) {
   const auto sensor = open_sensor("octurn-simulator://?speed=" + speed);
   const auto first = sensor->read({})->time;
@@ -70,7 +70,7 @@ steady_clock::duration time_of_periods(int periods, const std::string& speed) {
   return last - first;
 }
 
-// The first frame may come late, and then the second one too early by that, but no later one.
+// If the first frame is late, the second one seems early by that time, but no later one.
 TEST(DepthSensor, SendsThirtyFramesASecondAtMost) {
   EXPECT_GE(time_of_periods(8, "1"), 7 * microseconds(33'333));
 }
@@ -84,7 +84,7 @@ TEST(DepthSensor, ReadsNothingWhenStopped) {
   std::stop_source stop;
   const std::jthread stopper([&stop] { stop.request_stop(); });
 
-  EXPECT_FALSE(sensor->read(stop.get_token()).has_value());  // its 2 s of silence last half an hour
+  EXPECT_FALSE(sensor->read(stop.get_token()).has_value());  // the limit of 2 s is half an hour
 }
 
 TEST(DepthSensor, SaysThatItIsSilent) {
@@ -93,17 +93,17 @@ TEST(DepthSensor, SaysThatItIsSilent) {
   const auto begin = steady_clock::now();
 
   const Error error = error_thrown_by([&] {
-    while (sensor->read({})) {  // a busy machine may not take the first frame in time
+    while (sensor->read({})) {  // a busy machine may get some frames before the silence
     }
   });
 
   EXPECT_EQ(error.code(), ErrorCode::sensor_silent);
   EXPECT_STREQ(error.what(), "sensor: no frame for 2000 ms");
   EXPECT_GE(steady_clock::now() - begin,
-            milliseconds(1900));  // from a clock that ticks 30 a second
+            milliseconds(1900));  // 2 s by a clock with 30 ticks a second
 }
 
-// Sixty frames of silence, which a hundred times faster are 20 ms.
+// The limit is sixty frame periods, 20 ms at a hundred times the speed.
 TEST(DepthSensor, CountsSilenceByTheClockOfASimulatedSensor) {
   const auto sensor = open_sensor("octurn-simulator://?silent-after=2&speed=100");
   EXPECT_TRUE(sensor->read({}).has_value());
@@ -139,7 +139,7 @@ TEST(DepthSensor, RefusesAnUnknownDevice) {
   EXPECT_NE(std::string(error.what()).find("no-such-device://1"), std::string::npos);
 }
 
-// The file system refuses to look at such a name, or never finds its end.
+// stat fails for such paths: a name too long, or a loop of symbolic links.
 TEST(DepthSensor, RefusesAPathThatCannotBeLookedAt) {
   const TemporaryFolder folder;
   std::filesystem::create_symlink("loop", folder.path() / "loop");

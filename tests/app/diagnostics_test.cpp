@@ -46,7 +46,7 @@ TEST(Diagnostics, TellsVersions) {
   EXPECT_NE(versions["libraries"].dump().find("/libOpenNI2.so."), std::string::npos) << versions;
 }
 
-/// The file is one that Octurn can be given.
+// The file is valid as Octurn's own configuration.
 TEST(Diagnostics, TellsSettingsAsTheirFileHasThem) {
   Config config;
   config.http.port = 8123;
@@ -117,7 +117,7 @@ TEST(Diagnostics, LeavesOutWhatAPersonCalledAScan) {
   const std::vector<Job> scans{job_of("20261121-081500-3f2a", "private")};
   const std::vector<ArchivedFile> files = daemon_diagnostics({}, scans, "");
   EXPECT_TRUE(std::ranges::any_of(files, [](const ArchivedFile& file) {
-    return file.content.find("20261121-081500-3f2a") != std::string::npos;  // the scan is told
+    return file.content.find("20261121-081500-3f2a") != std::string::npos;  // the scan is listed
   }));
   for (const ArchivedFile& file : files) {
     EXPECT_EQ(file.content.find("private"), std::string::npos) << file.name;
@@ -139,7 +139,7 @@ TEST(Diagnostics, IsBoundedHoweverMuchThereIs) {
   for (const ArchivedFile& file : files) {
     bytes += file.content.size();
   }
-  EXPECT_LT(bytes, 3U << 20U);  // so that a log of 1 MiB has its place
+  EXPECT_LT(bytes, 3U << 20U);  // which leaves room for a log of 1 MiB
   const json stored = json_in(files, "scans.json");
   EXPECT_EQ(stored["scans"][0]["id"], "20261121-090000-0000");
   EXPECT_GT(stored["scans"].size(), 500U);

@@ -43,7 +43,7 @@ TEST(Digest, IsNothingIfMalformedOrOfAnotherScheme) {
   }
 }
 
-/// Every begin of a header, and the header with each letter replaced, is read or refused.
+// Every prefix of a header, and the header with any letter replaced, is parsed or refused.
 TEST(Digest, EndsForWhateverIsCutOffOrReplaced) {
   for (std::size_t i = 0; i < example.size(); ++i) {
     parse_digest(example.substr(0, i));

@@ -7,12 +7,12 @@ namespace {
 
 constexpr std::string_view tag = R"("a-1")";
 
-/// Fields that name the tag, as a strong one.
+/// Header fields that contain the tag as a strong validator.
 constexpr const char* strong_fields[] = {R"("a-1")",          R"("b", "a-1")", R"("b","a-1","c")",
                                          R"(W/"a-1", "a-1")", R"( , "a-1" ,)", "*",
                                          R"("b,c" , "a-1")"};
 
-/// Fields that do not name the tag, though some have its text in them.
+/// Header fields that do not contain the tag, although some contain its text.
 constexpr const char* other_fields[] = {
     "",           R"("a-12")",    R"("b"a-1")", R"(a-1)",       R"("a-1)",
     R"(x"a-1")",  R"("x"a-1"y")", R"(w/"a-1")", R"("b" * "c")", R"("*")",

@@ -20,7 +20,7 @@ std::string to_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Runs a stream to its end. @return what it told
+/// Runs a stream until it ends or `wants_more` refuses. @return its text
 std::string all_of(ByteStream stream, const std::function<bool(const std::string&)>& wants_more) {
   std::string told;
   stream.make([&](std::span<const std::byte> bytes) {
@@ -50,7 +50,7 @@ TEST(EventFeed, GoesOnWhereAClientWas) {
   const std::string first = all_of(*feed.watch(""), until_event);
   const std::size_t id = first.find("id: ") + 4;
   const std::string last = first.substr(id, first.find('\n', id) - id);
-  feed.end();  // so that the stream, which has nothing to tell, comes back
+  feed.end();  // ends the stream, which has no event to send
   EXPECT_FALSE(has(all_of(*feed.watch(last), [](const std::string&) { return true; }), "data:"));
   EXPECT_TRUE(
       has(all_of(*feed.watch("another-1"), [](const std::string&) { return true; }), "data:"));
@@ -100,12 +100,12 @@ TEST(EventFeed, EndsAStreamThatCannotLook) {
   EXPECT_EQ(all_of(*feed.watch(""), [](const std::string&) { return true; }), "retry: 1000\n\n");
 }
 
-/// A server whose streams tell one piece of news, and that has a page.
+/// A server whose event streams send one event, and that also serves a page.
 class EventServer {
  public:
   int port() const { return server_.port(); }
 
-  /// Begins to watch, and waits for the first event.
+  /// Opens an event stream, and waits for its first event.
   FileDescriptor watch() const {
     FileDescriptor socket = connected(port());
     send_text(socket, "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -157,7 +157,7 @@ TEST(EventServer, AnswersOthersBesideAllItsWatchers) {
   EXPECT_EQ(request(server.port(), "GET", "/").body, "the page");
   char byte = 0;
   for (const FileDescriptor& watcher : watchers) {
-    EXPECT_EQ(::recv(watcher.number(), &byte, 1, 0), 1);  // they are told on
+    EXPECT_EQ(::recv(watcher.number(), &byte, 1, 0), 1);  // these streams go on
   }
 }
 
@@ -168,7 +168,7 @@ TEST(EventServer, GivesThePlaceOfWhoHasGoneToAnother) {
     watchers.push_back(server.watch());
   }
   watchers.pop_back();
-  while (server.status_of_one_more() == 503) {  // or the test's own limit ends it
+  while (server.status_of_one_more() == 503) {  // CTest's timeout ends it otherwise
     std::this_thread::yield();
   }
 }

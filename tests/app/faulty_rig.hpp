@@ -21,10 +21,10 @@ namespace octurn {
 
 enum class Fault { none, silent, unplugged, half_blind, line_refused };
 
-/// A real stepper on lines that only count, under a sensor that sees what stands on a platform so
-/// turned. Either fails as a test wants, from one stop of a scan on, until it is mended.
+/// The real stepper code on lines that only count pulses, and a sensor that shows the object as
+/// turned by those pulses. Either fails as a test wants, from one stop of a scan on, until mended.
 ///
-/// Where the platform stands is known from the motor's pulses alone, whatever the program thinks.
+/// The platform's position follows from the motor's pulses alone, not from the program's own count.
 class FaultyRig {
  public:
   static constexpr int steps = 800;
@@ -50,7 +50,7 @@ class FaultyRig {
             .open_lines = [this](const StepperSettings&) { return opened_lines(); }};
   }
 
-  /// @param lasts  until it mends itself
+  /// Lets a fault begin at a stop. @param lasts  time after which it goes away by itself
   void fail(Fault fault, int stop,
             std::chrono::steady_clock::duration lasts = std::chrono::hours(1)) {
     fault_stop_ = stop;
@@ -64,13 +64,13 @@ class FaultyRig {
   std::int64_t position() const { return position_; }
   int moves_without_motor() const { return moves_without_motor_; }
 
-  /// Of the sensor that is opened next.
+  /// Sets the intrinsics of sensors opened from now on.
   void set_lens(const Intrinsics& lens) { lens_.set(lens); }
 
-  /// Makes each pulse late by this.
+  /// Delays each pulse.
   void set_pulse_delay(std::chrono::milliseconds delay) { pulse_delay_ = delay; }
 
-  /// Called at each frame, on the thread that takes it.
+  /// Called for each frame, on the thread that reads it.
   std::function<void(int stop)> on_frame = [](int) {};
 
  private:
@@ -106,7 +106,7 @@ class FaultyRig {
     return seen;
   }
 
-  /// Whether that is what fails now: it begins at its stop, and then lasts.
+  /// Whether this fault is active: it begins at its stop and lasts for its time.
   bool fails(Fault fault) {
     const auto now = std::chrono::steady_clock::now();
     if (fault_ != fault) {
@@ -115,7 +115,7 @@ class FaultyRig {
     const std::int64_t stop =
         stop_positions(0, steps, stops_)[static_cast<std::size_t>(fault_stop_)];
     const std::int64_t begin =
-        fault == Fault::line_refused ? std::max<std::int64_t>(stop - 3, 0) : stop;  // on the way
+        fault == Fault::line_refused ? std::max<std::int64_t>(stop - 3, 0) : stop;  // in the move
     if (!begun_ && position_ >= begin) {
       begin_ = now;
       begun_ = true;
@@ -147,7 +147,7 @@ class FaultyRig {
     if (fails(Fault::line_refused)) {
       throw Error(ErrorCode::turntable_failed, "line GPIO17 is used by another program", "End it.");
     }
-    // The motor's own pull-up switches it off when the lines are let go.
+    // The driver's pull-up on ENABLE switches the motor off when the lines are released.
     auto lines = std::shared_ptr<void>(nullptr, [this](void*) { motor_on_ = false; });
     return [this, lines, forward = true](Stepper::Line line, bool high) mutable {
       if (fails(Fault::line_refused)) {

@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-/// A scan that is over soon.
+/// Settings of a short scan.
 inline ScanSettings few_snapshots(int snapshots = 3) {
   return {.snapshots = snapshots, .frames = 2, .leaf_size = 0.004};
 }

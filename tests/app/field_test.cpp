@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A setting of each kind.
+/// One setting of each type.
 struct Kinds {
   double length = 0.002;
   double ratio = 0.5;
@@ -128,7 +128,7 @@ TEST(Field, IsDescribedForTheInterface) {
   EXPECT_EQ(scan["properties"]["threshold_m2"]["x-method"], "intersection");
 }
 
-/// The part of docs/settings.md that is made from the settings, between comments of that name.
+/// The generated part of docs/settings.md between the comments of that name.
 std::string generated_part(const std::string& document, const std::string& name) {
   const std::string begin = "<!-- settings: " + name + " -->\n";
   const std::size_t start = document.find(begin);
@@ -139,11 +139,11 @@ std::string generated_part(const std::string& document, const std::string& name)
 
 TEST(SettingsDocument, HasTheTablesOfTheProgram) {
   Config config;
-  config.limits.memory_bytes = 1;  // any machine's
+  config.limits.memory_bytes = 1;  // its default depends on the machine
   ModelSettings model;
   std::vector<Field> of_model = fields(model);
   std::erase_if(of_model, [](const Field& field) {
-    return field.key != "level";  // the others stand in the other tables
+    return field.key != "level";  // the other tables have the others
   });
   const std::string document = content_of(OCTURN_SOURCE "/docs/settings.md");
   const std::vector<std::pair<std::string, std::vector<Field>>> tables{

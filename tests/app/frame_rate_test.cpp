@@ -12,7 +12,7 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-/// As sysfs has a device of video4linux: a link to the interface of a USB device, or to another.
+/// Adds a video4linux device as in sysfs: a link to a USB interface, or to another parent.
 void add_device(const TemporaryFolder& sys, const std::string& name, const std::string& parent) {
   const auto interface = sys.path() / "devices" / parent;
   std::filesystem::create_directories(interface);

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Answers with what it was asked, as JSON.
+/// Responds with the request as JSON.
 Response echo(const Request& request) {
   nlohmann::json said{{"method", request.method}, {"path", request.path}, {"body", request.body}};
   for (const auto& [name, value] : request.headers) {
@@ -64,10 +64,11 @@ TEST(HttpServer, AnswersAHeadWithoutTheBody) {
   const Reply head = request(server.port(), "HEAD", "/");
   EXPECT_EQ(head.status, 200);
   EXPECT_EQ(head.body, "");
-  EXPECT_EQ(std::stoul(head.header("Content-Length")), whole.body.size() + 1);  // HEAD for GET
+  // The body repeats the method, and "HEAD" is one letter longer than "GET".
+  EXPECT_EQ(std::stoul(head.header("Content-Length")), whole.body.size() + 1);
 }
 
-/// Sends a request on a connection that is kept, and reads its answer, whose body has 4 bytes.
+/// Sends a request on a kept-alive connection, and reads its response, whose body has 4 bytes.
 std::string ask_on(const FileDescriptor& socket) {
   send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n\r\n");
   std::string told;
@@ -103,7 +104,7 @@ TEST(HttpServer, ClosesWhereABodyMayBeUnread) {
   EXPECT_EQ(reply.header("Connection"), "close");
 }
 
-// Idle connections hold a thread each; a visitor beside them is answered, as they are cut first.
+// Each idle connection holds a thread. They are cut when another client needs one.
 TEST(HttpServer, AnswersOthersBesideKeptConnections) {
   const HttpServer server({.address = "127.0.0.1", .port = 0},
                           [](const Request&) { return Response{.body = "body"}; });
@@ -205,7 +206,7 @@ TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {
 }
 
 TEST(HttpServer, EndsConnectionsThatStall) {
-  const HttpServer server = echo_server();  // waits for 1 s
+  const HttpServer server = echo_server();  // its patience is 1 s
   for (const char* const text :
        {"", "GET / HTT", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1234"}) {
     const FileDescriptor socket = connected(server.port());
@@ -214,7 +215,7 @@ TEST(HttpServer, EndsConnectionsThatStall) {
   }
 }
 
-// The server cuts no stalled client off before the test ends: an answer comes beside them or never.
+// The server's patience is longer than the test, so it answers beside stalled clients or never.
 TEST(HttpServer, AnswersOthersWhileSomeStall) {
   const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, echo);
   std::vector<FileDescriptor> stalled;

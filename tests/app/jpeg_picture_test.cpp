@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr int width = 37;  // neither a whole number of blocks nor even
+constexpr int width = 37;  // odd, and no multiple of a block's 8 pixels
 constexpr int height = 21;
 
 Picture waves() {
@@ -41,7 +41,7 @@ std::vector<Rgb> colours_of(const JpegPlanes& jpeg) {
   return colour_picture(planes, jpeg.rows);
 }
 
-// At quality 100 a coefficient is rounded to a whole number: a level or two of a pixel.
+// At quality 100 coefficients are rounded to integers, which makes a level or two in a pixel.
 TEST(JpegPicture, HasTheLuminanceThatTheCameraSent) {
   for (const int subsampling :
        {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_440, TJSAMP_411, TJSAMP_GRAY}) {
@@ -54,7 +54,7 @@ TEST(JpegPicture, HasTheLuminanceThatTheCameraSent) {
   }
 }
 
-// A line is found in the difference of the two.
+// Lines are found in the difference of a grey and a coloured picture.
 TEST(JpegPicture, HasTheSameLuminanceInColourAsInGrey) {
   for (const int subsampling :
        {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_440, TJSAMP_411, TJSAMP_GRAY}) {
@@ -67,7 +67,7 @@ TEST(JpegPicture, HasTheSameLuminanceInColourAsInGrey) {
   }
 }
 
-// ITU-R BT.601, of U 30 levels and of V 50 levels more than of grey, where the luminance is 100.
+// ITU-R BT.601 with Y = 100, U = 128 + 30 and V = 128 + 50.
 TEST(JpegPicture, HasTheColoursThatTheCameraSent) {
   const Picture flat{
       .width = width, .height = height, .samples = Bytes(std::size_t{width} * height, 100)};
@@ -92,7 +92,7 @@ TEST(JpegPicture, HasNoColoursWhereTheyAreAtOtherPixelsOrThereAreNone) {
   }
 }
 
-// Motion JPEG has those of the standard.
+// Motion JPEG leaves out the standard's tables.
 TEST(JpegPicture, NeedsNoHuffmanTables) {
   const Bytes jpeg = jpeg_of(waves(), TJSAMP_422);
   const Bytes motion = without_tables(jpeg);
@@ -134,7 +134,7 @@ TEST(JpegPicture, IsDamagedWhereverItIsCut) {
   }
 }
 
-// The decoder tells the first thing that is wrong, which is here of the harmless ones.
+// The decoder reports only the first problem, which is a harmless one here.
 TEST(JpegPicture, IsDamagedIfItIsCutAndHasExtraneousBytes) {
   Bytes jpeg = jpeg_of(waves(), TJSAMP_422);
   jpeg.insert(jpeg.begin() + 2, {1, 2});  // after the first marker
@@ -146,7 +146,7 @@ TEST(JpegPicture, IsDamagedIfItIsCutAndHasExtraneousBytes) {
   }
 }
 
-// Of a flipped bit a JPEG does not always tell, but every result is a picture of the size, or none.
+// Not every flipped bit is detected, but every result is a picture of the right size or none.
 TEST(JpegPicture, SurvivesEveryFlippedBit) {
   const Bytes jpeg = jpeg_of(waves(), TJSAMP_420);
   int refused = 0;

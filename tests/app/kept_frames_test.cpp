@@ -5,7 +5,7 @@
 namespace octurn {
 namespace {
 
-/// Nothing but readings in a rectangle, each of its own.
+/// A frame with readings in a rectangle only, all of them different.
 DepthFrame frame_with(int left, int top, int right, int bottom) {
   DepthFrame frame{.width = 12, .height = 9, .depth = {}};
   for (int v = 0; v < frame.height; ++v) {

@@ -1,4 +1,4 @@
-// How the simulated Kinect's noise compares with that of a real one.
+// Compares the simulated Kinect's noise with that of a real one.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace octurn {
 namespace {
 
-/// Readings of one frame, before they are rounded; 0 for none.
+/// Raw readings of one frame, unrounded; 0 for none.
 using Readings = std::vector<double>;
 
 constexpr int width = 640;
@@ -21,7 +21,7 @@ constexpr int height = 480;
 
 std::size_t index(int u, int v) { return static_cast<std::size_t>(v * width + u); }
 
-/// @param frame  in tenths of a millimetre
+/// Converts depths to raw readings. @param frame  in units of 0.1 mm
 Readings to_readings(const DepthFrame& frame) {
   Readings readings(frame.depth.size(), 0);
   std::ranges::transform(frame.depth, readings.begin(), [](std::uint16_t depth) {
@@ -30,13 +30,13 @@ Readings to_readings(const DepthFrame& frame) {
   return readings;
 }
 
-/// What is left of a square window when the plane that fits best is taken away. A plane is affine
-/// in u, v and reading.
+/// The residuals of a square window of readings after subtraction of the best-fitting plane. A
+/// plane in space is an affine function of u and v in readings.
 class PlaneWindow {
  public:
   static constexpr int side = 40;
 
-  /// @return false if a pixel is missing or far off: then the window is not of one plane
+  /// @return false if a pixel is missing or an outlier: the window does not show a single plane
   bool fit(const Readings& readings, int left, int top) {
     double sum = 0;
     double along_u = 0;
@@ -65,7 +65,7 @@ class PlaneWindow {
 
   double depth() const { return 0.345489 / (1089.40 - mean_) * 1000; }  // metres
 
-  /// Mean product of residuals that lie (u, v) apart.
+  /// Mean product of residuals that lie `aside` columns and `down` rows apart.
   double covariance(int aside, int down) const {
     double sum = 0;
     for (int v = 0; v < side - down; ++v) {
@@ -91,7 +91,7 @@ struct NoiseFigures {
   std::array<double, 3> residual = {};   // readings, at 0.65, 0.75 and 0.85 m
   std::array<double, 5> along_row = {};  // correlation at each of the lags
   std::array<double, 5> along_column = {};
-  double whole_top_edges = 0;  // share of the upper edges of things that lose no pixel
+  double whole_top_edges = 0;  // share of upper edges without a missing pixel
 };
 
 double median(std::vector<double> values) {
@@ -102,8 +102,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Columns in which something at least 25 mm nearer than what is above it begins, within 3 pixels:
-/// how many there are, and in how many no pixel is missing in between.
+/// Counts the upper edges of things, pixel columns in which the depth decreases by at least 25 mm
+/// within 4 rows, and those of them without a missing pixel.
 std::pair<int, int> top_edges(const Readings& readings) {
   int edges = 0;
   int whole = 0;
@@ -164,9 +164,8 @@ NoiseFigures to_noise_figures(const std::vector<Readings>& frames) {
   return figures;
 }
 
-/// The figures that `to_noise_figures` finds in eight frames of a Kinect v1, all of boxes, cups and
-/// bowls on a table: learn0, 10, 14, 18, 22, 26, 30 and 34 of PointCloudLibrary/data,
-/// segmentation/mOSD.
+/// The result of `to_noise_figures` for eight frames of a Kinect v1 with boxes, cups and bowls on a
+/// table: learn0, 10, 14, 18, 22, 26, 30 and 34 of PointCloudLibrary/data, segmentation/mOSD.
 constexpr NoiseFigures real = {.residual = {0.85, 0.81, 0.71},
                                .along_row = {0.72, 0.59, 0.40, 0.23, 0.11},
                                .along_column = {0.50, 0.26, 0.01, -0.08, 0.04},
@@ -212,7 +211,8 @@ TEST(KinectNoise, LooksLikeThatOfARealKinect) {
   EXPECT_NEAR(simulated.whole_top_edges, real.whole_top_edges, 0.15);
 }
 
-/// How far depths of 0.60 to 0.70 m are from the platform's plane, root mean square, millimetres.
+/// Root mean square distance, along the optical axis, of depths of 0.60 to 0.70 m from the
+/// platform, millimetres.
 double platform_error_mm(const std::vector<double>& depths) {
   const Eigen::Isometry3d pose = nominal_platform_from_sensor();
   double squares = 0;
@@ -257,8 +257,8 @@ TEST(KinectNoise, FallsToHalfWhenTenFramesAreAveragedAndNoFurther) {
   }
   std::printf("error of 1, 10 and 30 frames: %.2f %.2f %.2f mm\n", errors[0], errors[1], errors[2]);
 
-  // An independent model of the Kinect without a pattern gave 1.17 mm over whole objects. A fifth
-  // of the variance stays with the scene.
+  // An independent model of the Kinect without a fixed pattern gave 1.17 mm over whole objects. A
+  // fifth of the variance is constant for a scene and does not average out.
   EXPECT_NEAR(errors[0], 1.17, 0.2);
   EXPECT_NEAR(errors[1] / errors[0], std::sqrt(0.2 + 0.8 / 10), 0.08);
   EXPECT_NEAR(errors[2] / errors[0], std::sqrt(0.2 + 0.8 / 30), 0.08);

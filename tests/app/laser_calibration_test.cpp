@@ -1,4 +1,4 @@
-// A rig with lasers that finds out where it stands, with a turn or a scan, and remembers it.
+// A rig with lasers that calibrates itself by a turn or a scan, and stores the result.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ class LaserCalibrationOfARig : public ::testing::Test {
     return **scanner.calibration_run();
   }
 
-  /// A scan's folder when it has ended.
+  /// Runs a scan to its end. @return the content of its folder
   Scan scan(Scanner& scanner, const ScanSettings& settings) {
     EXPECT_TRUE(scanner.start(settings));
     const Job job = *scanner.wait_until_done(patience).job;
@@ -126,7 +126,7 @@ TEST_F(LaserCalibrationOfARig, IsOfItsOwnCamera) {
 
 TEST_F(LaserCalibrationOfARig, StaysAsItIsWhereATurnIsRefused) {
   rig_.other_pose = told_.platform_from_sensor;
-  rig_.other_pose->translation().z() += 0.02;  // the platform lies 20 mm lower than it should
+  rig_.other_pose->translation().z() += 0.02;  // the platform lies 20 mm too low
   rig_.other_pose->rotate(Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitZ()));
   Scanner scanner(rig_.options(speed), {}, store_);
   const CalibrationRun run = turn(scanner);

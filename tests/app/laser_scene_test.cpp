@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A box on the platform as a text STL: 30 mm to each side of the axis and so high.
+/// An ASCII STL of a box on the platform, 30 mm to each side of the axis. @param height  metres
 std::string box_stl(double height) {
   const std::array<Vector3d, 8> corners{Vector3d(-30, -30, 0),      Vector3d(30, -30, 0),
                                         Vector3d(30, 30, 0),        Vector3d(-30, 30, 0),
@@ -63,7 +63,8 @@ class LaserSceneTest : public ::testing::Test {
         .lasers = {nominal_laser("left", -0.5), nominal_laser("right", 0.5)}};
   }
 
-  /// The brightest pixel of a row of the difference of two pictures; nothing if none is bright.
+  /// The column where `lit` exceeds `dark` most in a row; nothing if nowhere by more than the
+  /// noise.
   static std::optional<int> brightest(const Picture& dark, const Picture& lit, int row) {
     int best = 8;  // grey levels, three times the noise
     std::optional<int> found;
@@ -78,7 +79,7 @@ class LaserSceneTest : public ::testing::Test {
     return found;
   }
 
-  /// Where a pixel's ray meets a laser's plane, in the platform's frame, metres.
+  /// The intersection of a pixel's ray with a laser's plane, platform's frame, metres.
   static Vector3d meet(const LaserSimulation& of, std::size_t laser, int u, int v) {
     const Vector3d ray((u - of.lens.cx) / of.lens.fx, (v - of.lens.cy) / of.lens.fy, 1);
     const Laser& plane = of.lasers[laser];
@@ -89,8 +90,9 @@ class LaserSceneTest : public ::testing::Test {
   std::string file_ = folder_.path() / "box.stl";
 };
 
-/// A pixel is 0.9 mm wide on the object, and the brightest is within one of the line.
-constexpr double pixel = 0.0012;  // metres
+/// Error bound, metres: on the object a pixel is 0.9 mm wide, and the brightest pixel lies within
+/// one pixel of the line.
+constexpr double pixel = 0.0012;
 
 TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
   const LaserSimulation told = simulation();
@@ -106,7 +108,7 @@ TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
         continue;
       }
       const Vector3d point = meet(told, laser, *u, v);
-      const double side = std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // of the box
+      const double side = std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // box: 0
       const bool is_top = side < pixel && std::abs(point.z() - 0.04) < 2 * pixel;
       const bool is_side = std::abs(side) < 2 * pixel && point.z() > -pixel && point.z() < 0.042;
       const bool is_platform = std::abs(point.z()) < 2 * pixel && side > -pixel;
@@ -123,12 +125,12 @@ TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
 
 TEST_F(LaserSceneTest, ThrowsTheLasersShadow) {
   LaserSimulation told = simulation();
-  told.lasers = {nominal_laser("aside", 1.2)};  // so that the camera sees where its shadow falls
-  // Which is so flat before the camera that large pixels would blur the line away.
+  told.lasers = {nominal_laser("aside", 1.2)};  // so that the camera sees the shadow
+  // The camera sees that place at a grazing angle; large pixels would blur the line away.
   told.lens = {.width = 1640, .height = 1232, .fx = 1364.8, .fy = 1364.8, .cx = 819.5, .cy = 615.5};
   const Vector3d source = told.platform_from_sensor * *told.lasers[0].source;
-  // Of the box's edge at x = -0.03: from there it is as long as the edge is far from the laser,
-  // times 4 cm by what the laser is higher.
+  // Length of the shadow behind the box's edge at x = -0.03, by similar triangles: the edge's
+  // distance from the laser, times the box's height of 4 cm over the laser's height above it.
   const double shadow = (source.x() + 0.03) * 0.04 / (source.z() - 0.04);
   const auto lit_points = [&](double from_x, double to_x) {
     LaserScene scene(told);
@@ -150,7 +152,7 @@ TEST_F(LaserSceneTest, ThrowsTheLasersShadow) {
   const double end = -0.03 - shadow;
   EXPECT_EQ(lit_points(end + 3 * pixel, begin), 0);
   EXPECT_GT(lit_points(-0.14, end - 3 * pixel), 2);
-  std::ofstream(file_) << box_stl(0.5);  // which throws next to none
+  std::ofstream(file_) << box_stl(0.5);  // 0.5 mm high: hardly any shadow
   EXPECT_GT(lit_points(end + 3 * pixel, begin), 4);
 }
 
@@ -163,7 +165,7 @@ TEST_F(LaserSceneTest, TakesTheSamePicturesForTheSameSeed) {
   EXPECT_FALSE(first.expose(0.3, {}).samples == first.expose(0.3, {}).samples);  // noise
 }
 
-// So that the dark picture can be subtracted whether it is stored in colour or not.
+// The dark picture can be subtracted whether it is stored in colour or in grey.
 TEST_F(LaserSceneTest, HasColoursOfThePicturesLuminance) {
   LaserScene scene(simulation());
   LaserScene same(simulation());
@@ -176,13 +178,13 @@ TEST_F(LaserSceneTest, HasColoursOfThePicturesLuminance) {
   }
 }
 
-// Red is strongest where the object's Y axis points, and blue where its X axis does.
+// Red is strongest in the direction of the object's Y axis, and blue in that of its X axis.
 TEST_F(LaserSceneTest, PaintsTheObjectOnceRoundItsAxis) {
   const LaserSimulation told = simulation();
   LaserScene scene(told);
   constexpr double quarter = std::numbers::pi / 2;
   for (int side = 0; side < 4; ++side) {
-    // The side that faces the camera, which looks along Y.
+    // This side faces the camera, which looks along Y.
     const ColourExposure seen = scene.expose_in_colour(side * quarter, {});
     const Vector3d at = told.platform_from_sensor.inverse() * Vector3d(0, -0.03, 0.02);
     const int u = static_cast<int>(std::lround(told.lens.fx * at.x() / at.z() + told.lens.cx));
@@ -195,7 +197,7 @@ TEST_F(LaserSceneTest, PaintsTheObjectOnceRoundItsAxis) {
       }
     }
     const double light = sum.dot(Vector3d(0.299, 0.587, 0.114));
-    const double azimuth = -quarter - side * quarter;  // of that side on the object
+    const double azimuth = -quarter - side * quarter;  // of that side, in the object's frame
     EXPECT_NEAR((sum.z() / light - 1) / 1.772, 0.4 * std::cos(azimuth), 0.06) << side;
     EXPECT_NEAR((sum.x() / light - 1) / 1.402, 0.4 * std::sin(azimuth), 0.06) << side;
   }
@@ -219,7 +221,7 @@ TEST_F(LaserSceneTest, TurnsWithThePlatform) {
       }
     }
     ASSERT_GT(points, 20);
-    // The laser's plane is 0.5 to the left of the face that is ahead, or of the next one.
+    // The laser's plane makes an angle of 0.5 radians with the normal of the lit face.
     const double off = angle == quarter / 2 ? quarter / 2 - 0.5 : 0.5;
     EXPECT_NEAR(sum / points, 0.03 / std::cos(off), 0.0005) << angle;
   }

@@ -11,7 +11,7 @@
 namespace octurn {
 namespace {
 
-/// Two lines, which are in use as long as a function that sets them lives.
+/// Two GPIO lines, which are held as long as a function that sets them lives.
 struct Header {
   std::string changes = {};  ///< A and B for on, a and b for off
   bool is_broken = false;

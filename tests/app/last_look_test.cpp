@@ -1,4 +1,4 @@
-// One more look at the first stop, once all snapshots of a scan are taken.
+// The last look: one more frame at the first stop, after all snapshots of a scan are taken.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-/// Two blocks, moved by `by` (millimetres). Two specks, which no pixel sees, stay: the simulator
-/// stands the middle of all on the platform's axis.
+/// Two blocks, moved by `by` (millimetres). The simulator centres the bounding box of everything on
+/// the axis; two fixed specks, too small for a pixel, keep that box in place.
 BoxesOnPlatform blocks_moved(const Vector3d& by) {
   const auto at = [&](const Vector3d& min, const Vector3d& max) {
     return AlignedBox3d(min + by, max + by);
@@ -39,13 +39,13 @@ BoxesOnPlatform blocks_moved(const Vector3d& by) {
 
 constexpr int stops = 8;
 
-/// A simulated sensor with a Kinect's noise and pattern, whose object is moved before a look.
+/// A simulated sensor with a Kinect's noise and pattern, whose object is moved after some looks.
 class SensorOfMovedObject final : public DepthSensor {
  public:
   static constexpr double speed = 20;
-  static constexpr double askew = 0.6;  // radians: of two walls each tells another direction
+  static constexpr double askew = 0.6;  // radians: shows two walls, which fix both directions
 
-  /// @param looks  stops at which it stands before it is moved
+  /// @param looks  number of stops before the object is moved
   SensorOfMovedObject(const Vector3d& by, int looks)
       : before_(blocks_moved(Vector3d::Zero())),
         after_(blocks_moved(by)),
@@ -80,7 +80,7 @@ class SensorOfMovedObject final : public DepthSensor {
   BoxesOnPlatform before_;
   BoxesOnPlatform after_;
   int looks_;
-  int stop_ = -1;  // at which the platform was last
+  int stop_ = -1;  // the platform's last stop
   std::unique_ptr<DepthSensor> sensor_;
 };
 
@@ -107,7 +107,7 @@ std::vector<std::string> moves_told(const Model& model) {
   return details;
 }
 
-/// The one that the last look tells, if any.
+/// The move that the last look found, if any.
 std::string move_told(const Model& model) {
   for (const std::string& detail : moves_told(model)) {
     if (detail.find("one more look") != std::string::npos) {
@@ -154,7 +154,8 @@ TEST(LastLook, IsInNoModelAndInNoSnapshot) {
   EXPECT_EQ(read_scan(folder.path()).shots.size(), std::size_t{stops});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "snapshots"), {}), stops);
 
-  // As a scan that was killed before its model was made: it looks no more, and knows what it saw.
+  // A scan that was killed before its model was made has stored the last look's result, and makes
+  // the model without a sensor.
   fs::remove(folder.path() / "Scan.stl");
   const std::string description = content_of(folder.path() / "scan.json");
   Rig rig({.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {

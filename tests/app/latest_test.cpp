@@ -41,7 +41,7 @@ TEST(Latest, StopsWaitingInTimeOrWhenAsked) {
   EXPECT_EQ(*latest.wait({}, 1ms, never), 0);
   std::stop_source stop;
   const std::jthread other([&] { stop.request_stop(); });
-  latest.wait(stop.get_token(), 24h, never);  // returns when asked, or CTest ends the test
+  latest.wait(stop.get_token(), 24h, never);  // returns at the request; else CTest times out
 }
 
 TEST(Latest, LosesNoUpdateOfSeveralWriters) {

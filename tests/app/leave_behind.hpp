@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// A folder of scans, as a process that was killed would leave it when `leave` returns.
+/// Leaves a folder of scans as a process would that is killed when `leave` returns.
 inline void leave_behind(const std::filesystem::path& data,
                          const std::function<void(ScanStore&)>& leave) {
   ScanStore store(data);

@@ -1,4 +1,4 @@
-// What a scan by laser line shows of the object while its platform turns.
+// The preview of a scan by laser line while its platform turns.
 
 #include "scan/line_preview.hpp"
 
@@ -35,7 +35,7 @@ std::vector<Facet> preview_of(const Reconstructor& reconstruction) {
   return facets;
 }
 
-/// How far round the axis a surface reaches: of 36 parts of a turn, those with a facet.
+/// Counts the sectors around the axis, of 36, that have a facet.
 int parts_with_facets(const std::vector<Facet>& facets) {
   std::vector<bool> seen(36);
   for (const Facet& facet : facets) {
@@ -48,10 +48,10 @@ int parts_with_facets(const std::vector<Facet>& facets) {
   return static_cast<int>(std::ranges::count(seen, true));
 }
 
-/// Scans a simulated object.
+/// Scans a simulated object and records its previews.
 class LinePreviewOfAScan : public ::testing::Test {
  protected:
-  /// What it showed after that many stops each time, and how many parts of the turn that reached.
+  /// One preview: the number of stops in it, and of the sectors with a facet.
   struct Shown {
     int stops = 0;
     int parts = 0;
@@ -92,7 +92,7 @@ TEST_F(LinePreviewOfAScan, LeavesTheModelAsItIsMadeFromTheFolder) {
   EXPECT_TRUE(content_of(folder_.path() / "Scan.stl") == content_of(folder_.path() / "again.stl"));
 }
 
-// Also those that were taken while it was at others, or before the scan was interrupted.
+// That includes lines taken while the preview was busy, or before the scan was interrupted.
 TEST_F(LinePreviewOfAScan, AddsEachLineOnce) {
   scan(12);
   const Scan stored = read_scan(folder_.path());

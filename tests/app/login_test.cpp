@@ -17,20 +17,20 @@ using namespace std::chrono_literals;
 
 const Login::Time start = Login::Time{} + 1000h;
 
-/// A login with the password "open sesame", and what of it clients see.
+/// A login with the password "open sesame", seen from its clients.
 class LoginTest : public ::testing::Test {
  protected:
   LoginTest() { write_password_file(file(), "open sesame"); }
 
   std::filesystem::path file() const { return folder_.path() / "password"; }
 
-  /// A nonce as a client gets it.
+  /// A nonce from the challenge that a client gets.
   std::string nonce(Login::Time now = start) {
     const auto answer = login_.refusal({}, now);
     return quoted_field(challenge_of(answer), "nonce");
   }
 
-  /// What a request with this Authorization is answered; 200 if it is let in.
+  /// The status for a request with this Authorization header; 200 if it is accepted.
   int answer(const std::string& authorization, const LoginAttempt& like = {},
              Login::Time now = start) {
     LoginAttempt attempt = like;
@@ -112,7 +112,7 @@ TEST_F(LoginTest, TakesNoOldNonceAndSaysThatItIsOld) {
 
 TEST_F(LoginTest, TakesNoNonceThatItDidNotMake) {
   std::string forged = nonce();
-  forged[15] = forged[15] == '9' ? '8' : '9';  // another period
+  forged[15] = forged[15] == '9' ? '8' : '9';  // changes the time in the nonce
   Login another(file());
   const std::string foreign = quoted_field(challenge_of(another.refusal({}, start)), "nonce");
   for (const std::string& other : {forged, foreign, std::string(), std::string("7ypf")}) {
@@ -128,7 +128,7 @@ TEST_F(LoginTest, SlowsGuessesDownAndThoseOfOneAddressAlone) {
   }
   EXPECT_EQ(answer(proof_of("open sesame", one), thief), 429);
   EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 2}), {.address = "10.0.0.2"}), 200);
-  EXPECT_EQ(answer("", thief), 401);  // who sends no proof does not guess
+  EXPECT_EQ(answer("", thief), 401);  // a request without a proof is no guess
   EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 3}), thief, start + 10s), 200);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using State = Finding::State;
 
-/// A Raspberry Pi, as far as its files tell.
+/// The files that identify a Raspberry Pi.
 class Pi {
  public:
   const std::filesystem::path& root() const { return folder_.path(); }
@@ -117,7 +117,7 @@ TEST(SupplyCheck, HearsTheKernelsAlarm) {
 
 TEST(ThrottlingCheck, TellsSlowNowFromBefore) {
   const Pi pi;
-  pi.is_throttled("10001");  // under-voltage alone
+  pi.is_throttled("10001");  // under-voltage only
   EXPECT_EQ(check_throttling(pi.root()).state, State::ok);
   pi.is_throttled("80000");
   EXPECT_EQ(check_throttling(pi.root()).measured, "it has been slowed down");

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr WatchIntervals brisk{.disk = 1ms, .warnings = 1h};
 
-/// Waits until that holds. @return whether it does after `patience` at the latest
+/// Waits until `holds`, at most for `patience`. @return whether it holds
 bool is_soon(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (!holds() && std::chrono::steady_clock::now() < deadline) {

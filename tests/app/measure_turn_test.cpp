@@ -14,8 +14,8 @@ namespace {
 
 const Box clip{.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
 
-// By its noise the sensor is wrong by a tenth of a degree between two looks, and by three of them
-// in a whole turn.
+// The sensor's noise makes an error of 0.1 degrees between two looks, and of 0.3 degrees in a whole
+// turn.
 constexpr double turn_error_deg = 1;
 constexpr double look_error_deg = 0.5;
 

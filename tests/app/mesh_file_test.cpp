@@ -46,7 +46,7 @@ constexpr const char* text_stl = R"(solid two plates
 endsolid two plates
 )";
 
-/// Corner `corner` of triangle `triangle`, millimetres.
+/// The position of a triangle's corner (0, 1, 2), millimetres.
 Eigen::Vector3f corner_mm(const Mesh& mesh, std::size_t triangle, std::size_t corner) {
   return 1000 * mesh.vertices[mesh.triangles[triangle][corner]];
 }

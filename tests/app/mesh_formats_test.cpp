@@ -1,4 +1,4 @@
-// Each format has the triangles of the STL that it is made of, bit for bit.
+// Each format has, to the bit, the triangles of the STL from which it is made.
 
 #include "mesh/mesh_formats.hpp"
 
@@ -43,7 +43,7 @@ Value take(const std::string& bytes, std::size_t& at) {
   return value;
 }
 
-/// A ball of 20 mm on the platform, of so many bands; its lower half was filled in.
+/// A ball of 20 mm on the platform in `bands` bands, whose lower half is marked as filled in.
 std::vector<Facet> ball(int bands) {
   const auto corner = [&](int band, int sector) -> Vertex {
     const double polar = M_PI * band / bands;
@@ -88,7 +88,7 @@ class MeshFormats : public ::testing::Test {
   void expect_same(const std::vector<Triangle>& triangles) const {
     ASSERT_EQ(triangles.size(), facets_.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      const auto corners = facets_[i].corners;  // which are not aligned in a facet
+      const auto corners = facets_[i].corners;  // a copy: a facet's corners are unaligned
       ASSERT_EQ(triangles[i], corners) << i;
     }
   }
@@ -158,7 +158,7 @@ TEST_F(MeshFormats, WriteTheGlbOfAnStl) {
   expect_same(triangles);
 }
 
-/// The files of an archive by name.
+/// The content of an archive's files by name.
 std::map<std::string, std::string> unzipped(const fs::path& archive) {
   std::map<std::string, std::string> files;
   const std::unique_ptr<void, decltype(&unzClose)> zip(unzOpen64(archive.c_str()), &unzClose);
@@ -177,7 +177,7 @@ std::map<std::string, std::string> unzipped(const fs::path& archive) {
   return files;
 }
 
-/// The values of an attribute, in order.
+/// The values of an XML attribute, in order.
 template <typename Number>
 std::vector<Number> values(const std::string& xml, const std::string& attribute) {
   std::vector<Number> found;
@@ -235,7 +235,7 @@ TEST_F(MeshFormats, DrawABallAsADiscThatIsBrighterWhereTheLightIs) {
   EXPECT_GT(red(110, 60), red(150, 220)) << "the light comes from above";
 }
 
-/// From the middle of the ball, which stands on the platform. @param corner  millimetres
+/// Distance from the centre of the ball, which stands on the platform; millimetres.
 double distance_to_middle(const Vertex& corner) {
   return std::hypot(corner[0], corner[1], corner[2] - 10);
 }
@@ -244,7 +244,7 @@ TEST_F(MeshFormats, MakeACoarseMeshOfABallThatIsSmallerByLittleAndFilledInBelowT
   const std::vector<Facet> coarse = coarse_mesh(stl(), 500);
   EXPECT_LE(coarse.size(), 500U);
   EXPECT_GT(coarse.size(), 200U) << "no coarser than asked for";
-  const double cell = std::sqrt(3 * 4 * M_PI * 100 / 200.0);  // of 200 facets, millimetres
+  const double cell = std::sqrt(3 * 4 * M_PI * 100 / 200.0);  // millimetres, at 200 facets
   double six_volumes = 0;
   for (const Facet& facet : coarse) {
     const auto corners = facet.corners;

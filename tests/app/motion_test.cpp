@@ -17,12 +17,12 @@ std::vector<double> step_times(const Motion& motion, int steps) {
 }
 
 TEST(SpeedProfile, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
-  // From 200 to 800 steps/s at 2000 steps/s^2: 150 steps in 0.3 s, twice; 500 steps at 800.
+  // From 200 to 800 steps/s at 2000 steps/s^2: 150 steps in 0.3 s, twice; 500 steps at 800 steps/s.
   EXPECT_NEAR(move_time({}, 800), 0.3 + 500.0 / 800 + 0.3, 1e-9);
 }
 
 TEST(SpeedProfile, TurnsAShortMoveRoundInTheMiddle) {
-  // 50 steps from rest at 400 steps/s^2 take 0.5 s, and so do the 50 that end at rest.
+  // 50 steps from rest at 400 steps/s^2 take 0.5 s, as do the 50 steps down to rest.
   const Motion motion = {.start_steps_per_second = 0, .ramp_steps_per_second2 = 400};
   EXPECT_NEAR(move_time(motion, 100), 1, 1e-9);
   const auto times = step_times(motion, 100);
@@ -44,9 +44,9 @@ TEST(SpeedProfile, GainsAgainWhatItLost) {
   for (int i = 0; i < 300; ++i) {
     profile.next_step();
   }
-  profile.slowed_to(1.0 / 600);  // steps a second
+  profile.slowed_to(1.0 / 600);  // seconds per step
 
-  // v^2 = 600^2 + 2 * 2000 s: back at 800 after 70 steps.
+  // v^2 = 600^2 + 2 * 2000 s: back at 800 steps/s after 70 steps.
   double time = 0;
   for (int i = 0; i < 70; ++i) {
     time += profile.next_step();

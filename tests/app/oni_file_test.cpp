@@ -1,4 +1,4 @@
-// Recordings of OpenNI2 (.oni), made by its own recorder, as the sensor.
+// Recordings of OpenNI2's own recorder (.oni), opened as the sensor.
 
 #include <OpenNI.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using Depths = std::vector<std::uint16_t>;
 
-/// Counts frames as they come, which the recorder gets as well.
+/// Counts the frames that arrive, which the recorder also gets.
 class FrameCounter final : public openni::VideoStream::NewFrameListener {
  public:
   void wait_for(int count) const {
@@ -41,7 +41,7 @@ class FrameCounter final : public openni::VideoStream::NewFrameListener {
   std::atomic<int> count_ = 0;
 };
 
-/// Records at least so many frames of the simulated Kinect.
+/// Records at least `frames` frames of the simulated Kinect.
 void record_oni(const std::filesystem::path& file, int frames) {
   load_sensor_drivers();
   openni::Device device;
@@ -58,7 +58,7 @@ void record_oni(const std::filesystem::path& file, int frames) {
   counter.wait_for(frames);
   recorder.stop();
   recorder.destroy();
-  stream.removeNewFrameListener(&counter);  // while frames come: it may be waiting for one
+  stream.removeNewFrameListener(&counter);  // while frames arrive: it may be waiting for one
   stream.stop();
   stream.destroy();
   device.close();
@@ -90,7 +90,7 @@ TEST(OniFile, IsReadFrameForFrameAndBeginsAgain) {
   for (int i = 0; i < count; ++i) {
     frames.push_back(sensor->read({}).value().frame.depth);
   }
-  EXPECT_EQ(std::set<Depths>(frames.begin(), frames.end()).size(), frames.size());  // each once
+  EXPECT_EQ(std::set<Depths>(frames.begin(), frames.end()).size(), frames.size());  // distinct
   for (const Depths& frame : frames) {
     EXPECT_TRUE(sensor->read({}).value().frame.depth == frame);
   }
@@ -102,8 +102,8 @@ TEST(OniFile, HoldsTheSensorsDepthsExactly) {
   record_oni(file, 3);
   const auto recorded = open_sensor(file.string());
   const Depths depths = recorded->read({}).value().frame.depth;
-  // The simulator gives the same noise in the same frame; the number of the first one that was
-  // recorded is not known.
+  // The simulator's noise depends on the frame's number, but the first recorded frame's number is
+  // not known.
   const Simulation usual;
   const Scene scene(simulator_object(), misaligned_platform_from_sensor(usual.misalignment));
   SimulatedKinect kinect(scene, usual.seed, usual.noise, usual.pattern);

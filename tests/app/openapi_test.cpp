@@ -1,4 +1,4 @@
-// What the interface says of itself.
+// The OpenAPI description of the HTTP interface.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ json description() {
   return json::parse(read_regular_file(file, 1U << 20U).value());
 }
 
-/// "GET /api/v1/scans" and its like.
+/// The described operations, such as "GET /api/v1/scans".
 std::set<std::string> described(const json& paths) {
   std::set<std::string> all;
   for (const auto& [path, item] : paths.items()) {
@@ -37,7 +37,7 @@ std::set<std::string> described(const json& paths) {
   return all;
 }
 
-/// The schemas and the like that a value refers to.
+/// Collects the components that a value refers to.
 void collect_references(const json& value, std::set<std::string>& references) {
   if (value.is_object() && value.contains("$ref")) {
     references.insert(value.at("$ref").get<std::string>());

@@ -16,7 +16,7 @@ Response long_json() {
           .body = "[" + std::string(5000, ' ') + "]"};
 }
 
-/// What is packed in a text of gzip.
+/// Decompresses gzip.
 std::string unpacked(const std::string& small) {
   std::string text(100'000, '\0');
   z_stream stream{};
@@ -50,7 +50,7 @@ TEST(Packed, IsOnlyLongJsonForWhoTakesIt) {
   Response picture = long_json();
   picture.headers[0].second = "image/png";
   EXPECT_EQ(header(packed(gzip_taker, std::move(picture)), "Content-Encoding"), "");
-  Response page = long_json();  // a file of the page that was packed when it was built
+  Response page = long_json();  // a page's file that was compressed at build time
   page.headers.emplace_back("Content-Encoding", "gzip");
   EXPECT_EQ(std::get<std::string>(packed(gzip_taker, std::move(page)).body),
             std::get<std::string>(long_json().body));

@@ -17,7 +17,7 @@ using State = Finding::State;
 
 constexpr uid_t nobody = 65534;
 
-/// A machine as far as its files tell. Whoever looks at it is no root, who may do anything.
+/// The files that describe a machine. Privileges of root are dropped, as root may open anything.
 class Machine {
  public:
   Machine() {
@@ -37,7 +37,7 @@ class Machine {
 
   const fs::path& root() const { return folder_.path(); }
 
-  /// What the kernel tells of a device on USB.
+  /// Adds the kernel's description of a USB device.
   void has_usb(const std::string& name, const std::string& vendor,
                const std::string& product) const {
     const fs::path device = root() / "sys/bus/usb/devices" / name;
@@ -138,7 +138,7 @@ TEST(RealTimeCheck, WarnsWhereItIsRefused) {
   EXPECT_EQ(finding.measured, "not allowed (Operation not permitted)");
 }
 
-/// The number after `key=` in a text. @return nothing if it is not there
+/// The number after `key=` in a text; nothing if there is none.
 std::optional<int> number_after(const std::string& key, const std::string& text) {
   const std::size_t at = text.find(key + "=");
   return at == text.npos ? std::nullopt

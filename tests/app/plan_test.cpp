@@ -16,7 +16,7 @@ TEST(Plan, DividesATurnThatDividesEvenly) {
 }
 
 TEST(Plan, StopsAtTheNearestMicrostepWhereItDoesNot) {
-  // 800 / 3 = 266.67 and 533.33; 800 / 64 = 12.5, whose half is rounded up.
+  // 800 / 3 = 266.67 and 533.33; 800 / 64 = 12.5, which is rounded up.
   EXPECT_EQ(stop_positions(0, 800, 3), (std::vector<std::int64_t>{0, 267, 533}));
   EXPECT_EQ(stop_positions(0, 800, 64)[1], 13);
   EXPECT_EQ(stop_positions(0, 800, 64)[2], 25);
@@ -62,7 +62,8 @@ TEST(Plan, GoesOnAtTheNextStopWhereverThePlatformStands) {
   EXPECT_TRUE(stop_positions(0, 800, 4, 4).empty());
 }
 
-// A month of turning with the finest gear: 16 microsteps of 1000 full steps, geared 1000 to 1.
+// A month of turning with the finest resolution: 1000 full steps, 16 microsteps, a gear of 1000
+// : 1.
 TEST(Plan, GoesOnAfterMoreTurnsThanFitInto32Bits) {
   constexpr int steps = 16'000'000;
   constexpr std::int64_t home = std::int64_t{100'000} * steps;

@@ -54,7 +54,7 @@ TEST(PreviewImage, IsBrighterTheNearerAndBlackWithoutAReading) {
   }
   const Picture picture = decoded(preview_png(frame, 0.0001));
   EXPECT_EQ(picture.at(10, 100), 0);
-  EXPECT_GT(picture.at(50, 100), 15);  // far, yet not as if there were nothing
+  EXPECT_GT(picture.at(50, 100), 15);  // far away, but brighter than no reading
   for (int band = 2; band < 7; ++band) {
     EXPECT_GT(picture.at(band * 40 + 20, 100), picture.at(band * 40 - 20, 100)) << band;
   }

@@ -16,9 +16,9 @@ using Duration = Time::duration;
 
 const Time start = Time(1000s);
 
-/// What happened to the line on a system of which each test says how late it is.
+/// The changes of the line on a system whose delays a test sets.
 struct PulseChanges {
-  std::vector<PulseTrain::Change> changes = {};  // `due` is when it happened
+  std::vector<PulseTrain::Change> changes = {};  // `due` is the time of the change
   LatePulses late = {};
 
   std::vector<Time> rises() const {
@@ -62,7 +62,8 @@ TEST(PulseTrain, HasNothingToDoForNoSteps) {
 
 TEST(PulseTrain, TakesTheTimeOfItsRamps) {
   const PulseChanges line = changes_of({}, 800, punctual);
-  // 0.3 s up, 500 steps at 800 a second, 0.3 s down; each step is rounded up to a nanosecond.
+  // 0.3 s of acceleration, 500 steps at 800 steps/s, 0.3 s of deceleration; each step is rounded up
+  // to a nanosecond.
   const Duration taken = line.rises().back() - start;
   EXPECT_GE(taken, 1225ms);
   EXPECT_LE(taken, 1225ms + 800ns);
@@ -76,7 +77,7 @@ TEST(PulseTrain, KeepsEachLevelLongEnoughForTheDriver) {
   const PulseChanges line = changes_of(fast, 2000, delays);
   ASSERT_EQ(line.changes.size(), 4000U);
   for (std::size_t i = 1; i < line.changes.size(); ++i) {
-    // 1 us: datasheet of the A4988
+    // A4988 datasheet: STEP stays high and low for at least 1 us.
     EXPECT_GE(line.changes[i].due - line.changes[i - 1].due, 1us) << i;
   }
 }
@@ -93,19 +94,19 @@ TEST(PulseTrain, NeverCatchesUp) {
   const std::vector<Time> undelayed = changes_of({}, 800, punctual).rises();
 
   ASSERT_EQ(rises.size(), undelayed.size());
-  ASSERT_GT(delayed, 1s);  // or there was nothing to catch up
+  ASSERT_GT(delayed, 1s);  // there was a delay to catch up with
   for (std::size_t i = 1; i < rises.size(); ++i) {
     EXPECT_GE(rises[i] - rises[i - 1], undelayed[i] - undelayed[i - 1]) << i;
   }
 }
 
 TEST(PulseTrain, StartsSlowlyAgainAfterAStandstill) {
-  // Of pulse 400, amid the move at full speed: longer than a step at the speed that it starts with.
+  // Pulse 400, at full speed, is delayed by more than a step takes at the starting speed.
   const auto delay = [](std::size_t change) { return change == 800 ? Duration(50ms) : 0ms; };
   const std::vector<Time> rises = changes_of({}, 800, delay).rises();
   const Duration first = rises[0] - start;
   EXPECT_NEAR(static_cast<double>((rises[401] - rises[400]).count()),
-              static_cast<double>(first.count()), 1);  // ns, of rounding
+              static_cast<double>(first.count()), 1);  // ns, rounding
   EXPECT_NEAR(static_cast<double>((rises[400] - rises[399]).count()), 51.25e6, 1);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Cut at the top, in two places, and little seen nowhere in particular.
+/// A quality with two reasons: cut at the top, in two places, and little seen, without a place.
 Quality quality_with_places() {
   return {.verdict = Verdict::look,
           .reasons = {{.code = "cut-by-box",

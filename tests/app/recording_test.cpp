@@ -21,7 +21,7 @@ DepthFrame frame_with(std::uint16_t depth) {
   return {.width = 4, .height = 3, .depth = std::vector<std::uint16_t>(12, depth)};
 }
 
-/// Two frames at each of two angles: depths 1000, 1001 and 2000, 2001.
+/// Writes a recording of two frames at each of two angles: depths 1000, 1001 and 2000, 2001.
 fs::path write_recording(const fs::path& folder) {
   RecordingWriter writer(folder, "Kinect v1", "A1", small);
   for (const int stop : {0, 1}) {
@@ -127,14 +127,14 @@ TEST(RecordedSensor, GivesTheFramesOfTheAngleInTheirOrder) {
   EXPECT_EQ(sensor->name(), "Kinect v1 (recorded)");
   EXPECT_EQ(sensor->intrinsics().fx, 5.5);
 
-  sensor->show_angle(radians_from_degrees(180 - 360));  // the same as 180
+  sensor->show_angle(radians_from_degrees(180 - 360));  // equivalent to 180
   EXPECT_EQ(next_depth(*sensor), 2000);
   EXPECT_EQ(next_depth(*sensor), 2001);
   EXPECT_EQ(next_depth(*sensor), 2000);
   EXPECT_FALSE(sensor->tilt().has_value());
   sensor->show_angle(0);
   EXPECT_EQ(next_depth(*sensor), 1000);
-  sensor->show_angle(0);  // begins again
+  sensor->show_angle(0);  // starts over
   EXPECT_EQ(next_depth(*sensor), 1000);
   EXPECT_EQ(next_depth(*sensor), 1001);
   EXPECT_NEAR(sensor->tilt()->pitch, -0.4, 1e-15);

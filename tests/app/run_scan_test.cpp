@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Twenty times faster than life: a stop takes about 50 ms.
+// Twenty times real time: a stop takes about 50 ms.
 constexpr const char* simulator = "octurn-simulator://?speed=20";
 
 RigOptions rig_of(const std::string& uri = simulator) { return {.sensor_uri = uri, .speed = 20}; }
 
-/// The images that a scan folder holds.
+/// The number of images in a scan folder.
 int snapshots_in(const fs::path& folder) {
   return static_cast<int>(
       std::distance(fs::directory_iterator(folder / "snapshots"), fs::directory_iterator()));
@@ -54,7 +54,7 @@ TEST(RunScan, TellsTheAngleOfEachStopAndTheSettings) {
   ASSERT_EQ(scan.shots.size(), 3U);
   const double steps = rig.turntable().steps_per_turn();
   for (std::size_t i = 0; i < 3; ++i) {
-    // Whole microsteps: half of one is how far a stop may be from a third of a turn.
+    // A stop is rounded to a whole microstep, so it may be half a microstep from a third of a turn.
     const double third = 2 * std::numbers::pi / 3 * static_cast<double>(i);
     EXPECT_NEAR(scan.shots[i].angle, third, std::numbers::pi / steps + 1e-9);
     EXPECT_NEAR(std::remainder(scan.shots[i].angle, 2 * std::numbers::pi / steps), 0, 1e-9);
@@ -82,7 +82,7 @@ TEST(RunScan, TakesOneFrameAStopForTheBasicFilter) {
   int frames = 0;
   ASSERT_TRUE(run_scan(settings, {}, folder.path(), rig, {},
                        {.on_frame = [&](const DepthFrame&) { ++frames; }}));
-  EXPECT_EQ(frames, 4);  // the last of them at the first stop again
+  EXPECT_EQ(frames, 4);  // the fourth is the last look, at the first stop again
 }
 
 TEST(RunScan, GoesThroughItsPhasesInOrder) {
@@ -136,7 +136,7 @@ TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
     EXPECT_EQ(snapshots_in(folder.path()), moment.second) << to_string(moment.first);
     EXPECT_EQ(read_scan(folder.path()).shots.size(), static_cast<std::size_t>(moment.second));
     EXPECT_FALSE(fs::exists(folder.path() / "Scan.stl"));
-    // Nothing but the contract's files: no part of a model is left.
+    // Only scan.json and snapshots/: no partial model is left.
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2)
         << to_string(moment.first);
   }
@@ -182,7 +182,7 @@ TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
   EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }), "empty");
 }
 
-/// Files of this process take no more than so many bytes, which a full disk looks like.
+/// Limits the size of this process's files, to simulate a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -200,12 +200,12 @@ class FileSizeLimit {
 };
 
 TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
-  for (const rlim_t bytes : {10'000U, 400'000U}) {  // no room for a snapshot; none for the model
+  for (const rlim_t bytes : {10'000U, 400'000U}) {  // less than a snapshot; less than the model
     const TemporaryFolder folder;
     Rig rig(rig_of());
     const FileSizeLimit limit(bytes);
     ScanSettings settings = few_snapshots();
-    settings.method = Method::intersection;  // whose model is the larger one
+    settings.method = Method::intersection;  // its model is the larger one
     const Error error =
         error_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); });
     EXPECT_EQ(error.code(), ErrorCode::disk_full) << bytes;

@@ -81,7 +81,7 @@ TEST(SameOrigin, LetsADeleteGoWithoutAType) {
 TEST(SameOrigin, LetsAnyPageLink) {
   Request request = get("octurn.local");
   request.headers.emplace_back("Origin", "http://evil.example");
-  EXPECT_EQ(code(request), "");  // it cannot read the answer, and nothing changes
+  EXPECT_EQ(code(request), "");  // the browser hides the response, and GET changes nothing
 }
 
 }  // namespace

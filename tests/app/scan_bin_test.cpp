@@ -1,4 +1,4 @@
-// Scans that were deleted, and come back.
+// Deleted scans, and their return from the bin.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class ScanBinTest : public ::testing::Test {
  protected:
-  /// A scan that is finished and has a model.
+  /// Creates a finished scan with a model.
   Job finished(ScanStore& store, const std::optional<PoseOf>& pose_of = {}) {
     Job job = store.create({}, pose_of);
     job.state = JobState::finished;
@@ -30,7 +30,7 @@ class ScanBinTest : public ::testing::Test {
 
   fs::path scans() const { return folder_.path() / "scans"; }
   fs::path bin() const { return folder_.path() / "bin"; }
-  /// The folder of the scan that was deleted; the only one.
+  /// The folder of the only deleted scan.
   fs::path binned() const { return fs::directory_iterator(bin())->path(); }
 
   TemporaryFolder folder_;
@@ -97,7 +97,7 @@ TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
     pose = finished(store, PoseOf{.scan = first.id});
     store.discard(first.id);
   }
-  // As if the power had gone before the pose went, too.
+  // Simulates a power cut before the pose was deleted, too.
   for (const auto& entry : fs::directory_iterator(bin())) {
     if (entry.path().string().ends_with(pose.id)) {
       fs::rename(entry.path(), scans() / pose.id);
@@ -108,7 +108,7 @@ TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
     EXPECT_TRUE(store.list().empty());
     EXPECT_EQ(store.bin().list().size(), 2U);
   }
-  // And as if it had gone while they came back.
+  // Simulates a power cut while the scans were being restored.
   for (const auto& entry : fs::directory_iterator(bin())) {
     if (entry.path().string().ends_with(first.id)) {
       fs::rename(entry.path(), scans() / first.id);

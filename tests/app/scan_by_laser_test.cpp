@@ -1,4 +1,4 @@
-// Scans with a camera and lasers that fail on the way.
+// Scans with a camera and lasers during which a device fails.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ Job ended(Scanner& scanner) {
 
 class ScanByLaser : public ::testing::Test {
  protected:
-  /// Has something happen before the picture of that number, counted from the scan's start.
+  /// Calls `action` before picture `number`, counted from the scan's start.
   void before_picture(int number, const std::function<void()>& action) {
     rig_.on_picture = [=, first = std::make_shared<std::optional<int>>()](SimulatedLaserRig& rig) {
       *first = first->value_or(rig.pictures);
@@ -75,7 +75,7 @@ TEST_F(ScanByLaser, StoresAFolderThatTheReconstructionReads) {
   EXPECT_EQ(scan.shots[1].pictures,
             (std::vector<std::string>{"snapshots/001-dark.png", "snapshots/001-left.png",
                                       "snapshots/001-right.png"}));
-  EXPECT_NEAR(scan.shots[1].angle, 6.283185307179586 / stops, 0.01);  // a step of the motor
+  EXPECT_NEAR(scan.shots[1].angle, 6.283185307179586 / stops, 0.01);  // one motor step
   const Snapshot snapshot = stored_snapshots(folder, scan).read(0);
   ASSERT_EQ(snapshot.strips.size(), 2U);
   EXPECT_GT(snapshot.strips[0].points.size(), 100U);

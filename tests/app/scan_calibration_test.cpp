@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Millimetres between the platform's origin as two poses have it.
+/// The distance between the platform's origins of two poses, in the sensor's frame, millimetres.
 double origins_apart_mm(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return mm_from_metres((a.inverse().translation() - b.inverse().translation()).norm());
 }
@@ -33,7 +33,7 @@ class ScanCalibrationTest : public ::testing::Test {
     return settings;
   }
 
-  /// Scans to the end. @return the phases that it went through, without repetitions
+  /// Runs a scan to its end. @return its phases, without repetitions
   std::vector<Phase> scan(const ScanSettings& settings, const fs::path& folder) {
     Rig rig({.sensor_uri = "octurn-simulator://?speed=50", .speed = 50});
     std::vector<Phase> phases;
@@ -51,7 +51,7 @@ class ScanCalibrationTest : public ::testing::Test {
     return phases;
   }
 
-  /// The model of a stored scan, as it is made from the folder alone.
+  /// The model of a stored scan, made from its folder alone.
   static std::string model_of(const fs::path& folder, const ScanSettings& settings) {
     const Scan scan = read_scan(folder);
     const SnapshotSource snapshots = stored_snapshots(folder, scan);
@@ -78,8 +78,8 @@ TEST_F(ScanCalibrationTest, BuildsTheModelAgainWhereTheToldPoseIsWrong) {
   const Scan stored = read_scan(folder_.path());
   ASSERT_TRUE(stored.solved);
   EXPECT_TRUE(stored.platform_from_sensor.isApprox(wrong_pose(), 1e-12));
-  // A millimetre and a half is a tenth of what it was wrong by, and twice what the simulated
-  // sensor's pattern pulls the axis aside.
+  // 1.5 mm is a tenth of the initial error, and twice the bias of the axis from the simulated
+  // sensor's pattern.
   const Eigen::Isometry3d truth = misaligned_platform_from_sensor(1);
   EXPECT_LT(origins_apart_mm(stored.solved->platform_from_sensor, truth), 1.5);
   EXPECT_GT(origins_apart_mm(wrong_pose(), truth), 15.0);
@@ -125,7 +125,7 @@ TEST_F(ScanCalibrationTest, CountsTheSnapshotsThatItBuildsAgain) {
   EXPECT_EQ(rebuilt_.back(), 12);
 }
 
-// As a scan that is killed leaves its folder, and resumed later.
+// Each folder is as a killed scan leaves it, and is resumed later.
 TEST_F(ScanCalibrationTest, GivesTheSameModelWhereverItIsInterrupted) {
   const ScanSettings settings = told(wrong_pose());
   scan(settings, folder_.path());

@@ -19,7 +19,7 @@ const ScanSettings usual{.snapshots = 9, .leaf_size = 0.001};
 TEST(ScanEstimate, IsWhatTheSameScanTookBefore) {
   const ScanEstimate estimate = estimate_scan({earlier(usual, 25s, 5s)}, usual);
   EXPECT_TRUE(estimate.is_measured);
-  EXPECT_DOUBLE_EQ(estimate.stop.count(), 2);  // of nine stops, and one look more
+  EXPECT_DOUBLE_EQ(estimate.stop.count(), 2);  // nine stops and the last look
   EXPECT_DOUBLE_EQ(estimate.build.count(), 5);
   EXPECT_DOUBLE_EQ(estimate.total(9).count(), 25);
   EXPECT_EQ(estimate.bytes, 1'900'000U);

@@ -1,4 +1,4 @@
-// Scans whose hardware fails at every one of their stops.
+// Scans whose hardware fails, at each stop in turn.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr int stops = 4;
-constexpr double speed = 500;         // of patience: 30 s are 60 ms
-constexpr double patient_speed = 20;  // 30 s are 1.5 s
+constexpr double speed = 500;         // the patience of 30 s is 60 ms
+constexpr double patient_speed = 20;  // the patience of 30 s is 1.5 s
 
 ScanSettings settings(Method method = Method::solid) {
   return {.snapshots = stops, .frames = 2, .method = method, .leaf_size = 0.004};
@@ -33,7 +33,7 @@ Job ended(const Scanner& scanner) {
   return *status.job;
 }
 
-/// The model of a scan that nothing disturbs.
+/// The model of a scan without faults.
 std::string undisturbed_model(Method method = Method::solid) {
   const TemporaryFolder folder;
   ScanStore store(folder.path());
@@ -58,7 +58,7 @@ int stored_snapshots(const ScanStore& store, const Job& job) {
 
 struct Case {
   Fault fault;
-  int first_stop;  // at which it can be told
+  int first_stop;  // the first stop at which it can be detected
   std::string code;
 };
 
@@ -105,7 +105,7 @@ TEST_P(ScanFaults, ThatPassDoNotEvenPauseAScan) {
     ScanStore store(folder.path());
     FaultyRig rig(stops);
     Scanner scanner(rig.options(patient_speed), {}, store);
-    rig.fail(GetParam().fault, stop, 250ms);  // 5 s at that speed
+    rig.fail(GetParam().fault, stop, 250ms);  // 5 s of simulated time
     scanner.start(settings());
     const Job done = ended(scanner);
     ASSERT_EQ(done.state, JobState::finished) << done.failure->detail;
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ScanFaults,
 
 class PausedScan : public ::testing::Test {
  protected:
-  /// A scan that waits at stop 2.
+  /// A scan that is paused at stop 2.
   Job pause() {
     rig_.fail(Fault::unplugged, 2);
     scanner_.start(settings());
@@ -175,7 +175,7 @@ TEST_F(PausedScan, CountsTheLatePulsesOfAllItsParts) {
   rig_.set_pulse_delay(2ms);
   const Job job = pause();
   const int late = job.times.late_pulses;
-  EXPECT_GT(late, FaultyRig::steps / 2 - 10);  // to stop 2, of 4
+  EXPECT_GT(late, FaultyRig::steps / 2 - 10);  // half a turn, to stop 2 of 4
   rig_.mend();
   ASSERT_TRUE(scanner_.resume(job.id));
   const Job done = ended(scanner_);
@@ -188,7 +188,7 @@ TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {
   rig_.mend();
   const auto other = scanner_.start(settings());
   ASSERT_TRUE(other);
-  EXPECT_FALSE(scanner_.resume(job.id));  // which runs
+  EXPECT_FALSE(scanner_.resume(job.id));  // as the other scan runs
   EXPECT_EQ(ended(scanner_).state, JobState::finished);
   ASSERT_TRUE(scanner_.resume(job.id));
   EXPECT_EQ(ended(scanner_).state, JobState::finished);
@@ -222,7 +222,7 @@ TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
   }
   EXPECT_EQ(status.job->state, JobState::running);
   EXPECT_EQ(status.job->failure->code, ErrorCode::sensor_silent);
-  EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits for the next attempt
+  EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits to try again
   EXPECT_EQ(ended(patient).state, JobState::cancelled);
   EXPECT_FALSE(rig.is_motor_on());
 }
@@ -255,7 +255,7 @@ TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
 
 class KilledScan : public ::testing::TestWithParam<Method> {};
 
-/// What is on the disk at a stop is what a kill, or a power cut, would leave there.
+// A copy of the folder taken at a stop is what a kill or a power cut would leave.
 TEST_P(KilledScan, GoesOnFromAnyStop) {
   const std::string model = undisturbed_model(GetParam());
   std::array<TemporaryFolder, stops> left;

@@ -33,7 +33,7 @@ class ScanLens : public ::testing::Test {
     rig_.other_lens->k1 = -0.05;
   }
 
-  /// Fewer pixels than usual, so that a test takes seconds; squares are still wide enough.
+  /// A smaller picture, so that a test takes seconds; the board's squares are still wide enough.
   static LaserSettings smaller() {
     LaserSettings settings;
     settings.lens = {.width = 600, .height = 450, .fx = 500, .fy = 500, .cx = 299.5, .cy = 224.5};
@@ -52,7 +52,7 @@ class ScanLens : public ::testing::Test {
     return *status.job;
   }
 
-  /// Waits until so many views of the board are taken.
+  /// Waits until `count` views of the board are taken.
   static void wait_for_views(const Scanner& scanner, int count) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
     while ((**scanner.calibration_run()).stop < count &&

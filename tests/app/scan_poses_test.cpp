@@ -1,4 +1,4 @@
-// Scans of other poses of a scan's object.
+// Further poses of a scan's object, each with a scan of its own.
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// With the told pose: there is nothing to solve.
+/// Settings with the told sensor pose, so that nothing is solved.
 ScanSettings quick(int snapshots = 3) {
   ScanSettings settings = few_snapshots(snapshots);
   settings.pose = PoseSource::told;
@@ -25,7 +25,7 @@ ScanSettings quick(int snapshots = 3) {
 
 class ScanPosesTest : public ScannerTest {
  protected:
-  /// What a client gets of a scan's model.
+  /// The model of a scan, as a client gets it.
   std::string model_of(const std::string& id) const { return content_of(store_.model_file(id)); }
 
   /// Waits until the scan of another pose has stored a snapshot.
@@ -35,7 +35,7 @@ class ScanPosesTest : public ScannerTest {
     });
   }
 
-  /// What becomes of a build that registers the first other pose again.
+  /// Registers the first further pose again by a choice. @return the build when it has ended
   static BuildRun choose(Scanner& scanner, const std::string& first, const PoseChoice& choice) {
     EXPECT_TRUE(scanner.choose_pose(first, 1, choice));
     const auto deadline = std::chrono::steady_clock::now() + patience;
@@ -45,7 +45,8 @@ class ScanPosesTest : public ScannerTest {
     return **scanner.build_run();
   }
 
-  /// From near where it lay, the pose is found again; elsewhere it is refused, and all stays.
+  /// Expects that a choice near the true pose finds it again, and that one far off is refused and
+  /// changes nothing.
   void choose_again(Scanner& scanner, const Job& pose) const {
     const std::string& first = pose.pose_of->scan;
     const Eigen::Isometry3d& found = pose.pose_of->registration->pose.object_from_platform;
@@ -68,7 +69,7 @@ class ScanPosesTest : public ScannerTest {
     EXPECT_EQ(kept->candidates.size(), pose.pose_of->registration->candidates.size());
   }
 
-  /// A scan whose model is that of a build with another pose.
+  /// A scan whose model is built together with another pose.
   Job merged(const std::string& pose) {
     Job job = store_.create(quick());
     job.state = JobState::finished;
@@ -236,7 +237,7 @@ TEST(PoseChoice, IsACandidateOrPairsOfPoints) {
       nlohmann::json::parse("[[[10,0,0],[0,10,5]], [[0,20,0],[-20,0,5]], [[-30,0,0],[0,-30,5]]]");
   const PoseChoice choice = pose_choice_from({{"pairs_mm", pairs}}, pose);
   EXPECT_FALSE(choice.candidate);
-  // A quarter of a turn about Z, and 5 mm down.
+  // A quarter turn about Z, and 5 mm down.
   EXPECT_LT(
       (choice.object_from_platform * Eigen::Vector3d(0, 0.01, 0.005) - Eigen::Vector3d(0.01, 0, 0))
           .norm(),

@@ -92,7 +92,7 @@ TEST(ScanSettings, RefuseAClipBoxThinnerThanALeaf) {
     EXPECT_EQ(error.code(), ErrorCode::bad_settings);
     EXPECT_NE(std::string(error.what()).find("\"clip_mm\""), std::string::npos) << error.what();
   }
-  // As thick as a leaf, however it is rounded.
+  // A box exactly one leaf thick is accepted despite rounding.
   EXPECT_NO_THROW(parsed(R"({"clip_mm": [-140, -140, 5, -139, -139, 6]})"));
 }
 

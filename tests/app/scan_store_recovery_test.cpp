@@ -104,7 +104,7 @@ TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {
   }
 }
 
-/// What cannot be read in place of a small file, each put there by a call.
+/// Something unreadable in place of a small file, and a function that puts it there.
 struct Unreadable {
   const char* what;
   std::function<void(const fs::path& file)> put;

@@ -136,7 +136,7 @@ TEST(ScanStore, KeepsTheNameAndTheNotesThatAPersonWroteOnAScan) {
     id = job.id;
     store.label(id, {.name = "Hase, groß"});
     store.label(id, {.notes = "Plaster, 1920.\nThe left ear is glued."});
-    store.save(job);  // the worker knows of neither
+    store.save(job);  // the worker's copy has neither
     EXPECT_EQ(store.find(id)->label.name, "Hase, groß");
     EXPECT_EQ(store.find(id)->label.notes, "Plaster, 1920.\nThe left ear is glued.");
   }
@@ -279,7 +279,7 @@ TEST(ScanStore, RefusesAScanThatMayNotFit) {
   const TemporaryFolder folder;
   ScanStore store(folder.path());
   ScanSettings settings;
-  settings.snapshots = 2'000'000'000;  // more than any disk takes
+  settings.snapshots = 2'000'000'000;  // more than fit on any disk
   const Error error = error_thrown_by([&] { store.create(settings); });
   EXPECT_EQ(error.code(), ErrorCode::disk_full);
   EXPECT_FALSE(error.hint().empty());

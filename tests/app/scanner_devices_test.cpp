@@ -44,12 +44,12 @@ TEST_F(ScannerTest, SaysThatThereIsNoSensor) {
   EXPECT_EQ(job.failure->code, ErrorCode::sensor_missing);
 }
 
-/// What a device's driver throws that is no Error.
+/// Kinds of exceptions other than Error that a driver may throw.
 enum class Thrown { exception, number };
 
 [[noreturn]] void throw_one(Thrown thrown) {
   if (thrown == Thrown::number) {
-    throw 5;  // NOLINT: what a library of others may do
+    throw 5;  // NOLINT: a foreign library may throw anything
   }
   throw std::runtime_error("no such thing: \xff");
 }

@@ -11,7 +11,7 @@
 
 namespace octurn {
 
-/// Waits until the status is as wanted; what it is then, wanted or not after `patience`.
+/// Waits until the status is as wanted, at most for `patience`. @return the last status
 inline Status wait_until(const Scanner& scanner, const std::function<bool(const Status&)>& wanted) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   Status status = scanner.status();
@@ -30,7 +30,7 @@ class ScannerTest : public ::testing::Test {
  protected:
   static RigOptions rig() { return {.sensor_uri = "octurn-simulator://?speed=20", .speed = 20}; }
 
-  /// Scans to the end.
+  /// Runs a scan to its end.
   static Job scan(Scanner& scanner, const ScanSettings& settings) {
     const auto started = scanner.start(settings);
     EXPECT_TRUE(started);

@@ -104,7 +104,7 @@ TEST_F(ScannerTest, KeepsTheTimeOfAScanThatIsCutOff) {
   scanner.wait_until_done(patience);
 }
 
-/// The status when the scan that runs has so many snapshots.
+/// Waits until the running scan has that many snapshots. @return the status then
 Status wait_for_snapshots(const Scanner& scanner, int snapshots) {
   return wait_until(scanner, [=](const Status& s) { return s.job->snapshots_done >= snapshots; });
 }
@@ -133,8 +133,8 @@ TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
   EXPECT_EQ(scanner.status().job->label.notes, "of clay");
 }
 
-/// Puts a folder where the file was, which no file can replace. The scan that runs may save the
-/// file between two steps of this.
+/// Replaces a file by a folder, which no file can replace. The running scan may save the file again
+/// between the two steps.
 void bar_from_being_saved(const std::filesystem::path& file) {
   std::error_code saved_again;
   do {
@@ -172,7 +172,7 @@ TEST_F(ScannerTest, CancelsAScanWhoseEndCouldNotBeSaved) {
   EXPECT_EQ(scanner.find(job->id).state, JobState::cancelled);
 }
 
-/// A model of a finished scan, finer than its own, and larger than what a pipe holds.
+/// A stream of a finished scan's model, finer than the stored one and larger than a pipe's buffer.
 std::unique_ptr<ModelStream> stream_of(Scanner& scanner, const Job& job) {
   ReconstructOptions options = reconstruct_options(job.settings, {});
   options.method = Method::intersection;
@@ -180,7 +180,7 @@ std::unique_ptr<ModelStream> stream_of(Scanner& scanner, const Job& job) {
   return scanner.stream_model(job.id, options);
 }
 
-/// The same, once the model before it is given up.
+/// Such a stream, once the previous one is abandoned.
 std::unique_ptr<ModelStream> next_stream_of(Scanner& scanner, const Job& job) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   std::unique_ptr<ModelStream> next;
@@ -247,7 +247,7 @@ TEST(Heartbeat, IsAliveForAsLongAsItMayBeSilent) {
   EXPECT_FALSE(heartbeat.is_alive(-1ns));
 }
 
-// How it counts down is TimeLeft's: here the machine's speed would decide.
+// The countdown is tested in TimeLeft, as it depends on the machine's speed here.
 TEST_F(ScannerTest, TellsWhatIsLeftOnceThereIsSomethingToTellItFrom) {
   Scanner scanner(rig(), {}, store_);
   ASSERT_TRUE(scanner.start(few_snapshots(8)));

@@ -23,7 +23,7 @@ SensorSample sample_of(std::vector<Time> times, std::optional<int> damaged = {})
   return {.name = "Kinect v1", .times = std::move(times), .damaged = damaged};
 }
 
-/// Frames that came at every period, but for those of these numbers.
+/// Times of 60 frames, one each period, without the missing numbers.
 std::vector<Time> every_period_but(const std::vector<int>& missing) {
   std::vector<Time> times;
   for (int i = 0; i < 60; ++i) {
@@ -34,9 +34,10 @@ std::vector<Time> every_period_but(const std::vector<int>& missing) {
   return times;
 }
 
-/// A sensor at its nominal place that sees nothing but a plane so high, metres, with readings by
-/// turns so much above and below it along the ray.
-/// @param rise  of the plane, along y
+/// A sensor in its nominal pose that sees only a plane. Readings alternate between `noise` metres
+/// beyond it and before it, along the ray.
+/// @param height  of the plane above the platform, metres
+/// @param rise    slope of the plane along y
 SensorSample sample_of_plane(double height, double noise, double rise = 0) {
   SensorSample sample = sample_of(every_period_but({}));
   const Eigen::Isometry3d pose = nominal_platform_from_sensor();
@@ -102,20 +103,21 @@ TEST(PlatformCheck, FindsThePlatformWhereTheCalibrationHasIt) {
   EXPECT_EQ(view.readings, view.rays);
   EXPECT_EQ(view.on_surface, view.rays);
   ASSERT_TRUE(view.surface);
-  EXPECT_NEAR(view.surface->height, 0, 0.00001);  // a tenth of the sensor's unit, of many readings
+  EXPECT_NEAR(view.surface->height, 0, 0.00001);  // a tenth of the sensor's unit: a mean of many
   const Finding finding = check_platform(view);
   EXPECT_EQ(finding.state, State::ok);
   EXPECT_EQ(finding.measured,
             "0.0 mm above where the calibration has it and level, 100 % of it has readings");
 }
 
-/// The circle of 28 cm about the axis, seen from 0.72 m, 30 degrees above it on the way there.
+// The projected area of a circle of 28 cm about the axis, seen from 0.72 m and 30 degrees above.
 TEST(PlatformCheck, LooksAtTheCircleInsideTheClipBox) {
   const double f = Intrinsics{}.fx;
   const double distance = std::hypot(0.62, 0.36);
   const double area =
       std::numbers::pi * 0.14 * 0.14 * (0.36 / distance) * f * f / (distance * distance);
-  EXPECT_NEAR(view_of_plane(0).rays, area, 0.1 * area);  // it is not small against the distance
+  // The formula is for a circle that is small compared to its distance; this one is not.
+  EXPECT_NEAR(view_of_plane(0).rays, area, 0.1 * area);
 }
 
 TEST(PlatformCheck, WarnsOfAPlatformThatIsTooHigh) {
@@ -128,7 +130,7 @@ TEST(PlatformCheck, WarnsOfAPlatformThatIsTooHigh) {
   EXPECT_EQ(check_platform(view_of_plane(-0.006)).measured.substr(0, 12), "6.0 mm below");
 }
 
-/// Its middle is as high as it should be, which the median height alone would take for right.
+// The platform's centre has the right height, so the median height alone would not show the tilt.
 TEST(PlatformCheck, WarnsOfAPlatformThatIsTilted) {
   const double rise = std::tan(radians_from_degrees(2));
   const PlatformView view =
@@ -200,7 +202,7 @@ Tilt tilt_of(double pitch_deg, double roll_deg) {
 }
 
 TEST(TiltCheck, ComparesItWithTheCalibration) {
-  const Eigen::Isometry3d pose = nominal_platform_from_sensor();  // looks 25 degrees down
+  const Eigen::Isometry3d pose = nominal_platform_from_sensor();  // pitched down by 25 degrees
   EXPECT_EQ(check_tilt(tilt_of(-25, 0), pose).state, State::ok);
   EXPECT_EQ(check_tilt(tilt_of(-27, 0), pose).state, State::warning);
   EXPECT_EQ(check_tilt(tilt_of(-25, 2), pose).state, State::warning);
@@ -210,7 +212,7 @@ TEST(TiltCheck, ComparesItWithTheCalibration) {
   EXPECT_EQ(check_tilt(std::nullopt, pose).state, State::unknown);
 }
 
-/// Turned about its optical axis, from right to down: its right side is the lower.
+// A sensor rolled about its optical axis from right to down has its right side lower.
 TEST(TiltCheck, KnowsWhichSideIsTheLower) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;

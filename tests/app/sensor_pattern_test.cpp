@@ -22,7 +22,7 @@ std::vector<float> errors(const SensorPattern& pattern, float inverse_depth) {
   return errors;
 }
 
-/// Mean product of the errors of pixels that are so many columns apart.
+/// Mean product of the errors of pixels that are `columns` columns apart.
 double product(const std::vector<float>& a, const std::vector<float>& b, int columns) {
   double sum = 0;
   for (std::size_t row = 0; row < 480; ++row) {
@@ -39,7 +39,7 @@ TEST(SensorPattern, HasEightTenthsOfAReadingAndIsSmooth) {
   const double square = product(near, near, 0);
   EXPECT_NEAR(std::sqrt(square), 0.8, 0.02);
   EXPECT_GT(product(near, near, 10) / square, 0.9);
-  // 1/e at 50 pixels, of a sample of some 10 x 13 such places
+  // The correlation is 1/e at 50 pixels, estimated from some 10 x 13 independent places.
   EXPECT_NEAR(product(near, near, 50) / square, 0.37, 0.25);
 }
 

@@ -15,8 +15,8 @@
 
 namespace octurn {
 
-/// A frame of a Kinect v1 as tests look at it: readings computed back from depths, and the rays of
-/// pixels, by the formulas of the design and not by the simulator's code.
+/// A frame of a Kinect v1. Readings are computed back from depths, and rays from pixels, by the
+/// published formulas and not by the simulator's code.
 struct KinectFrame {
   DepthFrame frame = {};
 
@@ -36,12 +36,12 @@ inline Eigen::Vector3d ray_of(double u, double v) {
   return {(u - 320) / 575.8, (v - 240) / 575.8, 1};
 }
 
-/// Where a frame's pixel lies in the platform's frame at angle 0, metres.
+/// The point of a pixel in the platform's frame at angle 0, metres.
 inline Eigen::Vector3d point_at(const KinectFrame& frame, int u, int v) {
   return nominal_platform_from_sensor() * (frame.depth(u, v) * ray_of(u, v));
 }
 
-/// A frame that the sensor takes after its platform was turned.
+/// Turns the platform, and returns a frame that the sensor takes after that.
 inline KinectFrame frame_at(DepthSensor& sensor, double angle) {
   sensor.show_angle(angle);
   const auto turned = std::chrono::steady_clock::now();
@@ -53,17 +53,17 @@ inline KinectFrame frame_at(DepthSensor& sensor, double angle) {
   }
 }
 
-/// The same of a sensor opened for it.
+/// Opens a sensor, and returns its frame at an angle.
 inline KinectFrame frame_of(const std::string& uri, double angle = 0) {
   const auto sensor = open_sensor(uri);
   return frame_at(*sensor, angle);
 }
 
-/// A sensor that sees boxes, given in millimetres.
+/// The URI of a simulated sensor that sees boxes, given in millimetres.
 class BoxesOnPlatform {
  public:
   explicit BoxesOnPlatform(const std::vector<Eigen::AlignedBox3d>& boxes) {
-    // Corners are numbered by the bits of x, y and z.
+    // Bits 0, 1 and 2 of a corner's index select its x, y and z.
     constexpr std::array<std::array<int, 4>, 6> sides = {
         {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}};
     std::string stl = "solid boxes\n";

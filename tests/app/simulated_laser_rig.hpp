@@ -17,14 +17,14 @@
 
 namespace octurn {
 
-/// A rig with a small camera, as it is told.
+/// The settings of a rig with a small camera.
 inline LaserSettings small_laser_settings() {
   LaserSettings settings;
   settings.lens = {.width = 410, .height = 308, .fx = 341.2, .fy = 341.2, .cx = 204.5, .cy = 153.5};
   return settings;
 }
 
-/// A simulated rig with a camera and lasers that fails as a test wants. It knows which lasers are
+/// A simulated rig with a camera and lasers that fails as a test wants. It tracks which lasers are
 /// on.
 class SimulatedLaserRig {
  public:

@@ -16,7 +16,7 @@ using std::chrono::steady_clock;
 
 constexpr double step = 2 * std::numbers::pi / 800;
 
-/// The angles that a move tells, steps: one for each 10 ms of it.
+/// The angles that a move reports, in steps: one every 10 ms.
 std::vector<double> steps_told(int position, const Motion& motion) {
   std::vector<double> told;
   SimulatedTurntable turntable([&](double angle) { told.push_back(angle / step); }, 1, motion);
@@ -43,7 +43,7 @@ TEST(SimulatedTurntable, TellsItsAngleAllTheWay) {
   const auto told = steps_told(200, {.settle_time = milliseconds(0)});
 
   // From 200 to 800 steps/s at 2000 steps/s^2 and back: 100 steps in 0.2317 s, twice.
-  ASSERT_EQ(told.size(), 48U);  // 47 in the move's 0.4633 s, and one at its end
+  ASSERT_EQ(told.size(), 48U);  // 47 during the move's 0.4633 s, and one at its end
   for (std::size_t i = 1; i < told.size(); ++i) {
     EXPECT_GE(told[i], told[i - 1]);
     EXPECT_NEAR(told[i], std::round(told[i]), 1e-9);
@@ -51,7 +51,8 @@ TEST(SimulatedTurntable, TellsItsAngleAllTheWay) {
 }
 
 TEST(SimulatedTurntable, GainsAndLosesSpeedEvenly) {
-  // 100 steps from rest at 400 steps/s^2: half of them up to 200 steps/s in 0.5 s, half down again.
+  // 100 steps at 400 steps/s^2: the first half accelerates to 200 steps/s in 0.5 s, the second half
+  // decelerates to rest.
   const auto told = steps_told(100, {.start_steps_per_second = 0,
                                      .top_steps_per_second = 1000,
                                      .ramp_steps_per_second2 = 400,
@@ -92,7 +93,7 @@ TEST(SimulatedTurntable, StopsOnTheWayAndKnowsWhereItStands) {
   EXPECT_LT(turntable.position(), 800);
   EXPECT_NEAR(last, static_cast<double>(turntable.position()) * step, 1e-12);
   const std::int64_t stopped_at = turntable.position();
-  EXPECT_FALSE(turntable.move_to(800, stop.get_token()));  // still stopped
+  EXPECT_FALSE(turntable.move_to(800, stop.get_token()));  // the stop request still holds
   EXPECT_EQ(turntable.position(), stopped_at);
 }
 

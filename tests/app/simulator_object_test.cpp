@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Volume inside a closed mesh whose triangles turn counter-clockwise seen from outside, m3.
+/// Volume of a closed mesh whose triangles are counter-clockwise seen from outside, m3.
 double volume_of(const Mesh& mesh) {
   double volume = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -26,7 +26,7 @@ double volume_of(const Mesh& mesh) {
 }
 
 void expect_closed(const Mesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;  // of an edge and its opposite
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;  // edges minus their opposites
   for (const auto& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t from = triangle[i];
@@ -117,7 +117,7 @@ TEST(SimulatorObject, IsMeshedOnItsSurfaceAndClosed) {
     inside += simulator_object_distance(point_in(simulator_object_bounds(), random)) < 0 ? 1 : 0;
   }
   const double volume = simulator_object_bounds().volume() * inside / samples;
-  EXPECT_NEAR(volume_of(mesh) / volume, 1, 0.015);  // 0.3 % of chance, 1 % of chords
+  EXPECT_NEAR(volume_of(mesh) / volume, 1, 0.015);  // 0.3 % from sampling, 1 % from chords
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The simulated Kinect as OpenNI2 shows it, without noise: geometry that can be computed.
+// The simulated Kinect through OpenNI2, without noise, compared with computed geometry.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace octurn {
 namespace {
 
-constexpr double half_step = 0.5 + 0.03;  // readings; depths come in tenths of a millimetre
+constexpr double half_step = 0.5 + 0.03;  // raw readings; 0.03 as depths are rounded to 0.1 mm
 constexpr const char* ideal = "octurn-simulator://?noise=0&pattern=0&misalignment=0";
 
 TEST(Simulator, GivesOnlyDepthsOfWholeReadings) {
@@ -67,7 +67,7 @@ TEST(Simulator, LaysItsObjectOnThePlatform) {
     EXPECT_NEAR(box.min().z(), 0, 1e-9);
     EXPECT_LT(std::max(box.max().x(), box.max().y()), 0.14);
     EXPECT_GT(std::min(box.min().x(), box.min().y()), -0.14);
-    EXPECT_GT(std::acos(std::clamp(lies.linear()(2, 2), -1.0, 1.0)), 1.5);  // from upright, radians
+    EXPECT_GT(std::acos(std::clamp(lies.linear()(2, 2), -1.0, 1.0)), 1.5);  // radians from upright
   }
 }
 
@@ -106,7 +106,7 @@ TEST(Simulator, SeesThePlatformWhereItIs) {
 TEST(Simulator, SeesThePlatformsEdgeAndTheTableBehind) {
   const KinectFrame frame = frame_of(ideal);
   const Eigen::Isometry3d pose = nominal_platform_from_sensor();
-  // The top's rightmost point, where no shadow falls.
+  // The rightmost point of the platform's top, where there is no shadow.
   const Eigen::Vector3d edge = pose.inverse() * Eigen::Vector3d(0.150, 0, 0);
   const auto u = static_cast<int>(575.8 * edge.x() / edge.z() + 320);
   const auto v = static_cast<int>(std::lround(575.8 * edge.y() / edge.z() + 240));
@@ -115,11 +115,11 @@ TEST(Simulator, SeesThePlatformsEdgeAndTheTableBehind) {
   EXPECT_LT(point_at(frame, u + 6, v).z(), -0.05);
 }
 
-/// Where a ray meets the simulator's object, found by walking along it; nothing if it misses or
-/// only grazes it. Lengths in metres.
+/// The depth at which a ray meets the simulator's object, by sphere tracing; nothing if it misses
+/// or only grazes the object. Metres.
 std::optional<double> depth_of_object(const Eigen::Vector3d& from, const Eigen::Vector3d& ray) {
   constexpr double close = 1e-6;
-  constexpr double miss = 0.0015;  // so near the object's outline that a pixel may see past it
+  constexpr double miss = 0.0015;  // nearer to the outline, a pixel may see past the object
   double depth = 0.3;
   for (int i = 0; i < 1000 && depth < 1.2; ++i) {
     const Eigen::Vector3d at = from + depth * ray;
@@ -161,12 +161,12 @@ TEST(Simulator, SeesItsOwnObjectWhereItsDistanceSaysItIs) {
     }
   }
   EXPECT_GT(compared, 4000);
-  EXPECT_LT(beyond_half_a_step, compared / 100);  // where the mesh rounds creases off
+  EXPECT_LT(beyond_half_a_step, compared / 100);  // at creases, which the mesh rounds
   EXPECT_LT(unseen, compared / 5);                // in the object's own shadow
 }
 
 TEST(Simulator, ThrowsAShadowToTheLeftAsWideAsTheBaselineSays) {
-  // A plate that stands across the view, 80 mm high.
+  // A plate of 80 mm height stands across the view.
   const BoxesOnPlatform plate({{Eigen::Vector3d(-30, -2, 0), Eigen::Vector3d(30, 2, 80)}});
   const KinectFrame frame = frame_of(plate.uri());
   const Eigen::Isometry3d sensor_from_platform = nominal_platform_from_sensor().inverse();
@@ -211,7 +211,7 @@ Eigen::Vector3d top_of(const KinectFrame& frame) {
 }
 
 TEST(Simulator, TurnsCounterClockwiseSeenFromAbove) {
-  // A post at x = 50 mm, and a low block on the other side so that the middle stays the middle.
+  // A post at x = 50 mm, and a low block on the other side, which keeps the centre on the axis.
   const BoxesOnPlatform post({{Eigen::Vector3d(40, -10, 0), Eigen::Vector3d(60, 10, 100)},
                               {Eigen::Vector3d(-60, -10, 0), Eigen::Vector3d(-40, 10, 20)}});
   const auto sensor = open_sensor(post.uri());
@@ -220,7 +220,8 @@ TEST(Simulator, TurnsCounterClockwiseSeenFromAbove) {
     const Eigen::Vector3d top = top_of(frame_at(*sensor, angle));
 
     const Eigen::Vector3d expected(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.1);
-    EXPECT_LT((top - expected).norm(), 0.017) << degrees;  // half the post's diagonal and a step
+    // Half the post's diagonal and a depth step.
+    EXPECT_LT((top - expected).norm(), 0.017) << degrees;
   }
 }
 
@@ -241,7 +242,7 @@ TEST(Simulator, FollowsATurntable) {
   EXPECT_LT((top - Eigen::Vector3d(0, 0.05, 0.1)).norm(), 0.017);
 }
 
-/// A frame's depths. @param number  of the frame, from 1
+/// The depths of frame `number`, counted from 1.
 std::vector<std::uint16_t> exposed(std::uint32_t seed, std::uint32_t number) {
   SimulatedKinect kinect(Scene(simulator_object()), seed, 1, 0);
   std::vector<std::uint16_t> depth(std::size_t{640} * 480);
@@ -249,8 +250,8 @@ std::vector<std::uint16_t> exposed(std::uint32_t seed, std::uint32_t number) {
   return depth;
 }
 
-// A busy machine may drop frames between the driver and a reader, so that frames are compared here
-// by their numbers.
+// A busy machine may drop frames between the driver and a reader, so this test compares frames by
+// number, without the driver.
 TEST(Simulator, ShowsTheSameFramesForTheSameSeed) {
   const auto one = exposed(5, 1);
   EXPECT_TRUE(one == exposed(5, 1));
@@ -263,7 +264,7 @@ TEST(Simulator, KeepsWhatIsLargerThanTheView) {
       {{Eigen::Vector3d(-3000, -3000, 0), Eigen::Vector3d(3000, 3000, 4000)}});
   const KinectFrame frame = frame_of(room.uri());
 
-  // The sensor stands in it and looks at its floor, which is the platform's plane.
+  // The sensor stands inside the room and looks at its floor, which is the platform's plane.
   EXPECT_NEAR(point_at(frame, 320, 400).z(), 0, 0.002);
   EXPECT_NEAR(point_at(frame, 20, 400).z(), 0, 0.002);
 }

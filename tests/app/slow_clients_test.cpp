@@ -1,4 +1,4 @@
-// Clients that are slow, many, or gone before they have said what they wanted.
+// Clients that are slow, too many, or gone before their request is complete.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t endless = std::size_t{1} << 40U;
 
-/// "/stream" is without end; an upload is read to its end; all else is answered at once.
+/// Streams "/stream" without end, reads an upload to its end, and answers anything else at once.
 Response answer(const Request& request) {
   if (request.path == "/stream") {
     ByteStream stream{.length = endless};
@@ -65,7 +65,7 @@ const std::vector<SlowKind> slow_kinds{
 
 class SlowClients : public ::testing::TestWithParam<SlowKind> {};
 
-/// The server would wait for an hour: whatever is answered, is answered beside them.
+// The server's patience is an hour, so it answers while the slow clients stay connected.
 TEST_P(SlowClients, LeaveThePageToOthers) {
   for (const bool one_address : {true, false}) {
     const HttpServer server = server_with(1h);
@@ -83,7 +83,7 @@ TEST_P(SlowClients, LeaveThePageToOthers) {
 INSTANTIATE_TEST_SUITE_P(Each, SlowClients, ::testing::ValuesIn(slow_kinds),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Sends a byte each now and then until the connection ends.
+/// Sends a byte every 20 ms until the connection ends.
 void drip(const FileDescriptor& socket) {
   while (::send(socket.number(), "x", 1, MSG_NOSIGNAL) == 1) {
     std::this_thread::sleep_for(20ms);
@@ -96,7 +96,7 @@ TEST_P(Drips, EndThoughEachByteComesSoon) {
   const HttpServer server = server_with(300ms);
   const FileDescriptor socket = connected(server.port());
   send_text(socket, GetParam());
-  drip(socket);  // without end before, or for as long as the body is announced to be
+  drip(socket);  // ends when the server closes the connection
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -142,7 +142,7 @@ TEST(SlowReader, IsLeftAtOnceWhenTheStreamIsStopped) {
   const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {
     ByteStream stream{.length = endless, .stop = scan_starts.get_token()};
     stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
-      const std::vector<std::byte> part(32 << 20U);  // more than the kernel takes
+      const std::vector<std::byte> part(32 << 20U);  // more than the kernel buffers
       streaming = true;
       streaming.notify_all();
       EXPECT_FALSE(sink(part));
@@ -155,12 +155,12 @@ TEST(SlowReader, IsLeftAtOnceWhenTheStreamIsStopped) {
   send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
   streaming.wait(false);
   scan_starts.request_stop();
-  ended.wait(false);  // the reader has taken nothing
+  ended.wait(false);  // the reader has read nothing
 }
 
 class CutOff : public ::testing::TestWithParam<std::string> {};
 
-/// A request that is not whole asks for nothing: it is refused, and nobody acts on it.
+// An incomplete request is refused and never reaches the handler.
 TEST_P(CutOff, AsksForNothing) {
   std::atomic<int> asked = 0;
   const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {

@@ -1,5 +1,5 @@
-// Builds that Slurm makes, with programs in its place that say what a test wants. A real one is in
-// tests/cluster.
+// Builds by Slurm, whose programs are replaced by scripts with the output that a test wants. Tests
+// with a real Slurm are in tests/cluster.
 
 #include "scan/slurm_builds.hpp"
 
@@ -32,7 +32,7 @@ class SlurmBuildsTest : public ::testing::Test {
 
   std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
 
-  /// Makes one of Slurm's programs.
+  /// Writes a script in place of one of Slurm's programs.
   void program(const std::string& name, const std::string& does) const {
     put(at(name + ".new"), "#!/bin/sh\n" + does + "\n");
     fs::permissions(at(name + ".new"), fs::perms::owner_all);
@@ -47,7 +47,7 @@ class SlurmBuildsTest : public ::testing::Test {
 
   SlurmBuilds start() { return {options(), store_, {.threads = 1, .memory_bytes = 64U << 20U}}; }
 
-  /// A stored scan, which waits for its model.
+  /// Stores a scan without a model.
   Job store_scan() {
     const fs::path beginning = store_.begin_import();
     write_small_scan(beginning, 2);
@@ -65,14 +65,14 @@ class SlurmBuildsTest : public ::testing::Test {
     return fs::canonical(store_.folder(run.scan)) / "builds" / std::to_string(run.number);
   }
 
-  /// What squeue says of the job.
+  /// Sets squeue's answer about the job.
   void say(const std::string& state, const std::string& reason, const BuildRun& run,
            const std::string& job = "12") const {
     put(at("queue.new"), job + "|" + state + "|" + reason + "|" + folder_of(run).string() + "\n");
     fs::rename(at("queue.new"), at("queue"));
   }
 
-  /// Waits until the run of a scan is as wanted; nothing if it is not there any more.
+  /// Waits until a scan's run is as wanted; returns nothing if the run is gone.
   static std::optional<BuildRun> wait_until(const SlurmBuilds& builds,
                                             const std::function<bool(const BuildRun&)>& wanted) {
     const auto runs = builds.runs().wait({}, patience, [&](const std::vector<BuildRun>& all) {
@@ -85,7 +85,7 @@ class SlurmBuildsTest : public ::testing::Test {
     return wait_until(builds, [](const BuildRun& seen) { return seen.has_ended(); });
   }
 
-  /// Begins a build, and waits until it is job 12.
+  /// Starts a build, and waits until it has a job id.
   static BuildRun begin(SlurmBuilds& builds, const Job& scan) {
     const BuildRun run = builds.add(run_of(scan), true);
     wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->id.empty(); });
@@ -206,7 +206,7 @@ TEST_F(SlurmBuildsTest, AJobThatFailsTellsWhy) {
   EXPECT_EQ(ended->failure->detail, "its job took longer than Slurm lets it (Slurm's job 12)");
 
   program("sbatch", "echo 13");
-  run = builds.add(run_of(scan), true);  // which takes the place of the one that failed
+  run = builds.add(run_of(scan), true);  // replaces the failed run
   EXPECT_EQ(builds.runs().get()->size(), 1U);
   fs::remove(store_.folder(scan.id) / "scan.json");
   EXPECT_THROW(build_task_in(folder_of(run), {}), Error);
@@ -253,7 +253,7 @@ TEST_F(SlurmBuildsTest, AProcessThatStartsLaterFindsItsJobsAgain) {
     say("PENDING", "Priority", run);
     wait_until(builds, [](const BuildRun& seen) { return !seen.cluster_job->detail.empty(); });
   }
-  fs::remove(folder_of(run) / "job");  // as after a power cut before that was on the disk
+  fs::remove(folder_of(run) / "job");  // as after a power cut before it was written
   {
     SlurmBuilds builds = start();
     EXPECT_TRUE(builds.is_building(scan.id));

@@ -12,12 +12,12 @@
 namespace octurn {
 namespace {
 
-/// What a daemon answers from, with a rig that is simulated.
+/// The daemon's state with a simulated rig.
 class StatusNewsTest : public ScannerTest {
  protected:
   StatusNewsTest() { write_file(folder_.path() / "index.html", "<!doctype html>"); }
 
-  /// Calls it again until it has news.
+  /// Calls `news` until it returns some.
   static std::vector<News> wait_for_news(StatusNews& news) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
     std::vector<News> told = news();
@@ -57,7 +57,7 @@ TEST_F(StatusNewsTest, MakesNoStatusWhileNothingChanges) {
                 .addresses = addresses_,
                 .uploads = uploads_,
                 .rig = rig()};
-  wait_until(scanner_, [](const Status& status) {  // the worker has nothing more to tell
+  wait_until(scanner_, [](const Status& status) {  // until the worker's status is final
     return is_ready(status) && status.turntable.state == DeviceStatus::State::ready;
   });
   StatusNews news(app);

@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What a driver saw of its lines: E and e for ENABLE high and low, D and d for DIR, S and s for
-/// STEP.
+/// The driver's line changes as letters: E and e for ENABLE high and low, D and d for DIR, S and s
+/// for STEP.
 class LineChanges {
  public:
   void set(Stepper::Line line, bool high) {
@@ -37,7 +37,7 @@ class LineChanges {
     return static_cast<int>(std::ranges::count(all, 'S'));
   }
 
-  /// Waits until they end so.
+  /// Waits until the changes end with `end`.
   void wait_for_end(std::string_view end) const {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return changes_.ends_with(end); });
@@ -164,7 +164,7 @@ TEST_F(StepperTest, StopsBeforeTheNextStep) {
   EXPECT_EQ(recording_.pulses(), 40);
   EXPECT_EQ(recording_.changes().back(), 's');
 
-  EXPECT_FALSE(stepper.move_to(800, stop.get_token()));  // which is still stopped
+  EXPECT_FALSE(stepper.move_to(800, stop.get_token()));  // the stop request still holds
   EXPECT_EQ(recording_.pulses(), 40);
   EXPECT_TRUE(stepper.move_to(41, {}));
   EXPECT_EQ(recording_.pulses(), 41);
@@ -197,9 +197,9 @@ TEST_F(StepperTest, TakesUpTheBacklashOfItsGears) {
   settings.take_up_steps = 2;
   Stepper stepper(settings, recorder());
   stepper.move_to(0, {});
-  EXPECT_EQ(recording_.changes(), "edSsSsDSsSs");  // nobody knows on which side the gears touch
+  EXPECT_EQ(recording_.changes(), "edSsSsDSsSs");  // the play's side is unknown, so it is taken up
   stepper.move_to(1, {});
-  EXPECT_EQ(recording_.changes(), "edSsSsDSsSsDSs");  // which is the way that it came
+  EXPECT_EQ(recording_.changes(), "edSsSsDSsSsDSs");  // same direction: no play to take up
   stepper.move_to(0, {});
   EXPECT_EQ(recording_.changes(), "edSsSsDSsSsDSsdSsSsSsDSsSs");
   EXPECT_EQ(stepper.position(), 0);
@@ -234,7 +234,7 @@ TEST_F(StepperTest, TellsOfALineThatFailsAndGoesOnAfterwards) {
 }
 
 TEST_F(StepperTest, CountsLatePulses) {
-  // The line takes as long to rise as a busy system takes to come back to this program.
+  // The sleep stands for the delay of a busy system at each rising edge.
   Stepper stepper(fast, [&](Stepper::Line line, bool high) {
     if (line == Stepper::Line::step && high) {
       std::this_thread::sleep_for(2ms);

@@ -1,4 +1,4 @@
-// The pictures of a stop on the disk: grey, but for the dark one of a camera that sees colours.
+// A stop's pictures on the disk: grey, except for the dark picture of a colour camera.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST_F(StoredPictures, HaveTheColoursOfTheDarkOne) {
   EXPECT_TRUE(has_colours(folder_.path(), read_scan(folder_.path())));
 }
 
-// Such as one without filters that sends YUYV.
+// For example a monochrome camera that sends YUYV.
 TEST_F(StoredPictures, AreGreyWhereACameraSendsNoColourAtAll) {
   store(std::vector<Rgb>(width * height, Rgb{20, 20, 20}));
 

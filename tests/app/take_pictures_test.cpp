@@ -29,7 +29,7 @@ Picture grey(std::uint8_t level) {
           .samples = std::vector<std::uint8_t>(std::size_t{width} * height, level)};
 }
 
-/// With a line in so many rows.
+/// A grey picture with a line in `rows` rows.
 Picture with_line(std::uint8_t level, int rows, std::uint8_t brightness) {
   Picture picture = grey(level);
   for (int row = 0; row < rows; ++row) {
@@ -50,7 +50,7 @@ TEST(DarkRoom, IsRefusedWhereAQuarterOfThePictureIsWhite) {
 }
 
 TEST(Line, IsSeenInTheDifferenceAlone) {
-  const Picture dark = with_line(20, height, 200);  // a white edge that is no laser
+  const Picture dark = with_line(20, height, 200);  // a white edge in the scene
   expect_line(dark, with_line(20, height, 250), "left");
   const Error error = error_thrown_by([&] { expect_line(dark, dark, "left"); });
   EXPECT_EQ(error.code(), ErrorCode::sensor_blind);
@@ -67,7 +67,7 @@ TEST(Line, IsMoreThanNoiseInAFewRows) {
 
 constexpr Rgb paint = {40, 12, 9};
 
-/// A camera of a test, with two lasers. It knows which are on.
+/// A test camera with two lasers, which tracks which of them are on.
 struct Bench {
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture, c for one in colour
   std::array<bool, 2> is_on = {};
@@ -209,7 +209,7 @@ TEST(TakePictures, HasAllLasersOffWhereverTheCameraIsLost) {
     bench.lost_after = pictures;
     Rig rig(bench.options());
     EXPECT_EQ(code_thrown_by([&] { take_pictures(rig, {.position = 3}, {}, {}); }), "sensor-lost");
-    EXPECT_FALSE(bench.is_lit());  // while the rig still has their lines
+    EXPECT_FALSE(bench.is_lit());  // while the rig still holds their lines
   }
 }
 

@@ -18,25 +18,25 @@ Clock::time_point at(double seconds) {
   return Clock::time_point() + std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
 }
 
-/// The seconds that are told; negative where nothing is.
+/// The remaining seconds as estimated; negative without an estimate.
 double left(const TimeLeft& time, double now) {
   return time.expected() ? time.expected()->left(at(now)).count() : -1;
 }
 
-/// How a whole scan goes.
+/// The durations of a whole scan.
 struct Course {
   int stops = 36;
   std::function<double(int stop)> stop = {};  // seconds
   double build = 6;                           // seconds
 };
 
-/// Goes through a scan and asks ten times a stop. @param tell  of each: the time, what is left in
-/// truth and as told, and how many snapshots there are
+/// Simulates a scan and asks for an estimate ten times a stop.
+/// @param tell  called with the true and the estimated remaining seconds and the snapshots so far
 void follow(const Course& course, const ScanEstimate& before,
             const std::function<void(double truth, double told, int snapshots)>& tell) {
   std::vector<double> ends;
   double total = 0;
-  for (int stop = 0; stop <= course.stops; ++stop) {  // with the last look
+  for (int stop = 0; stop <= course.stops; ++stop) {  // including the last look
     total += course.stop(stop);
     ends.push_back(total);
   }
@@ -58,7 +58,8 @@ void follow(const Course& course, const ScanEstimate& before,
   ask_until(total, course.stops);
 }
 
-/// Never off by more than a quarter after the third stop, and never up by more than a tenth.
+/// Expects that from the third snapshot on the estimate is within a quarter and half a second of
+/// the truth, and that it never rises by more than a tenth.
 void expect_honest(const Course& course, const ScanEstimate& before) {
   double last = -1;
   follow(course, before, [&](double truth, double told, int snapshots) {

@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path by_hand = std::filesystem::path(OCTURN_GOLDEN) / "tum_recording";
 
-/// A folder with these two lists.
+/// Writes the two lists of a recording.
 void put_lists(const TemporaryFolder& folder, std::string_view depth, std::string_view poses) {
   put(folder.path() / "depth.txt", depth);
   put(folder.path() / "groundtruth.txt", poses);
@@ -32,8 +32,9 @@ TEST(TumRecording, HasThePoseBetweenTheTwoAroundAnImage) {
   ASSERT_EQ(recording.images.size(), 3U);
   EXPECT_EQ(recording.without_pose, 1U);  // seven seconds after the last pose
   const Eigen::Isometry3d& pose = recording.images[0].world_from_camera;
-  EXPECT_LT((pose.translation() - Eigen::Vector3d(1.1, 0.05, 1.5)).norm(), 1e-4);  // half way
-  // Half of a quarter turn about Z.
+  // Half way between two poses.
+  EXPECT_LT((pose.translation() - Eigen::Vector3d(1.1, 0.05, 1.5)).norm(), 1e-4);
+  // Half a quarter turn about Z.
   const Eigen::Vector3d x = pose.linear().col(0);
   EXPECT_LT((x - Eigen::Vector3d(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), 1e-3);
 }

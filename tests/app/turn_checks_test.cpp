@@ -33,13 +33,13 @@ TEST(CheckTurn, TellsTheGearThatMakesATurnWhole) {
   EXPECT_EQ(turn.finding.measured, "came out as 270.0 degrees");
   EXPECT_EQ(turn.finding.advice, "Set gear_ratio to 1.333.");
   EXPECT_EQ(turn.set, json({{"gear_ratio", 1.333}}));
-  // Nearly four, so four: a wheel has whole teeth.
+  // A ratio close to 4 is rounded to 4, as gears have whole teeth.
   EXPECT_EQ(finding_of("turn-whole", {.turn_deg = 269.7}, {.gear_ratio = 3}).set,
             json({{"gear_ratio", 4}}));
 }
 
 TEST(CheckTurn, BlamesTheMicrostepsForAPowerOfTwo) {
-  // Set to 4 where the driver makes 16: a quarter of a turn.
+  // Set to 4 microsteps while the driver makes 16: the platform turns by a quarter.
   EXPECT_EQ(finding_of("turn-whole", {.turn_deg = 90.2}).set, json({{"microsteps", 16}}));
   EXPECT_EQ(finding_of("turn-whole", {.turn_deg = -720.5}).set, json({{"microsteps", 2}}));
 }

@@ -1,4 +1,4 @@
-// What a scan says of its model where something went wrong: by a job, as the interface tells it.
+// A scan's verdict on its model where something went wrong, as the HTTP interface reports it.
 
 #include <gtest/gtest.h>
 
@@ -22,13 +22,13 @@ using nlohmann::json;
 
 constexpr int stops = 8;
 
-/// What a sensor sees at each stop. A real one's noise, averaged over four frames.
+/// The frames of all stops, with half a real sensor's noise, as four averaged frames have.
 using Seen = std::array<DepthFrame, stops>;
 
-/// @param misalignment  of the sensor, times 5 mm and 1 degree off the told pose
+/// @param misalignment  deviation from the told pose, as a multiple of 5 mm and 1 degree
 Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
-  // The simulator stands the middle of all boxes on the axis: two specks, which no pixel sees, keep
-  // it there.
+  // The simulator centres the bounding box of all boxes on the axis; two specks, too small for a
+  // pixel, keep that box in place.
   const Vector3d speck(0.01, 0.01, 0.01);
   const Vector3d corner(90, 90, 0);
   boxes.emplace_back(-corner, -corner + speck);
@@ -39,13 +39,14 @@ Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
   const auto sensor = open_sensor(simulation_uri(simulation));
   Seen frames;
   for (int stop = 0; stop < stops; ++stop) {
+    // 0.6 radians askew, so that no wall faces the sensor.
     frames[static_cast<std::size_t>(stop)] =
-        frame_at(*sensor, 2 * std::numbers::pi * stop / stops + 0.6).frame;  // no wall is head-on
+        frame_at(*sensor, 2 * std::numbers::pi * stop / stops + 0.6).frame;
   }
   return frames;
 }
 
-/// An object of 8 cm on which no two sides are alike.
+/// An asymmetric object of 8 cm.
 std::vector<AlignedBox3d> object() {
   return {AlignedBox3d(Vector3d(-30, -25, 0), Vector3d(25, 20, 40)),
           AlignedBox3d(Vector3d(-5, -15, 40), Vector3d(20, 10, 80))};
@@ -56,7 +57,8 @@ const Seen& object_seen() {
   return frames;
 }
 
-/// A sensor that sees what a test wants at each look: one at each stop, and one more at the first.
+/// A sensor with a given frame for each look: one look at each stop, and the last look at the
+/// first.
 class SensorOfLooks final : public DepthSensor {
  public:
   explicit SensorOfLooks(std::function<DepthFrame(int look)> see) : see_(std::move(see)) {}
@@ -76,7 +78,7 @@ class SensorOfLooks final : public DepthSensor {
     const double stop = angle * stops / (2 * std::numbers::pi);
     const double nearest = std::round(stop);
     if (std::abs(stop - nearest) < 0.01 && static_cast<int>(nearest) % stops != look_ % stops) {
-      ++look_;  // stops come one after the other
+      ++look_;  // the platform reached another stop
     }
   }
 
@@ -87,7 +89,7 @@ class SensorOfLooks final : public DepthSensor {
   Intrinsics lens_ = {};
 };
 
-/// A scan's reasons of a code.
+/// A scan's quality reasons with a code.
 std::vector<json> reasons(const json& scan, const std::string& code) {
   std::vector<json> found;
   std::ranges::copy_if(scan["model"]["quality"]["reasons"], std::back_inserter(found),
@@ -97,7 +99,7 @@ std::vector<json> reasons(const json& scan, const std::string& code) {
 
 class VerdictTest : public ScannerTest {
  protected:
-  /// Scans to the end. @return the scan as the interface has it
+  /// Runs a scan to its end. @return the scan as the HTTP interface shows it
   json scan_of(const std::function<DepthFrame(int look)>& see,
                const Box& clip = ScanSettings().clip) {
     const auto open = [&](const std::string& /*uri*/) {
@@ -122,7 +124,7 @@ TEST_F(VerdictTest, IsGoodWhereNothingWentWrong) {
 
 TEST_F(VerdictTest, SaysThatTheScannedSpaceBeheadsTheObject) {
   Box low = ScanSettings().clip;
-  low.max.z() = 0.06;  // the object has 8 cm
+  low.max.z() = 0.06;  // the object is 8 cm high
   const json scan = scan_of([](int look) { return at(object_seen(), look); }, low);
   EXPECT_EQ(scan["model"]["quality"]["verdict"], "look") << scan;
   const auto cut = reasons(scan, "cut-by-box");
@@ -130,7 +132,7 @@ TEST_F(VerdictTest, SaysThatTheScannedSpaceBeheadsTheObject) {
   EXPECT_EQ(cut[0]["detail"], "the object reaches through the top of the scanned space");
   EXPECT_EQ(cut[0]["hint"], "Make the scanned space larger, or move the object.");
   for (const json& place : cut[0]["places_mm"]) {
-    EXPECT_NEAR(place[2].get<double>(), 60, 8);  // a cell, and a pixel
+    EXPECT_NEAR(place[2].get<double>(), 60, 8);  // a cell and a pixel
   }
 }
 
@@ -148,7 +150,7 @@ TEST_F(VerdictTest, IsTheErrorOfAScanOfAnEmptyPlatform) {
 }
 
 TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
-  const Seen bumped = seen(object(), 0.9);  // 0.9 degrees; the platform's middle is 1.8 mm lower
+  const Seen bumped = seen(object(), 0.9);  // 0.9 degrees; the platform's centre sinks by 1.8 mm
   const json scan =
       scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
   EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;

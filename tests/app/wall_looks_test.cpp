@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A look of a simulated Kinect at a wall. @param distance  metres
+/// A simulated Kinect's view of a wall. @param distance  metres
 WallView look_at(double distance) {
   SimulatedKinect kinect(Scene::of_wall(distance), 1, 1, 1);
   DepthFrame frame{.width = 640, .height = 480, .depth = std::vector<std::uint16_t>(640U * 480U)};
@@ -41,12 +41,12 @@ TEST_F(WallLooks, MakeAMapThatIsKept) {
   EXPECT_TRUE(report.map.near.empty());
   EXPECT_EQ(map().serial, "A1");
   EXPECT_EQ(map().made, report.map.made);
-  EXPECT_LT(map().after, 0.6 * map().before);  // it takes the pattern out, and leaves the speckle
+  EXPECT_LT(map().after, 0.6 * map().before);  // removes the pattern, not the speckle
   EXPECT_TRUE(map().far.empty());
 }
 
-// The map is the same as of the looks themselves: means are kept to 0.05 mm, which is 0.04 steps of
-// disparity.
+// The map equals one from the views themselves: means are stored with an error of up to 0.05 mm,
+// 0.04 steps of disparity.
 TEST_F(WallLooks, AreKeptAsTheirMean) {
   add(0.65);
   const std::vector<WallView> views{look_at(0.9), look_at(0.65)};

@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr WebhookLimits brisk{.look_interval = 1ms, .first_pause = 1ms, .max_attempts = 3};
 
-/// A server that answers each request with the next of these states, the last one for ever.
+/// A server that answers each request with the next of these statuses, and repeats the last one.
 class Receiver {
  public:
   explicit Receiver(std::vector<int> answers) : answers_(std::move(answers)) {}
@@ -58,7 +58,7 @@ class Receiver {
                      [this](const Request& request) { return take(request); }};
 };
 
-/// A sender and its address book, with one webhook.
+/// A sender with an address book that has one webhook.
 class Sender {
  public:
   explicit Sender(const Receiver& receiver, std::vector<std::string> events = {},
@@ -172,7 +172,7 @@ TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
   EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "too much waited to be sent");
 }
 
-/// Whose look finds something once.
+/// A sender whose source of news returns something once.
 class News : public Sender {
  public:
   News(const Receiver& receiver, std::vector<std::string> events)
@@ -216,7 +216,7 @@ TEST(WebhookSender, EndsAtOnceWhileAReceiverIsSlow) {
         book, [] { return std::vector<Happening>{}; }, patient);
     sender.tell(id, {.event = "test", .body = "{}"});
     asked.get_future().wait();
-  }  // ends here, or the test's own limit does
+  }  // the destructor returns here, or CTest's timeout ends the test
   answered.set_value();
 }
 

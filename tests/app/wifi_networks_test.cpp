@@ -5,7 +5,7 @@
 namespace octurn {
 namespace {
 
-// As wpa_cli 2.10 prints it.
+// The header line of wpa_cli 2.10.
 const std::string head = "bssid / frequency / signal level / flags / ssid\n";
 
 std::string line(const std::string& name, int signal_dbm = -60,
@@ -14,7 +14,7 @@ std::string line(const std::string& name, int signal_dbm = -60,
          "\n";
 }
 
-/// The names of a table's networks, with commas between.
+/// The networks' names in a table, separated by commas.
 std::string names(const std::string& lines) {
   std::string names;
   for (const WifiNetwork& network : wifi_networks(head + lines)) {

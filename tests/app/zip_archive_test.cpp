@@ -13,10 +13,10 @@ constexpr auto time_of_day = std::chrono::hours(23) + std::chrono::minutes(59);
 constexpr system_clock::time_point some_time =
     std::chrono::sys_days(std::chrono::year(2026) / 11 / 21) + time_of_day;
 
-/// The time of the first file, as zip has it: days below, in the upper half, and then hours.
+/// The first file's MS-DOS date (high 16 bits) and time (low 16 bits).
 unsigned dos_time(const std::string& archive) {
   unsigned time = 0;
-  for (const std::size_t at : {13U, 12U, 11U, 10U}) {  // of the first local header
+  for (const std::size_t at : {13U, 12U, 11U, 10U}) {  // offsets in the first local header
     time = time << 8U | static_cast<unsigned char>(archive.at(at));
   }
   return time;

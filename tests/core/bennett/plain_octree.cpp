@@ -7,8 +7,7 @@ namespace octurn::plain {
 namespace {
 
 using Vector = std::array<std::int64_t, 3>;
-__extension__ typedef __int128
-    Exact;  // NOLINT(modernize-use-using): -Wpedantic needs __extension__
+__extension__ typedef __int128 Exact;  // NOLINT(modernize-use-using): -Wpedantic
 
 Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 

@@ -68,8 +68,7 @@ TEST(Corrected, InterpolatesOverInverseDepthAndGoesOnForAsMuchAgain) {
 
 TEST(Corrected, IsTheFarthestDepthWhereItWouldBeFarther) {
   EXPECT_EQ(corrected_depth(60000, map_of(0.1F)), 65535);
-  EXPECT_EQ(corrected_depth(60000, map_of(0.3F)),
-            65535);  // the corrected depth would lie beyond infinity
+  EXPECT_EQ(corrected_depth(60000, map_of(0.3F)), 65535);  // would be beyond infinity
   EXPECT_EQ(corrected_depth(1, map_of(-1e6F)), 1);
 }
 

@@ -38,8 +38,7 @@ TEST(ReadScan, RefusesAFolderInPlaceOfItsFile) {
 TEST(ReadScan, RefusesAFileTooLargeToBeOne) {
   const TemporaryFolder folder;
   put(folder.path() / "scan.json", contract.dump());
-  std::filesystem::resize_file(folder.path() / "scan.json",
-                               1ULL << 40U);  // sparse: takes no disk space
+  std::filesystem::resize_file(folder.path() / "scan.json", 1ULL << 40U);  // a sparse file
 
   EXPECT_EQ(code_thrown_by([&] { read_scan(folder.path()); }), "scan-malformed");
 }

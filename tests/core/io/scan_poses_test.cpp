@@ -58,8 +58,7 @@ TEST(ScanOfPoses, HasAClipBoxForEachAndOneAroundAll) {
   ASSERT_EQ(lying.size(), 2U);
   EXPECT_EQ(lying[0].clip.max, scan.clip.max);
   EXPECT_EQ(lying[1].clip.max, Eigen::Vector3d(0.1, 0.1, 0.3));
-  EXPECT_LT((around.min - Eigen::Vector3d(-0.14, -0.15, 0.002)).norm(),
-            1e-12);  // of the first pose
+  EXPECT_LT((around.min - Eigen::Vector3d(-0.14, -0.15, 0.002)).norm(), 1e-12);  // first pose
   EXPECT_LT((around.max - Eigen::Vector3d(0.3 + 0.25, 0.1 + 0.5, 0.4)).norm(), 1e-12);
 }
 

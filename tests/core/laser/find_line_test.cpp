@@ -41,11 +41,9 @@ TEST(FindLine, FindsItsColumnToAFractionOfAPixel) {
 
   const std::vector<LineSample> samples = find_line(no_light, lit, {});
 
-  ASSERT_EQ(samples.size(),
-            static_cast<std::size_t>(height - 2));  // without the first and the last row
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));  // all but first and last row
   for (const LineSample& sample : samples) {
-    EXPECT_NEAR(sample.u, middle(sample.row), 0.02)
-        << "row " << sample.row;  // pixels; the picture has 8 bits
+    EXPECT_NEAR(sample.u, middle(sample.row), 0.02) << "row " << sample.row;  // 8 bits a pixel
   }
 }
 
@@ -84,8 +82,7 @@ TEST(FindLine, IsNotMovedByRoomLight) {
 
 TEST(FindLine, LeavesOutGlowAndSpecks) {
   const Picture lit = draw([](double u, int v) {
-    const double glow =
-        v > 30 ? line(u, 90, 120, 9) : 0;  // light scattered below the object's surface
+    const double glow = v > 30 ? line(u, 90, 120, 9) : 0;  // subsurface scattering
     const double speck = v == 7 || v == 8 ? line(u, 70, 200) : 0;
     return line(u, 30.5, 200) + glow + speck;
   });

@@ -63,8 +63,7 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
   ASSERT_EQ(profile.rays.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     EXPECT_EQ(profile.row(samples[i].row).size(), 1U);
-    EXPECT_LT((meet(profile.rays[i], laser) - truth[i]).norm(),
-              2e-6);  // metres; columns are floats
+    EXPECT_LT((meet(profile.rays[i], laser) - truth[i]).norm(), 2e-6);  // columns are floats
   }
 }
 

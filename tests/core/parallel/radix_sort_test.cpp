@@ -26,8 +26,7 @@ std::vector<KeyIndex> random_keys(std::uint32_t count, std::uint32_t mask) {
 }
 
 TEST(RadixSort, IsAStableSortOfTheKeys) {
-  for (const std::uint32_t mask :
-       {0xffffffffU, 0xffffU, 0x7U}) {  // a small mask gives many equal keys
+  for (const std::uint32_t mask : {0xffffffffU, 0xffffU, 0x7U}) {  // 0x7: many equal keys
     for (const std::uint32_t count : {0U, 1U, 2U, 100U, 10'000U}) {
       std::vector<KeyIndex> sorted = random_keys(count, mask);
       std::vector<KeyIndex> expected = sorted;

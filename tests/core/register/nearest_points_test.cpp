@@ -83,8 +83,7 @@ TEST(RigidFit, LeavesAloneWhatNothingOpposes) {
   EXPECT_NEAR(motion.translation().head<2>().norm(), 0, 1e-9);
   EXPECT_TRUE(motion.linear().isIdentity(1e-9));
   const RigidFit::Matrix6d covariance = fit.covariance(1);
-  EXPECT_GT(covariance(3, 3),
-            1000 * covariance(5, 5));  // it may slide, but not move along the normal
+  EXPECT_GT(covariance(3, 3), 1000 * covariance(5, 5));  // it may slide, but not rise
 }
 
 }  // namespace

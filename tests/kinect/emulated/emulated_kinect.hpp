@@ -22,8 +22,8 @@ struct EmulatedKinect {
   std::atomic<float> reference_distance_cm = 120;
   std::atomic<float> reference_pixel_cm = 0.1042F;
   std::atomic<std::uint16_t> shift = 200;
-  std::array<std::atomic<std::int16_t>, 3> acceleration = {
-      0, 819, 0};                 // left, up, forward; 819 counts per g
+  // Left, up, forward; 819 counts per g.
+  std::array<std::atomic<std::int16_t>, 3> acceleration = {0, 819, 0};
   std::atomic<double> speed = 1;  // as a multiple of 30 frames a second
 
   std::atomic<bool> silent = false;

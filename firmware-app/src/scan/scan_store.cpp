@@ -21,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// Folders in the making, and on their way out, begin with a dot: they are not listed, and the next
-// start clears them away.
+// Names of unfinished folders, and of folders being removed, begin with a dot: they are not listed,
+// and the next start removes them.
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
@@ -30,11 +30,11 @@ int stored_snapshots(const fs::path& folder) {
   try {
     return static_cast<int>(read_scan(folder).shots.size());
   } catch (const std::exception&) {
-    return 0;  // it ended before the first snapshot, which writes the first scan.json
+    return 0;  // the scan ended before its first snapshot, which writes scan.json
   }
 }
 
-/// As `job.json` has it. Names and messages may hold bytes that are no UTF-8: those are replaced.
+/// Returns the text of `job.json`. Invalid UTF-8 in names and messages is replaced.
 std::string to_text(const Job& job) {
   return to_job_json(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -45,7 +45,7 @@ Job read_job(const fs::path& folder) {
                            ErrorCode::job_malformed, "the file"));
 }
 
-/// The scan of a folder; one that cannot be read has failed.
+/// Loads the scan of a folder. One that cannot be read gets the state failed.
 Job load(const fs::path& folder) {
   Job job;
   try {
@@ -67,7 +67,7 @@ Job load(const fs::path& folder) {
   return job;
 }
 
-/// @param scans  a folder in it
+/// Makes `scans`, a subfolder of `data`, and locks `data`.
 FileDescriptor make_and_lock(const fs::path& data, const fs::path& scans) {
   std::error_code error;
   fs::create_directories(scans, error);
@@ -77,8 +77,8 @@ FileDescriptor make_and_lock(const fs::path& data, const fs::path& scans) {
   return lock_data_folder(data);
 }
 
-/// Milliseconds since 1970, so that a client that has seen an earlier process lists the scans
-/// again.
+/// Milliseconds since 1970: above the revisions of earlier processes, so that clients list the
+/// scans again.
 std::uint64_t first_revision() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return static_cast<std::uint64_t>(std::chrono::floor<std::chrono::milliseconds>(now).count());
@@ -130,7 +130,7 @@ Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>&
   return job;
 }
 
-/// Makes a folder that was begun that of a scan. `writing_` is held.
+/// Writes `job.json` into a temporary folder, and renames it to the scan's. `writing_` is held.
 void ScanStore::enter(const fs::path& beginning, const Job& job) {
   write_file(beginning / "job.json", to_text(job));
   std::error_code error;
@@ -156,7 +156,7 @@ void ScanStore::save(const Job& job) {
   write_job(job);
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
-  ScanLabel label = held.label;  // written meanwhile
+  ScanLabel label = held.label;  // may have changed since `job` was copied
   if (job.state != JobState::running || held.state != job.state) {
     ++revision_;
   }

@@ -36,10 +36,10 @@ class ScanStore {
   /// Makes the folder of a new scan, in state running. Its id sorts after all others, even if the
   /// clock was set back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
-  /// @param pose_of  of a scan of another pose
+  /// @param pose_of  the link of a scan of another pose
   Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {});
 
-  /// Writes `job.json`. If that fails, the scan does not change.
+  /// Writes `job.json`. If that fails, the scan in memory does not change.
   /// @throws Error "no-such-scan", "disk-full", "write-failed"
   void save(const Job& job);
 
@@ -47,19 +47,20 @@ class ScanStore {
   /// @throws Error "no-such-scan"
   Job interrupt(std::string_view id);
 
-  /// All scans, newest first. One whose `job.json` could not be read is listed as failed.
+  /// Lists all scans, newest first. One whose `job.json` could not be read is listed as failed.
   std::vector<Job> list() const;
   std::optional<Job> find(std::string_view id) const;
   /// @throws Error "no-such-scan"
   Job get(std::string_view id) const;
 
-  /// The scans of other poses of that scan, the oldest first.
+  /// Lists the scans of other poses of that scan, oldest first.
   std::vector<Job> poses(std::string_view id) const;
 
-  /// The id of the scan that was begun last, whatever has become of it; empty if there is none.
+  /// Returns the id of the scan that was begun last, including those in the bin; empty if there is
+  /// none.
   std::string newest_id() const;
 
-  /// The newest finished scan that is not another pose of one, if there is one.
+  /// Returns the newest finished scan that is not a scan of another pose.
   std::optional<Job> newest_finished() const;
 
   /// @throws Error "no-such-scan"
@@ -68,26 +69,26 @@ class ScanStore {
   /// Removes a scan permanently.
   void remove(std::string_view id);
 
-  /// The scans that were deleted, and can be restored for some days, unless their space is needed.
+  /// The deleted scans, which can be restored for some days, unless their space is needed.
   const ScanBin& bin() const { return bin_; }
 
   /// Moves a scan into the bin, with the scans of its object in other poses.
   /// @throws Error "no-such-scan", "data-failed", "disk-full"
   void discard(std::string_view id);
 
-  /// Brings a scan back that is in the bin, with those of other poses.
+  /// Moves a scan out of the bin, with its scans of other poses.
   /// @throws Error "no-such-scan", "data-failed"
   void restore(std::string_view id);
 
   /// Removes the scans in the bin permanently.
   void empty_bin();
 
-  /// Removes scans from the bin, the first deleted first, until `needed` bytes are free.
-  /// @param what  is to be written, such as "a model"
-  /// @throws Error "disk-full"  if it is empty and that may still not fit
+  /// Removes scans from the bin, first deleted first, until `needed` bytes are free.
+  /// @param what  what is to be written, such as "a model"
+  /// @throws Error "disk-full"  if the bin is empty and the space still does not suffice
   void make_room(std::uint64_t needed, const std::string& what);
 
-  /// Makes a temporary folder for a scan from another Octurn; the next start removes it.
+  /// Makes a temporary folder for a scan from another Octurn. The next start removes leftovers.
   /// @throws Error "data-failed", "disk-full"
   std::filesystem::path begin_import();
 
@@ -96,20 +97,20 @@ class ScanStore {
   Job adopt(const std::filesystem::path& beginning);
 
   /// Makes the folder of a new build; the next start removes it if it stays unfinished.
-  /// @return where its `Scan.stl` belongs
+  /// @return the path of its `Scan.stl`
   /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
   std::filesystem::path begin_build(std::string_view id, int number);
 
-  /// The number that the next build of a scan has. @throws Error "no-such-scan"
+  /// Returns the number of the next build of a scan. @throws Error "no-such-scan"
   int next_build(std::string_view id) const;
 
-  /// Adds a build whose model is at the path of `begin_build`. It appears whole or not at all.
+  /// Adds a build whose model is at the path of `begin_build`, atomically.
   /// @throws Error "no-such-scan", "disk-full", "write-failed", "data-failed"
   void add_build(std::string_view id, const Build& build);
 
   /// Reserves the number and the folder of a build that another process makes.
-  /// @param run  its number is set
-  /// @return the folder, which is a build as soon as its `build.json` is there
+  /// @param run  gets its number
+  /// @return the folder, which is a build as soon as it contains `build.json`
   /// @throws Error "no-such-scan", "disk-full"  if a model may not fit, "data-failed"
   std::filesystem::path reserve_build(BuildRun& run);
 
@@ -131,8 +132,8 @@ class ScanStore {
   /// @throws Error "no-such-scan", "no-model"  if there is no such build, "busy"  if it is chosen
   void remove_build(std::string_view id, int number);
 
-  /// The scan folder for builds with these other poses: that of the build that merged them; without
-  /// poses, the scan's own. @throws Error "no-model"  if there is none
+  /// Returns the scan folder for builds with these other poses: that of the build that merged them;
+  /// without poses, the scan's own. @throws Error "no-model"  if there is none
   std::filesystem::path merged_scan(std::string_view id,
                                     const std::vector<std::string>& poses) const;
 
@@ -145,12 +146,12 @@ class ScanStore {
 
   /// @param id  that exists
   std::filesystem::path folder(std::string_view id) const;
-  /// The path of the scan's model, that of the chosen build.
+  /// Returns the path of the scan's model, that of the chosen build.
   std::filesystem::path model_file(std::string_view id) const;
-  /// The path of a build's model; build 0 is the scan's own.
+  /// Returns the path of a build's model; build 0 is the scan's own.
   std::filesystem::path model_file(std::string_view id, int build) const;
 
-  /// The platform's last stored angle, degrees; 0 if there is none.
+  /// Returns the platform's last stored angle, degrees; 0 if there is none.
   double platform_angle_deg() const;
   void save_platform_angle_deg(double angle_deg) const;
 
@@ -172,10 +173,10 @@ class ScanStore {
   std::filesystem::path data_;
   std::filesystem::path scans_;
   std::filesystem::path platform_;
-  FileDescriptor lock_;  // locked while it is open
+  FileDescriptor lock_;  // keeps the data folder locked
   ScanBin bin_;
   std::mutex writing_;        // serialises writes of a scan's files; locked before mutex_
-  mutable std::mutex mutex_;  // guards what follows, and is never held while the disk is used
+  mutable std::mutex mutex_;  // guards the members below; never held during disk access
   std::map<std::string, Job, std::greater<>> jobs_;
   std::uint64_t revision_;
 };

@@ -1,4 +1,4 @@
-// The scans of the store that were deleted.
+// ScanStore: deleting and restoring scans.
 
 #include <chrono>
 
@@ -28,8 +28,8 @@ void ScanStore::bring_back(const BinnedScan& scan) {
   ++revision_;
 }
 
-/// The scan goes first, and its poses after it: so the next start knows what a power cut has left
-/// half done.
+/// Moves the scan before its poses, so that `finish_discards` can complete a move that a power cut
+/// interrupted.
 void ScanStore::discard(std::string_view id) {
   const std::lock_guard writing(writing_);
   const Job job = get(id);
@@ -76,7 +76,8 @@ void ScanStore::make_room(std::uint64_t needed, const std::string& what) {
   expect_room(data_, free_bytes(), needed, what);
 }
 
-/// Ends what the power cut off: poses are where their scan is. Removes what is too old.
+/// Completes moves that a power cut interrupted: poses follow their scan into the bin, or out of
+/// it. Removes expired scans.
 void ScanStore::finish_discards() {
   try {
     for (const Job& job : list()) {

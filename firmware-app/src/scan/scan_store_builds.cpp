@@ -1,4 +1,4 @@
-// The builds of the scans in the store.
+// ScanStore: builds of scans.
 
 #include <algorithm>
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As for scans: folders that begin with a dot are cleared away by the next start.
+// As for scans: the next start removes folders whose names begin with a dot.
 fs::path unfinished_in(const fs::path& builds, int number) {
   return builds / (".new-" + std::to_string(number));
 }
@@ -60,7 +60,7 @@ void ScanStore::add_build(std::string_view id, const Build& build) {
     throw_data_error(kept, "make the folder", error);
   }
   sync_folder(builds);
-  sync_folder(folder(id));  // which may be new to it
+  sync_folder(folder(id));  // may have a new entry, `builds`
   const std::lock_guard lock(mutex_);
   jobs_.find(id)->second.builds.all.push_back(build);
   ++revision_;
@@ -83,7 +83,7 @@ void ScanStore::take_build(std::string_view id, int number) {
   const std::lock_guard writing(writing_);
   const Job job = get(id);
   if (find_build(job, number) != nullptr) {
-    return;  // it came while no daemon ran
+    return;  // finished while no daemon ran, and read at its start
   }
   Build build = read_build(model_file(id, number).parent_path(), number);
   const std::lock_guard lock(mutex_);
@@ -93,13 +93,13 @@ void ScanStore::take_build(std::string_view id, int number) {
 
 void ScanStore::release_build(std::string_view id, int number) {
   const fs::path builds = folder(id) / builds_folder;
-  std::error_code ignored;  // the next start clears it away
+  std::error_code ignored;  // the next start removes leftovers
   fs::rename(builds / std::to_string(number), leaving_in(builds, number), ignored);
   fs::remove_all(leaving_in(builds, number), ignored);
 }
 
 void ScanStore::drop_build(std::string_view id, int number) {
-  std::error_code ignored;  // the next start clears it away
+  std::error_code ignored;  // the next start removes leftovers
   fs::remove_all(unfinished_in(folder(id) / builds_folder, number), ignored);
 }
 

@@ -1,4 +1,4 @@
-// Scans that another Octurn has taken.
+// ScanStore: import of scans from another Octurn.
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view unfinished = ".new-import-";
 
-/// What the other Octurn tells of the scan; of a folder that only has the scan itself, the usual
-/// settings.
+/// Reads the job of an imported scan; default settings if the folder has no `job.json`. Invalid
+/// labels are dropped.
 Job read_adopted_job(const fs::path& folder, const Scan& scan) {
   const auto text = read_regular_file(folder / "job.json", max_job_bytes);
   Job job = text ? to_job(parse_json(*text, ErrorCode::bad_request, "job.json")) : Job{};
@@ -40,7 +40,7 @@ Job read_adopted_job(const fs::path& folder, const Scan& scan) {
   return job;
 }
 
-/// A scan that has all its snapshots, and waits for its model.
+/// Turns a job into that of a scan with all its snapshots, which waits for its model.
 Job to_waiting(Job job, const fs::path& folder, const Scan& scan) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;

@@ -1,4 +1,4 @@
-// Where the platform stands, as the store remembers it.
+// ScanStore: the platform's angle.
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ double ScanStore::platform_angle_deg() const {
         .value_or(0);
   } catch (const Error& error) {
     log::warning("store", error.what());
-    return 0;  // as before the first move
+    return 0;  // the angle before the first move
   }
 }
 

@@ -1,4 +1,4 @@
-// The scans of other poses in the store.
+// ScanStore: scans of other poses.
 
 #include <algorithm>
 #include <system_error>
@@ -13,8 +13,8 @@ bool has_pose(const Build& build, const std::string& pose) {
   return std::ranges::find(build.poses, pose) != build.poses.end();
 }
 
-/// The build to choose in place of those with that pose: the one that was chosen before the first
-/// of them; 0 if that is gone.
+/// Returns the number of the build to choose without a pose: the one that was chosen before the
+/// first build with that pose; 0 if it was removed.
 int build_before(const Job& job, const std::string& pose) {
   const auto first = std::ranges::find_if(
       job.builds.all, [&](const Build& build) { return has_pose(build, pose); });
@@ -34,7 +34,7 @@ std::vector<Job> ScanStore::poses(std::string_view id) const {
       poses.push_back(job);
     }
   }
-  std::ranges::reverse(poses);  // which are held newest first
+  std::ranges::reverse(poses);  // `jobs_` is in order of time, newest first
   return poses;
 }
 

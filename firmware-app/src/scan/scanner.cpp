@@ -14,9 +14,9 @@ using namespace std::chrono_literals;
 constexpr auto camera_patience =
     15s;  // a sensor takes 1 to 2 s to its first frame, on a busy machine more
 constexpr auto camera_interest = 5s;  // frames are read for that long after someone asked
-constexpr auto failure_lasts = 2s;    // so long a failure needs no other look
-constexpr auto fresh = 200ms;         // a frame of that age shows what is there now
-constexpr auto max_silence = 30s;     // of the worker: ten times what a device may take
+constexpr auto failure_lasts = 2s;    // maximum age of a failure that is reported again
+constexpr auto fresh = 200ms;         // maximum age of a current frame
+constexpr auto max_silence = 30s;     // of the worker: ten times the time that a device may take
 
 RigOptions at_angle(RigOptions rig, double angle_deg) {
   rig.platform_angle_deg = angle_deg;
@@ -34,7 +34,7 @@ Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
   if (slurm) {
     slurm_.emplace(*slurm, store, limits);
   }
-  slot_.want_camera(Clock::now() + camera_interest);  // so that the status tells what is there
+  slot_.want_camera(Clock::now() + camera_interest);  // so that the status shows the devices
   worker_ =
       std::jthread([this, limits, rig = at_angle(std::move(rig), store.platform_angle_deg())] {
         Worker(rig, limits, {store_, board_, slot_, heartbeat_, calibration_, scans_}).work();
@@ -74,7 +74,7 @@ std::optional<Job> Scanner::resume(std::string_view id) {
                 "was ended.");
   }
   if (job.state == JobState::cancelled) {
-    job.builds.chosen = 0;  // a model of a part: the whole one takes its place
+    job.builds.chosen = 0;  // a build of a part of the turn: the complete model replaces it
   }
   job.state = JobState::running;
   job.phase = Phase::starting;
@@ -83,7 +83,7 @@ std::optional<Job> Scanner::resume(std::string_view id) {
   return hand_over(job, ResumeCommand{job});
 }
 
-/// Gives a scan to the worker, which has none; `scans_` is held.
+/// Hands a scan to the worker, which has none; `scans_` is held.
 std::optional<Job> Scanner::hand_over(Job job, Command command) {
   board_.begin_scan(job,
                     Clock::now() - std::chrono::duration_cast<Clock::duration>(job.times.elapsed));
@@ -124,7 +124,7 @@ bool Scanner::cancel(std::string_view id) {
     return false;
   }
   if (job->pose_of) {
-    store_.withdraw_pose(job->pose_of->scan, job->id);  // if the program ended just then
+    store_.withdraw_pose(job->pose_of->scan, job->id);  // it may be merged already
   }
   job->state = JobState::cancelled;
   job->failure.reset();
@@ -191,11 +191,11 @@ void Scanner::expect_ready() {
     return device.state == DeviceStatus::State::ready;
   };
   if (slot_.is_occupied()) {
-    return;  // nobody can look
+    return;  // the worker cannot check the devices now
   }
   Status now = status();
   if (!is_ready(now.sensor) || !is_ready(now.turntable)) {
-    camera_frame();  // looks at both
+    camera_frame();  // opens both
     now = status();
   }
   if (!now.busy() && !is_ready(now.turntable)) {
@@ -262,7 +262,7 @@ bool Scanner::check_devices(std::function<void(Rig& rig, const std::stop_token& 
     done.get();
     return true;
   } catch (const std::future_error&) {
-    return false;  // a scan took its place
+    return false;  // a scan replaced the command
   }
 }
 

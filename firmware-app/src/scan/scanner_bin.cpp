@@ -1,4 +1,4 @@
-// How a scanner deletes scans, brings them back, and takes others' in.
+// Scanner: deleting, restoring and importing scans.
 
 #include <mutex>
 #include <system_error>
@@ -28,7 +28,7 @@ void Scanner::restore(std::string_view id) {
   store_.restore(id);
 }
 
-/// Before a scan is removed. @throws Error "busy"
+/// Checks that a scan neither runs nor is being built. @throws Error "busy"
 void Scanner::expect_idle(std::string_view id) const {
   if (is_running(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
@@ -47,7 +47,7 @@ Job Scanner::adopt(const std::function<void(const std::filesystem::path& folder)
     fill(folder);
     job = store_.adopt(folder);
   } catch (...) {
-    std::error_code ignored;  // the next start clears it away
+    std::error_code ignored;  // the next start removes leftovers
     std::filesystem::remove_all(folder, ignored);
     throw;
   }
@@ -56,7 +56,7 @@ Job Scanner::adopt(const std::function<void(const std::filesystem::path& folder)
   }
   try {
     build(job.id, {.settings = {.scan = job.settings}, .becomes_model = true});
-  } catch (const Error& error) {  // the scan is there all the same, and can be built later
+  } catch (const Error& error) {  // the scan is imported, and can be built later
     log::warning("scanner", "scan " + job.id + " is not built: " + error.what());
   }
   return job;

@@ -1,4 +1,4 @@
-// How a scanner takes builds of stored scans, and what requests have made of them.
+// Scanner: builds of stored scans, and models and colours for HTTP requests.
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +13,7 @@
 namespace octurn {
 namespace {
 
-constexpr auto model_patience = std::chrono::seconds(5);  // with what is made for another request
+constexpr auto model_patience = std::chrono::seconds(5);  // maximum wait for another request
 
 /// Whether a scan has all its snapshots, but no model yet.
 bool waits_for_model(const Job& job) {
@@ -103,8 +103,8 @@ bool Scanner::colour_model(const Job& job, int build) {
   return make_for_request(make) != nullptr;
 }
 
-/// @return nothing while a scan or a build goes on, or something else is made for too long
-/// @throws Error  as what is made does, before the pipe has its length
+/// @return null while a scan or a build runs, or if another request takes too long
+/// @throws Error  that `make` throws before it sets the pipe's length
 std::unique_ptr<ModelStream> Scanner::make_for_request(std::function<void(ModelPipe& pipe)> make) {
   const auto pipe = std::make_shared<ModelPipe>();
   return slot_.offer_rebuild({.make = std::move(make), .pipe = pipe}, pipe->stop(), model_patience)

@@ -1,4 +1,4 @@
-// What a Scanner does about the lens of a camera with lasers.
+// Scanner: the lens of a camera with lasers.
 
 #include "octurn/error.hpp"
 #include "scan/lens_files.hpp"
@@ -22,7 +22,7 @@ bool Scanner::solve_lens() {
   return is_looking;
 }
 
-/// The run that found one. @throws Error "not-found"
+/// Returns the last run if its lens was accepted. @throws Error "not-found"
 CalibrationRun Scanner::found_lens() const {
   const auto run = calibration_run();
   if (!*run || !(*run)->lens || !(*run)->lens->accepted) {

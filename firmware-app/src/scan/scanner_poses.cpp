@@ -1,4 +1,4 @@
-// How a scanner scans other poses of a scan's object, and takes them back.
+// Scanner: scans of other poses, and their removal.
 
 #include <algorithm>
 #include <mutex>
@@ -15,7 +15,7 @@ bool has_pose(const Build& build, const std::string& pose) {
   return std::ranges::find(build.poses, pose) != build.poses.end();
 }
 
-/// Whether a later pose was merged with that one.
+/// Whether a build merged a later pose with that one.
 bool is_built_on(const Job& first, const std::string& pose) {
   return std::ranges::any_of(first.builds.all, [&](const Build& build) {
     return has_pose(build, pose) && build.poses.back() != pose;

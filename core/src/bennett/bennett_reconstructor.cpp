@@ -24,7 +24,7 @@ namespace octurn {
 namespace {
 
 // Memory beside the octrees, measured with frames of 640 x 480 samples: each thread's snapshot, its
-// points, and its facets on their way out.
+// points, and its facets that are not yet streamed.
 constexpr std::size_t thread_bytes = 6 * mebibyte;
 constexpr std::size_t min_octree_bytes = 1 * mebibyte;
 

@@ -37,9 +37,9 @@ class BennettReconstructor final : public Reconstructor {
   void for_each_slab(const SnapshotSource& snapshots, const std::stop_token& stop, Visit visit);
 
   ReconstructOptions options_;
-  int wanted_threads_;  // of which the memory limit leaves as many as the options say
+  int wanted_threads_;  // before the memory limit reduced the options' number
   Octree octree_;
-  BrickLayers slab_ = {};  // in the octree, and beside it the lowest leaves of the layer after it
+  BrickLayers slab_ = {};  // in the octree, with the lowest leaves of the next layer
 };
 
 }  // namespace octurn

@@ -111,7 +111,7 @@ void append_facets(const BrickFrame& frame, const PseudoVoxelBrick& brick,
                                          &positions.mm[2][static_cast<std::size_t>(2 * z)]};
     for (std::size_t i = 0; i < surface.count; ++i) {
       const CaseFacet& from = surface.facets[i];
-      std::array<std::array<float, 3>, 3> corners;  // aligned, as those of a facet are not
+      std::array<std::array<float, 3>, 3> corners;  // aligned, unlike those of a packed facet
       for (std::size_t corner = 0; corner < 3; ++corner) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           corners[corner][axis] = mm[axis][from.corners[corner][axis]];
@@ -122,8 +122,8 @@ void append_facets(const BrickFrame& frame, const PseudoVoxelBrick& brick,
   });
 }
 
-/// The first of the layers of pseudo-voxels that belong to layers of bricks: those of the root's
-/// bottom begin one leaf below it.
+/// The first layer of pseudo-voxels of a slab. At the root's bottom it is the layer below the root,
+/// in which the surface is closed.
 int first_layer(const BrickLayers& layers) { return layers.low == 0 ? -1 : layers.low; }
 
 /// Some pseudo-voxel bricks of a layer, which they keep alive.

@@ -33,7 +33,7 @@ inline BrickLayers all_layers(const Octree& octree) {
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink);
 
-/// Where bricks lie, metres.
+/// The position and scale of bricks, metres.
 struct BrickFrame {
   double low_xy = 0;  ///< where brick 0 begins along x and along y; along z it begins at 0
   double leaf_side = 0;

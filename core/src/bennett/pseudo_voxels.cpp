@@ -30,8 +30,8 @@ class CornerBricks {
     std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
   }
 
-  /// Calls `visit(brick, up)` for each, with its position, and 1 for those of the layer above,
-  /// which come last.
+  /// Calls `visit(position, up)` for each brick; `up` is 1 for bricks of the layer above, which
+  /// come last.
   template <typename Visit>
   void for_each(Visit visit) const {
     for (const PlacedBrick& found : bricks_) {

@@ -15,10 +15,10 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr int thinning = ScanCheck::Stop::thinning;
-constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // that is kept
-// A point of a line stands for as many pixels: the lines of neighbouring stops are so far apart.
+constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // for each one kept
+// Pixels for which a point of a line counts: the spacing of lines of neighbouring stops.
 constexpr std::size_t pixels_of_line = 4;
-constexpr int block = 4;                  // of these rows and columns to a side
+constexpr int block = 4;                  // kept rows and columns to a side
 constexpr double readings_wanted = 400;   // of a stop, to compare
 constexpr double platform_radius = 0.13;  // metres, in which heights are counted
 constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
@@ -27,9 +27,9 @@ constexpr double min_cut_height =
 // A reading belongs to a surface if at least `min_beside` of its eight neighbours continue it, with
 // a slope of at most 74 degrees. Mixed readings at depth edges have fewer such neighbours.
 constexpr int min_beside = 5;
-constexpr double max_slope_step = 0.012;  // of the depth, two pixels on
+constexpr double max_slope_step = 0.012;  // share of the depth, over two pixels
 
-/// Of the image whose pixels are blocks of `size` x `size` pixels of another.
+/// The intrinsics of an image whose pixels are blocks of `size` x `size` pixels of another.
 Intrinsics merged(Intrinsics lens, int size) {
   lens.width /= size;
   lens.height /= size;
@@ -132,7 +132,7 @@ void add_cuts(const Points& points, const Box& clip, const Vector3d& inside, int
 
 /// Whether most of the eight neighbours of a pixel lie on its surface.
 bool is_of_a_surface(const Points& points, int u, int v, double z) {
-  int beside = -1;  // itself
+  int beside = -1;  // the pixel itself is counted, too
   for (int row = -1; row <= 1; ++row) {
     for (int column = -1; column <= 1; ++column) {
       beside += std::abs(points.depth(u + column, v + row) - z) < max_slope_step * z ? 1 : 0;

@@ -17,7 +17,7 @@ struct ScanCheck::Stop {
   Stop(const Snapshot& snapshot, const Box& clip);
 
   static constexpr int thinning = 2;       ///< every other row and column is kept
-  static constexpr double highest = 0.03;  ///< metres, of `heights`; as far down, too
+  static constexpr double highest = 0.03;  ///< metres: `heights` go from -highest to it
   static constexpr double height_step = 0.001;
 
   /// Metres along z: depth up to which the pixels around a point's pixel see free space; 0 if one
@@ -25,7 +25,7 @@ struct ScanCheck::Stop {
   /// @param point  metres, optical frame
   double empty_depth(const Eigen::Vector3d& point) const;
 
-  /// An image whose pixels are blocks of others.
+  /// An image whose pixels are blocks of another image's pixels.
   struct Blocks {
     Intrinsics lens = {};
     std::vector<float> nearest = {};  ///< metres along z, row by row; 0 as `empty_depth`
@@ -36,10 +36,10 @@ struct ScanCheck::Stop {
   ObjectView view;                            ///< of every other row and column
   std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
   std::size_t object_pixels = 0;              ///< inside the box
-  double depths = 0;                          ///< metres, the sum of theirs
+  double depths = 0;                          ///< metres, their sum over object pixels
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
-  std::vector<ObjectCell> seen = {};  ///< with readings inside the box that others lie beside
+  std::vector<ObjectCell> seen = {};  ///< cells with readings of a surface inside the box
   std::vector<std::size_t> heights;   ///< of readings near z = 0, a count for each step
 
  private:

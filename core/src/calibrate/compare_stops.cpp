@@ -16,11 +16,11 @@ using Eigen::Vector3d;
 // Angles between compared stops. Near stops hardly show a wrong axis, far ones see other surfaces.
 constexpr double min_apart_deg = 20;
 constexpr double max_apart_deg = 50;
-constexpr double max_neighbour_deg = 100;  // where there are no stops so near
+constexpr double max_neighbour_deg = 100;  // if no stop lies within them
 
-constexpr double max_distance = 0.02;          // metres: what is farther off is another surface
+constexpr double max_distance = 0.02;          // metres: beyond it lies another surface
 constexpr double confirming_distance = 0.006;  // metres
-// Metres, at 1 m: 2.2 mm at 0.65 m, four times what a Kinect's noise makes two stops differ.
+// Metres, at 1 m: 2.2 mm at 0.65 m, four times the distance between two stops by a Kinect's noise.
 constexpr double far_at_1_m = 0.0052;
 
 /// The turn between two stops, radians.

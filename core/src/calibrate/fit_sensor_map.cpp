@@ -11,8 +11,8 @@ namespace octurn {
 namespace {
 
 // Limits beyond which walls are refused. Units are steps of a Kinect's disparity.
-constexpr double max_rough = 1;           // units, what the map leaves of the blocks
-constexpr double max_disagreement = 1.5;  // units, between what two walls say
+constexpr double max_rough = 1;           // units, residual of the blocks with the map
+constexpr double max_disagreement = 1.5;  // units, between the errors measured on two walls
 
 /// Sigma of the smoothing that removes speckle, which belongs to the wall: share of the picture's
 /// width, 13 of 640 pixels. A sensor's own pattern is at least 50 pixels wide.
@@ -21,7 +21,7 @@ constexpr double smoothing = 0.02;
 /// Ridge on the slope of the pattern over inverse depth, (1/m)^2: the larger it is, the more walls
 /// must differ in inverse depth before their differences count as change and not as noise.
 constexpr double caution = 0.01;
-constexpr double min_difference = 0.02;  // 1/m, of two walls that are told apart
+constexpr double min_difference = 0.02;  // 1/m, between two walls at different distances
 
 /// A wall that was accepted: its residuals in blocks.
 struct FlatWall {

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double max_gap = 0.006;        // metres at 0.65 m
 constexpr double noise_distance = 0.65;  // metres; a Kinect's noise grows with the square
-constexpr double voxels_of_gap = 2;      // that fall to carving and to simplifying
+constexpr double voxels_of_gap = 2;      // lost by carving and simplification
 constexpr std::size_t min_cells = 6;     // 1.5 cm2: fewer are readings between two surfaces
 constexpr double min_length = 0.012;     // metres
 

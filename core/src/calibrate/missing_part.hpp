@@ -11,7 +11,7 @@ namespace octurn {
 /// A part of the object that was seen but has no model surface near.
 struct MissingPart {
   double length = 0;                         ///< metres, the longest side of its box
-  std::vector<Eigen::Vector3d> places = {};  ///< metres, as those of a `QualityReason`
+  std::vector<Eigen::Vector3d> places = {};  ///< metres, object's frame
 };
 
 /// Finds the largest part that several stops saw and a model lacks. Points within noise and voxel

@@ -38,7 +38,8 @@ struct NormalEquations {
     count += other.count;
   }
 
-  /// In units of the residuals' own variance, so that a measurement that is added has its sigma.
+  /// The equations divided by the residuals' variance, so that measurements can be added by their
+  /// sigma.
   NormalEquations scaled(double variance) const {
     return {.matrix = matrix / variance, .right = right / variance};
   }

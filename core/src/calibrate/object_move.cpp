@@ -26,9 +26,9 @@ constexpr int max_step = 6;  // pixels
 // range are fixed, and cancel.
 constexpr double correlated_pixels = 50;
 constexpr double min_agreement = 0.7;    // cosine between the two normals
-constexpr double min_found_again = 0.3;  // of the readings: else there is another object, or none
+constexpr double min_found_again = 0.3;  // of the readings; fewer: another object, or none
 
-// A prior for what the object's shape leaves open: a ball's turn, a wall's sideways shift.
+// A prior for motions that the shape does not determine: a ball's turn, a wall's sideways shift.
 constexpr double expected_noise = 0.001;  // metres
 constexpr double min_noise = 0.0003;      // metres: residuals of so few readings may be less
 constexpr double expected_shift = 0.003;
@@ -40,7 +40,7 @@ constexpr double certain_sigmas = 3;
 
 /// Limits of one iteration.
 struct Limits {
-  double max_distance = 0;  ///< metres: what is farther off is another surface
+  double max_distance = 0;  ///< metres: beyond it lies another surface
   double cauchy_scale = 0;  ///< metres
 };
 
@@ -57,7 +57,7 @@ constexpr std::array<Limits, 10> schedule{{{max_measured_shift, 0.004},
 
 /// A motion along the platform.
 struct Motion {
-  Vector3d middle = Vector3d::Zero();  ///< that it turns about, platform's frame
+  Vector3d middle = Vector3d::Zero();  ///< centre of the turn, platform's frame
   Vector2d shift = Vector2d::Zero();   ///< metres
   double turn = 0;                     ///< radians
 
@@ -92,7 +92,7 @@ Readings readings_in(const ObjectView& view, const Isometry3d& platform_from_sen
 }
 
 /// The sigma of a shift in its own direction, so that length / sigma is the shift's Mahalanobis
-/// distance from none. A direction that the shape leaves open does not enter it.
+/// distance from none. Directions that the shape does not determine do not enter.
 double sigma_along(const Vector2d& shift, const Eigen::Matrix2d& covariance) {
   const double distance = std::sqrt(shift.dot(covariance.inverse() * shift));
   return distance > 0 ? shift.norm() / distance : std::sqrt(covariance.diagonal().maxCoeff());

@@ -12,9 +12,9 @@ using Eigen::Vector3d;
 
 constexpr double max_height = 0.4;
 constexpr double max_radius = 0.2;
-// Surfaces that are seen from the side tell how far off the axis is: at 0.65 m one of 75 degrees
-// falls by 17 mm over 5 pixels, and one of 3 cm has little else.
-constexpr double max_step = 0.022;   // metres of depth among these: more is an edge
+// Surfaces at a grazing angle determine the axis's position best: at 0.65 m the depth of one at 75
+// degrees changes by 17 mm over 5 pixels, and an object of 3 cm shows little else.
+constexpr double max_step = 0.022;   // metres: a larger range of depth is an edge
 constexpr double min_cosine = 0.25;  // between normal and ray
 
 /// The corners of a box around what a mask contains, metres, optical frame.

@@ -13,20 +13,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_height = 0.06;  // metres from the told surface: a rig is told 30 mm wrong,
-constexpr double max_radius = 0.17;  // and 5 degrees, which is 15 mm at this distance of the axis
+// The told surface may be wrong by 30 mm and 5 degrees, which is 15 mm at the largest radius.
+constexpr double max_height = 0.06;  // metres from the told surface
+constexpr double max_radius = 0.17;  // metres from the axis
 constexpr double max_slope_deg = 6;  // of a plane, against the told surface
 constexpr double inlier_height = 0.003;
-constexpr double object_height = 0.006;  // above the plane: no noise of the platform
+constexpr double object_height = 0.006;  // above the plane: more than the platform's noise
 constexpr int candidates = 400;
-constexpr std::size_t scored_points = 4000;  // that a candidate is judged by
+constexpr std::size_t scored_points = 4000;  // that score a candidate
 constexpr std::size_t fitted_points = 60000;
 constexpr double good_support = 0.6;  // of the best candidate's
 constexpr int refinements = 8;
 constexpr double cauchy_scale = 0.001;  // metres
 constexpr double refined_height = 0.01;
 
-/// Numbers that are the same on every machine (PCG XSH RR 64/32, O'Neill 2014).
+/// Random numbers, the same on every machine (PCG XSH RR 64/32, O'Neill 2014).
 class Random {
  public:
   std::size_t below(std::size_t end) {
@@ -48,7 +49,7 @@ struct Candidate {
   std::size_t support = 0;
 };
 
-/// The plane through three points, upward; nothing if it is too steep, as told by `up`.
+/// The plane through three points, upward; nothing if it is too steep against `up`.
 std::optional<Candidate> plane_through(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                                        const Vector3d& up) {
   Vector3d normal = (b - a).cross(c - a);

@@ -21,7 +21,7 @@ constexpr double min_height = 0.0025;
 constexpr double readings_wanted = 300;
 constexpr double turn_readings_wanted = 24 * readings_wanted;
 constexpr int max_step = 8;               // pixels
-constexpr double correlated_pixels = 50;  // the sensor's errors are alike in some 7 x 7 pixels
+constexpr double correlated_pixels = 50;  // about 7 x 7 pixels share the sensor's error
 constexpr double uses = 8;                // comparisons that share a reading and its error
 
 /// Stops all around the turn.

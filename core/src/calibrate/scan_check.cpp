@@ -17,8 +17,8 @@ using Stops = std::vector<const ScanCheck::Stop*>;
 constexpr std::size_t window = 5;  // steps of height that a platform's readings spread over
 constexpr std::size_t min_platform_readings = 500;  // at a stop
 
-/// The largest turn from one stop to the next, radians: between the headings that the sensor has in
-/// the object's frame.
+/// The largest angle between neighbouring stops, radians, from the sensor's headings in the
+/// object's frame.
 double find_widest_gap(const Stops& stops) {
   std::vector<double> headings;
   for (const ScanCheck::Stop* stop : stops) {
@@ -34,7 +34,7 @@ double find_widest_gap(const Stops& stops) {
   return widest;
 }
 
-/// The height at which most readings near z = 0 lie, metres.
+/// The mean height of the readings around the most frequent height near z = 0, metres.
 std::optional<double> find_platform(const Stops& stops) {
   std::vector<std::size_t> counts(stops.front()->heights.size());
   for (const ScanCheck::Stop* stop : stops) {
@@ -62,7 +62,7 @@ std::optional<double> find_platform(const Stops& stops) {
   return sum / static_cast<double>(best_count);
 }
 
-/// Where more than one stop has readings, metres.
+/// Centres of the cells in which more than one stop has readings, metres.
 std::vector<Eigen::Vector3d> find_seen(const Stops& stops) {
   std::vector<const std::vector<ObjectCell>*> cells;
   std::ranges::transform(stops, std::back_inserter(cells),

@@ -17,10 +17,10 @@ inline constexpr double object_cell_side = 0.005;
 /// @param point  metres, object's frame
 ObjectCell to_object_cell(const Eigen::Vector3d& point);
 
-/// Metres, object's frame.
+/// The centre of a cell: metres, object's frame.
 Eigen::Vector3d find_middle(const ObjectCell& cell);
 
-/// Those that more than one stop has, in their order.
+/// The cells that more than one stop has, in their order.
 /// @param stops  the cells of each, none twice
 std::vector<ObjectCell> cells_of_several(std::span<const std::vector<ObjectCell>* const> stops);
 

@@ -14,12 +14,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double lever = 0.1;      // metres: what a tilt moves there counts as much as a height
+constexpr double lever = 0.1;      // metres: a tilt counts by its height there
 constexpr double min_size = 5e-4;  // metres
 constexpr double min_sigmas = 5;
 constexpr double min_explained = 0.85;  // above the 0.75 that a step explains of a steady drift
 
-/// Of each stop: a tilt's two components times the lever, and a height.
+/// Measurements of each stop: a tilt's two components times the lever, and a height.
 constexpr Index rows_of_stop = 3;
 constexpr Index background_columns = 5;  // a mean, and a tilt that goes round
 

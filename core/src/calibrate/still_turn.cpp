@@ -14,11 +14,12 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double max_radius = 0.17;   // metres about the axis: what stands on the platform,
-constexpr double min_height = 0.006;  // metres above it: no noise of its surface,
-constexpr double max_height = 0.4;    // and no wall behind it
+// The volume of objects on the platform, metres: above its noise, and in front of walls behind it.
+constexpr double max_radius = 0.17;
+constexpr double min_height = 0.006;
+constexpr double max_height = 0.4;
 constexpr double noise = 4 * disparity_unit;
-// Readings at an object's edges jump between it and what is behind.
+// Readings at an object's edges jump between object and background.
 constexpr double edge_share = 0.1;
 
 /// A reading in the platform's frame, metres, if something on the platform was read.
@@ -35,7 +36,7 @@ std::optional<Vector3d> object_point(const PlatformSamples& samples,
   return is_object ? std::optional(point) : std::nullopt;
 }
 
-/// How many of some readings there are, and of them how many are not as they should be.
+/// The number of compared readings, and of those that disagree.
 struct Count {
   std::size_t all = 0;
   std::size_t wrong = 0;
@@ -62,7 +63,7 @@ Count compare(const PlatformSamples& samples, const std::vector<float>& first,
   return count;
 }
 
-/// Turns what the first stop read of an object, and counts the readings that it sees past.
+/// Rotates the first stop's readings of an object, and counts those that lie in its free space.
 Count compare_turned(const PlatformSamples& samples, const Intrinsics& lens,
                      const Isometry3d& platform_from_sensor, double angle) {
   const std::vector<float>& depths = samples.depths.front();

@@ -13,7 +13,7 @@ namespace octurn {
 /// The verdict on a turn whose platform stood still.
 struct StillTurn {
   std::string reason = {};  ///< why its pose is refused
-  /// Replace those of the turn; none if an object of revolution may have turned.
+  /// These replace the turn's findings; none if an object of revolution may have turned.
   std::vector<CalibrationFinding> findings = {};
 };
 

@@ -41,7 +41,7 @@ constexpr std::ptrdiff_t lasting_stops = 3;
 constexpr double min_drift_deg = 8;
 constexpr double straight = 0.97;  // correlation of drift and angle
 
-/// What the pairs that begin at one stop add to the normal equations: an entry for each partner.
+/// The pairs from one stop in the normal equations: an entry for each partner.
 struct PairSums {
   std::size_t to = 0;
   double from_from = 0;
@@ -137,7 +137,7 @@ std::string degrees_text(double angle) {
   return text.data();
 }
 
-/// Of the step from a stop to the next; the first stop's angle is given.
+/// The sigma of the step from a stop to the next; the first stop's angle is fixed.
 /// @param covariance  of the offsets from the second stop on
 double step_sigma(const Eigen::MatrixXd& covariance, Eigen::Index stop) {
   if (stop == 0) {

@@ -12,13 +12,13 @@
 namespace octurn {
 namespace {
 
-// Small angles see much of the same surface; large ones tell the axis better.
+// Stops at small angles share more surface; those at large ones determine the axis better.
 constexpr std::array apart_deg = {15.0, 30.0, 45.0, 75.0, 90.0};
 constexpr double tolerance_deg = 7.6;  // stops of a turn are rarely just so far apart
 constexpr double max_neighbour_deg = 100;
-constexpr std::size_t few_stops = 12;  // have time, and need, for the largest angle
+constexpr std::size_t few_stops = 12;  // up to here the largest angle is compared, too
 
-/// From `a` to `b`, from -pi to pi.
+/// The angle from `a` to `b`, from -pi to pi.
 double turn_between(double a, double b) { return std::remainder(b - a, 2 * std::numbers::pi); }
 
 /// The stop whose angle from another is nearest to `wanted`, within the tolerance.

@@ -12,8 +12,8 @@ using Eigen::Vector3d;
 constexpr std::size_t min_stops = 6;
 constexpr std::size_t min_pixels = 500;
 
-/// Pixels that see the platform at every stop: the same ones, so that what is wrong with a pixel is
-/// wrong with it at each stop.
+/// The pixels that see the platform at every stop. All stops use the same pixels, so that a pixel's
+/// fixed error is the same at each.
 std::vector<std::size_t> always_seen(const PlatformSamples& samples,
                                      const std::vector<bool>& is_plane) {
   std::vector<std::size_t> pixels;

@@ -34,7 +34,7 @@ struct StopResidual {
 
 /// Limits of the comparison, and the weights of residuals.
 struct ResidualLimits {
-  double max_distance = 0.02;   ///< metres: what is farther off is another surface
+  double max_distance = 0.02;   ///< metres: beyond it lies another surface
   double cauchy_scale = 0.004;  ///< metres
 
   double weight(double distance) const {
@@ -45,7 +45,7 @@ struct ResidualLimits {
 
 /// Compares the readings of one stop with the surfaces that its partners saw.
 /// @param platform_from_sensor  that is tried, metres
-/// @param stop_offsets          radians that each stop turned further than told
+/// @param stop_offsets          radians, of each stop: true angle less the told one
 /// @param visit                 called with each StopResidual
 template <typename Visit>
 void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
@@ -90,7 +90,7 @@ void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
   }
 }
 
-/// The median of the residuals' magnitudes, metres, of those below 20 mm; 0 if there are none.
+/// The median magnitude of the residuals below 20 mm, metres; 0 if there are none.
 double median_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
                        const std::vector<double>& stop_offsets, int threads);
 

@@ -22,13 +22,13 @@ constexpr ResidualLimits limits{.max_distance = 0.02, .cauchy_scale = 0.004};
 constexpr std::size_t min_residuals = 60;
 constexpr double min_shift = 0.001;  // metres
 constexpr double shift_sigmas = 5;
-constexpr double min_explained = 0.05;  // of all that the stops disagree
-constexpr double better = 1.5;          // times what a turn explains: that has one unknown less
+constexpr double min_explained = 0.05;  // of the residuals' sum of squares
+constexpr double better = 1.5;          // times the share of a turn, which has one unknown less
 
-/// Of each stop: a shift along x and y and a turn about z, in the object's frame.
+/// Unknowns of each stop: a shift along x and y and a turn about z, in the object's frame.
 constexpr Index unknowns = 3;
 
-/// What the residuals of a pair of stops add to the normal equations.
+/// The residuals of a pair of stops in the normal equations.
 struct PairSums {
   std::size_t to = 0;
   Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
@@ -100,7 +100,7 @@ Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose, int th
   return all;
 }
 
-/// The unknowns of all stops for an axis that lies elsewhere, along x and along y.
+/// The shifts of all stops that a shift of the axis along x and along y causes.
 MatrixXd make_axis_columns(const std::vector<double>& angles) {
   MatrixXd columns = MatrixXd::Zero(unknowns * static_cast<Index>(angles.size()), 2);
   for (std::size_t stop = 0; stop < angles.size(); ++stop) {

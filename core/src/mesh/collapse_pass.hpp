@@ -22,7 +22,7 @@ namespace octurn {
 /// only if an end of one is an end of the other, or a neighbour of it. Each thread collapses the
 /// edges within its own strip of vertices, in order. It defers an edge with a neighbour in another
 /// strip, or beside a deferred edge. The deferred edges, few and along the borders, are done next
-/// with strips across another axis, and what is deferred again by one thread. Each collapse
+/// with strips across another axis, and those deferred again by one thread. Each collapse
 /// therefore finds its neighbourhood as in the sequential order (the conflicts of Blelloch,
 /// Fineman, Gibbons and Shun 2012, here by location).
 class CollapsePass {

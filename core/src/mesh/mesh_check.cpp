@@ -13,7 +13,7 @@
 namespace octurn {
 namespace {
 
-constexpr double base_thickness_mm = 0.1;  // what the simplifier may leave of a flat base
+constexpr double base_thickness_mm = 0.1;  // unevenness of a flat base after simplification
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
 std::uint64_t mixed(std::uint64_t bits) {

@@ -19,7 +19,7 @@ Aabb bounds_of(const MeshTriangle& triangle, std::span<const std::array<float, 3
 }
 
 /// Whether two triangles lie in the star-shaped fan of a vertex that they share. Without branches,
-/// as most pairs that are asked about are neighbours.
+/// as most tested pairs are neighbours.
 bool share_star_shaped_fan(const MeshTriangle& a, const MeshTriangle& b,
                            std::span<const char> is_star_shaped) {
   int any = 0;

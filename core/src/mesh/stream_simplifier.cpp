@@ -85,8 +85,8 @@ IndexedMesh StreamSimplifier::with_all_quadrics() const {
   return copy;
 }
 
-/// Simplifies the window so that it does not intersect itself. What was added does not, so that
-/// locking ever more vertices ends.
+/// Simplifies the window so that it does not intersect itself. The added pieces do not intersect
+/// themselves, so that locking more and more vertices terminates.
 void StreamSimplifier::simplify() {
   for (float reach = first_reach_mm;;) {
     IndexedMesh simplified = with_all_quadrics();
@@ -117,7 +117,8 @@ bool StreamSimplifier::lock_near(const std::vector<Aabb>& boxes, float reach) {
   return is_any_new;
 }
 
-/// Emits the triangles that lie below `end` as a whole, and removes what the rest does not need.
+/// Emits the triangles that lie entirely below `end`, and removes those that no other triangle can
+/// meet.
 void StreamSimplifier::flush_below(float end) {
   std::vector<MeshTriangle>& triangles = mesh_.triangles;
   const auto lies_below = [&](float z) {
@@ -135,7 +136,7 @@ void StreamSimplifier::flush_below(float end) {
       limits_.min_z = std::min(limits_.min_z, mesh_.vertices[corner].position[2]);
     }
   });
-  // What was emitted and lies higher stays as an obstacle.
+  // Emitted triangles that reach higher stay as obstacles.
   const auto obstacles_end = std::remove_if(triangles.begin(), rest, lies_below(limits_.min_z));
   flushed_ = static_cast<std::size_t>(obstacles_end - triangles.begin());
   triangles.erase(obstacles_end, rest);

@@ -18,7 +18,7 @@ enum class Reach : char {
   beyond,
 };
 
-/// Tells one thread which vertices of its strip it may collapse while other threads work on theirs.
+/// The vertices of a strip that its thread may collapse while other threads work on theirs.
 class StripReach {
  public:
   /// @param triangles  as the collapses change them

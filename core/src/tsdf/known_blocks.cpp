@@ -23,7 +23,7 @@ struct RunningMean {
   }
 };
 
-/// What is known of blocks.
+/// The observations and platforms from which blocks are classified.
 struct Knowledge {
   const CompactTsdf& tsdf;
   int base_layer = 0;

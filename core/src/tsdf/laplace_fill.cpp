@@ -64,9 +64,9 @@ void wait_for(const Progress& progress, int layers, const std::stop_token& stop)
   }
 }
 
-/// Gauss-Seidel sweeps, each forwards and then backwards. Each thread has some rows of every layer,
-/// and relaxes them as soon as the thread whose rows precede them in the sweep has done its own of
-/// that layer: so each value is relaxed between the same ones as by one thread.
+/// Gauss-Seidel sweeps, each forwards and then backwards. Each thread has some rows of every layer.
+/// It relaxes them as soon as the thread whose rows precede them in the sweep has finished that
+/// layer, so that neighbours are relaxed in the same order as by one thread.
 void gauss_seidel_sweeps(PartialGrid& grid, const std::stop_token& stop, ThreadTeam& team) {
   const Index3& size = grid.size;
   const int threads = std::clamp(size.y / min_rows, 1, team.size());

@@ -64,15 +64,15 @@ bool share_face(CubeEdge a, CubeEdge b) {
   return (faces(a) & faces(b)) != 0;
 }
 
-/// Cuts a loop into triangles by chords of which none lies in a face; false if there is no such
-/// way.
+/// Triangulates a loop by chords of which none lies in a face. @return false if there are none such
 bool triangulate_loop(const Loop& loop, CubeSurface& surface) {
   if (loop.size() == 3) {
     surface.triangles[surface.count++] = {loop[0], loop[1], loop[2]};
     return true;
   }
   const std::size_t had = surface.count;
-  // The triangle on the side from the last to the first, then what is left on its two sides.
+  // Chooses the triangle on the side from the last point to the first, then triangulates the loops
+  // on its two other sides.
   const auto is_side_or_free = [&](std::size_t a, std::size_t b) {
     return b - a == 1 || b - a == loop.size() - 1 || !share_face(loop[a], loop[b]);
   };

@@ -29,7 +29,8 @@ constexpr std::size_t unlimited_facets_bytes = 128 * mebibyte;
 constexpr double usual_side = 0.1;  // metres
 constexpr double bricks_by_slope = 1.5;
 
-/// The snapshots of the threads are freed before the surface is made, whose window takes no more.
+/// The fixed memory of program and threads. The threads' snapshots are freed before the surface is
+/// made, and its window takes no more than they did.
 std::size_t fixed_overhead(const ReconstructOptions& options) {
   static_assert(surface_bytes <= thread_bytes);
   return options.program_memory + static_cast<std::size_t>(options.threads) * thread_bytes;
@@ -89,7 +90,7 @@ void expect_memory(const ReconstructOptions& options) {
 
 MemoryNeed expected_memory(const ReconstructOptions& options) {
   ReconstructOptions alone = options;
-  alone.threads = 1;  // others take what is left
+  alone.threads = 1;  // further threads use the memory that is left
   return {.bytes = usual_bytes(alone), .fitting_leaf_size = fitting_leaf(alone, usual_bytes)};
 }
 

@@ -29,7 +29,7 @@ std::size_t mask_bytes(const HoleFilledSdf& sdf);
 void expect_room(const ReconstructOptions& options, std::size_t bytes);
 
 /// Maximum bytes of the facets of a counted surface, kept so that they need not be made again.
-/// @param taken  bytes that this surface takes beside those that every one takes
+/// @param taken  bytes of this surface, besides the fixed memory of any surface
 std::size_t facets_budget(const ReconstructOptions& options, std::size_t taken);
 
 /// @throws Error "memory-limit"

@@ -25,7 +25,7 @@ constexpr float end_margin = 0.05F;
 struct SampleSum {
   int near = 0;  // observed, or right behind an observed surface
   int free = 0;
-  float distance = 0;  // of those near one, ticks
+  float distance = 0;  // sum over the near voxels, ticks
 
   float mean(int voxels) const {
     if (4 * near >= voxels && near >= free) {

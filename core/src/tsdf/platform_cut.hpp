@@ -20,7 +20,7 @@ class PlatformCut {
            step_[1] * static_cast<float>(voxel.y) + step_[2] * static_cast<float>(voxel.z);
   }
 
-  /// The smallest and the largest of those heights in the half-open box of voxels from `low` on.
+  /// The minimum and maximum height in the half-open box of voxels from `low` on.
   std::pair<float, float> heights(const Index3& low, const Index3& size) const;
 
   /// The voxel right above a lower one, at that height in ticks.
@@ -29,7 +29,7 @@ class PlatformCut {
  private:
   std::array<float, 3> step_ = {};  // ticks for a voxel along each axis
   float offset_ = 0;                // of the voxel (0, 0, 0)
-  float square_ = 1;                // of the steps
+  float square_ = 1;                // squared length of the steps
 };
 
 }  // namespace octurn

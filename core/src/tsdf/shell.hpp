@@ -31,7 +31,8 @@ inline constexpr int shell_thickness_voxels = 2;
 /// The grid of a tile, in the frame in which it is the root cube.
 VoxelGrid make_shell_grid(const ReconstructOptions& options);
 
-/// The shell in a brick of a TSDF. @return whether any voxel is inside, or next to one that may be
+/// Makes the shell in a brick of a TSDF.
+/// @return whether any voxel is inside, or next to one that may be
 bool make_shell(const CompactBrick& from, ShellBrick& shell);
 
 /// Metres: depth at which a whole window of readings has the weight 1, for a hand-held sensor in a

@@ -29,7 +29,8 @@ inline BrickLayers all_layers(const Octree& octree) {
 ///
 /// @param layers   the slab, layers of bricks
 /// @param threads  number of threads that make facets
-/// @param sink     called by one thread at a time; millimetres; what it throws ends the call
+/// @param sink     called by one thread at a time; millimetres; an exception that it throws ends
+/// the call
 void marching_tetrahedra(const Octree& octree, const BrickLayers& layers, int threads,
                          const FacetSink& sink);
 

@@ -38,7 +38,7 @@ constexpr double max_position_sigma = 0.0006;  // metres
 constexpr double worthwhile_sigma = 0.05;
 constexpr double max_direction_sigma_deg = 0.1;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
-// The median residual may grow by so much: the solver minimises weighted squares instead.
+// The median residual may grow by this factor: the solver minimises weighted squares instead.
 constexpr double may_worsen = 1.02;
 constexpr double max_shift = 0.040;  // metres
 constexpr double max_tilt_deg = 6;
@@ -148,7 +148,7 @@ void add_focal_length(CalibrationReport& report, const std::optional<FocalLength
   }
 }
 
-/// Solves the axis, and looks for faults that a new pose does not cure.
+/// Solves the axis, and detects faults that a new pose does not cure.
 std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
                                   const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
                                   int threads) {

@@ -21,7 +21,7 @@ constexpr double min_explained = 0.85;  // above the 0.75 that a step explains o
 
 /// Measurements of each stop: a tilt's two components times the lever, and a height.
 constexpr Index rows_of_stop = 3;
-constexpr Index background_columns = 5;  // a mean, and a tilt that goes round
+constexpr Index background_columns = 5;  // a mean, and a tilt that turns with the platform
 
 struct Fit {
   VectorXd values;

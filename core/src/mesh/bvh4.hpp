@@ -84,7 +84,7 @@ class Bvh4 {
   using NodePair = std::array<std::size_t, 2>;
   using NodePairs = std::vector<NodePair>;
 
-  /// The highest level that has enough nodes for so many threads.
+  /// The highest level that has enough nodes for the threads.
   std::size_t split_level(int threads) const {
     std::size_t level = levels_.size() - 1;
     while (threads > 1 && level > 0 &&

@@ -7,7 +7,7 @@
 
 namespace octurn {
 
-/// A sort key, and the index of what it belongs to.
+/// A sort key, and the index of its item.
 struct KeyIndex {
   std::uint32_t key;
   std::uint32_t index;

@@ -11,7 +11,7 @@ namespace octurn {
 
 /// The memory of tiles, for the memory limit.
 
-/// The memory of a tile with so many occupied bricks, bytes.
+/// The memory of a tile with this number of occupied bricks, bytes.
 std::size_t tile_bytes(const ReconstructOptions& options, std::uint64_t bricks);
 
 /// The number of threads that fit in the memory limit while tiles are planned.

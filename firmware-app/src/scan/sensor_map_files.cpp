@@ -12,7 +12,7 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t max_map_bytes = 16U << 20U;
-constexpr int block = 8;  // pixels to a side: a pattern's waves are some 50 long
+constexpr int block = 8;  // pixels per side: the error pattern has a wavelength of about 50
 
 constexpr std::string_view allowed =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";

@@ -7,13 +7,14 @@
 
 namespace octurn {
 
-/// What `octurn calibrate --wall --json` prints. Unevenness is in steps of a Kinect's disparity.
+/// JSON that `octurn calibrate --wall --json` prints. Distances from a plane are in steps of a
+/// Kinect's disparity.
 nlohmann::json to_json(const SensorMapReport& report);
 
-/// A map as `GET calibration` has it, without its picture.
+/// JSON of a map for `GET calibration`, without its picture.
 nlohmann::json to_json(const SensorMapSummary& map);
 
-/// The picture of a map: `errors` in steps of disparity.
+/// JSON of a map's picture: `errors` in steps of a Kinect's disparity.
 nlohmann::json to_picture(const SensorMapSummary& map);
 
 }  // namespace octurn

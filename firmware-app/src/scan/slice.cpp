@@ -5,12 +5,12 @@
 namespace octurn {
 namespace {
 
-// The part of space that a slice shows, metres: what stands on a platform.
+// Bounds of a slice, metres: the space above the platform.
 constexpr double half_thickness = 0.001;
 constexpr double radius = 0.17;
 constexpr double bottom = -0.02;
 constexpr double top = 0.4;
-constexpr std::size_t max_points = 3000;  // what a picture of some hundred pixels shows
+constexpr std::size_t max_points = 3000;  // enough for a picture of some hundred pixels
 
 }  // namespace
 

@@ -5,13 +5,14 @@
 
 namespace octurn {
 
-/// What all stops saw within 1 mm of the object's plane y = 0: metres, x and z.
+/// Cross-section of the object: all stops' points within 1 mm of the plane y = 0 of its frame, x
+/// and z, metres.
 using Slice = std::vector<Eigen::Vector2d>;
 
-/// Adds a point if it lies there. @param point  metres, object's frame
+/// Adds a point if it lies in the slice. @param point  metres, object's frame
 void add_to_slice(Slice& slice, const Eigen::Vector3d& point);
 
-/// Every so many of its points that a picture is full.
+/// Returns every n-th point, at most 3000: enough for a picture.
 Slice thinned(const Slice& slice);
 
 }  // namespace octurn

@@ -13,7 +13,7 @@
 namespace octurn {
 namespace {
 
-// What `squeue` is asked for. The folder comes last, as it may have any letter in it.
+// Output format of `squeue`. The folder is the last field, as it may contain the separator.
 constexpr const char* listed = "%i|%T|%r|%Z";
 constexpr std::size_t listed_fields = 4;
 
@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 10> ended{
 constexpr std::array<std::string_view, 6> begun{"COMPLETING", "RUNNING",   "SIGNALING",
                                                 "STAGE_OUT",  "SUSPENDED", "STOPPED"};
 
-/// A word of Slurm's, and what it means.
+/// A reason code of Slurm's, and its explanation.
 struct Meaning {
   std::string_view word;
   const char* text;
@@ -67,7 +67,7 @@ bool is_among(std::string_view word, const auto& words) {
   return std::ranges::find(words, word) != words.end();
 }
 
-/// The last line that says something.
+/// Returns the last line that is not empty.
 std::string last_line(const std::string& text) {
   std::string last;
   std::istringstream lines(text);

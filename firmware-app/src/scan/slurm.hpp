@@ -16,21 +16,21 @@ inline constexpr const char* build_job_name = "octurn-build";
 /// A job as squeue lists it.
 struct SlurmJob {
   std::string id = {};
-  std::string state = {};             ///< a word of Slurm's, such as "PENDING"
-  std::string reason = {};            ///< why it waits or failed, a word of Slurm's; "None"
-  std::filesystem::path folder = {};  ///< its working directory
+  std::string state = {};             ///< Slurm's job state, such as "PENDING"
+  std::string reason = {};            ///< Slurm's reason for waiting or failing, or "None"
+  std::filesystem::path folder = {};  ///< working directory
 
   bool has_begun() const;
   bool has_ended() const;
 };
 
-/// A job to come.
+/// A job to submit.
 struct SlurmRequest {
   std::filesystem::path script = {};
   std::vector<std::string> arguments = {};
-  std::filesystem::path folder = {};  ///< its working directory, which gets its output
+  std::filesystem::path folder = {};  ///< working directory, where Slurm writes its output
   int processors = 1;
-  std::size_t memory_bytes = 0;  ///< 0: as much as Slurm gives by default
+  std::size_t memory_bytes = 0;  ///< 0: Slurm's default
 };
 
 /// Slurm's programs, by their names in PATH or their paths.
@@ -39,26 +39,26 @@ struct Slurm {
   std::string squeue = "squeue";
   std::string scancel = "scancel";
 
-  /// @throws Error "bad-settings"  that names a program which cannot be run
+  /// Checks that the programs can be run. @throws Error "bad-settings"  that names one that cannot
   void expect_programs() const;
 
-  /// @return the job's id
-  /// @throws Error "interrupted"  with Slurm's words, if it takes no such job; Stopped
+  /// Submits a job. @return its id
+  /// @throws Error "interrupted"  with Slurm's message, if it rejects the job; Stopped
   std::string submit(const SlurmRequest& request, const std::stop_token& stop) const;
 
-  /// The jobs of this user that build models. Slurm forgets a job some minutes after its end.
+  /// Lists this user's jobs that build models. Slurm forgets a job some minutes after its end.
   /// @throws Error "interrupted"  if Slurm does not answer; Stopped
   std::vector<SlurmJob> list(const std::stop_token& stop) const;
 
-  /// Has a job end, which takes a moment; one that has ended stays as it is.
+  /// Asks Slurm to cancel a job, which takes a moment. Has no effect on a job that has ended.
   /// @throws Error "interrupted"  if Slurm does not answer; Stopped
   void cancel(const std::string& id, const std::stop_token& stop) const;
 };
 
-/// Why a job waits, for people.
+/// Explains why a job waits, for people.
 std::string describe_wait(const SlurmJob& job);
 
-/// Why a job that has ended left no model, as far as Slurm knows.
+/// Explains by Slurm's state why an ended job left no model.
 Failure describe_end(const SlurmJob& job);
 
 }  // namespace octurn

@@ -21,7 +21,7 @@ bool is_same(const BuildRun& a, const BuildRun& b) {
   return a.scan == b.scan && a.number == b.number;
 }
 
-/// Whether nobody could tell them apart.
+/// Whether two runs look the same to clients.
 bool looks_same(const BuildRun& a, const BuildRun& b) {
   return a.state == b.state && a.phase == b.phase && a.snapshots_done == b.snapshots_done &&
          a.cluster_job->id == b.cluster_job->id && a.cluster_job->detail == b.cluster_job->detail;
@@ -44,7 +44,7 @@ void SlurmBuilds::find_again() {
         continue;
       }
       if (!fs::exists(builds / name / task_file, unknown)) {
-        fs::remove(builds / name, unknown);  // if it is empty: the power went before its task came
+        fs::remove(builds / name, unknown);  // only if empty: a power cut came before its task
         continue;
       }
       try {
@@ -138,13 +138,13 @@ void SlurmBuilds::work(const std::stop_token& stop) {
   }
 }
 
-/// Tells of a run. One that has left its model is told by that.
+/// Publishes a run. A finished run is removed: its build in the store replaces it.
 void SlurmBuilds::publish(const BuildRun& run) {
   const auto now = runs_.get();
   const auto old =
       std::ranges::find_if(*now, [&](const BuildRun& other) { return is_same(run, other); });
   if (old != now->end() && looks_same(*old, run)) {
-    return;  // who watches is not woken
+    return;  // does not wake watchers
   }
   runs_.update([&](std::vector<BuildRun>& runs) {
     const auto held =

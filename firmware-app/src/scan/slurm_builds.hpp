@@ -18,52 +18,51 @@
 
 namespace octurn {
 
-/// How builds become jobs of Slurm.
+/// Options of builds by Slurm.
 struct SlurmOptions {
   Slurm slurm = {};
-  std::string octurn = "octurn";  ///< the program, as the machines of the cluster find it
-  std::chrono::milliseconds interval{2000};  ///< between two looks at the jobs
-  /// With the files of a job that has ended, which come late from other machines.
+  std::string octurn = "octurn";             ///< path of the program on the cluster's machines
+  std::chrono::milliseconds interval{2000};  ///< between two polls
+  /// Maximum wait for the files of an ended job, which come late from other machines.
   std::chrono::milliseconds patience{60'000};
 };
 
-/// The builds that Slurm makes. Each is a job that runs `octurn build` in the folder that its build
-/// will have, on a disk that all machines share. A folder tells all of its job, so that a process
-/// that starts later finds it, whatever has happened meanwhile: it has
+/// Builds by Slurm. Each is a job that runs `octurn build` in the build's folder, on a disk that
+/// all machines share. The folder holds the complete state of the job, so that a process that
+/// starts later finds it again:
 ///
-///     task.json      what is to be built
-///     job            the number that Slurm gave it
-///     progress.json  how far it is
-///     Scan.stl, build.json, or failure.json   what became of it
+///     task.json      the input of the build
+///     job            Slurm's number of the job
+///     progress.json  the job's progress
+///     Scan.stl, build.json, or failure.json   the result
 ///
-/// Any thread may call anything. A thread of its own looks at the jobs, and asks Slurm for them.
+/// Thread-safe. Its own thread submits jobs, and polls them.
 class SlurmBuilds {
  public:
   /// Finds the builds of an earlier process again. @throws Error  if a store cannot be read
   SlurmBuilds(SlurmOptions options, ScanStore& store, const Limits& limits);
 
-  /// Has Slurm build a model, as soon as it can. What Slurm says against it becomes the failure of
-  /// the run.
-  /// @param run  whose number is given by this
+  /// Queues a build for submission. If Slurm rejects it, that becomes the failure of the run.
+  /// @param run  gets its number here
   /// @throws Error "no-such-scan", "no-model", "disk-full", "data-failed"
   BuildRun add(BuildRun run, bool becomes_model);
 
-  /// Asks a build to end. @return false if it has ended already, or is none of these
+  /// Asks a build to stop. @return false if it has ended already, or is not one of these
   bool cancel(std::string_view id, int number);
 
-  /// Those that wait or go on, and of each scan the last one that left no model.
+  /// Builds that wait or run, and each scan's last one that left no model.
   const Latest<std::vector<BuildRun>>& runs() const { return runs_; }
 
-  /// Whether one of a scan waits or goes on.
+  /// Whether a build of a scan waits or runs.
   bool is_building(std::string_view id) const;
 
  private:
   struct Entry {
     BuildTask task = {};
     std::filesystem::path folder = {};
-    std::string job = {};  ///< its number; empty before it has one
+    std::string job = {};  ///< Slurm's number; empty before the submission
     bool is_unwanted = false;
-    std::optional<std::chrono::steady_clock::time_point> gone = {};  ///< since then, without files
+    std::optional<std::chrono::steady_clock::time_point> gone = {};  ///< ended then, without files
 
     BuildRun& run() { return task.run; }
   };
@@ -84,10 +83,10 @@ class SlurmBuilds {
   ScanStore& store_;
   Limits limits_;
   Latest<std::vector<BuildRun>> runs_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable_any changed_;
   std::vector<Entry> entries_;  // that have not ended
-  bool is_news_ = false;        // there is something to do before the next look
+  bool is_news_ = false;        // wakes the thread before the next poll
   std::jthread thread_;         // the last member, so that it ends first
 };
 

@@ -1,4 +1,4 @@
-// How the builds that Slurm makes come to their ends.
+// SlurmBuilds: polling jobs, and collecting their results.
 
 #include <algorithm>
 #include <utility>
@@ -13,11 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a job runs. Program and folder are its arguments, so no letter in them means anything.
+/// The job's script. Program and folder are arguments, so that no character of theirs needs
+/// quoting.
 constexpr std::string_view script = "#!/bin/sh\nexec \"$1\" build \"$2\"\n";
 
-/// The job of that number; without one, the job that goes on in that folder: after an earlier build
-/// there may be others, which have ended.
+/// Returns the job of that number. Without a number, returns the job of that folder that has not
+/// ended: ended jobs may be those of earlier builds. Null if there is none.
 const SlurmJob* find_job(const std::vector<SlurmJob>& jobs, const std::string& id,
                          const fs::path& folder) {
   const auto found = std::ranges::find_if(jobs, [&](const SlurmJob& job) {
@@ -26,7 +27,7 @@ const SlurmJob* find_job(const std::vector<SlurmJob>& jobs, const std::string& i
   return found == jobs.end() ? nullptr : &*found;
 }
 
-/// Without the number, its folder tells whose job it is.
+/// Stores a job's number. A failure is only logged, because a job can be found by its folder, too.
 void keep_number(const fs::path& folder, const std::string& job) {
   try {
     write_file(folder / job_file, job);
@@ -53,7 +54,7 @@ void SlurmBuilds::look(const std::stop_token& stop) {
     jobs = options_.slurm.list(stop);
   } catch (const Error& error) {
     trouble = error.what();
-    if (now.front().run().cluster_job->detail != trouble) {  // once, not at each look
+    if (now.front().run().cluster_job->detail != trouble) {  // once, not at each poll
       log::warning("slurm", trouble);
     }
   }
@@ -71,7 +72,7 @@ void SlurmBuilds::look(const std::stop_token& stop) {
     if (entry.run().has_ended()) {
       entries_.erase(held);
     } else {
-      entry.is_unwanted = held->is_unwanted;  // which may have become so meanwhile
+      entry.is_unwanted = held->is_unwanted;  // may have been set meanwhile
       *held = entry;
     }
   }
@@ -112,7 +113,7 @@ void SlurmBuilds::look_at(Entry& entry, const std::vector<SlurmJob>& jobs,
   }
 }
 
-/// Gives up on a job that Slurm has ended well, or has forgotten, once its files do not come.
+/// Gives up on a job that completed, or that Slurm has forgotten, if its files do not come in time.
 void SlurmBuilds::end_without_files(Entry& entry, const SlurmJob& job) {
   const auto now = std::chrono::steady_clock::now();
   if (!entry.gone) {
@@ -141,7 +142,7 @@ void SlurmBuilds::submit(Entry& entry, const std::stop_token& stop) {
   }
 }
 
-/// Makes a build of a folder in which one is.
+/// Adds the finished build of a job's folder to the store.
 void SlurmBuilds::keep(Entry& entry) {
   const BuildRun& run = entry.run();
   try {
@@ -152,7 +153,7 @@ void SlurmBuilds::keep(Entry& entry) {
   }
   try {
     choose(entry.task);
-  } catch (...) {  // the model is there all the same, and a person can choose it
+  } catch (...) {  // the model exists, and a person can choose it
     log::error("slurm", describe(run) + ": " + current_failure().detail);
   }
   clear_work_files(entry.folder);

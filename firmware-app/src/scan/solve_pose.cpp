@@ -11,7 +11,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double max_sigmas = 3;  // that a turn of the same rig may be off
+constexpr double max_sigmas = 3;  // maximum distance of a turn from the mean
 
 /// A small motion: its rotation vector and its shift.
 struct Motion {

@@ -10,31 +10,31 @@
 
 namespace octurn {
 
-/// Solves the pose of a stored scan from its own snapshots, from the told pose on.
+/// Solves the sensor's pose of a stored scan from its snapshots, starting at the configured pose.
 ///
 /// @param snapshots  of the scan
-/// @throws Error "scan-malformed"  if the scan is of several turns; and what a read throws
+/// @throws Error "scan-malformed"  if the scan is of several turns; and errors of `snapshots`
 CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads);
 
-/// What scan.json keeps of an accepted report.
+/// Returns the part of an accepted report that scan.json stores.
 SolvedPose to_solved_pose(const CalibrationReport& report);
 
-/// What solving a stored scan tells.
+/// Result of solving a stored scan.
 struct ScanSolution {
   CalibrationReport report = {};
-  SolvedPose solved = {};      ///< what scan.json keeps of it if it is accepted
-  bool replaces_told = false;  ///< accepted, and more than what the rig was told already
+  SolvedPose solved = {};      ///< the part that scan.json stores, if accepted
+  bool replaces_told = false;  ///< accepted, and differs from the configured pose or planes
 };
 
-/// Solves the pose of a stored scan as above; of one by laser line, the lasers' planes as well.
-/// @param snapshots  of the scan; not read of one by laser line
+/// Solves the pose of a stored scan as above; of a laser-line scan, the lasers' planes as well.
+/// @param snapshots  of the scan; not read for a laser-line scan
 /// @throws Stopped  and as above
 ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
                         const SnapshotSource& snapshots, int threads, const std::stop_token& stop);
 
-/// The pose of a rig that stood still from turn to turn: the mean of what each turn solved,
-/// weighted by its sigmas.
-/// @return none, if there are fewer than two, or one is more than three sigmas off the mean
+/// Returns the pose of a rig that did not move between turns: the mean of the turns' solved poses,
+/// weighted by 1 / sigma^2.
+/// @return nullopt for fewer than two turns, or if one is more than three sigmas off the mean
 std::optional<Eigen::Isometry3d> shared_pose(std::span<const SolvedPose> turns);
 
 }  // namespace octurn

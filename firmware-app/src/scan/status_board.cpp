@@ -88,7 +88,7 @@ void StatusBoard::label(std::string_view id, const LabelChange& change) {
 
 void StatusBoard::set_sensor_ready(const std::string& name) {
   if (const auto now = status_.get(); is_ready(now->sensor) && now->sensor.name == name) {
-    return;  // called for every frame: the status stays the object that it is
+    return;  // called for every frame: publishes changes only
   }
   status_.update([&](Status& status) {
     if (!is_ready(status.sensor)) {
@@ -113,8 +113,8 @@ void StatusBoard::set_turntable_ready() {
 
 void StatusBoard::set_sensor_failed(const Failure& failure) {
   status_.update([&](Status& status) { set_failed(status.sensor, failure); });
-  camera_frame_.set(
-      {.time = Clock::now(), .failure = failure});  // who waits for it finds the status
+  // Published after the status, which is read by those who wait for a frame.
+  camera_frame_.set({.time = Clock::now(), .failure = failure});
 }
 
 void StatusBoard::set_turntable_failed(const Failure& failure) {

@@ -37,7 +37,7 @@ void write_png(const std::filesystem::path& file, const std::vector<std::byte>& 
 bool is_grey(const Rgb& pixel) { return pixel[0] == pixel[1] && pixel[1] == pixel[2]; }
 
 std::vector<std::byte> encode(const Picture& picture, const std::vector<Rgb>& colours) {
-  return std::ranges::all_of(colours, is_grey)  // or there are none
+  return std::ranges::all_of(colours, is_grey)  // also without colours
              ? encode_grey_png(picture.width, picture.height, picture.samples)
              : encode_rgb_png(
                    {.width = picture.width, .height = picture.height, .pixels = colours});
@@ -101,7 +101,7 @@ bool has_colours(const std::filesystem::path& folder, const Scan& scan) {
   if (!scan.laser || scan.shots.empty()) {
     return false;
   }
-  // A PNG begins with its signature and its header, where the kind of its pixels is the 26th byte.
+  // The 26th byte of a PNG, in its IHDR chunk, is the colour type.
   constexpr std::size_t kind_at = 25;
   constexpr char truecolour = 2;
   std::array<char, kind_at + 1> head{};

@@ -10,12 +10,12 @@
 
 namespace octurn {
 
-/// Whether two scans were made with one kind of sensor, or with one camera and its lasers, whose
-/// planes may have been measured in between.
+/// Whether two scans have equal intrinsics, and, by laser line, the same distortion and names of
+/// lasers. The lasers' planes may differ: they may have been measured in between.
 bool have_same_sensor(const Scan& one, const Scan& other);
 
-/// The snapshots of a scan folder, where one that is damaged counts as one without a reading: the
-/// others still make a model.
+/// Returns the snapshots of a scan folder. A damaged one is logged, and replaced by one without
+/// readings: the others still make a model.
 ///
 /// @param stop  once requested, a read throws `Stopped`
 SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Scan& scan,
@@ -26,8 +26,8 @@ SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Sca
 void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
                     const DepthFrame& frame);
 
-/// The files of the pictures of a stop, of a scan by laser line: "snapshots/000-dark.png", then one
-/// of each laser by its name.
+/// Returns the files of a stop's pictures in a laser-line scan: "snapshots/000-dark.png", then one
+/// for each laser by its name.
 std::vector<std::string> picture_files(int stop, const LaserCamera& camera);
 
 /// Writes one of these pictures, as RGB if any of its pixels has a colour.
@@ -36,12 +36,12 @@ std::vector<std::string> picture_files(int stop, const LaserCamera& camera);
 void write_picture(const std::filesystem::path& file, const Picture& picture,
                    const std::vector<Rgb>& colours);
 
-/// Writes the scan.json that names the pictures of one more stop, all of which are written.
+/// Appends a stop whose pictures are all written, and writes the scan.json that names them.
 /// @throws Error  as above
 void store_stop(const std::filesystem::path& folder, Scan& scan, double angle);
 
-/// Whether the first dark picture of a scan by laser line has colours; false where it cannot be
-/// read, and of other scans.
+/// Whether the first dark picture of a laser-line scan has colours; false if it cannot be read, and
+/// for other scans.
 bool has_colours(const std::filesystem::path& folder, const Scan& scan);
 
 }  // namespace octurn

@@ -13,10 +13,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Frames older than the end of a move that a sensor may still hand out: a second of them, at 30 Hz.
+// Maximum number of buffered frames from before the end of a move: a second of them, at 30 Hz.
 constexpr int max_stale_frames = 30;
 
-/// Takes frames whose exposure ended after `settled`; none if stopped first.
+/// Reads frames whose exposure ended after `settled`; returns none if stopped first.
 std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_point settled,
                                     const std::stop_token& stop, const ScanObserver& observer) {
   std::vector<DepthFrame> frames;
@@ -53,7 +53,7 @@ bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanOb
 std::optional<DepthFrame> take_depth_image(Rig& rig, const Stop& at, const ScanSettings& settings,
                                            const std::stop_token& stop,
                                            const ScanObserver& observer) {
-  rig.turntable();  // whose faults are told before the sensor's
+  rig.turntable();  // opened first: its errors come before the sensor's
   DepthSensor& sensor = rig.sensor();
   if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;

@@ -15,15 +15,15 @@ struct Stop {
   std::int64_t position = 0;  ///< of the turntable, microsteps
 };
 
-/// Turns to a stop, and tells it.
+/// Turns the platform to a stop, and reports progress and angle to the observer.
 /// @return false if stopped first
 /// @throws Error "turntable-..."
 bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanObserver& observer);
 
-/// Turns to a stop and takes its depth image: the filter's of the frames that the settings ask for,
-/// each exposed after the platform stood still.
+/// Turns the platform to a stop and takes its depth image: frames, exposed after the platform stood
+/// still, are merged by the settings' filter.
 ///
-/// @return nothing if stopped first
+/// @return nullopt if stopped first
 /// @throws Error "sensor-...", "turntable-..."
 std::optional<DepthFrame> take_depth_image(Rig& rig, const Stop& at, const ScanSettings& settings,
                                            const std::stop_token& stop,

@@ -23,8 +23,8 @@ TimeLeft::TimeLeft(const ScanEstimate& before, int stops, int snapshots, Clock::
   tell_turn(now);
 }
 
-/// The first snapshot is no measure: the platform may stand there already, and the sensor may have
-/// to be opened.
+/// Ignores the time of the first snapshot: the platform may stand there already, and the sensor may
+/// have to be opened.
 void TimeLeft::count(int snapshots, Clock::time_point now) {
   if (snapshots <= snapshots_) {
     return;

@@ -13,37 +13,38 @@ struct ExpectedEnd {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point end = {};
-  std::chrono::duration<double> later = {};  ///< what comes after the step that goes on
+  std::chrono::duration<double> later = {};  ///< time of the steps after the current one
 
-  /// Time left at `now`: at least `later`, however long the step that goes on takes.
+  /// Returns the remaining time at `now`: at least `later`, even if the current step takes longer
+  /// than expected.
   std::chrono::duration<double> left(Clock::time_point now) const;
 };
 
-/// Estimates the time until a scan ends: stops left times the median of the last five, and the
-/// model's time as earlier scans had it. Updated at stops only, and never by more than a tenth
-/// upwards, as people do not believe a number that jumps.
+/// Estimates the remaining time of a scan: the remaining stops times the median time of the last
+/// five, plus the model's time from earlier scans. Updates, at stops and while the model is made,
+/// raise the estimate by at most a tenth, because people do not believe a number that jumps.
 class TimeLeft {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param before     what was expected of the scan
-  /// @param stops      of the whole turn
-  /// @param snapshots  that are there already, of a scan that goes on
+  /// @param before     estimate from earlier scans
+  /// @param stops      number of stops of the whole turn
+  /// @param snapshots  number already taken, of a resumed scan
   TimeLeft(const ScanEstimate& before, int stops, int snapshots, Clock::time_point now);
 
-  /// So many snapshots are stored now.
+  /// Reports the number of stored snapshots.
   void count(int snapshots, Clock::time_point now);
 
-  /// The last snapshot is stored, the model is begun.
+  /// Reports that the last snapshot is stored, and the model is begun.
   void begin_model(Clock::time_point now);
 
-  /// A part of the model's snapshots is read again, 0 to 1, since its time.
+  /// Reports the fraction of the snapshots, 0 to 1, that were added again since `since`.
   void count_model(double share, Clock::time_point since, Clock::time_point now);
 
-  /// A device failed: how long that lasts, nobody knows.
+  /// Drops the estimate: a device failed, for an unknown time.
   void lose_pace();
 
-  /// Nothing where nobody knows.
+  /// The estimate; nullopt if it is unknown.
   const std::optional<ExpectedEnd>& expected() const { return expected_; }
 
  private:
@@ -54,8 +55,8 @@ class TimeLeft {
   ScanEstimate before_;
   int stops_;
   int snapshots_;
-  std::optional<Clock::time_point> last_ = {};  // when the last snapshot of a known pace was stored
-  std::vector<std::chrono::duration<double>> pace_ = {};  // of the last stops
+  std::optional<Clock::time_point> last_ = {};  // of the last snapshot; nullopt: after a failure
+  std::vector<std::chrono::duration<double>> pace_ = {};  // times of the last stops
   std::optional<ExpectedEnd> expected_ = {};
 };
 

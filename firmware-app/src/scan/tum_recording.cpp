@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_list_bytes = std::size_t{64} << 20U;
 constexpr double max_gap = 0.1;            // seconds between the poses around an image
-constexpr double same_time = 1e-6;         // seconds: times have six digits
-constexpr double quaternion_slack = 0.01;  // of its length from one: files have four digits
+constexpr double same_time = 1e-6;         // seconds: times have six decimals
+constexpr double quaternion_slack = 0.01;  // of its length from one: files have four decimals
 
 struct TimedPose {
   double time = 0;  // seconds
@@ -36,7 +36,7 @@ std::optional<double> number_of(std::string_view text) {
   return number;
 }
 
-/// A list's lines as words, without comments; it names the line in errors.
+/// Splits the lines of a list into words, without comments. Errors name the line.
 class ListFile {
  public:
   ListFile(const fs::path& folder, const char* name) : name_(name) {
@@ -48,7 +48,7 @@ class ListFile {
     text_ = std::istringstream(*std::move(text));
   }
 
-  /// The next line that is no comment and not empty.
+  /// Returns the words of the next line that is neither a comment nor empty; nullopt at the end.
   std::optional<std::vector<std::string>> next() {
     for (std::string line; std::getline(text_, line);) {
       ++line_;
@@ -115,7 +115,8 @@ std::vector<TimedPose> read_poses(const fs::path& folder) {
   return poses;
 }
 
-/// The pose at a time, if the poses around it tell one.
+/// Returns the pose at a time, or interpolated between the poses around it; nullopt if these are
+/// too far apart.
 std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, double time) {
   const auto after = std::ranges::lower_bound(poses, time - same_time, {}, &TimedPose::time);
   if (after == poses.end()) {

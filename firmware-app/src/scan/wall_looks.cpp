@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double mean_unit = 5e-5;     // metres: 16 bits of it reach 3.2 m
-constexpr double same_distance = 0.1;  // metres: walls closer together tell no change with distance
+constexpr double same_distance = 0.1;  // metres: closer walls show no change with distance
 constexpr double first_wall = 0.65;    // metres, of a simulated sensor: where an object stands
 constexpr double second_wall = 0.9;
 
@@ -31,7 +31,7 @@ struct Look {
   double distance = 0;  // metres
 };
 
-/// The looks that are kept of a sensor, the nearest first.
+/// Finds the stored wall views of a sensor, nearest first.
 std::vector<Look> find_looks(const fs::path& folder) {
   std::vector<Look> looks;
   for (const std::string& name : names_in(folder)) {
@@ -46,7 +46,7 @@ std::vector<Look> find_looks(const fs::path& folder) {
   return looks;
 }
 
-/// The mean of a look's frames, in `mean_unit`.
+/// Returns the mean of a view's frames, in `mean_unit`.
 DepthFrame to_mean_frame(const WallView& view) {
   const Intrinsics& lens = view.intrinsics();
   DepthFrame mean{.width = lens.width, .height = lens.height};

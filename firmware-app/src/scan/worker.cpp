@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry_interval = 2s;     // between looks at a sensor that failed
+constexpr auto retry_interval = 2s;     // between attempts to read a failed sensor
 constexpr auto open_without_use = 30s;  // then the sensor is closed: its light and traffic end
 constexpr auto idle_beat = 5s;          // between heartbeats while there is nothing to do
 
@@ -20,7 +20,7 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
     : rig_(rig), speed_(rig.speed), told_laser_(rig.laser), limits_(limits), ports_(ports) {}
 
 void Worker::work() {
-  look_for_turntable();  // so that the status tells what is there
+  look_for_turntable();  // so that the status shows it
   Clock::time_point last_use = Clock::now();
   for (;;) {
     ports_.heartbeat.beat();
@@ -37,7 +37,7 @@ void Worker::work() {
   }
 }
 
-/// Nothing that is thrown leaves it: the worker outlives whatever it is asked to do.
+/// Executes a command, and catches its exceptions, so that the worker outlives them.
 void Worker::carry_out(CommandSlot::Taken& taken) {
   try {
     std::visit([&](auto& command) { carry_out(command, taken.stop); }, taken.command);
@@ -49,7 +49,7 @@ void Worker::carry_out(CommandSlot::Taken& taken) {
 
 void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop) {
   if (!turntable_is_ready_) {
-    look_for_turntable();  // whose lines may have become free since
+    look_for_turntable();  // its GPIO lines may be free now
   }
   try {
     look(stop.get_token());

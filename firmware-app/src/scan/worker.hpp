@@ -17,20 +17,20 @@
 
 namespace octurn {
 
-/// What the worker shares with the rest of a Scanner.
+/// References to the parts of a Scanner that the worker shares.
 struct WorkerPorts {
   ScanStore& store;
   StatusBoard& board;
   CommandSlot& slot;
   Heartbeat& heartbeat;
   CalibrationStore& calibration;
-  std::mutex& scans;  ///< held while the state of a scan changes that others may change, too
+  std::mutex& scans;  ///< serialises changes of scans' states, with the Scanner
 };
 
 struct MergedTurns;
 
-/// Carries out the commands of a slot, one after the other, on the thread that calls `work`. Owns
-/// sensor, turntable and the running scan; all that others learn of them is what it publishes.
+/// Executes the commands of a slot, one after the other, on the thread that calls `work`. Owns
+/// sensor, turntable and the running scan; other threads see only what it publishes.
 class Worker {
  public:
   Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports);
@@ -85,16 +85,16 @@ class Worker {
   void finish();
 
   Rig rig_;
-  double speed_;                             // of a simulated rig, relative to life
-  std::optional<LaserSettings> told_laser_;  // as the settings have it; none: no camera with lasers
+  double speed_;                             // of a simulated rig, relative to real time
+  std::optional<LaserSettings> told_laser_;  // from the settings; nullopt: a depth sensor
   Limits limits_;
   WorkerPorts ports_;
   Job job_ = {};  // the scan that runs
   Clock::time_point job_started_ = {};
-  std::optional<TimeLeft> time_left_ = {};            // of it
-  std::optional<Clock::time_point> gives_up_ = {};    // at a stop where a device fails
-  Clock::time_point rebuild_started_ = {};            // of its model
-  std::optional<Clock::time_point> introduced_ = {};  // when the sensor opened that is on the board
+  std::optional<TimeLeft> time_left_ = {};            // of the running scan
+  std::optional<Clock::time_point> gives_up_ = {};    // when retries of a failing stop end
+  Clock::time_point rebuild_started_ = {};            // when its model was begun again
+  std::optional<Clock::time_point> introduced_ = {};  // opening time of the published sensor
   bool turntable_is_ready_ = false;
 };
 

@@ -1,4 +1,4 @@
-// How the worker builds a model from a stored scan.
+// Worker: builds of stored scans.
 
 #include <utility>
 
@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-/// Builds the model into a folder of its own, and keeps it.
+/// Builds the model into the build's folder, and adds it to the store.
 /// @return false if stopped first
 bool build_and_keep(const BuildCommand& command, const Limits& limits, const WorkerPorts& ports,
                     const std::stop_token& stop) {
@@ -60,7 +60,7 @@ void Worker::carry_out(BuildCommand& command, const std::stop_source& stop) {
     run.failure = displaced_by_scan();
   }
   log::info("scanner", name + " " + std::string(to_string(run.state)));
-  ports_.slot.finish();  // before anybody is told
+  ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_build_run(run);
 }
 

@@ -1,4 +1,4 @@
-// How the worker measures the rig: the sensor's pose with a turn, its own error with a wall.
+// Worker: measurements of the rig: the sensor's pose by a turn, its depth error by a wall.
 
 #include <array>
 #include <utility>
@@ -14,7 +14,7 @@
 namespace octurn {
 namespace {
 
-/// What is stored of an accepted turn. What was told and is confirmed stays bit for bit.
+/// Makes the record of an accepted turn. A confirmed pose is the configured one, bit for bit.
 PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig& rig) {
   if (rig.laser() == nullptr) {
     PoseRecord record = to_record(report.calibration, PoseOrigin::turn, settings.depth_scale);
@@ -31,7 +31,7 @@ PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig
   return record;
 }
 
-/// The map of the sensor's own error; nothing if this machine has none of its size.
+/// Reads the map of the sensor's depth error; nullopt if this machine has none of the frames' size.
 /// @throws Error "scan-malformed"
 std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std::string_view serial,
                                          const Intrinsics& lens) {
@@ -44,7 +44,7 @@ std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std:
                                                               : std::nullopt;
 }
 
-/// For the log.
+/// Describes the outcome of a run, for the log.
 std::string outcome_of(const CalibrationRun& run) {
   const std::string reason = run.report ? run.report->calibration.reason
                              : run.wall ? run.wall->reason
@@ -74,10 +74,11 @@ void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
             [&](CalibrationRun& run) { flatten(run, stop.get_token()); });
 }
 
-/// @param measurement  tells its outcome in `run`
+/// Runs a measurement, and publishes its state.
+/// @param measurement  sets its outcome in `run`
 void Worker::carry_out(CalibrationRun run,
                        const std::function<void(CalibrationRun& run)>& measurement) {
-  ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
+  ports_.board.drop_waiting_build(displaced_by_scan());  // this command replaced it
   constexpr std::array<const char*, 3> names{"turn", "wall", "lens"};
   const std::string name = names[static_cast<std::size_t>(run.kind)];
   log::info("calibration", name + " started, of=" + std::to_string(run.stops));
@@ -92,11 +93,11 @@ void Worker::carry_out(CalibrationRun run,
   }
   release_rig();
   const std::lock_guard lock(ports_.scans);
-  ports_.slot.finish();  // before anybody is told
+  ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_calibration_run(std::move(run));
 }
 
-/// Takes the turn, and puts what it tells into force if that is accepted.
+/// Measures a turn, and puts the solved pose into force if it is accepted.
 void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
                      const std::stop_token& stop) {
   const ScanObserver observer{
@@ -123,7 +124,7 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
       report.calibration.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
-/// @return nothing if stopped first
+/// @return nullopt if stopped first
 std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
                                                const std::stop_token& stop,
                                                const ScanObserver& observer) {
@@ -138,9 +139,9 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
                               observer);
 }
 
-/// Looks at a wall, and keeps the sensor's map if it is accepted.
+/// Reads frames of a wall, and stores the sensor's map if it is accepted.
 void Worker::flatten(CalibrationRun& run, const std::stop_token& stop) {
-  ports_.heartbeat.suspend();  // a look lasts for as long as its frames
+  ports_.heartbeat.suspend();  // this takes as long as its frames
   DepthSensor& sensor = rig_.sensor();
   const std::string serial = sensor.serial();
   if (serial.empty()) {
@@ -169,7 +170,7 @@ void Worker::flatten(CalibrationRun& run, const std::stop_token& stop) {
   introduce_sensor();
 }
 
-/// Tells the board whose sensor is open, and which map it has; nothing if it has done so already.
+/// Publishes the open sensor's serial number, map and lens, once after each opening.
 void Worker::introduce_sensor() {
   const auto since = rig_.sensor_since();
   if (!since || since == introduced_) {

@@ -1,4 +1,4 @@
-// How the worker has a camera's lens found, and which lens and pose a scan is taken with.
+// Worker: calibration of a camera's lens, and the lens and pose that a scan uses.
 
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -9,7 +9,7 @@
 namespace octurn {
 namespace {
 
-/// Has a board waved before a simulated camera, as long as it lives.
+/// Shows a moving board to a simulated camera during its lifetime.
 class ShownBoard {
  public:
   explicit ShownBoard(Camera& camera) : camera_(camera) { camera_.show_board(true); }
@@ -38,13 +38,13 @@ void Worker::carry_out(LensCommand& /*command*/, const std::stop_source& stop) {
             [&](CalibrationRun& run) { find_lens(run, stop.get_token()); });
 }
 
-/// Takes views of a board until they are enough, or somebody says so, and solves the lens.
+/// Takes views of a board until they suffice or `Scanner::solve_lens` is called; solves the lens.
 void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   if (!told_laser_) {
     throw Error(ErrorCode::sensor_other, "this rig has a depth sensor, and no camera with lasers",
                 "A board is for the lens of such a camera.");
   }
-  ports_.heartbeat.suspend();  // it lasts for as long as somebody holds a board
+  ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
   Camera& camera = rig_.camera();
   if (camera.serial().empty()) {
     throw Error(ErrorCode::sensor_other,
@@ -80,8 +80,8 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
-/// Tells the rig the lens of its camera. A scan that goes on, or that another one is joined to,
-/// keeps the lens that it was begun with, as long as its camera is there.
+/// Sets the lens of the rig's camera. A resumed scan keeps the lens that it was begun with, and a
+/// scan of another pose uses that of the first scan, if the camera is the same.
 void Worker::use_lens() {
   if (!told_laser_) {
     return;
@@ -104,8 +104,8 @@ void Worker::use_lens() {
   rig_.use_lens(lens);
 }
 
-/// Tells the rig where its camera and its lasers stand: as a turn or a scan with this camera found,
-/// else as the settings say.
+/// Sets the pose of the rig's camera and the planes of its lasers: those in force for this camera,
+/// else the settings'.
 void Worker::use_pose() {
   if (!told_laser_) {
     return;

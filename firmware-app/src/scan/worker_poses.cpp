@@ -1,4 +1,4 @@
-// How the worker joins a scan of another pose with the scan that it belongs to.
+// Worker: merging a scan of another pose with the first scan of its object.
 
 #include <utility>
 
@@ -27,7 +27,8 @@ PoseRegistration to_pose_registration(const Registration& registration) {
 
 }  // namespace
 
-/// Before a scan of another pose: turns are registered that one kind of sensor has taken.
+/// Checks that a scan of another pose uses the first scan's sensor: only turns of one sensor are
+/// registered.
 void Worker::expect_same_sensor() {
   if (!job_.pose_of) {
     return;
@@ -47,7 +48,7 @@ void Worker::show_join(Phase phase) {
 }
 
 /// Registers a scan of another pose with the turns before it, and builds one model of all of them,
-/// which becomes the first scan's. If they do not fit, that one stays as it is.
+/// which becomes the first scan's. If the registration is refused, that model stays.
 /// @return false if stopped first
 bool Worker::join(const std::stop_token& stop) try {
   if (!job_.pose_of) {

@@ -1,4 +1,4 @@
-// How the worker runs a scan.
+// Worker: running a scan.
 
 #include <algorithm>
 #include <span>
@@ -18,12 +18,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// How long a scan repeats the stop at which a device failed, once at least. A Kinect that is
-// plugged in again is back after 2 to 3 s.
+// How long a scan retries the stop at which a device failed, at least once. A Kinect that is
+// plugged in again is ready after 2 to 3 s.
 constexpr auto attempts_time = 30s;
 constexpr auto attempt_interval = 2s;
 
-// A preview is sent after every snapshot: at most 3 MB, and of leaves as fine as a screen shows.
+// A preview is sent after every snapshot: at most 3 MB, with leaves as fine as a screen shows.
 constexpr double preview_leaf_size = 0.002;  // metres
 constexpr std::uint64_t max_preview_facets = 60'000;
 
@@ -33,7 +33,7 @@ std::string to_text(const ScanSolution& solution) {
                                     : "the told pose stays: " + solution.report.reason;
 }
 
-/// Which way the object lies in a scan: 0 in one of its own, then 1, 2, ... in those of other
+/// Returns the index of the object's pose in a scan: 0 in a first scan, 1, 2, ... in those of other
 /// poses.
 std::size_t to_pose_index(const ScanStore& store, const Job& job) {
   if (!job.pose_of) {
@@ -62,7 +62,7 @@ MeshPreview make_preview(const std::string& id, const Reconstructor& reconstruct
 }  // namespace
 
 void Worker::run(Job job, const std::stop_token& stop) {
-  ports_.board.drop_waiting_build(displaced_by_scan());  // whose place this took
+  ports_.board.drop_waiting_build(displaced_by_scan());  // this command replaced it
   job_ = std::move(job);
   job_started_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(job_.times.elapsed);
   time_left_.emplace(estimate_scan(earlier_scans(ports_.store), job_.settings),
@@ -89,12 +89,12 @@ void Worker::run(Job job, const std::stop_token& stop) {
   finish();
 }
 
-/// Tries a stop again where a device fails, until that has lasted too long: then the scan pauses.
+/// Retries a stop at which a device fails; the scan pauses after `attempts_time`.
 void Worker::run_until_it_ends(const std::stop_token& stop) {
   const auto at_speed = [&](std::chrono::duration<double> life) {
     return std::chrono::duration_cast<Clock::duration>(life / speed_);
   };
-  int failed_at = -1;  // snapshots that were done then
+  int failed_at = -1;  // number of snapshots at the last new failure
   while (!stop.stop_requested()) {
     attempt(stop);
     if (job_.state != JobState::paused) {
@@ -119,7 +119,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
   job_.failure.reset();
 }
 
-/// Runs a scan from where it stands to its end, or until something fails. A device that failed is
+/// Runs a scan from its next stop to its end, or until something fails. A device that failed is
 /// closed, so that the next use opens it again.
 void Worker::attempt(const std::stop_token& stop) {
   try {
@@ -189,7 +189,7 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
 
 void Worker::show_job() { ports_.board.set_job(job_, time_left_->expected(), gives_up_); }
 
-/// So that a scan that is cut off here goes on with the time that it has taken so far.
+/// Saves the job, so that a scan that is interrupted here resumes with its elapsed time.
 void Worker::save_progress() {
   job_.times.elapsed = Clock::now() - job_started_;
   try {
@@ -199,7 +199,7 @@ void Worker::save_progress() {
   }
 }
 
-/// What every phase of a scan or a turn begins with.
+/// Updates heartbeat and turntable at the start of a phase of a scan or a turn.
 void Worker::begin(Phase phase) {
   if (phase == Phase::capturing) {  // the platform has turned
     turntable_is_ready_ = true;
@@ -210,8 +210,8 @@ void Worker::begin(Phase phase) {
   }
 }
 
-/// Saved at once, for a scan that is killed while its model is built again. The next scan is told
-/// the pose that this one has solved, and the planes of its lasers.
+/// Saves the result at once, in case the program is killed while the model is built again. The next
+/// scan starts with the pose and the planes that this one solved.
 void Worker::keep_calibration(const ScanSolution& solution) {
   const CalibrationReport& report = solution.report;
   job_.calibration = to_scan_calibration(report);
@@ -265,7 +265,8 @@ void Worker::release_rig() {
   save_platform_angle(rig_.platform_angle_deg());
 }
 
-/// So that a scan that this program does not see the end of can be resumed by its next run.
+/// Saves the angle, so that a scan that this process does not finish can be resumed by the next
+/// one.
 void Worker::save_platform_angle(double angle_deg) {
   try {
     ports_.store.save_platform_angle_deg(angle_deg);
@@ -287,11 +288,11 @@ void Worker::finish() {
   try {
     ports_.store.save(job_);
   } catch (...) {
-    // What is on the disk says that it still runs: so it is interrupted, now as after a start.
+    // The job.json on the disk says that the scan runs: it is interrupted, as after a restart.
     log::error("scanner", current_failure().detail);
     job_ = ports_.store.interrupt(job_.id);
   }
-  ports_.slot.finish();  // before anybody is told
+  ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_job(job_);
 }
 

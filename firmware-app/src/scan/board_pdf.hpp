@@ -9,7 +9,7 @@ namespace octurn {
 /// The paper that a board is printed on.
 enum class Paper { a4, letter };
 
-/// The paper named "a4" or "letter"; nothing for other names.
+/// The paper named "a4" or "letter"; nullopt for other names.
 std::optional<Paper> paper_named(std::string_view name);
 
 /// The side of a printed board's squares, millimetres.

@@ -46,7 +46,7 @@ class ProgressFile {
 
  private:
   fs::path file_;
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::optional<Phase> phase_ = {};
   Clock::time_point written_ = {};
 };

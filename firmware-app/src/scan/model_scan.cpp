@@ -8,7 +8,7 @@ namespace octurn {
 
 Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings) {
   Scan scan = read_scan(folder);
-  if (!scan.poses.empty()) {  // registered with their sensor poses and clip boxes
+  if (!scan.poses.empty()) {  // these keep their own sensor poses and clip boxes
     if (settings.platform_from_sensor) {
       throw Error(ErrorCode::bad_settings, "a model of several poses has the pose that they solved",
                   "Leave platform_from_sensor out.");

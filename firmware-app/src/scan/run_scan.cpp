@@ -223,7 +223,7 @@ void Run::add(Add add_to) {
   added_ = done();
   adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
     add_to(*reconstruction_);
-    if (done < settings_.snapshots && !stop_.stop_requested()) {  // the model itself is next
+    if (done < settings_.snapshots && !stop_.stop_requested()) {  // else the model follows
       observer_.on_added(*reconstruction_, done);
     }
   });

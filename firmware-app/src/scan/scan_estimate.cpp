@@ -18,7 +18,7 @@ constexpr Seconds unmeasured_model{1.0};
 constexpr Seconds unmeasured_snapshot{0.1};
 constexpr double unmeasured_leaf = 0.001;              // metres
 constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's depth image, as PNG
-constexpr double unmeasured_model_bytes = 1'500'000;   // with those leaves
+constexpr double unmeasured_model_bytes = 1'500'000;   // with leaves of that size
 
 int frames_of(const ScanSettings& settings) {
   return settings.filter == DepthFilter::basic ? 1 : settings.frames;

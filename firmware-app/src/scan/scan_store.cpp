@@ -152,7 +152,7 @@ ScanTime ScanStore::next_time() const {
 
 void ScanStore::save(const Job& job) {
   const std::lock_guard writing(writing_);
-  get(job.id);  // or there is no such scan
+  get(job.id);  // throws if there is no such scan
   write_job(job);
   const std::lock_guard lock(mutex_);
   Job& held = jobs_.find(job.id)->second;
@@ -221,7 +221,7 @@ std::optional<Job> ScanStore::newest_finished() const {
 
 void ScanStore::label(std::string_view id, const LabelChange& change) {
   const std::lock_guard writing(writing_);
-  get(id);  // or there is no such scan
+  get(id);  // throws if there is no such scan
   write_label(folder(id), change);
   const std::lock_guard lock(mutex_);
   ScanLabel& label = jobs_.find(id)->second.label;
@@ -234,8 +234,8 @@ void ScanStore::remove(std::string_view id) {
   std::error_code error;
   {
     const std::lock_guard writing(writing_);
-    get(id);  // or there is no such scan
-    // Renamed first: a scan that is half removed is never seen.
+    get(id);  // throws if there is no such scan
+    // Renamed first, so that a partly removed scan is never listed.
     fs::rename(folder(id), leaving, error);
     if (error && error != std::errc::no_such_file_or_directory) {
       throw_data_error(folder(id), "remove", error);

@@ -31,12 +31,12 @@ fs::path leaving_in(const fs::path& builds, int number) {
 }  // namespace
 
 int ScanStore::next_build(std::string_view id) const {
-  get(id);  // or there is no such scan
+  get(id);  // throws if there is no such scan
   return next_build_number(folder(id));
 }
 
 fs::path ScanStore::begin_build(std::string_view id, int number) {
-  get(id);  // or there is no such scan
+  get(id);  // throws if there is no such scan
   make_room(max_model_bytes(), "a model");
   const fs::path beginning = unfinished_in(folder(id) / builds_folder, number);
   std::error_code error;
@@ -49,7 +49,7 @@ fs::path ScanStore::begin_build(std::string_view id, int number) {
 
 void ScanStore::add_build(std::string_view id, const Build& build) {
   const std::lock_guard writing(writing_);
-  get(id);  // or there is no such scan
+  get(id);  // throws if there is no such scan
   const fs::path builds = folder(id) / builds_folder;
   const fs::path beginning = unfinished_in(builds, build.number);
   const fs::path kept = builds / std::to_string(build.number);
@@ -131,7 +131,7 @@ void ScanStore::remove_build(std::string_view id, int number) {
     if (find_build(job, number) == nullptr) {
       throw_no_such_build(number);
     }
-    // Renamed first: a build that is half removed is never seen.
+    // Renamed first, so that a partly removed build is never listed.
     fs::rename(builds / std::to_string(number), leaving, error);
     if (error && error != std::errc::no_such_file_or_directory) {
       throw_data_error(builds / std::to_string(number), "remove", error);

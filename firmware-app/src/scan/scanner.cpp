@@ -221,7 +221,7 @@ bool Scanner::begin(CalibrationRun run, Command command) {
   }
   board_.set_calibration_run(run);
   if (!slot_.offer_scan(std::move(command))) {
-    run.state = CalibrationRun::State::cancelled;  // this is ending
+    run.state = CalibrationRun::State::cancelled;  // the scanner is ending
     board_.set_calibration_run(std::move(run));
     return false;
   }

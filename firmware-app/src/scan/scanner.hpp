@@ -42,7 +42,7 @@ namespace octurn {
 ///                       +-- ModelPipe: the bytes of a model <----------------------+  the scan
 class Scanner {
  public:
-  /// @param slurm  builds the models of stored scans; nothing: the worker builds them
+  /// @param slurm  builds the models of stored scans; nullopt: the worker builds them
   Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
           const std::optional<SlurmOptions>& slurm = {});
   ~Scanner();

@@ -49,7 +49,7 @@ std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
   run.created = utc_text(std::chrono::system_clock::now(), rfc3339);
   board_.set_build_run(run);
   if (!slot_.offer_build(command)) {
-    board_.drop_waiting_build({});  // this is ending
+    board_.drop_waiting_build({});  // the scanner is ending
     return std::nullopt;
   }
   return run;

@@ -52,7 +52,7 @@ std::vector<Job> Scanner::poses(std::string_view id) const {
 }
 
 Job Scanner::find_pose(std::string_view id, int number) const {
-  store_.get(id);  // or there is no such scan
+  store_.get(id);  // throws if there is no such scan
   const std::vector<Job> poses = store_.poses(id);
   if (number < 1 || number > static_cast<int>(poses.size())) {
     throw Error(ErrorCode::not_found, "this scan has no other pose " + std::to_string(number),

@@ -37,7 +37,7 @@ void write_png(const std::filesystem::path& file, const std::vector<std::byte>& 
 bool is_grey(const Rgb& pixel) { return pixel[0] == pixel[1] && pixel[1] == pixel[2]; }
 
 std::vector<std::byte> encode(const Picture& picture, const std::vector<Rgb>& colours) {
-  return std::ranges::all_of(colours, is_grey)  // also without colours
+  return std::ranges::all_of(colours, is_grey)  // or there are no colours
              ? encode_grey_png(picture.width, picture.height, picture.samples)
              : encode_rgb_png(
                    {.width = picture.width, .height = picture.height, .pixels = colours});

@@ -18,8 +18,8 @@ constexpr int max_side = 8192;        // pixels, as in scan folders
 constexpr double max_focal = 100000;  // pixels
 constexpr double max_distortion = 100;
 constexpr double max_place = 10;              // metres
-constexpr double normal_tolerance = 1e-3;     // of decimals that a person typed
-constexpr double max_source_distance = 0.05;  // metres of a laser from its plane
+constexpr double normal_tolerance = 1e-3;     // rounding of typed decimals
+constexpr double max_source_distance = 0.05;  // metres from a laser's source to its plane
 
 /// Lines that a Raspberry Pi pulls up while it boots.
 constexpr std::array<std::string_view, 9> pulled_up = {"GPIO0", "GPIO1", "GPIO2", "GPIO3", "GPIO4",

@@ -29,11 +29,11 @@ struct LaserLine {
   Laser laser = {};
 };
 
-/// A camera with line lasers, as the rig is told. The defaults are the drawing's.
+/// Settings of a camera with line lasers. The defaults are those of the rig's drawing.
 struct LaserSettings {
   Intrinsics lens = {
       .width = 820, .height = 616, .fx = 682.4, .fy = 682.4, .cx = 409.5, .cy = 307.5};
-  double k1 = 0;  ///< distortion, as of `LaserCamera`
+  double k1 = 0;  ///< radial distortion, as in `LaserCamera`
   double k2 = 0;
   std::chrono::milliseconds exposure{10};  ///< of each picture
   double gain = 1;
@@ -42,25 +42,26 @@ struct LaserSettings {
   LaserLine right = {.gpio_line = "GPIO24", .laser = nominal_laser("right", std::numbers::pi / 6)};
 };
 
-/// The lasers that the rig has. What follows is in their order.
+/// Returns the lasers with a GPIO line. The two functions below keep their order.
 std::vector<LaserLine> lines_of(const LaserSettings& settings);
 LaserCamera laser_camera(const LaserSettings& settings);
 std::vector<std::string> gpio_lines_of(const LaserSettings& settings);
 
 struct Field;
 
-/// Every setting of the rig, with its key, unit and range.
+/// Returns every setting of the rig, with its key, unit and range.
 std::vector<Field> fields(LaserSettings& settings);
-/// Those of one of its lasers.
+/// Returns the settings of one laser.
 std::vector<Field> fields(LaserLine& line);
 
-/// Refuses a rig without a laser, and GPIO lines that two signals share or that are high while a
+/// Refuses a rig without a laser, and GPIO lines that both lasers share or that are high while a
 /// Raspberry Pi boots.
 /// @param keys  the JSON of the settings, for messages
 void check_laser_settings(JsonObject& keys, const LaserSettings& settings);
 
-/// Defaults of a scan by laser line: lines 1.8 degrees apart, one picture each, and the space that
-/// camera and lasers of the drawing reach, from 2 mm above the platform, whose noise is less.
+/// Sets the defaults of a laser-line scan: lines 1.8 degrees apart, one picture each, and the space
+/// that the drawing's camera and lasers cover. It begins 2 mm above the platform, as the noise is
+/// lower than a depth sensor's.
 void use_laser_capture_defaults(ScanSettings& settings);
 
 }  // namespace octurn

@@ -1,4 +1,4 @@
-// What shuts somebody out of a page.
+// Accessibility checks of a page: axe-core, contrast in both colour schemes and in forced colours, overflow.
 
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
@@ -8,7 +8,7 @@ import {openPage, picture} from './browser.js';
 
 const axe = await readFile(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-/** What axe finds wrong, one line each. @param {Object} [options]  of axe, such as the rules that count */
+/** The violations that axe finds, one line each. @param {Object} [options]  of axe, such as the rules to run */
 export async function complaints(page, options = {}) {
   if (!await page.evaluate(() => 'axe' in globalThis)) {
     await page.evaluate(axe);
@@ -17,7 +17,7 @@ export async function complaints(page, options = {}) {
   return violations.map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target).join(', ')}`);
 }
 
-/** Which texts are too faint in the other colour scheme. @param {'light' | 'dark'} usual  what is taken again */
+/** The texts with too little contrast in the other colour scheme. @param {'light' | 'dark'} usual  the scheme to restore */
 async function faintInOther(page, usual) {
   await page.emulateMedia({colorScheme: usual === 'dark' ? 'light' : 'dark'});
   const found = await complaints(page, {runOnly: ['color-contrast']});
@@ -26,8 +26,8 @@ async function faintInOther(page, usual) {
 }
 
 /**
- * Which texts are too faint where Windows paints its own colours over. Axe takes the colours of before: it looks at
- * -webkit-text-fill-color, which is not told as it is painted.
+ * The texts with too little contrast in forced colours (Windows High Contrast). Axe would take the page's own colours: it
+ * reads -webkit-text-fill-color, whose computed value is not the forced colour.
  */
 const faintInForcedColours = (page) => page.evaluate(() => {
   const numbers = (colour) => colour.match(/[\d.]+/g).map(Number);
@@ -49,13 +49,13 @@ const faintInForcedColours = (page) => page.evaluate(() => {
       .map(({element, ink, paper}) => `${element.id || element.className || element.dataset.text || element.tagName}: ${ink} on ${paper}`);
 });
 
-/** What is wrong with the words of another language: they have the colours of the first. */
+/** The violations of a page in another language. Contrast is left out, as the colours are the first language's. */
 export const badWords = (page) => complaints(page, {rules: {'color-contrast': {enabled: false}}});
 
 /** By how much the page is wider than the screen, pixels. */
 export const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 
-/** All can be read where Windows paints its own colours over, and what is chosen be told. */
+/** In forced colours every text can be read, and the chosen option can be told from the others. */
 async function lookInForcedColours(page, name) {
   await page.emulateMedia({forcedColors: 'active'});
   assert.deepEqual(await faintInForcedColours(page), [], name);
@@ -67,15 +67,15 @@ async function lookInForcedColours(page, name) {
   await page.emulateMedia({forcedColors: 'none'});
 }
 
-/** The screens on which the page is looked at, and the colour scheme that each is set to. */
+/** The screens on which the page is tested, each with its colour scheme. */
 export const looks = /** @type {const} */ ([['phone', 'dark'], ['desktop', 'light']]);
 
 /**
- * Goes through states of the page on one screen: none may shut anybody out, in either colour scheme.
+ * Goes through states of the page on one screen and checks the accessibility of each in both colour schemes.
  *
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
- * @param {Record<string, (page: import('playwright-core').Page) => unknown>} states  each with how to get there
+ * @param {Record<string, (page: import('playwright-core').Page) => unknown>} states  functions that bring the page into them
  * @param {'phone' | 'desktop'} screen
  * @param {'light' | 'dark'} colorScheme
  */

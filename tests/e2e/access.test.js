@@ -1,4 +1,4 @@
-// The page for everyone: on a phone, with a keyboard, with a screen reader, in both colour schemes.
+// The accessibility of the page: on a phone, by keyboard, with a screen reader, in both colour schemes.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
@@ -9,7 +9,7 @@ import {ask, lifelike, scan, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
 
-/** The states of a page where all is well, each with how to get there. @param {any} finished  a scan that is */
+/** The states of a page without faults, as functions that bring the page into them. @param {any} finished  a finished scan */
 const statesOf = (scanner, finished) => ({
   form: (page) => page.getByText('All settings').click(),
   library: async (page) => {
@@ -49,7 +49,7 @@ const statesOf = (scanner, finished) => ({
   },
 });
 
-/** Starts a scan without touching the mouse. */
+/** Starts a scan by keyboard alone. */
 async function startByKeyboard(scanner, browser) {
   const {page} = await openPage(browser, 'about:blank');
   await page.addInitScript(() => localStorage.setItem('octurn-scan', '{"filter": "basic"}'));  // one picture a stop
@@ -75,7 +75,7 @@ async function startByKeyboard(scanner, browser) {
   await page.getByRole('status').filter({hasText: /^The model of .* is ready\./}).waitFor();
 }
 
-/** Looks at a scan on a phone as if its file had `bytes`. */
+/** Opens a scan on a phone as if its file had `bytes`. */
 async function lookAtLarge(scanner, browser, finished, bytes) {
   const {page} = await openPage(browser, 'about:blank', {screen: 'phone'});
   await page.route('**/api/v1/scans', async (route) => {

@@ -1,4 +1,4 @@
-// WiFi and updates, from the page to the files in which the appliance's root finds what it is asked for. The test is root.
+// WiFi and updates, from the page to the request files for the appliance's root services. The test plays those services.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -24,13 +24,13 @@ const pause = () => new Promise((done) => {
   setTimeout(done, 50);
 });
 
-/** An appliance: a scanner, and what root does there. It is as fast as life: faster it only draws more for its preview. */
+/** An appliance: a scanner, and its root services. It runs in real time, as a faster one would only draw more previews. */
 async function startAppliance(t) {
   const folder = await mkdtemp(join(tmpdir(), 'octurn-appliance-'));
   t.after(() => rm(folder, {recursive: true, force: true}));
   await mkdir(join(folder, 'requests'));
   const scanner = await startScanner(t, {rig: ['--simulate', '--appliance', folder]});
-  // The page lends its clock where the machine has none, as in a sandbox: whenever it likes, and nobody here takes it.
+  // The page sends its time (request "control") to a machine without a clock, as in a sandbox, at any moment. Nobody here takes it.
   const requests = async () => (await readdir(join(folder, 'requests'))).filter((name) => name !== 'control');
   return {
     ...scanner,
@@ -55,7 +55,7 @@ async function startAppliance(t) {
   };
 }
 
-/** A file of so many bytes to upload. A browser that is given its name, and not its bytes, has it at once. */
+/** A file of that size to upload. The browser gets its name instead of its bytes, which is faster. */
 async function bundle(appliance, bytes) {
   const file = join(appliance.data, 'octurn.update');
   const content = Buffer.alloc(bytes, 'octurn ');
@@ -63,14 +63,14 @@ async function bundle(appliance, bytes) {
   return {file, content};
 }
 
-/** Nobody is shut out of this state of the page, and it fits. */
+/** This state of the page is accessible, and it fits the screen. */
 async function look(page, name) {
   assert.deepEqual(await complaints(page), [], name);
   assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
   await picture(page, name);
 }
 
-/** What a reader of QR codes sees in the one that is shown, in the colours of the screen. */
+/** Decodes the QR code on the page from a screenshot. */
 async function readCode(page, wifi) {
   const folder = await mkdtemp(join(tmpdir(), 'octurn-code-'));
   const file = join(folder, 'code.png');
@@ -80,7 +80,7 @@ async function readCode(page, wifi) {
   return stdout;
 }
 
-/** Which network is chosen can be told where Windows paints its own colours over. */
+/** The chosen network can be told from the others in forced colours. */
 async function lookInForcedColours(page, wifi, screen) {
   await page.emulateMedia({forcedColors: 'active'});
   const outlines = await wifi.locator('.network').evaluateAll((labels) =>
@@ -191,7 +191,7 @@ async function installUpdate(appliance, browser, screen, colorScheme) {
   await page.context().close();
 }
 
-/** While a file is on its way it can be called back; a slow network is made for that. */
+/** An upload can be cancelled; the network is throttled so that there is time for it. */
 async function cancelUpdate(appliance, browser) {
   await appliance.answer('update', {slot: 'a', state: 'none'});
   const {page} = await openPage(browser, `${appliance.url}#scanner`);
@@ -211,7 +211,7 @@ async function cancelUpdate(appliance, browser) {
   await page.context().close();
 }
 
-/** A page of the version before is loaded again when the scanner has another one. */
+/** A page of an older version reloads when the scanner runs another one. */
 async function meetNewVersion(appliance, browser) {
   const {page} = await openPage(browser, `${appliance.url}#scanner`);
   await page.locator('#update-summary').filter({hasText: 'is in use'}).waitFor();
@@ -229,7 +229,7 @@ async function meetNewVersion(appliance, browser) {
 
 test('the appliance is updated, and joins a WiFi, by its page', async (t) => {
   const appliance = await startAppliance(t);
-  const browser = await openBrowser(t, {hasWebGl: false}); // no model is looked at
+  const browser = await openBrowser(t, {hasWebGl: false}); // no test views a model
   for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
     await t.test(`a WiFi is joined on a ${screen}`, () => joinWifi(appliance, browser, screen, colorScheme));
     await t.test(`an update is installed on a ${screen}`, () => installUpdate(appliance, browser, screen, colorScheme));

@@ -1,4 +1,4 @@
-// Updates and WiFi through the daemon, where the test is the appliance's root.
+// Updates and WiFi through the daemon. The test plays the appliance's root services.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr const char* wifi_path = "/api/v1/wifi";
 
-/// A daemon on an appliance of which root has made the folder.
+/// A daemon on an appliance whose folder root has created.
 class Appliances : public ::testing::Test {
  protected:
   fs::path answers() const { return folder_.path() / "appliance"; }
@@ -37,7 +37,7 @@ class Appliances : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// What is answered to a text after which nothing more can come.
+/// Sends a text, closes the sending side, and returns the response.
 Reply reply_to_all_of(const Daemon& daemon, const std::string& text) {
   const FileDescriptor socket = connected(daemon.port());
   send_text(socket, text);
@@ -45,7 +45,7 @@ Reply reply_to_all_of(const Daemon& daemon, const std::string& text) {
   return reply_from(receive_all(socket));
 }
 
-/// An upload that has begun, and stands still.
+/// An upload that has begun and stalls.
 FileDescriptor begun_upload(const Daemon& daemon, std::size_t bytes, const std::string& part) {
   FileDescriptor socket = connected(daemon.port());
   send_text(socket, head_of_upload(bytes) + part);
@@ -114,7 +114,7 @@ TEST_F(Appliances, KeepNothingOfAnUpdateThatIsCutShort) {
   EXPECT_EQ(parsed(reply)["code"], "cut-short");
   EXPECT_NE(parsed(reply)["detail"].get<std::string>().find("99999 of 100000"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(requests()));
-  begun_upload(scanner, 100'000, "lost");  // and gone
+  begun_upload(scanner, 100'000, "lost");  // closed at once
   while (parsed(scanner.get(update_path))["state"] != "none") {
     std::this_thread::yield();
   }

@@ -1,4 +1,4 @@
-// Debian's Chromium, driven without a screen.
+// Debian's Chromium, driven headless.
 
 import {mkdir} from 'node:fs/promises';
 import {join} from 'node:path';
@@ -26,7 +26,7 @@ export async function openBrowser(t, {hasWebGl = true} = {}) {
   return browser;
 }
 
-/** On a busy machine the simulated sensor has no frame in time: the daemon answers 503, and the page asks again. */
+/** On a busy machine the simulated sensor may have no frame in time: the daemon answers 503, and the page asks again. */
 const isLatePicture = (message) => message.location().url.includes('/api/v1/preview/') && message.text().includes('503');
 
 /**
@@ -35,8 +35,8 @@ const isLatePicture = (message) => message.location().url.includes('/api/v1/prev
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
  * @param {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark', locale?: string}} options
- * @returns {Promise<{page: import('playwright-core').Page, faults: string[]}>}  faults: what went wrong inside so
- *     far, errors on the console and requests to elsewhere among them
+ * @returns {Promise<{page: import('playwright-core').Page, faults: string[]}>}  faults: the errors so far, such as errors
+ *     on the console and requests to other hosts
  */
 export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light', locale = 'en-US'} = {}) {
   const context = await browser.newContext({...screens[screen], colorScheme, locale, reducedMotion: 'reduce'});
@@ -65,12 +65,12 @@ export async function goTo(page, place) {
   await link(place).click();
 }
 
-/** Unfolds what stands behind the presets. */
+/** Opens the settings behind the presets. */
 export const openSettings = (page) => page.locator('#all-settings').evaluate((details) => {
   details.open = true;
 });
 
-/** Sets the form so that a scan is quick. */
+/** Fills the form for a quick scan. */
 export async function chooseQuickScan(page, snapshots) {
   await openSettings(page);
   await page.getByLabel('Snapshots a turn', {exact: true}).fill(String(snapshots));
@@ -78,7 +78,7 @@ export async function chooseQuickScan(page, snapshots) {
   await page.getByLabel('Depth filter').selectOption('basic');
 }
 
-/** Keeps a picture of the page, if somebody wants them. */
+/** Stores a screenshot of the page, if the environment asks for screenshots. */
 export async function picture(page, name) {
   const where = process.env.OCTURN_PICTURES;
   if (where) {

@@ -1,4 +1,4 @@
-// A scan whose pose was wrong, made good from its own snapshots; and its other models.
+// A scan with a wrong pose, rebuilt with the pose solved from its own snapshots; and its other models.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
@@ -7,12 +7,12 @@ import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
-/** Where the simulated sensor stands: 0.62 m before the axis, 0.36 m up, 25 degrees down. */
+/** The simulated sensor's pose: 0.62 m in front of the axis, 0.36 m up, pitched down by 25 degrees. */
 const angle = 25 * Math.PI / 180;
 const nominal = [
   [1, 0, 0, 0], [0, -Math.sin(angle), Math.cos(angle), -0.62], [0, -Math.cos(angle), -Math.sin(angle), 0.36], [0, 0, 0, 1]];
 
-/** The same seen from 2 cm beside and 2 degrees off. */
+/** That pose, off by 2 cm and 2 degrees. */
 function wrongPose() {
   const tilt = 2 * Math.PI / 180;
   const [c, s] = [Math.cos(tilt), Math.sin(tilt)];
@@ -28,7 +28,7 @@ function wrongPose() {
 
 const askew = {snapshots: 24, leaf_size_mm: 1, filter: 'basic', calibrate: 'told', platform_from_sensor: wrongPose()};
 
-/** Everything about the models of a scan, on one screen. */
+/** Rebuilds a scan with a solved pose on the page, and uses its models, on one screen. */
 async function straighten(scanner, browser, screen, colorScheme) {
   const made = await scan(scanner, askew);
   assert.equal(made.model.quality.verdict, 'bad');
@@ -59,7 +59,7 @@ async function straighten(scanner, browser, screen, colorScheme) {
   return {page, faults, made, rows};
 }
 
-/** Builds again with the form. */
+/** Builds another model with the form. */
 async function buildAgain(scanner, {page, faults, made, rows}, screen) {
   await page.getByText('Build again', {exact: true}).click();
   const form = page.locator('#build-form');

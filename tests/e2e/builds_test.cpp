@@ -1,4 +1,4 @@
-// Models that are built again from a stored scan, by HTTP.
+// Further models of a stored scan, built over HTTP.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A scan that goes by a wrong pose.
+/// A scan with a wrong sensor pose.
 json askew_scan(const Daemon& daemon) {
   return daemon.wait_until_done(daemon.start(json{
       {"snapshots", 12},
@@ -52,7 +52,7 @@ json builds_of(const Daemon& daemon, const json& scan) {
   return parsed(daemon.get(path_to(scan) + "/builds"))["builds"];
 }
 
-/// A build that lasts.
+/// Settings of a build that takes long.
 const json fine{{"leaf_size_mm", 0.2}, {"method", "intersection"}};
 
 bool reads(const json& build) { return build["phase"] == "building" || has_ended(build); }
@@ -74,14 +74,14 @@ TEST(Builds, StraightenAScanThatWentByAWrongPose) {
   EXPECT_EQ(straight["settings"]["calibrate"], "auto");
   EXPECT_EQ(straight["settings"]["leaf_size_mm"], 1);
   EXPECT_EQ(straight["calibration"]["accepted"], true) << straight;
-  // Twelve stops of a sensor that was not flattened may lose the flag: that is told, and no more.
+  // Twelve stops of a sensor without a map may lose the flag. That is the only reason reported.
   for (const json& reason : straight["model"]["quality"]["reasons"]) {
     EXPECT_EQ(reason["code"], "part-missing") << straight;
   }
   const std::string model = daemon.get(straight["model"]["url"]).body;
   EXPECT_EQ(open_edges(model), 0);
 
-  // It is the scan's model now; what the scan made, and all that it has stored, is still there.
+  // The build is the scan's model now. The first model and all stored files are still there.
   const json now = parsed(daemon.get(path_to(scan)));
   EXPECT_EQ(now["build"], 1);
   EXPECT_EQ(now["model"]["quality"], straight["model"]["quality"]);
@@ -90,7 +90,7 @@ TEST(Builds, StraightenAScanThatWentByAWrongPose) {
   EXPECT_TRUE(daemon.get(path_to(scan) + "/builds/0/Scan.stl").body == askew);
   EXPECT_EQ(content_of(folder_of(folder, scan) / "scan.json"), taken);
 
-  // The command makes the same of the stored scan.
+  // The command gives the same model from the stored scan.
   Program again({octurn_program(), "reconstruct", folder_of(folder, scan), "-o", "-",
                  "--leaf-size-mm", "1", "--method", "solid"});
   EXPECT_EQ(again.wait(), 0) << again.errors();

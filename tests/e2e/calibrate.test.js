@@ -10,24 +10,24 @@ import {fromSide, planOf} from '../../web/plans.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
 
-// From where the simulated one stands: its axis by 2 cm, its direction by 2 degrees.
+// Off the simulated sensor's pose: its axis by 2 cm, its direction by 2 degrees.
 const crooked = {x_mm: 12, y_mm: -604, z_mm: 356, tilt_deg: 26.8, roll_deg: 0.9, yaw_deg: 0};
 
-// The built-in object as its drawing has it, millimetres: the flag's end, and the top of the aerial's knob.
+// Dimensions of the built-in object, millimetres: the flag's end, and the top of the aerial's knob.
 const flagEnd = 91;
 const knobTop = 155.5;
 
-// What the leaves of 1 mm, the sensor's noise and its own error of 1 mm leave unsure.
+// Millimetres: leaves of 1 mm, the sensor's noise, and its fixed error of 1 mm.
 const tolerance = 3;
 
-/** @returns {Promise<import('./scanner.js').Scanner>} on a rig that was told the crooked pose */
+/** @returns {Promise<import('./scanner.js').Scanner>} whose configured pose is the crooked one */
 async function startCrooked(t) {
   const scanner = await startScanner(t);
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: poseOf(crooked)});
   return scanner;
 }
 
-/** Of a model: the highest point within 8 mm of the aerial, and the farthest of the waved flag. @param {Buffer} stl */
+/** A model's highest point within 8 mm of the aerial, and the waved flag's farthest point. @param {Buffer} stl */
 function partsOf(stl) {
   let aerial = 0;
   for (let at = 84; at < stl.length; at += 50) {
@@ -79,7 +79,7 @@ test('with the pose checked by each scan even the first has flag and aerial', as
 
 const axisLine = (page) => page.locator('#overlay [data-line=axis]').getAttribute('d');
 
-/** Moves the sensor by a step, keeps that, and undoes it. */
+/** Moves the sensor by a step, saves the pose, and undoes it. */
 async function setByHand(scanner, browser) {
   const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
   await page.locator('#overlay [data-line=axis][d]').waitFor({state: 'attached'});
@@ -96,7 +96,7 @@ async function setByHand(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** Drags the top of the scanned space down, and keeps that. */
+/** Drags the top of the scanned space down, and saves it. */
 async function dragSpace(scanner, browser) {
   const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
   const top = page.getByLabel('Space upwards, to');
@@ -122,13 +122,13 @@ async function dragSpace(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** Drags the right side of the scanned space inwards in the live picture, and puts it back. */
+/** Drags the right side of the scanned space inwards in the live picture, and moves it back. */
 async function dragHandle(scanner, browser) {
   const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
   const right = page.getByLabel('Space to the right, to');
   const handle = page.locator('#overlay [data-side="3"]');
   await page.waitForFunction(() => document.querySelector('#space [data-clip="3"]')?.value === '140');
-  // While the page is still loading its parts, the handle moves away from below the pointer.
+  // While parts of the page are still loading, the layout may move the handle away from the pointer.
   for (let tries = 0; tries < 5 && await right.inputValue() === '140'; ++tries) {
     await handle.hover();
     const {x, y, width, height} = await handle.boundingBox();
@@ -143,7 +143,7 @@ async function dragHandle(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** One known length sets the scale, and a wrong one says why not. */
+/** One known length sets the scale; a wrong one is refused with its reason. */
 async function setScale(scanner, browser) {
   const {page} = await openPage(browser, `${scanner.url}#calibrate`);
   await page.getByLabel('Length on the model, mm').fill('100');
@@ -204,7 +204,7 @@ const slipped = {
 };
 const run = {kind: 'turn', state: 'running', phase: 'turning', stop: 7, stops: 24, report: null, error: null};
 
-/** Runs as the scanner tells them, and what the page then shows. @type {Record<string, [object | null, string]>} */
+/** Calibration runs as the API reports them, and a text that the page then shows. @type {Record<string, [object | null, string]>} */
 const runs = {
   idle: [null, 'Measure with a turn'],
   turning: [run, 'Stop 8 of 24'],
@@ -230,7 +230,7 @@ async function walk(scanner, browser, screen, colorScheme) {
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `calibrate-${name}-${screen}-${colorScheme}`);
   }
-  await page.unrouteAll({behavior: 'ignoreErrors'});  // an answer may be under way
+  await page.unrouteAll({behavior: 'ignoreErrors'});  // a request may be pending
   await page.context().close();
 }
 

@@ -1,4 +1,4 @@
-// `octurn calibrate --board` and `--print-board`, as their users meet them.
+// `octurn calibrate --board` and `--print-board`, end to end.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ class CalibrateBoardCommand : public ::testing::Test {
     return status == 0 ? program.output() : program.output() + program.errors();
   }
 
-  /// Pictures of a board, as somebody would hold it. @param count  at most 12
+  /// Draws pictures of a hand-held board. @param count  at most 12
   fs::path pictures(int count) const {
     const BoardScene scene{.lens = test_lens()};
     const fs::path folder = folder_.path() / "pictures";

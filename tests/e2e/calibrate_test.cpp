@@ -1,4 +1,4 @@
-// `octurn calibrate` and `octurn reconstruct --calibrate`, as their users meet them.
+// `octurn calibrate` and `octurn reconstruct --calibrate`, end to end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using nlohmann::json;
 
 class CalibrateCommand : public ::testing::Test {
  protected:
-  /// Stores what a rendered turn saw, told a pose that may be wrong.
+  /// Stores a rendered turn as a scan. @param told  its configured pose, which may be wrong
   void write_turn(const CalibrationTurn& turn, const Eigen::Isometry3d& told) const {
     Scan scan{.sensor_name = "test",
               .intrinsics = turn.intrinsics,
@@ -32,7 +32,7 @@ class CalibrateCommand : public ::testing::Test {
     write_scan(scan_, scan);
   }
 
-  /// What `octurn calibrate --json` prints; fails unless it ends with that status.
+  /// The output of `octurn calibrate --json`; fails unless it ends with that status.
   json report(int status, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words{octurn_program(), "calibrate", scan_.string(), "--json"};
     words.insert(words.end(), more.begin(), more.end());
@@ -42,7 +42,8 @@ class CalibrateCommand : public ::testing::Test {
     return json::parse(program.output());
   }
 
-  /// The bytes of `octurn reconstruct --calibrate SOURCE`; by default without that option.
+  /// The model of `octurn reconstruct --calibrate SOURCE`; without that option if `source` is
+  /// empty.
   std::string model(const std::string& source = "") const {
     const fs::path output = folder_.path() / "Scan.stl";
     std::vector<std::string> words{
@@ -86,7 +87,7 @@ TEST_F(CalibrateCommand, SolvesAWrongPoseAndModelsUseIt) {
   EXPECT_EQ(solved["stops"][0]["off_deg"], 0.0);
   EXPECT_NEAR(solved["stops"][2]["angle_deg"].get<double>(), 90, 1e-9);
   const AxisError error = axis_error(pose_from(solved["platform_from_sensor"]));
-  EXPECT_LT(error.position_mm, 0.12);  // what a Kinect must reach with eight stops
+  EXPECT_LT(error.position_mm, 0.12);  // required of a Kinect with eight stops
   EXPECT_LT(error.direction_deg, 0.05);
   EXPECT_NEAR(solved["tilt_deg"].get<double>(), 1.5, 0.05);
   EXPECT_LT(solved["after_mm"].get<double>(), solved["before_mm"].get<double>());

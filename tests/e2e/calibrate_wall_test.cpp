@@ -1,4 +1,4 @@
-// `octurn record --wall`, `octurn calibrate --wall` and `--sensor-map`, as their users meet them.
+// `octurn record --wall`, `octurn calibrate --wall` and `--sensor-map`, end to end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A simulated Kinect, which looks at a wall or at its platform.
+// A simulated Kinect that looks at its platform.
 constexpr const char* at_platform = "octurn-simulator://?speed=20";
 
 class CalibrateWallCommand : public ::testing::Test {
@@ -29,7 +29,7 @@ class CalibrateWallCommand : public ::testing::Test {
     return status == 2 ? program.errors() : program.output() + program.errors();
   }
 
-  /// Records what the sensor sees of a wall so far away.
+  /// Records a wall at a distance (metres).
   fs::path wall_at(const std::string& distance) const {
     const fs::path wall = folder_.path() / ("wall-" + distance);
     run(0, {"record", "--simulate", "--sensor", "octurn-simulator://?speed=20&wall=" + distance,
@@ -76,7 +76,7 @@ TEST_F(CalibrateWallCommand, MapsTheSensorFromTwoWalls) {
   EXPECT_NEAR(found["walls"][1]["distance_m"].get<double>(), 0.9, 0.006);
   EXPECT_LT(found["walls"][0]["slant_deg"].get<double>(), 1);
   EXPECT_GT(found["walls"][0]["coverage"].get<double>(), 0.97);  // all but the last 8 columns
-  // The pattern has 0.8 steps, and the map leaves a wall's speckle.
+  // The pattern has 0.8 steps; the map does not remove a wall's speckle.
   EXPECT_GT(found["rms_before"].get<double>(), 0.75);
   EXPECT_LT(found["rms_after"].get<double>(), 0.6 * found["rms_before"].get<double>());
   const SensorMap map = read_sensor_map(map_);

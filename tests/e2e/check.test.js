@@ -22,7 +22,7 @@ async function checkByKeyboard(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** A scanner without a sensor, on one screen. */
+/** Checks a scanner without a sensor, on one screen. */
 async function checkBrokenOne(scanner, browser, screen) {
   const {page} = await openPage(browser, `${scanner.url}#scanner`, {screen});
   await button(page).click();
@@ -35,7 +35,7 @@ async function checkBrokenOne(scanner, browser, screen) {
   await picture(page, `check-faults-${screen}`);
 }
 
-/** A platform that is higher than told: the button of the finding starts the turn that finds its height. */
+/** For a platform higher than configured, the finding's button starts a calibration turn, which finds its height. */
 async function measurePlatform(scanner, browser) {
   const {platform_from_sensor: pose} = await ask(scanner, 'calibration');
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: pose.map((row, i) => i === 2 ? [...row.slice(0, 3), row[3] + 0.008] : row)});
@@ -51,7 +51,7 @@ async function measurePlatform(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** While a scan runs, what would disturb it is not measured. */
+/** During a scan, checks that would disturb it are skipped. */
 async function checkDuringScan(scanner, browser) {
   const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 30, leaf_size_mm: 8});
   const {page} = await openPage(browser, `${scanner.url}#scanner`);
@@ -62,7 +62,7 @@ async function checkDuringScan(scanner, browser) {
   await ask(scanner, `scans/${id}/cancel`, 'POST');
 }
 
-/** The link gives the zip file, under its own name, while the page stays. */
+/** The link downloads the zip file under its name and keeps the page open. */
 async function downloadDiagnostics(scanner, browser) {
   const {page, faults} = await openPage(browser, `${scanner.url}#scanner`);
   const link = page.getByRole('link', {name: 'Download diagnostics'});

@@ -1,4 +1,4 @@
-// The colours of a scan by laser line: in the files that others read, and in the viewer.
+// The colours of a scan by laser line: in model files, read by other programs, and in the viewer.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -14,7 +14,7 @@ import {scan, startScanner} from './scanner.js';
 
 const run = promisify(execFile);
 
-/** What Open3D reads: of each vertex its place and its colour, six doubles, millimetres and 0 to 1. */
+/** Writes each vertex that Open3D reads as six doubles: position in millimetres, colour from 0 to 1. */
 const verticesByOpen3d = `
 import sys, numpy, open3d
 mesh = open3d.io.read_triangle_mesh(sys.argv[1])
@@ -28,11 +28,11 @@ async function readByOpen3d(file) {
 }
 
 const sectors = 8;
-const saturation = 0.4;  // of the simulated object's paint
+const saturation = 0.4;  // of the simulated object's colours
 
 /**
- * What the simulated object is painted with: blue less luminance, and red less luminance, for each level of that, go once round its
- * axis. Compared by their means in each of eight sectors.
+ * The chrominance of vertices by sector around the axis. The simulated object's paint has a constant saturation, and its hue goes
+ * once round the axis: (blue - luminance) / luminance and (red - luminance) / luminance trace a circle.
  * @param {Float64Array} vertices
  * @returns {{painted: number[], seen: number[], count: number}[]}
  */
@@ -41,7 +41,7 @@ function bySector(vertices) {
   for (let i = 0; i < vertices.length; i += 6) {
     const [x, y, z, ...colour] = vertices.subarray(i, i + 6);
     const radius = Math.hypot(x, y);
-    if (radius > 5 && z > 5) {  // near the axis a pixel has many hues, and cameras see no underside
+    if (radius > 5 && z > 5) {  // near the axis a pixel mixes hues, and the camera does not see the underside
       const sector = all[Math.floor((Math.atan2(y, x) / (2 * Math.PI) + 1) * sectors) % sectors];
       sector.painted = sector.painted.map((value, k) => value + saturation * [x, y][k] / radius);
       sector.sum = sector.sum.map((value, k) => value + colour[k]);
@@ -54,7 +54,7 @@ function bySector(vertices) {
   });
 }
 
-/** How colourful a picture of the page is: the mean difference of its channels, 0 to 255. */
+/** The colourfulness of a screenshot: the mean difference of its channels, 0 to 255. */
 const colourfulness = async (page, png) => page.evaluate(async (base64) => {
   const image = new Image();
   image.src = `data:image/png;base64,${base64}`;
@@ -69,7 +69,7 @@ const colourfulness = async (page, png) => page.evaluate(async (base64) => {
   return sum / (data.length / 4);
 }, png.toString('base64'));
 
-/** The viewer paints the model, and takes the paint away. */
+/** The viewer shows the model's colours, and hides them. */
 async function lookAtColours(t, {url}, id) {
   const browser = await openBrowser(t);
   const {page, faults} = await openPage(browser, `${url}#${id}`);
@@ -90,7 +90,7 @@ async function lookAtColours(t, {url}, id) {
   await button.click();
   const again = await colourfulness(page, await page.locator('#view').screenshot());
   assert.ok(Math.abs(again - before) < 0.5, `${before} and ${again}`);
-  // The page asks every rig for the points before its sensor, and one with a camera has none.
+  // The page asks every rig for its sensor's points; a rig with a camera has none and answers 404.
   assert.deepEqual(faults.filter((fault) => !fault.includes('404')), []);
 }
 
@@ -106,7 +106,7 @@ test('a scan by laser line has the colours of what was scanned, in files and in 
   const ply = join(scanner.data, 'model.ply');
   await writeFile(ply, plyBytes);
   const vertices = await readByOpen3d(ply);
-  // Pictures of a dark room have four levels: rounding them takes a part of a hue whose dimmest channel has one.
+  // Pictures of a dark room have four levels; rounding changes a hue whose dimmest channel has one level.
   for (const [number, {painted, seen, count}] of bySector(vertices).entries()) {
     const told = `sector ${number}: ${painted.map((v) => v.toFixed(3))} painted, ${seen.map((v) => v.toFixed(3))} seen, ${count} vertices`;
     t.diagnostic(told);

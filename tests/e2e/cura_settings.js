@@ -1,8 +1,8 @@
-// CuraEngine, run without Cura, wants every setting that it may come across, and has no defaults. This is all
-// that its versions 4.13 and 5.0 ask for to slice a model into one wall a layer and nothing else: no infill,
-// no supports, no combing.
+// CuraEngine without Cura has no defaults and needs every setting that it may read. These are all settings that its
+// versions 4.13 and 5.0 need to slice a model into one wall a layer and nothing else: no infill, no supports, no
+// combing.
 
-/** By value. */
+/** Settings by value. */
 const set = {
   '0.3': 'layer_height layer_height_0',
   'middle': 'slicing_tolerance',
@@ -38,7 +38,7 @@ const set = {
   '0.6': 'travel_avoid_distance',
 };
 
-/** Off, or 0. */
+/** Settings that are off or 0. */
 const unset = `
   acceleration_enabled acceleration_infill acceleration_ironing acceleration_prime_tower acceleration_print_layer_0
   acceleration_roofing acceleration_skirt_brim acceleration_support_bottom acceleration_support_infill
@@ -109,7 +109,7 @@ const unset = `
 
 const named = (names, value) => names.trim().split(/\s+/).flatMap((name) => ['-s', `${name}=${value}`]);
 
-/** @returns {string[]} the arguments that give CuraEngine its settings */
+/** @returns {string[]} CuraEngine's arguments with the settings */
 export function curaSettings() {
   return [...Object.entries(set).flatMap(([value, names]) => named(names, value)), ...named(unset, 0)];
 }

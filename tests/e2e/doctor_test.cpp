@@ -20,7 +20,7 @@ json finding(const json& report, const char* check) {
   return found == report["findings"].end() ? json() : *found;
 }
 
-/// Each says what was measured, and each fault and warning what to do.
+/// Expects every finding to have a measurement, and every fault and warning to have advice.
 void expect_complete(const json& report) {
   EXPECT_GT(report["findings"].size(), 10);
   for (const json& one : report["findings"]) {
@@ -56,10 +56,10 @@ TEST(DoctorCommand, SaysWhatIsMissingWhereNothingIsConnected) {
   EXPECT_EQ(doctor.wait(), 1);
   EXPECT_NE(doctor.output().find("fault    Sensor "), std::string::npos) << doctor.output();
   EXPECT_NE(doctor.output().find("power supply"), std::string::npos) << doctor.output();
-  EXPECT_EQ(doctor.output().find('\033'), std::string::npos);  // no colour into a pipe
+  EXPECT_EQ(doctor.output().find('\033'), std::string::npos);  // no colours in a pipe
 }
 
-/// The last column begins at one place.
+// The last column is aligned.
 TEST(DoctorCommand, AlignsItsTable) {
   const TemporaryFolder folder;
   Program doctor({octurn_program(), "doctor", "--simulate", "--data", folder.path()});

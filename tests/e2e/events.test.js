@@ -1,4 +1,4 @@
-// What changes, told by the scanner itself: to the page and to other programs.
+// The scanner's event stream, for the page and for other programs.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
@@ -9,9 +9,9 @@ import {ask, startScanner} from './scanner.js';
 const maxWatchers = 8;
 
 /**
- * Watches until `wanted` is told.
+ * Reads the event stream until `wanted` holds.
  * @param {string} [lastEventId]
- * @returns {Promise<{kind: string, id: string, data: any}[]>} all that was told
+ * @returns {Promise<{kind: string, id: string, data: any}[]>} all events
  */
 async function watch(scanner, wanted, lastEventId) {
   const abort = new AbortController();

@@ -1,4 +1,4 @@
-// The examples of docs/programs.md, as they stand there.
+// The examples of docs/programs.md, run as written.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -24,7 +24,7 @@ async function beginOf(folder, name) {
   return buffer.toString('latin1');
 }
 
-/** In the place of the others that the examples name: nobody listens there. */
+/** Replaces the other hosts of the examples; nothing listens at this port. */
 const nobody = 'http://127.0.0.1:9';
 
 test('those with curl do what they say', async (t) => {
@@ -46,7 +46,7 @@ test('those with curl do what they say', async (t) => {
   assert.equal(JSON.parse(said.at(-2)).webhooks[0].address, nobody);
   assert.deepEqual([await ask(scanner, 'webhooks'), await ask(scanner, 'printers')].map(({webhooks, printers}) => webhooks ?? printers), [[], []]);
   const {scans} = await ask(scanner, 'scans');
-  assert.deepEqual(scans.map(({name}) => name), ['Owl', 'Owl']);  // scanned here, and taken in
+  assert.deepEqual(scans.map(({name}) => name), ['Owl', 'Owl']);  // one scanned here, one imported
   assert.equal((await ask(scanner, `scans/${scans[1].id}/builds`)).builds.length, 2);
   const begins = {'Scan.3mf': 'PK', 'Scan.glb': 'glTF', 'Scan.ply': 'ply', 'thumbnail.png': '\x89PNG', 'scan.zip': 'PK'};
   for (const [name, begin] of Object.entries(begins)) {

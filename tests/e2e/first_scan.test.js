@@ -6,17 +6,17 @@ import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
 import {measure} from '../web/mesh_file.js';
 import {lifelike, startScanner} from './scanner.js';
 
-/** How many different colours the depth picture has, and which share of it holds a reading. */
+/** The number of different colours in the depth picture, and the share of its pixels with a reading. */
 const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
   const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
   return {colours: new Set(pixels).size, share: pixels.filter((pixel) => pixel >>> 24 > 0).length / pixels.length};
 });
 
 /**
- * The rows of the view in 3D that show something of the model, from above: each row's longest piece in the warm colour of the model,
- * in front of a ground that is blue all over.
+ * The rows of the 3D view that show the model, from the top: each row's longest run of the model's warm colour, on a bluish
+ * background.
  *
- * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view, in that colour
+ * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view's pixels in that colour
  */
 async function modelSeen(page) {
   const png = await page.locator('#view').screenshot();
@@ -47,14 +47,14 @@ async function modelSeen(page) {
 
 const modelShare = async (page) => (await modelSeen(page)).share;
 
-/** Clicks on the model, at a share of what is seen of it, from above: how high the view is depends on the texts beside it. */
+/** Clicks on the model at a share of its visible rows from the top, as the view's height depends on the texts beside it. */
 async function clickModel(page, share) {
   const {rows} = await modelSeen(page);
   const {y, first, end} = rows[Math.floor(share * rows.length)];
   await page.locator('#view').click({position: {x: (first + end) / 2, y}});
 }
 
-/** Has the page note each number of snapshots that it shows. */
+/** Records each number of snapshots that the page shows. */
 const noteProgress = (page) => page.evaluate(() => {
   globalThis.noted = [];
   const number = document.getElementById('dial-done');
@@ -63,7 +63,7 @@ const noteProgress = (page) => page.evaluate(() => {
 });
 
 test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) => {
-  // Slow enough that the page, which asks some times a second, sees more than the beginning and the end.
+  // Slow enough that the page, which asks several times a second, shows more than the beginning and the end.
   const scanner = await startScanner(t, lifelike);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   assert.equal((await fetch(scanner.url)).headers.get('Content-Security-Policy').split(';')[0], `default-src 'self'`);
@@ -143,11 +143,11 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
 });
 
 test('the model grows on the page while the platform turns', async (t) => {
-  // It lasts longer than a busy machine takes to show a second mesh.
+  // The scan lasts longer than a busy machine takes to show a second mesh.
   const scanner = await startScanner(t, lifelike);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 200);
-  const sizes = new Set();  // bytes of the meshes of what was seen so far
+  const sizes = new Set();  // bytes of the preview meshes so far
   const hasGrown = new Promise((done) => {
     page.on('response', (response) => {
       if (response.url().endsWith('/preview.stl') && response.status() === 200) {

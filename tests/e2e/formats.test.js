@@ -1,4 +1,4 @@
-// What readers of others make of a model's formats: the same triangles as the STL's, and nothing to complain of.
+// Other programs read a model's formats: they find the STL's triangles and report no problems.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -12,20 +12,20 @@ import {scan, startScanner} from './scanner.js';
 
 const run = promisify(execFile);
 
-/** What prusa-slicer tells of a file. @returns {Promise<Record<string, string>>} */
+/** The output of prusa-slicer --info. @returns {Promise<Record<string, string>>} */
 async function slicerInfo(file) {
   const {stdout} = await run('prusa-slicer', ['--info', file]);
   return Object.fromEntries([...stdout.matchAll(/^(\w+) = (.*)$/gm)].map(([, name, value]) => [name, value.trim()]));
 }
 
-/** Writes the corners of all triangles that Open3D reads, each three floats. */
+/** Writes the corners of all triangles that Open3D reads, three floats each. */
 const cornersByOpen3d = `
 import sys, numpy, open3d
 mesh = open3d.io.read_triangle_mesh(sys.argv[1])
 numpy.asarray(mesh.vertices)[numpy.asarray(mesh.triangles)].astype("<f4").tofile(sys.argv[2])
 `;
 
-/** Triangles in an order that does not depend on their file's. @param {(index: number) => Buffer} cornersOf */
+/** Triangles in an order that does not depend on the file. @param {(index: number) => Buffer} cornersOf */
 const sorted = (count, cornersOf) => Buffer.concat(Array.from({length: count}, (_, index) => cornersOf(index)).sort(Buffer.compare));
 
 test("Khronos's validator, prusa-slicer and Open3D agree with the STL", async (t) => {

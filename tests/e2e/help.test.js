@@ -1,4 +1,4 @@
-// The help that the scanner serves, for who stands beside it with a phone and no internet.
+// The scanner's own help pages, for somebody with a phone and no internet.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';

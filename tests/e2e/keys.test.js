@@ -1,4 +1,4 @@
-// Keys for other programs, made on the page.
+// Access keys for other programs, created on the page.
 
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
@@ -12,7 +12,7 @@ import {startScanner} from './scanner.js';
 
 const password = 'open sesame';
 
-/** Makes a key on the page. @returns {Promise<string>} */
+/** Creates a key on the page. @returns {Promise<string>} */
 async function makeKey(page, name, access) {
   const card = page.locator('#keys-card');
   await card.getByLabel('Name').fill(name);

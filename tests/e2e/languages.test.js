@@ -1,4 +1,4 @@
-// The page in each language: all of it, on a phone, where long words have the least room.
+// The whole page in each language, on a phone, where long words have the least room.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
@@ -10,20 +10,20 @@ import {ask, scan, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
 
-/** No reader's language, but one in which no letter of A to Z is left: what still shows one was never given to translate. */
+/** A pseudo-language without any letter of A to Z: a text that still shows one was never translated. */
 const strange = (words) => words.replace(/\{\w+\}|[a-z]/gi, (part) => part.startsWith('{') ? part : 'ж');
 const strangeTexts = Object.fromEntries(Object.entries(texts).map(([key, text]) => [key, typeof text === 'string' ? strange(text) :
   Object.fromEntries(Object.entries(text).map(([form, words]) => [form, strange(words)]))]));
 
-/** What the scanner says for people, which the page tells as it is where it knows no translation. */
+/** Keys of the API whose values are texts for people. The page shows them as they are if it has no translation. */
 const said = new Set(['detail', 'hint', 'message', 'measured', 'advice', 'name', 'error', 'reason', 'title', 'x-unit']);
 const strangeAnswer = (value) => Array.isArray(value) ? value.map(strangeAnswer) : value === null || typeof value !== 'object' ? value :
   Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, said.has(key) && typeof inner === 'string' ? strange(inner) : strangeAnswer(inner)]));
 
-/** Names, units, formats and what is the same in every language. */
+/** Names, units, formats and other words that are the same in every language. */
 const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|AM|PM|UTC|Home Assistant|OctoPrint|Moonraker|PrusaLink|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|https?:\S+/g;
 
-/** Everything that is shown or spoken now and has a letter of English. */
+/** Every text that is visible or in an accessible name now and has a letter of A to Z. */
 const lettersLeft = (page) => page.evaluate(() => {
   const found = [];
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
@@ -70,11 +70,11 @@ async function readStrangely(scanner, browser, finished) {
     const english = (await lettersLeft(page)).filter((text) => /[a-z]{2}/i.test(text.replace(known, '')));
     assert.deepEqual(english, [], place);
   }
-  await page.unrouteAll({behavior: 'ignoreErrors'});  // an answer may be under way
+  await page.unrouteAll({behavior: 'ignoreErrors'});  // a request may be pending
   await page.context().close();
 }
 
-/** Each state of the page beside its places, with how to get there from the one before. */
+/** Further states of the page, as functions that lead to each from the one before. */
 const states = {
   renaming: async (page) => {
     await page.locator('#details-rename').click();
@@ -98,7 +98,7 @@ const states = {
   },
 };
 
-/** Each place and state on a phone: nothing is cut off, and nobody shut out by the words. */
+/** Visits each place and state on a phone: nothing is cut off, and the texts are accessible. */
 async function readOnPhone(scanner, browser, finished, locale) {
   const {page, faults} = await openPage(browser, scanner.url, {screen: 'phone', locale});
   assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
@@ -116,7 +116,7 @@ async function readOnPhone(scanner, browser, finished, locale) {
     assert.deepEqual(await badWords(page), [], `${name} in ${locale}`);
     await picture(page, `${locale}-${name}-phone`);
   }
-  assert.deepEqual(faults.filter((fault) => !fault.includes('WebGL')), []);  // which this browser has not
+  assert.deepEqual(faults.filter((fault) => !fault.includes('WebGL')), []);  // this browser has no WebGL
   return page;
 }
 

@@ -1,4 +1,4 @@
-// Scans by laser line from outside: `octurn scan --simulate-laser`.
+// Scans by laser line, end to end: `octurn scan --simulate-laser`.
 
 #include <gtest/gtest.h>
 
@@ -26,12 +26,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double radius = 30;  // mm of a cylinder
+constexpr double radius = 30;  // mm, of the cylinder
 constexpr double height = 50;
 
 using Point = std::array<double, 3>;  // mm
 
-/// Writes a text STL, facet by facet.
+/// Writes an ASCII STL, facet by facet.
 class MeshWriter {
  public:
   explicit MeshWriter(const fs::path& file) : file_(file) { file_ << "solid object\n"; }
@@ -66,7 +66,8 @@ void write_cylinder(const fs::path& file) {
   }
 }
 
-/// Three boxes on and beside each other, of which no way to lie looks like another.
+/// Writes three boxes on and beside each other; the object looks different in each resting
+/// position.
 void write_boxes(const fs::path& file) {
   MeshWriter mesh(file);
   for (const auto& [low, high] : {std::array<Point, 2>{{{-28, -20, 0}, {28, 20, 22}}},
@@ -106,7 +107,7 @@ std::array<std::array<float, 2>, 3> extent_of(const std::string& stl) {
   return extent;
 }
 
-/// A camera of a quarter of the usual pixels, so that a scan takes seconds.
+/// A scan with a quarter of the default camera's pixels, so that it takes seconds.
 /// @param object  "cylinder" or "boxes"
 std::vector<std::string> laser_scan(const fs::path& folder,
                                     const std::string& object = "cylinder") {
@@ -127,7 +128,7 @@ std::vector<std::string> laser_scan(const fs::path& folder,
           folder / "Scan.stl"};
 }
 
-/// The folder of a scan as soon as it has that picture; empty if it does not come.
+/// The folder of a scan once it has that picture; empty if the picture does not appear.
 fs::path scan_with(const fs::path& scans, const char* picture) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (std::chrono::steady_clock::now() < deadline) {
@@ -151,14 +152,14 @@ TEST(LaserScanCommand, MakesAClosedModelOfTheObjectsSize) {
   const std::string stl = content_of(folder.path() / "Scan.stl");
   EXPECT_GT(triangles_of_whole_stl(stl), 1000);
   EXPECT_EQ(open_edges(stl), 0);
-  // Half a leaf, and what 40 chords of lines 9 degrees apart leave out of a circle: 0.1 mm.
+  // Half a leaf, and the sagitta of 40 chords in a circle, lines 9 degrees apart: 0.1 mm.
   constexpr double slack = 0.8;
   const auto [x, y, z] = extent_of(stl);
   EXPECT_NEAR(x[0], -radius, slack);
   EXPECT_NEAR(x[1], radius, slack);
   EXPECT_NEAR(y[0], -radius, slack);
   EXPECT_NEAR(y[1], radius, slack);
-  EXPECT_NEAR(z[1], height, 2.5);  // the lasers graze the top: its middle is filled in, and higher
+  EXPECT_NEAR(z[1], height, 2.5);  // the lasers graze the top, so its centre is filled in too high
   const fs::path stored = fs::directory_iterator(folder.path() / "data" / "scans")->path();
   EXPECT_TRUE(fs::exists(stored / "snapshots" / "039-right.png"));
   EXPECT_NE(content_of(stored / "scan.json").find("\"solved\""), std::string::npos);
@@ -183,7 +184,7 @@ TEST(LaserScanCommand, StopsWhenItIsInterruptedAndGoesOnWhereItWas) {
   EXPECT_TRUE(fs::exists(stored / "snapshots" / "011-right.png"));
 }
 
-// With the usual camera: small pictures show too little of the line where a box has its edge to it.
+// With the default camera, as small pictures show too little of the line on a box seen edge-on.
 TEST(LaserScanCommand, ClosesTheUndersideOfAnObjectThatWasTurnedOver) {
   const TemporaryFolder folder;
   std::vector<std::string> words = laser_scan(folder.path(), "boxes");
@@ -217,7 +218,7 @@ TEST(LaserScanCommand, SaysWhatASimulatedRigHasNot) {
   }
 }
 
-// Without its distortion, which a scan is told, the cylinder would be 2 % off and no circle.
+// If the scan ignored the configured distortion, the cylinder would be 2 % off and no circle.
 TEST(LaserScanCommand, MakesAModelOfThatSizeThroughALensThatDistorts) {
   const TemporaryFolder folder;
   std::vector<std::string> words = laser_scan(folder.path());

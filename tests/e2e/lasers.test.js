@@ -1,5 +1,4 @@
-// A rig with lasers on the page: it measures itself with a turn, which the next scan is told, and a scan shows what it has
-// seen so far.
+// A rig with lasers on the page: a calibration turn measures it, the next scan uses the result, and a scan shows a preview.
 
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';

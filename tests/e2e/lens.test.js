@@ -1,5 +1,5 @@
-// The lens of a camera with lasers, on the page: from a board that is waved before the simulated camera to a scan that is
-// taken with what was found.
+// The lens calibration of a camera with lasers on the page: from a board waved in front of the simulated camera to a scan with
+// the solved lens.
 
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
@@ -11,7 +11,7 @@ import {ask, scan, scanFolders, startScanner} from './scanner.js';
 
 const rig = ['--simulate-laser', '--simulate-lens', '--simulate-speed', '4'];
 const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, width: 820, height: 616};
-// As --simulate-lens says.
+// The lens of --simulate-lens.
 const truth = {fx: 1.012 * told.fx, fy: 1.010 * told.fy, cx: told.cx + 0.006 * told.width, cy: told.cy - 0.006 * told.height, k1: -0.06, k2: 0.02};
 const draft = {snapshots: 4, leaf_size_mm: 4, calibrate: 'told'};
 

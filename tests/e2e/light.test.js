@@ -1,4 +1,4 @@
-// How much a first visit brings, and in how many round trips: counted in a browser, at the real program.
+// Bytes and round trips of a first visit, counted in a browser with the real program.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
@@ -6,13 +6,13 @@ import {test} from 'node:test';
 import {openBrowser} from './browser.js';
 import {scan, startScanner} from './scanner.js';
 
-const maxForm = 60e3;  // bytes, without the live picture, which goes on
-const maxSight = 400e3;  // all that comes before a model is first seen in 3D, by who has nothing yet
+const maxForm = 60e3;  // bytes, without the live picture, which never ends
+const maxSight = 400e3;  // bytes until a model is first seen in 3D, with an empty cache
 const maxRounds = 4;
 
 /**
- * Notes what a page brings, as it goes over the network: heads and bodies.
- * @returns {Promise<{all: {url: string, bytes: number, after: string | null}[]}>}  after: what had to come first
+ * Records a page's transfers as sent over the network, headers and bodies.
+ * @returns {Promise<{all: {url: string, bytes: number, after: string | null}[]}>}  after: the URL that started the request
  */
 async function count(page) {
   const session = await page.context().newCDPSession(page);
@@ -35,7 +35,7 @@ async function count(page) {
   return {all};
 }
 
-/** How many round trips a request needs: one more than what had to come first. */
+/** The round trips until a request is answered: one more than those of the URL that started it. */
 function rounds(all, {after}) {
   const first = all.find(({url}) => url === after);
   return after === null || !first ? 1 : 1 + rounds(all, first);

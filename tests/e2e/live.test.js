@@ -4,7 +4,7 @@ import {test} from 'node:test';
 import {openBrowser, openPage, openSettings, picture} from './browser.js';
 import {lifelike, startScanner} from './scanner.js';
 
-/** Which share of the live picture is in colour, and not grey. */
+/** The share of the live picture's pixels that are coloured, not grey. */
 const colouredShare = (page) => page.locator('#depth').evaluate((canvas) => {
   const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   let coloured = 0;

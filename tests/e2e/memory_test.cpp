@@ -12,8 +12,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/upload.hpp"
 
-// `octurn reconstruct --memory-limit-mb N` keeps its promise: the kernel gives it no more memory
-// than that, and what it had resident in the end was less.
+// `octurn reconstruct --memory-limit-mb N` keeps its limit: it works although the kernel gives it
+// no more memory, and its peak resident memory is lower.
 
 namespace octurn {
 namespace {
@@ -46,14 +46,14 @@ Outcome outcome_of(const std::vector<std::string>& words, const ProgramLimits& l
   return outcome;
 }
 
-/// What comes out under a limit that the program is told, and that the kernel holds it to.
+/// Runs the program with a memory limit that the kernel enforces, too.
 Outcome limited(const fs::path& scan, const std::string& leaf_size_mm, std::size_t limit_mb) {
   return outcome_of(command(scan, leaf_size_mm,
                             {"--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}),
                     {.data_bytes = limit_mb * mb});
 }
 
-/// The number of megabytes that an error says to allow.
+/// The number of megabytes that an error message advises to allow.
 std::size_t allowed_mb(const std::string& errors) {
   const std::size_t at = errors.find("Allow");
   const std::size_t digit = errors.find_first_of("0123456789", at);
@@ -116,7 +116,7 @@ TEST(Memory, SaysHowMuchItNeedsAtLeast) {
   EXPECT_LT(allowed.peak_bytes, enough * mb);
 }
 
-// A plate that lies flat: all its leaves are in one or two layers, which cannot be divided.
+// A flat plate has all its leaves in one or two layers, which cannot be divided.
 TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
   const TemporaryFolder folder;
   write_small_scan(folder.path(), 2);
@@ -136,7 +136,7 @@ TEST(Memory, SaysHowMuchTheSmallestSlabNeeds) {
   }
 }
 
-/// A chamber, seen by a Kinect, whose floor goes all through the tile in its middle, of 1 m.
+/// Writes a Kinect's scan of a chamber whose floor fills a layer of the middle tile of 1 m.
 void write_chamber_scan(const fs::path& folder) {
   constexpr int poses = 14;
   const Room chamber{.walls = {.min = {-0.533, -0.527, 0.103}, .max = {0.527, 0.533, 0.903}},
@@ -144,7 +144,7 @@ void write_chamber_scan(const fs::path& folder) {
   write_room_scan(folder, chamber, poses);
 }
 
-// A floor fills layers of columns, each of which is drawn and simplified at once, with both sides.
+// A floor fills whole layers, and each layer is drawn and simplified at once, with both its sides.
 TEST(Memory, OfTheShellOfASpaceStaysBelowItsLimitWithTheSameBytes) {
   const TemporaryFolder folder;
   write_chamber_scan(folder.path());
@@ -189,8 +189,8 @@ TEST(Memory, SaysHowMuchTheShellOfATileNeeds) {
   EXPECT_LT(outcome.peak_bytes, limit_mb * mb);
 }
 
-/// How much more memory than for coarse models a daemon takes for those of 0.1 mm: one that is
-/// counted for a download, and one that is scanned until it would be written.
+/// The memory that a daemon takes for models of 0.1 mm beyond that for coarse ones, bytes. One
+/// model is counted for a download, another is scanned up to the writing of its file.
 std::size_t memory_for_fine_models(const std::string& config) {
   const TemporaryFolder folder;
   put(folder.path() / "octurn.json", config);
@@ -211,12 +211,12 @@ std::size_t memory_for_fine_models(const std::string& config) {
   return daemon.peak_memory() - before;
 }
 
-// Without a limit it takes 37 MB, so that a daemon which ignored it would fail here.
+// Without a limit these models take 37 MB, so a daemon that ignores its limit fails here.
 TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
   EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
 }
 
-// The simulated sensor takes 13 MB more, which are none of an appliance's.
+// A recorded sensor, as the simulated one takes 13 MB more, which an appliance does not.
 TEST(Memory, OfTheDaemonStaysBelowItsLimitWithARecordedSensor) {
   const TemporaryFolder folder;
   const fs::path turn = folder.path() / "turn";
@@ -243,7 +243,7 @@ TEST(Memory, HoldsNoMoreThanAPieceOfAnUpdate) {
   EXPECT_LT(daemon.peak_memory(), before + 20'000'000);
 }
 
-// 33 million triangles, 1.6 GB: 66 times what the process may take.
+// The model has 33 million triangles, 1.6 GB: 66 times the process's limit.
 TEST(Memory, HoldsNoModelHoweverLarge) {
   const TemporaryFolder folder;
   write_ball_scan(folder.path(), 6);

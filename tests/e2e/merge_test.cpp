@@ -1,4 +1,4 @@
-// `octurn merge`, as its users meet it.
+// `octurn merge`, end to end.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t stops = 8;
-constexpr std::size_t few_stops = 4;  // where the answer need not be exact
+constexpr std::size_t few_stops = 4;  // for tests that need no accuracy
 
-/// The volume of a shape above the platform, in cubes of 2 mm.
+/// The volume of a shape above the platform, counted in cubes of 2 mm.
 double volume_cm3(const Shape& shape) {
   constexpr double side = 0.002;
   double volume = 0;
@@ -36,7 +36,7 @@ double volume_cm3(const Shape& shape) {
 
 class MergeCommand : public ::testing::Test {
  protected:
-  /// Stores what a turn of a rig saw whose pose is solved. @return the scan's folder
+  /// Stores a turn as a scan with a solved pose. @return the scan's folder
   fs::path write_solved_turn(const std::string& name, const RegistrationTurn& turn) const {
     const fs::path folder = write_turn(name, turn);
     write_solved_pose(folder, {.platform_from_sensor = turn.platform_from_sensor,
@@ -45,7 +45,7 @@ class MergeCommand : public ::testing::Test {
     return folder;
   }
 
-  /// Stores what a turn saw. @return the scan's folder
+  /// Stores a turn as a scan. @return the scan's folder
   fs::path write_turn(const std::string& name, const RegistrationTurn& turn) const {
     const fs::path folder = folder_.path() / name;
     fs::create_directories(folder / "snapshots");
@@ -61,7 +61,7 @@ class MergeCommand : public ::testing::Test {
     return folder;
   }
 
-  /// What `octurn merge --json` prints; fails unless it ends with that status.
+  /// The output of `octurn merge --json`; fails unless it ends with that status.
   json merge(int status, const fs::path& one, const fs::path& other) const {
     Program program({octurn_program(), "merge", one.string(), other.string(), "-o",
                      merged_.string(), "--json"});
@@ -91,9 +91,9 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
   ASSERT_EQ(program.wait(), 0) << program.errors();
   const json built = json::parse(program.output());
   EXPECT_TRUE(built["watertight"]);
-  EXPECT_EQ(built["parts"], 1);  // a cavity would be another
+  EXPECT_EQ(built["parts"], 1);  // a cavity would count as a second part
   const double volume = volume_cm3(figure());
-  // What neither pose sees between the balls and the block is filled in.
+  // The space between the balls and the block that neither pose sees is filled in.
   EXPECT_NEAR(built["volume_cm3"], volume, 0.03 * volume);
 }
 
@@ -117,7 +117,7 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
   for (const Eigen::Vector3d& point :
        {Eigen::Vector3d(0.03, 0.01, 0.02), Eigen::Vector3d(-0.03, 0.01, 0.05),
         Eigen::Vector3d(0, -0.02, 0.1)}) {
-    // A person is off by some millimetres.
+    // A person clicks some millimetres off.
     const Eigen::Vector3d object = turned_over(figure_height) * point;
     for (const double metres :
          {object.x() + 0.003, object.y(), object.z(), point.x(), point.y(), point.z() - 0.002}) {
@@ -141,7 +141,7 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
   EXPECT_FALSE(fs::exists(merged_));
 }
 
-// Whichever of its poses is taken, the model is the same.
+// All its equivalent poses give the same model.
 TEST_F(MergeCommand, TakesASymmetricObjectAndSaysSo) {
   constexpr double height = 0.07;
   const Shape round = cylinder(0.03, height);
@@ -157,7 +157,7 @@ TEST_F(MergeCommand, TakesASymmetricObjectAndSaysSo) {
   EXPECT_TRUE(json::parse(program.output())["watertight"]);
 }
 
-// The dent in its underside, which the first turn did not see, may be at any of four corners.
+// The dent in the underside, which the first turn did not see, may be at any of four corners.
 TEST_F(MergeCommand, RefusesToGuessBetweenTwoShapesWithExit1) {
   const Shape dented = [whole = block({0.08, 0.08, 0.05}), dent = ball({0.018, 0.018, 0}, 0.015)](
                            const Eigen::Vector3d& p) { return std::max(whole(p), -dent(p)); };

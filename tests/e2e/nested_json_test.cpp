@@ -1,4 +1,4 @@
-// Nested JSON from outside: refused by each reader, whatever the stack it runs on.
+// Deeply nested JSON from outside: each reader refuses it, also on a small stack.
 
 #include "support/nested_json.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Bodies of at most 64 KiB, with deep values at the top and below keys that are read.
+/// Bodies of at most 64 KiB with deep values at the top level and below known keys.
 std::vector<std::string> deep_bodies(const std::vector<std::string>& keys) {
   std::vector<std::string> bodies;
   for (const std::size_t depth : {600U, 5'000U}) {
@@ -30,7 +30,7 @@ std::vector<std::string> deep_bodies(const std::vector<std::string>& keys) {
   return bodies;
 }
 
-/// Files of any size.
+/// Contents of files, whose size is not limited.
 std::vector<std::string> deep_files(const std::string& key) {
   constexpr std::size_t depth = 200'000;
   return {nested_arrays(depth), nested_objects(depth),
@@ -62,7 +62,7 @@ TEST(NestedJson, IsRefusedInEveryBody) {
   expect_refused_with(daemon.get(scan + "/Scan.stl?leaf_size_mm=" + nested_arrays(2'000)),
                       "bad-settings");
 
-  EXPECT_EQ(parsed(daemon.get(scan))["state"], "finished");  // and the daemon is the same
+  EXPECT_EQ(parsed(daemon.get(scan))["state"], "finished");  // the daemon has not crashed
   daemon.program().send_signal(SIGTERM);
   EXPECT_EQ(daemon.program().wait(), 0);
 }

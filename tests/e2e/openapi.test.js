@@ -1,4 +1,4 @@
-// The interface for programs is as it describes itself, and people can read that.
+// The HTTP interface matches its OpenAPI description, and the page shows that description.
 
 import {Validator} from '@seriousme/openapi-schema-validator';
 import Ajv from 'ajv/dist/2020.js';
@@ -9,7 +9,7 @@ import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
-/** Compares an answer of the scanner with what the description says of it. */
+/** Validates the scanner's responses against its OpenAPI description. */
 class Answers {
   #ajv = new Ajv({strict: false, validateFormats: false});
   #description;
@@ -19,7 +19,7 @@ class Answers {
     this.#ajv.addSchema(description, 'octurn');
   }
 
-  /** @param {string} status @param {any} body  what `method` of `path` answered */
+  /** @param {string} status @param {any} body  of the response to `method` of `path` */
   check(path, method, status, body) {
     const key = path.replaceAll('~', '~0').replaceAll('/', '~1');
     assert.ok(this.#description.paths[path]?.[method]?.responses[status], `${method} ${path} ${status}`);

@@ -1,5 +1,5 @@
-// What the scanner tells others by itself: webhooks, and models for printers. Each printer here answers as its
-// interface is documented, and remembers what it was sent.
+// Outgoing requests of the scanner: webhooks, and models for printers. Each printer here is a server that answers as its
+// interface is documented and records the requests.
 
 import assert from 'node:assert/strict';
 import {createHash} from 'node:crypto';
@@ -37,14 +37,14 @@ async function serve(t, answer) {
   return {url: `http://127.0.0.1:${server.address().port}`, received};
 }
 
-/** The fields of a form, and its file. @param {{headers: any, body: Buffer}} request */
+/** The fields and the file of a multipart form. @param {{headers: any, body: Buffer}} request */
 async function formOf({headers, body}) {
   const form = await new Response(body, {headers: {'Content-Type': headers['content-type']}}).formData();
   const file = form.get('file');
   return {form, name: file.name, bytes: Buffer.from(await file.arrayBuffer())};
 }
 
-/** Until something is so. @template T @param {() => T | Promise<T>} look @returns {Promise<T>} */
+/** Polls until `look` returns something truthy. @template T @param {() => T | Promise<T>} look @returns {Promise<T>} */
 async function until(look) {
   for (;;) {
     const found = await look();
@@ -57,7 +57,7 @@ async function until(look) {
   }
 }
 
-/** Sends a scan to a printer, to the end. */
+/** Sends a scan to a printer, and waits for the end. */
 async function send(scanner, id, body) {
   await ask(scanner, `scans/${id}/send`, 'POST', body);
   return until(async () => {
@@ -68,7 +68,7 @@ async function send(scanner, id, body) {
 
 const key = 'a-key-of-the-printer';
 
-/** As docs.octoprint.org, "File operations": the key in X-Api-Key, a form with `file`; 415 for what it cannot use. */
+/** OctoPrint (docs.octoprint.org, "File operations"): the key in X-Api-Key, a form with `file`; 415 for unusable files. */
 const octoprint = (takes) => (request, body) => {
   if (request.headers['x-api-key'] !== key) {
     return {status: 403};
@@ -80,11 +80,11 @@ const octoprint = (takes) => (request, body) => {
   return takes.test(name) ? {status: 201, body: {files: {local: {name, origin: 'local'}}, done: true}} : {status: 415};
 };
 
-/** As moonraker.readthedocs.io, "File upload": a form with `file` and `root`; 201. */
+/** Moonraker (moonraker.readthedocs.io, "File upload"): a form with `file` and `root`; 201. */
 const moonraker = (request) => request.method === 'POST' && request.url === '/server/files/upload' ?
   {status: 201, body: {item: {path: 'x', root: 'gcodes'}, print_started: false, action: 'create_file'}} : {status: 404};
 
-/** As PrusaLink's openapi.yaml: Digest; GET /api/v1/storage; PUT /api/v1/files/STORAGE/NAME. */
+/** PrusaLink (its openapi.yaml): Digest; GET /api/v1/storage; PUT /api/v1/files/STORAGE/NAME. */
 const prusalink = (takes) => (request) => {
   const given = request.headers.authorization ?? '';
   const field = (name) => new RegExp(`${name}="?([^",]*)`).exec(given)?.[1];
@@ -138,7 +138,7 @@ test('a model goes to each kind of printer, whole, and nothing is printed', asyn
 
   assert.ok(!JSON.stringify(await ask(scanner, 'printers')).includes(key));
   const diagnostics = Buffer.from(await (await fetch(`${scanner.url}api/v1/diagnostics.zip`)).arrayBuffer());
-  assert.ok(!diagnostics.includes(key)); // its files are stored without compression
+  assert.ok(!diagnostics.includes(key)); // the zip's files are not compressed
 });
 
 test('a printer that does not take a model says why, and what to do', async (t) => {

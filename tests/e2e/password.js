@@ -7,7 +7,7 @@ import {mkdtemp, rm, writeFile} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 
-/** A configuration whose page has this password. */
+/** A configuration that protects the page with this password. */
 export async function configWith(t, password) {
   const folder = await mkdtemp(join(tmpdir(), 'octurn-password-'));
   t.after(() => rm(folder, {recursive: true}));

@@ -5,7 +5,7 @@ import {openBrowser} from './browser.js';
 import {configWith} from './password.js';
 import {startScanner} from './scanner.js';
 
-/** Asks for the page in a browser that knows this password. */
+/** Opens the page in a browser with this password. */
 async function visit(browser, url, password) {
   const context = await browser.newContext({httpCredentials: {username: 'octurn', password}});
   const page = await context.newPage();
@@ -26,5 +26,5 @@ test('the page opens with its password alone', async (t) => {
 
   const {page} = await visit(browser, scanner.url, password);
   await page.getByRole('button', {name: 'Start scan'}).waitFor();
-  await page.locator('[data-panel=waiting]').waitFor({state: 'hidden'}); // its own requests are let in, too
+  await page.locator('[data-panel=waiting]').waitFor({state: 'hidden'}); // the page's own requests are accepted, too
 });

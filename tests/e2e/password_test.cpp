@@ -1,4 +1,4 @@
-// The page's password, as its owner gives it.
+// `octurn password`, and a daemon whose page has a password.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `octurn password FILE` with that on its standard input. @return its exit status
+/// Runs `octurn password FILE` with `typed` on its standard input. @return its exit status
 int give_password(const fs::path& file, const std::string& typed) {
   Program program({"/bin/sh", "-c", "printf '%s\\n' \"$1\" | \"$0\" password \"$2\"",
                    octurn_program(), typed, file.string()});
@@ -63,7 +63,7 @@ TEST(Serve, ShowsNothingWithoutThePassword) {
   EXPECT_EQ(daemon.get("/", {{"Authorization", "Basic b2N0dXJuOm9wZW4gc2VzYW1l"}}).status, 401);
 }
 
-/// A daemon with the password "open sesame", and a nonce of its.
+/// A daemon with the password "open sesame", and one of its nonces.
 struct LockedDaemon {
   TemporaryFolder folder = {};
   fs::path file = give("open sesame");

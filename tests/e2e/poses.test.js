@@ -8,7 +8,7 @@ import {chooseQuickScan, goTo, openBrowser, openPage, picture} from './browser.j
 import {measure} from '../web/mesh_file.js';
 import {ask, startScanner} from './scanner.js';
 
-/** Clicks about a part of a picture until that helps. */
+/** Clicks at several points around a place in a picture until `hasHelped`. */
 async function clickUntil(page, {x, y, width, height}, part, hasHelped) {
   for (let i = 0; i < 40 && !await hasHelped(); ++i) {
     await page.mouse.click(x + (part - 0.08 + 0.04 * (i % 5)) * width, y + (0.25 + 0.06 * Math.floor(i / 5)) * height);
@@ -17,10 +17,11 @@ async function clickUntil(page, {x, y, width, height}, part, hasHelped) {
 }
 
 /**
- * Where to click in the dialog of the fit for three pairs, and how far to drag the picture in between, as a point that faces the eye
- * on the one cloud may lie behind on the other. Runs in the page.
- * @param {{scan: string, object_from_platform: number[][]}} fit  which is right
- * @returns {Promise<{drag: number, pairs: number[][][]} | undefined>}  pixels of the canvas: of what was seen before, and after dragging of the side
+ * Clicks that pick three pairs in the fit dialog. The second cloud is clicked after a drag of the picture, as a point that faces the
+ * camera on one cloud may be hidden on the other. Runs in the page.
+ * @param {{scan: string, object_from_platform: number[][]}} fit  the right pose
+ * @returns {Promise<{drag: number, pairs: number[][][]} | undefined>}  canvas pixels of each pair: on the first cloud, and after the drag on the
+ *     further side's cloud
  */
 async function clicksOfPairs({scan, object_from_platform}) {
   const [{Matrix4, Vector3}, {besides, cloudOf, lookAt, makeEye, pointAt}] = await Promise.all([import('/three.js'), import('/fit_clouds.js')]);
@@ -39,7 +40,7 @@ async function clicksOfPairs({scan, object_from_platform}) {
     eye.updateMatrixWorld(true);
     return eye;
   };
-  /** Where a point of a cloud is clicked, if one near it is found there. */
+  /** The pixel of a cloud's point, if picking there finds a point near it. */
   const clickOf = (eye, number, point) => {
     const at = point.clone().applyMatrix4(clouds[number].matrixWorld).project(eye);
     const [x, y] = [(at.x + 1) / 2 * width, (1 - at.y) / 2 * height];
@@ -70,7 +71,7 @@ async function clicksOfPairs({scan, object_from_platform}) {
   }
 }
 
-/** Clicks a point until that shows: a click is lost as long as the points are not drawn yet. */
+/** Clicks a point until `shown` appears; clicks before the points are drawn are lost. */
 async function clickAt(page, x, y, shown) {
   for (let clicks = 1; await shown.count() === 0; ++clicks) {
     await page.mouse.click(x, y);
@@ -82,7 +83,7 @@ async function clickAt(page, x, y, shown) {
   }
 }
 
-/** Degrees between two poses of 4 x 4 numbers. */
+/** The rotation between two poses (4 x 4 matrices), degrees. */
 function degreesBetween(one, other) {
   const trace = [0, 1, 2].reduce((sum, row) => sum + [0, 1, 2].reduce((part, column) => part + one[row][column] * other[row][column], 0), 0);
   return Math.acos(Math.min((trace - 1) / 2, 1)) * 180 / Math.PI;
@@ -134,14 +135,14 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await page.getByRole('button', {name: 'Undo'}).click();
   await page.getByRole('button', {name: 'Back to the fits'}).click();
   await page.getByRole('button', {name: 'Use this fit'}).click();
-  // Whether an arm on the wrong side contradicts too much is a close thing with this object: either is an answer.
+  // With this object, an arm on the wrong side contradicts about as much as is allowed: either outcome is right.
   await page.getByText('The model was not built').or(page.getByText('Build 2, of 2 sides')).first().waitFor();
 
   const {object_from_platform} = pose.pose_of.registration;
   await page.getByRole('button', {name: 'See the fit: side 2'}).click();
   await page.getByRole('button', {name: 'Set three pairs'}).click();
   await text.filter({hasText: /^Pair 1 of 3/}).waitFor();
-  // The page is served in bundles: its modules come from where they were built.
+  // The page is served in bundles, so its single modules come from the source tree.
   await page.route(/\/(three|fit_clouds)\.js$/, (route) => route.fulfill({
     path: fileURLToPath(new URL(`../../web${new URL(route.request().url()).pathname}`, import.meta.url)), contentType: 'text/javascript'}));
   const {drag, pairs} = await page.evaluate(clicksOfPairs, {scan: first.id, object_from_platform});

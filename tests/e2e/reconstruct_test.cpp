@@ -21,7 +21,7 @@ class ReconstructCommand : public ::testing::Test {
  protected:
   ReconstructCommand() { write_small_scan(scan_, 4); }
 
-  /// `octurn reconstruct SCAN -o OUTPUT` and what follows.
+  /// The command `octurn reconstruct SCAN -o OUTPUT` with more options.
   std::vector<std::string> command(std::vector<std::string> more = {}) const {
     std::vector<std::string> words{octurn_program(), "reconstruct", scan_.string(), "-o",
                                    output_.string()};
@@ -29,7 +29,7 @@ class ReconstructCommand : public ::testing::Test {
     return words;
   }
 
-  /// The files beside the output: what a failed run must not leave.
+  /// The number of files beside the output; a failed run must not leave any.
   int files_left() const {
     return static_cast<int>(
         std::distance(fs::directory_iterator(output_.parent_path()), fs::directory_iterator()));
@@ -75,7 +75,8 @@ TEST_F(ReconstructCommand, ReportsOneLineOfJson) {
   EXPECT_EQ(report["triangles"], triangles_of_whole_stl(content_of(output_)));
   EXPECT_EQ(report["bytes"], fs::file_size(output_));
   EXPECT_EQ(report["watertight"], true);
-  // A square of 70 / 575.8 * 650 = 79 mm turned to 4 stops; leaves of 1.95 mm make it a plate.
+  // A horizontal square of 70 / 575.8 * 650 = 79 mm, seen at 4 stops; leaves of 1.95 mm make it a
+  // plate.
   EXPECT_NEAR(report["size_mm"][0].get<double>(), 79, 6);
   EXPECT_NEAR(report["size_mm"][2].get<double>(), 2, 2);
   EXPECT_EQ(report["settings"]["leaf_size_mm"], 2.0);
@@ -185,7 +186,7 @@ TEST_F(ReconstructCommand, EndsWith1WhereItsReportCannotBeWritten) {
 }
 
 TEST_F(ReconstructCommand, TellsItsOwnMemoryAndNotThatOfItsParent) {
-  std::vector<char> large(std::size_t{512} << 20U, 'x');  // of this process, which starts it
+  std::vector<char> large(std::size_t{512} << 20U, 'x');  // memory of this process, the parent
   Program program(command({"--json"}));
   EXPECT_EQ(program.wait(), 0);
   EXPECT_LT(nlohmann::json::parse(program.output())["peak_memory_bytes"], large.size());
@@ -205,7 +206,7 @@ TEST_F(ReconstructCommand, LeavesAnEarlierModelAloneWhenItFails) {
 
 TEST_F(ReconstructCommand, RemovesThePartialFileWhenItIsInterrupted) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    // So fine that writing takes seconds.
+    // Leaves so small that writing takes seconds.
     Program program(command({"--leaf-size-mm", "0.1"}));
     const auto deadline = std::chrono::steady_clock::now() + patience;
     while (files_left() == 0 && std::chrono::steady_clock::now() < deadline) {

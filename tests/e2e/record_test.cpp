@@ -46,7 +46,7 @@ TEST(RecordCommand, SavesATurnThatIsScannedFrameForFrame) {
       EXPECT_NEAR(recording.frames[3 * shot + frame].angle, kept.shots[shot].angle, 1e-12);
       frames.push_back(read_recorded_frame(turn, recording, 3 * shot + frame));
     }
-    EXPECT_NE(frames[0].depth, frames[1].depth);  // the simulated sensor's noise is new in each
+    EXPECT_NE(frames[0].depth, frames[1].depth);  // each has noise of its own
     EXPECT_EQ(read_snapshot(stored, kept, kept.shots[shot]).frame.depth,
               merge_frames(frames, DepthFilter::average).depth);
   }

@@ -52,7 +52,7 @@ test('a scan is paused and resumed, ended and resumed, by a tap each', async (t)
 });
 
 test('a scan whose sensor fails pauses, says why, and can be ended with what it has', async (t) => {
-  // As a sensor, a recording that has frames for every other stop only.
+  // The sensor is a recording with frames for every other stop only.
   const recordings = await startScanner(t);  // for its folder
   const turn = join(recordings.data, 'turn');
   await promisify(execFile)(process.env.OCTURN_PROGRAM,

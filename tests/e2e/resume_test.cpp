@@ -1,4 +1,4 @@
-// Scans that outlive what happens to the program.
+// Scans that are resumed after the program is killed or a device fails.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using nlohmann::json;
 
 const std::string settings = R"({"snapshots": 4, "frames": 2, "leaf_size_mm": 4})";
 
-/// The same frames at every stop, whenever they are taken.
+/// A sensor without noise, whose frames depend on the stop only.
 const std::vector<std::string> without_noise{"--sensor", "octurn-simulator://?noise=0&speed=20"};
 
 std::string undisturbed_model() {
@@ -26,7 +26,7 @@ std::string undisturbed_model() {
   return daemon.get("/Scan.stl").body;
 }
 
-/// The stop at which it is killed.
+/// Parameter: the stop at which the daemon is killed.
 class KilledDaemon : public ::testing::TestWithParam<int> {};
 
 TEST_P(KilledDaemon, FinishesTheScanWhenItRunsAgain) {
@@ -94,7 +94,7 @@ TEST(Resume, EndsAnInterruptedScanThatIsCancelledAndMakesAModelOfWhatIsThere) {
   EXPECT_GT(model.body.size(), 84U);
 }
 
-/// A recording that has frames for every other stop only, as a sensor that fails at the others.
+// A recording with frames for every other stop only acts as a sensor that fails at the others.
 TEST(ScanCommand, SaysHowToGoOnWithAPausedScan) {
   const TemporaryFolder folder;
   const auto octurn = [&](std::vector<std::string> words) {

@@ -1,4 +1,4 @@
-// The pose of the rig: what the daemon keeps and measures, and `octurn calibrate` without a scan.
+// The pose of the rig: stored and measured by the daemon, and `octurn calibrate` without a scan.
 
 #include <gtest/gtest.h>
 
@@ -18,14 +18,14 @@ using nlohmann::json;
 
 constexpr const char* calibration = "/api/v1/calibration";
 
-/// Millimetres that a pose is off the true one at the sensor.
+/// The distance between a pose's sensor position and the true one, millimetres.
 double off_mm(const json& rows) {
   const auto at = [&](std::size_t row) { return rows[row][3].get<double>(); };
   const Eigen::Vector3d truth = misaligned_platform_from_sensor(1).translation();
   return mm_from_metres((Eigen::Vector3d(at(0), at(1), at(2)) - truth).norm());
 }
 
-/// A daemon whose octurn.json tells a wrong pose.
+/// Arguments of a daemon whose octurn.json has a wrong pose.
 std::vector<std::string> wrongly_told(const TemporaryFolder& folder) {
   const fs::path file = folder.path() / "octurn.json";
   const json scan{{"platform_from_sensor", to_rows(wrong_pose())},
@@ -115,7 +115,7 @@ TEST(RigCalibration, IsMeasuredWithATurnThatTheNextScanUses) {
   EXPECT_EQ(now["source"], "turn");
   EXPECT_LT(now["after_mm"], now["before_mm"]);
   EXPECT_GT(off_mm(to_rows(wrong_pose())), 20);
-  // A fifth of what it was wrong by. The sensor's pattern costs 2 mm of it.
+  // A fifth of the initial error; the sensor's pattern alone makes 2 mm.
   EXPECT_LT(off_mm(now["platform_from_sensor"]), 4);
 
   const json scan = daemon.wait_until_done(daemon.start("{}"));
@@ -162,12 +162,12 @@ TEST(RigCalibration, ShowsThePointsThatTheSensorSees) {
   const Daemon daemon(folder.path());
   const json seen = parsed(daemon.get("/api/v1/preview/points"));
   EXPECT_EQ(seen["sensor"]["width"], 640);
-  EXPECT_NEAR(seen["sensor"]["fx"].get<double>(), 575.8, 0.001);  // a float in OpenNI2
-  // Every eighth pixel both ways; the platform and its object fill a good part of the picture.
+  EXPECT_NEAR(seen["sensor"]["fx"].get<double>(), 575.8, 0.001);  // OpenNI2 has it as a float
+  // Every eighth pixel of each row and column; platform and object fill a good part of the frame.
   EXPECT_GT(seen["points_mm"].size(), 1000U);
   EXPECT_LE(seen["points_mm"].size(), 4800U);
   for (const json& point : seen["points_mm"]) {
-    EXPECT_GT(point[2], 400);  // a Kinect sees nothing nearer
+    EXPECT_GT(point[2], 400);  // mm, a Kinect's nearest depth
   }
 }
 

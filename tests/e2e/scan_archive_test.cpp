@@ -1,4 +1,4 @@
-// Scans as files, from one Octurn to another.
+// Export of a scan as an archive, and its import by another Octurn.
 
 #include "scan/scan_archive.hpp"
 

@@ -1,4 +1,4 @@
-// Scans that solve the sensor's pose, by HTTP.
+// Scans that solve the sensor's pose, over HTTP.
 
 #include <gtest/gtest.h>
 
@@ -81,7 +81,7 @@ TEST(ScanCalibration, LeavesAToldPoseAloneThatIsAskedFor) {
 TEST(ScanCalibration, IsCancelledWhileTheModelIsBuiltAgain) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan =  // of leaves that take a while
+  const std::string scan =  // small leaves, which take a while
       daemon.start(wrongly_told({{"leaf_size_mm", 0.2}, {"method", "intersection"}}));
   const json now = daemon.wait_until(scan, is_rebuilding);
   ASSERT_EQ(now["phase"], "rebuilding") << now;

@@ -1,4 +1,4 @@
-// `octurn scan`, and what all commands do with where they write.
+// `octurn scan`, and the treatment of output paths, common to all commands.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A quick scan of the simulated rig.
+/// The command for a quick scan of the simulated rig.
 std::vector<std::string> scan_to(const fs::path& data, const std::string& output) {
   return {octurn_program(),
           "scan",
@@ -36,7 +36,7 @@ std::vector<std::string> scan_to(const fs::path& data, const std::string& output
           output};
 }
 
-/// The same as a line of a shell, with what follows.
+/// A command as a shell line, followed by `more`.
 std::string shell_line(const std::vector<std::string>& words, const std::string& more) {
   std::string line;
   for (const std::string& word : words) {

@@ -1,4 +1,4 @@
-// Octurn itself, started for a test on the simulated rig, on loopback and with a folder of its own.
+// Starts Octurn for a test on the simulated rig, on loopback and with a temporary data folder.
 
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
@@ -7,7 +7,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createInterface} from 'node:readline';
 
-/** Resolves to the address that the program prints; rejects with what it said if it ends before. */
+/** Resolves to the address that the program prints; rejects with its output if it ends before. */
 async function address(program) {
   let said = '';
   for (const stream of [program.stdout, program.stderr]) {
@@ -32,11 +32,11 @@ async function address(program) {
  * @property {() => Promise<void>} restart  at the same address, with the same folder
  */
 
-/** As fast as life: a scan lasts longer than a browser on a busy machine takes to look at it. */
+/** Real time: a scan lasts longer than a browser on a busy machine needs to show it. */
 export const lifelike = {rig: ['--simulate']};
 
 /**
- * @param {import('node:test').TestContext} t  at its end the scanner ends, and its folder goes
+ * @param {import('node:test').TestContext} t  at its end the scanner is stopped and its folder deleted
  * @param {{rig?: string[]}} options  rig: the arguments that choose devices
  * @returns {Promise<Scanner>}
  */
@@ -70,9 +70,9 @@ export async function startScanner(t, {rig = ['--simulate', '--simulate-speed', 
   return scanner;
 }
 
-/** @returns {Promise<any>} the body of an answer of the API */
+/** Calls the API. @returns {Promise<any>} the response's body */
 export async function ask(scanner, path, method = 'GET', body = undefined) {
-  // A test that is busy for seconds would not see that a connection which it kept is closed meanwhile.
+  // A test that is busy for seconds would not notice that the server closed a kept-alive connection meanwhile.
   const response = await fetch(`${scanner.url}api/v1/${path}`,
       {method, headers: {'Content-Type': 'application/json', 'Connection': 'close'}, body: body && JSON.stringify(body)});
   if (!response.ok) {
@@ -81,13 +81,13 @@ export async function ask(scanner, path, method = 'GET', body = undefined) {
   return response.status === 204 ? null : response.json();
 }
 
-/** @param {Scanner} scanner @returns {Promise<string[]>} the folders of its scans */
+/** @param {Scanner} scanner @returns {Promise<string[]>} the paths of its scans' folders */
 export async function scanFolders(scanner) {
   const folder = join(scanner.data, 'scans');
   return (await readdir(folder)).map((name) => join(folder, name));
 }
 
-/** Runs a whole scan without the page. @returns {Promise<any>} as it is at its end */
+/** Runs a whole scan without the page. @returns {Promise<any>} the scan at its end */
 export async function scan(scanner, settings) {
   let job = await ask(scanner, 'scans', 'POST', settings);
   while (job.state === 'running') {

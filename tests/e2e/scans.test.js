@@ -17,7 +17,7 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   const first = await scan(scanner, draft);
   const rows = page.locator('#rows > li');
   await rows.first().locator('.scan-name').click(); // the page may not have seen it run
-  await page.locator(`#download[href="${first.model.url}"]`).waitFor(); // so that nothing asks for its preview any more
+  await page.locator(`#download[href="${first.model.url}"]`).waitFor(); // from here on nothing requests its preview
   const second = await scan(scanner, draft);
   await goTo(page, 'Library');
   await rows.nth(1).waitFor();
@@ -39,7 +39,7 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   assert.equal((await ask(scanner, `scans/${first.id}`)).notes, 'Plaster, 1920.\nThe left wing is <i>glued</i>.');
   await picture(page, 'notes');
 
-  await page.reload();  // the address holds
+  await page.reload();  // the address identifies the scan
   await page.getByRole('heading', {name: 'Möwe <b>1</b>'}).waitFor();
   await page.waitForFunction(() => document.getElementById('notes')?.value.endsWith('<i>glued</i>.'));
   await goTo(page, 'Library');
@@ -83,7 +83,7 @@ test('what somebody else does to the scans is seen without a reload, and a refus
 
   await ask(scanner, `scans/${first.id}`, 'PATCH', {name: 'Elsewhere'});
   await rows.nth(1).getByText('Elsewhere').waitFor();
-  await page.route('**/api/v1/scans', (route) => route.abort());  // a list that comes too late
+  await page.route('**/api/v1/scans', (route) => route.abort());  // as if the list came too late
   await ask(scanner, `scans/${first.id}`, 'DELETE');
   await page.getByRole('button', {name: 'Delete: Elsewhere'}).scrollIntoViewIfNeeded();
   await page.getByRole('button', {name: 'Delete: Elsewhere'}).click();

@@ -1,4 +1,4 @@
-// The map of the sensor's own error, made by HTTP from looks at walls.
+// The map of the sensor's fixed error, made over HTTP from views of walls.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ json wait_until_measured(const Daemon& daemon) {
                            [](const json& now) { return now["run"]["state"] != "running"; });
 }
 
-/// Looks at a wall. @return the calibration then
+/// Records a view of a wall. @return the calibration after it
 json look_at_wall(const Daemon& daemon) {
   const Reply begun = daemon.post(calibration, look);
   EXPECT_EQ(begun.status, 202) << begun.body;
@@ -111,7 +111,7 @@ TEST(SensorMapApi, IsCancelledAndLeavesThePlatformInView) {
   EXPECT_EQ(now["run"]["state"], "cancelled") << now["run"];
   EXPECT_EQ(now["sensor_map"], nullptr);
   const json scan = daemon.wait_until_done(daemon.start(quick));
-  EXPECT_EQ(scan["state"], "finished") << scan;  // of a wall there would be no model
+  EXPECT_EQ(scan["state"], "finished") << scan;  // a view of the wall would give no model
 }
 
 TEST(SensorMapApi, RefusesABodyThatIsNone) {

@@ -1,4 +1,4 @@
-// What the daemon answers to requests that are strange, and where they come from.
+// The daemon's responses to unusual requests, and to requests from other origins.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t server_stack = std::size_t{100} * 1024;  // bytes, of a thread
+constexpr std::size_t server_stack = std::size_t{100} * 1024;  // bytes per thread
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::size_t max_touched = server_stack;  // sanitizers make frames larger
 #else
@@ -110,8 +110,8 @@ TEST(ServeRequests, UsesItsConfiguration) {
   EXPECT_EQ(reply_to(daemon.port(), named).status, 200);
 }
 
-/// The stacks of the server's threads: bytes that were ever touched of the one that was used most.
-/// They are the mappings of the size that civetweb gives its threads, 100 KiB in Debian's build.
+/// The most bytes ever touched in the stack of a server thread. The stacks are the mappings whose
+/// size is civetweb's stack size, 100 KiB in Debian's build.
 std::size_t max_touched_stack(int process) {
   std::istringstream maps(content_of("/proc/" + std::to_string(process) + "/smaps"));
   std::size_t mapped = 0;
@@ -142,8 +142,8 @@ TEST(ServeRequests, StartsNothingForARequestThatIsCutOff) {
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
 }
 
-/// A model that is made for this request, once the one before has ended: the last byte of that one
-/// arrives before its maker is free.
+/// Requests a model that is built on demand, once the previous one has ended: its last byte arrives
+/// before the builder is free.
 Reply made_model(const Daemon& daemon, const std::string& path) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   Reply reply = daemon.get(path);
@@ -199,7 +199,7 @@ TEST(ServeRequests, UsesNoMoreThanThreeQuartersOfAStack) {
   const std::string scan = daemon.start(quick);
   ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
   const std::string nested = std::string(30'000, '[') + std::string(30'000, ']');
-  for (int i = 0; i < 40; ++i) {  // so that each thread has its turn at something
+  for (int i = 0; i < 40; ++i) {  // so that each thread handles some of the requests
     for (const std::string& path :
          {scan, scan + "/Scan.stl", scan + "/Scan.stl?leaf_size_mm=8", scan + "/preview.stl",
           std::string("/api/v1/scans"), std::string("/api/v1/status"), std::string("/nothing"),

@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
 
-/// As the list has it: without the places of what the verdict found, which may be many.
+/// A scan as in the list: without the places in the verdict's reasons, which may be many.
 json as_listed(json scan) {
   for (json& reason : scan["model"]["quality"]["reasons"]) {
     reason.erase("places_mm");
@@ -53,7 +53,7 @@ TEST_P(ServeByMethod, ScansAndGivesAClosedModel) {
   EXPECT_EQ(daemon.status()["newest"], done["id"]);
   EXPECT_EQ(parsed(daemon.get("/api/v1/scans"))["scans"][0], as_listed(done));
 
-  // The command gives the same bytes from the scan that was stored.
+  // The command gives the same bytes from the stored scan.
   Program again({octurn_program(), "reconstruct", folder.path() / "data" / "scans" / done["id"],
                  "-o", "-", "--leaf-size-mm", "2", "--method", method});
   EXPECT_EQ(again.wait(), 0);
@@ -120,7 +120,7 @@ TEST(Serve, CancelsAScanWhereverItIs) {
 TEST(Serve, CancelsAScanWhileItBuilds) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
-  const std::string scan =  // a model of hundreds of megabytes, which takes a while
+  const std::string scan =  // its model has hundreds of megabytes and takes a while
       daemon.start(
           R"({"snapshots": 3, "frames": 1, "leaf_size_mm": 0.2, "method": "intersection"})");
   const json building = daemon.wait_until(scan, [](const json& now) {
@@ -183,7 +183,7 @@ TEST(Serve, SaysThatThereIsNoSensor) {
   EXPECT_EQ(daemon.status()["sensor"]["state"], "missing");
 }
 
-// On a machine with GPIO lines, the settings name one that it has not: nothing is driven.
+// The settings name a line that no machine has, so nothing is driven even if there are GPIO lines.
 TEST(Serve, SaysThatItHasNoTurntableAndGoesOn) {
   const TemporaryFolder folder;
   put(folder.path() / "octurn.json", R"({"turntable": {"step_line": "no such line"}})");
@@ -202,7 +202,7 @@ TEST(Serve, SaysThatItHasNoTurntableAndGoesOn) {
   EXPECT_EQ(daemon.get("/api/v1/preview/depth.png").status, 200);
 }
 
-/// On a sensor that is none of the rig's own, as drivers of devices are.
+/// A command without the simulated rig, whose sensor comes from an OpenNI2 driver like a device's.
 std::vector<std::string> command_with_devices(const fs::path& folder) {
   std::vector<std::string> command = Daemon::command(folder);
   command.erase(std::ranges::find(command, "--simulate"), std::ranges::find(command, "--listen"));
@@ -275,7 +275,7 @@ TEST(Serve, EndsBeforeItsScanAndKeepsTheSnapshots) {
 
 TEST(Serve, FailsAScanWhenTheDiskIsFullAndGoesOn) {
   const TemporaryFolder folder;
-  const Daemon daemon(folder.path(), {}, {.file_bytes = 500'000});  // takes snapshots, but no model
+  const Daemon daemon(folder.path(), {}, {.file_bytes = 500'000});  // snapshots fit, no model does
   const json done = daemon.wait_until_done(daemon.start(R"({"snapshots": 3, "frames": 2})"));
   EXPECT_EQ(done["state"], "failed");
   EXPECT_EQ(done["error"]["code"], "disk-full");

@@ -14,7 +14,7 @@
 namespace octurn {
 namespace {
 
-/// systemd, as far as sd_notify(3) goes: a socket that daemons tell their state.
+/// systemd's side of sd_notify(3): a socket that receives a daemon's state.
 class Notifications {
  public:
   explicit Notifications(const std::filesystem::path& path)
@@ -27,7 +27,7 @@ class Notifications {
     ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
 
-  /// The next message; empty if none comes.
+  /// The next message; empty if there is none.
   std::string next() const {
     std::array<char, 4096> message{};
     const ssize_t length = ::recv(socket_.number(), message.data(), message.size(), 0);

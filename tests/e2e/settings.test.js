@@ -7,7 +7,7 @@ import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 async function openSettings(browser, scanner, options) {
-  await Promise.all(browser.contexts().map((context) => context.close()));  // only so many pages may hear of events
+  await Promise.all(browser.contexts().map((context) => context.close()));  // the number of event streams is limited
   const opened = await openPage(browser, scanner.url, options);
   await goTo(opened.page, 'Settings');
   await opened.page.locator('#cards').waitFor();
@@ -17,7 +17,7 @@ async function openSettings(browser, scanner, options) {
 const card = (page, label) => page.locator('form[data-card]').filter({has: page.getByLabel(label)});
 const save = (page, label) => card(page, label).getByRole('button', {name: 'Save'});
 
-/** The settings once none waits for a restart, during which the scanner does not answer. */
+/** The settings once none needs a restart; during a restart the scanner does not answer. */
 async function settled(scanner) {
   for (;;) {
     const now = await ask(scanner, 'settings').catch(() => null);
@@ -30,13 +30,13 @@ async function settled(scanner) {
   }
 }
 
-// Set elsewhere on the page, or where the page itself is kept.
+// Set elsewhere on the page, or not on the page: where data and the password are stored.
 const setElsewhere = ['data', 'password_file', 'scan.depth_scale', 'scan.platform_from_sensor'];
 
 const keysOf = ({properties}) => Object.entries(properties).flatMap(([key, schema]) =>
   schema.properties ? keysOf(schema).map((inner) => `${key}.${inner}`) : [key]);
 
-/** Every setting that the scanner knows. */
+/** Every setting of the scanner is on the page. */
 async function haveTheirPlace(scanner, browser) {
   const {page, faults} = await openSettings(browser, scanner);
   const onPage = await page.locator('[data-setting]').evaluateAll((fields) => fields.map((field) => field.dataset.setting));
@@ -45,7 +45,7 @@ async function haveTheirPlace(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** A default of scans: there on the form of a new scan at once, and after a restart. */
+/** A default for scans is in the form of a new scan at once, and still after a restart. */
 async function keepScanDefault(scanner, browser) {
   const {page, faults} = await openSettings(browser, scanner);
   assert.equal(await save(page, 'Snapshots a turn').isVisible(), false);
@@ -61,7 +61,7 @@ async function keepScanDefault(scanner, browser) {
   assert.equal(await next.locator('#snapshots').inputValue(), '12');
 }
 
-/** A wrong value is told beside its field, whoever finds it wrong, and changes nothing. */
+/** A wrong value is reported beside its field, by the browser or by the scanner, and changes nothing. */
 async function refuseByField(scanner, browser) {
   const {page} = await openSettings(browser, scanner);
   await page.getByLabel('Gear ratio').fill('0');
@@ -69,13 +69,13 @@ async function refuseByField(scanner, browser) {
   const field = page.locator('[data-setting="turntable.gear_ratio"]');
   await field.getByText('It must be from 0.001 to 1000.').waitFor();
   await page.getByLabel('Gear ratio').fill('1');
-  await page.getByLabel('Take-up of play').fill('801');  // more than a turn, as the scanner alone knows
+  await page.getByLabel('Take-up of play').fill('801');  // more than a turn, which only the scanner can know
   await save(page, 'Gear ratio').click();
   await page.locator('[data-setting="turntable.take_up_steps"]').getByText('a whole number from 0 to 800').waitFor();
   assert.deepEqual((await ask(scanner, 'settings')).stored.turntable, undefined);
 }
 
-/** The turntable's gear: the scanner starts again by itself, and the page goes on. */
+/** A change of the turntable's gear: the scanner restarts by itself, and the page goes on. */
 async function takeUpGear(scanner, browser) {
   const {page} = await openSettings(browser, scanner);
   await page.getByLabel('Gear ratio').fill('3');
@@ -88,7 +88,7 @@ async function takeUpGear(scanner, browser) {
   assert.deepEqual((await settled(scanner)).stored.turntable, undefined);
 }
 
-/** What is downloaded can be restored. */
+/** Downloaded settings can be restored. */
 async function backUp(scanner, browser) {
   const {page} = await openSettings(browser, scanner);
   const [file] = await Promise.all([page.waitForEvent('download'), page.locator('#backup').click()]);
@@ -104,7 +104,7 @@ async function backUp(scanner, browser) {
   await page.getByText('Choose a file octurn-settings').waitFor();
 }
 
-/** Where the sensor stands is told by the pose in force, whatever the settings have. */
+/** The page shows the sensor's pose in force, not the one in the settings. */
 async function tellPoseInForce(scanner, browser) {
   const {platform_from_sensor} = await ask(scanner, 'calibration');
   platform_from_sensor[2][3] += 0.011;
@@ -120,7 +120,7 @@ async function tellPoseInForce(scanner, browser) {
   await page.getByText(/^Set by hand, /).waitFor();
 }
 
-/** On any screen, nothing is cut off. */
+/** Nothing is cut off on this screen. */
 async function fits(scanner, browser, screen, colorScheme) {
   const {page, faults} = await openSettings(browser, scanner, {screen, colorScheme});
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
@@ -143,7 +143,7 @@ test('a test of the turntable tells what is set wrongly, and sets it', async (t)
   const {settings} = await settled(scanner);
   assert.ok(Math.abs(settings.turntable.gear_ratio - 1.5) < 0.01, `${settings.turntable.gear_ratio}`);
   assert.ok(settings.turntable.reversed);
-  assert.deepEqual(faults.filter((fault) => !/Failed to load|ERR_/.test(fault)), []);  // it started again
+  assert.deepEqual(faults.filter((fault) => !/Failed to load|ERR_/.test(fault)), []);  // failed requests during the restart
 });
 
 test('settings are set on the page and last', async (t) => {

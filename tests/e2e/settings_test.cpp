@@ -25,7 +25,7 @@ Reply patch(const Daemon& daemon, const json& change) {
   return request(daemon.port(), "PATCH", settings_path, change.dump());
 }
 
-/// What the daemon answers to a GET; no status while it starts again.
+/// The daemon's response to a GET of the settings; status 0 while it restarts.
 Reply answer(const Daemon& daemon) {
   const FileDescriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const sockaddr_in address = internet_address(INADDR_LOOPBACK, daemon.port());
@@ -37,7 +37,7 @@ Reply answer(const Daemon& daemon) {
   return reply_from(receive_all(socket));
 }
 
-/// The first answer that is as wanted; the last one if none is within `patience`.
+/// The first response that is as wanted; the last one if there is none within `patience`.
 Reply wait_for(const Daemon& daemon, const std::function<bool(const Reply&)>& wanted) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   Reply reply = answer(daemon);
@@ -48,7 +48,7 @@ Reply wait_for(const Daemon& daemon, const std::function<bool(const Reply&)>& wa
   return reply;
 }
 
-/// The settings once none waits for a restart.
+/// The settings once none needs a restart.
 json settled(const Daemon& daemon) {
   return parsed(wait_for(daemon, [](const Reply& reply) {
     return reply.status == 200 && parsed(reply)["restart_needed"].empty();
@@ -150,7 +150,7 @@ TEST(Settings, ThatAreDamagedAreToldAndTheLastGoodAreUsed) {
   std::optional<Daemon> daemon(std::in_place, folder.path());
   patch(*daemon, {{"scan", {{"frames", 7}}}});
   daemon.reset();
-  daemon.emplace(folder.path());  // and serves with them
+  daemon.emplace(folder.path());  // serves with the stored settings
   daemon.reset();
   put(folder.path() / "data" / "settings.json", R"({"scan": {"fra)");
   daemon.emplace(folder.path());
@@ -166,7 +166,7 @@ TEST(Settings, ThatAreDamagedAreToldAndTheLastGoodAreUsed) {
 TEST(Settings, ThatItCannotServeWithAreUndone) {
   const TemporaryFolder folder;
   const Daemon other(folder.path() / "other");
-  // Without --port, which would be in force over the page's.
+  // Without --port, which would override the page's setting.
   std::vector<std::string> command = Daemon::command(folder.path());
   const auto option = std::ranges::find(command, "--port");
   command.erase(option, option + 2);

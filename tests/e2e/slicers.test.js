@@ -1,4 +1,4 @@
-// What slicers say of models made through the API, as they come: with nothing mended.
+// Slicers accept models from the API without any repair.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -15,7 +15,7 @@ const run = promisify(execFile);
 const everyEdgeMatched = /Total disconnected facets\s*:\s*0\s+0/;
 const mended = ['Degenerate facets', 'Edges fixed', 'Facets removed', 'Facets added', 'Facets reversed', 'Backwards edges', 'Normals fixed'];
 
-/** Scans through the API, and resolves to the model's file. */
+/** Scans over the API, and resolves to the model's file. */
 async function scan(scanner, snapshots, method) {
   const api = new URL('/api/v1/', scanner.url);
   const started = await fetch(new URL('scans', api), {
@@ -38,7 +38,7 @@ async function scan(scanner, snapshots, method) {
   return file;
 }
 
-/** Fails if admesh finds anything to mend, or prusa-slicer an edge without its other side. */
+/** Fails if admesh finds anything to repair, or prusa-slicer finds an open edge. */
 async function expectNothingToMend(file) {
   const admesh = (await run('admesh', [file])).stdout;
   assert.match(admesh, everyEdgeMatched);
@@ -48,10 +48,10 @@ async function expectNothingToMend(file) {
   assert.match((await run('prusa-slicer', ['--info', file])).stdout, /manifold = yes/);
 }
 
-/** What prusa-slicer logs now and then about the order of lines that it has laid itself, whatever the model. */
+/** A message that prusa-slicer sometimes logs about the order of its own lines, whatever the model. */
 const ofItsOwnLines = /^.*\[error\] +Reversing even wall line.*$/gm;
 
-/** What a slicer run on a file said, and how many lines of G-code move while they print. */
+/** Runs a slicer. @returns its output, and the number of G-code lines that move while printing */
 async function slice(program, args, gcode) {
   const {stdout, stderr} = await run(program, args, {maxBuffer: 1 << 28});
   const moves = (await readFile(gcode, 'utf8')).match(/^G1 .*X.*Y.*E/gm) ?? [];

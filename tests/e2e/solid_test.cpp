@@ -1,4 +1,4 @@
-// `octurn reconstruct --method solid`, as its users meet it.
+// `octurn reconstruct --method solid`, end to end.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ class SolidCommand : public ::testing::Test {
     EXPECT_FALSE(fs::exists(output_));
   }
 
-  /// Changes the depth images of the scan.
+  /// Replaces the depth images of the scan.
   void redraw(int count, const std::function<std::uint16_t(int u, int v)>& depth) const {
     DepthFrame frame{.width = 640, .height = 480, .depth = {}};
     for (int v = 0; v < 480; ++v) {
@@ -71,7 +71,7 @@ TEST_F(SolidCommand, CallsAModelGoodThatShowsTheWholeObject) {
 
 TEST_F(SolidCommand, SaysWhyAModelIsNotGood) {
   write_ball_scan(scan_, 8);
-  // The ball's middle is 6 cm up: the box cuts it 1 cm above that.
+  // The ball's centre is 6 cm up; the box cuts the ball 1 cm above that.
   Program program(command(
       {"--leaf-size-mm", "2", "--clip-mm", "-140", "-140", "2", "140", "140", "70", "--json"}));
   EXPECT_EQ(program.wait(), 0) << program.errors();
@@ -128,15 +128,15 @@ TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {
   EXPECT_EQ(report["dropped_parts"], 0);
   EXPECT_EQ(report["dropped_volume_cm3"], 0);
   EXPECT_NEAR(report["seen_share"].get<double>() + report["filled_share"].get<double>(), 1, 1e-9);
-  // What is below the ball was not seen, and is filled in.
+  // The space below the ball was not seen and is filled in.
   EXPECT_GT(report["filled_share"].get<double>(), 0.02);
   EXPECT_LT(report["filled_share"].get<double>(), 0.4);
   const double ball_cm3 = 4.0 / 3 * std::numbers::pi * 5 * 5 * 5;
-  // Planes are fitted over two samples of 4.2 mm to each side, and so lie up to 8.4^2 / (2 * 50) =
-  // 0.7 mm inside the ball: 3 * 0.7 / 50 of its volume.
+  // Planes are fitted to two samples, 4.2 mm apart, on each side, so they lie up to
+  // 8.4^2 / (2 * 50) = 0.7 mm inside the ball, which is 3 * 0.7 / 50 of its volume.
   EXPECT_GT(report["volume_cm3"].get<double>(), (1 - 3 * 0.7 / 50) * ball_cm3);
-  // At most all is filled that lies between the ball's lower half and the platform, 6 cm below its
-  // centre: only the ball's own rays say what is free.
+  // At most the whole space between the ball's lower half and the platform, 6 cm below its centre,
+  // is filled: only the rays that end on the ball show free space.
   const double below_cm3 = std::numbers::pi * 5 * 5 * 6 - ball_cm3 / 2;
   EXPECT_LT(report["volume_cm3"].get<double>(), ball_cm3 + below_cm3);
   EXPECT_NEAR(report["size_mm"][0].get<double>(), 100, 2);  // a voxel
@@ -180,7 +180,7 @@ TEST_F(SolidCommand, TakesFewerTrianglesForALargerError) {
   const int few = triangles("1");
   EXPECT_LT(usual, all);
   EXPECT_LT(few, usual / 2);
-  EXPECT_GT(triangles("1000"), 3);  // a tetrahedron at the least
+  EXPECT_GT(triangles("1000"), 3);  // at least a tetrahedron
 }
 
 TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
@@ -230,7 +230,7 @@ TEST_F(SolidCommand, ClosesWhatOneSnapshotSaw) {
   EXPECT_EQ(open_edges(content_of(output_)), 0);
   EXPECT_EQ(report["parts"], 1);
   EXPECT_GT(report["filled_share"].get<double>(), 0.2);
-  // Nothing around the ball was seen through, so only the clip box bounds what is filled in.
+  // No ray passes beside the ball, so only the clip box bounds the filled space.
   EXPECT_GT(report["size_mm"][0].get<double>(), 95);
   EXPECT_LT(report["size_mm"][0].get<double>(), 280);
 }

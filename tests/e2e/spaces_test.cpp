@@ -1,4 +1,4 @@
-// Scans with free poses: from another program's recording to a model, whole and tile by tile.
+// Scans with free poses: from another program's recording to a model, in one piece and by tiles.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ class Spaces : public ::testing::Test {
     return program.output();
   }
 
-  /// Runs octurn, which must fail with that status and one line that says so.
+  /// Runs octurn, which must fail with that status and one line with that text.
   static void expect_failure(std::vector<std::string> words, int status, const std::string& says) {
     words.insert(words.begin(), octurn_program());
     Program program(words);
@@ -105,7 +105,7 @@ TEST_F(Spaces, TilesJoinToTheBytesOfOneProcess) {
       const std::string number = tile["tile"].dump();
       join.push_back(in(number + ".tile"));
       std::vector<std::string> make{"--tile", number, "-o", join.back()};
-      if (tile["tile"] != 0) {  // which makes a plan of its own
+      if (tile["tile"] != 0) {  // tile 0 is made without a plan file
         make.insert(make.end(), {"--plan-file", in("plan.json")});
       }
       reconstruct(make);

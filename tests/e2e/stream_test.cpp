@@ -8,7 +8,8 @@
 #include "support/daemon.hpp"
 #include "support/stl.hpp"
 
-// Models that are no file: what a scan has seen so far, and what is made while it is downloaded.
+// Models that are not files: the preview of a running scan, and models built while they are
+// downloaded.
 
 namespace octurn {
 namespace {
@@ -33,7 +34,7 @@ TEST(Preview, ShowsWhatAScanHasSeenSoFar) {
   };
   const Reply first = preview_with(100);
   EXPECT_EQ(first.header("Content-Type"), "model/stl");
-  EXPECT_GT(open_edges(first.body), 0);  // what has not been seen yet is open
+  EXPECT_GT(open_edges(first.body), 0);  // open where nothing was seen yet
   const Reply later = preview_with(triangles_of_whole_stl(first.body));
   EXPECT_GT(triangles_of_whole_stl(later.body), triangles_of_whole_stl(first.body));
   EXPECT_LE(triangles_of_whole_stl(later.body), 60'000);
@@ -63,13 +64,13 @@ TEST(ModelStream, IsMadeWhileItIsDownloaded) {
   const fs::path expected = folder.path() / "expected.stl";
   struct Way {
     std::string query;
-    std::vector<std::string> options;  // that tell the command the same; it has no scan's settings
+    std::vector<std::string> options;  // the same for the command, which has no scan settings
   };
   const std::vector<Way> ways{
       {"leaf_size_mm=2", {"--leaf-size-mm", "2"}},
       {"level=7", {"--leaf-size-mm", "4", "--level", "7"}},
       {"leaf_size_mm=1&level=9", {"--leaf-size-mm", "1", "--level", "9"}},
-      {"leaf_size_mm=%32", {"--leaf-size-mm", "2"}},  // RFC 3986, 6.2.2.2: the same as 2
+      {"leaf_size_mm=%32", {"--leaf-size-mm", "2"}},  // RFC 3986, 6.2.2.2: %32 is 2
   };
   for (const auto& [query, options] : ways) {
     std::vector<std::string> command{octurn_program(), "reconstruct", stored, "-o", expected};
@@ -106,13 +107,13 @@ TEST(ModelStream, RefusesParametersThatAreWrong) {
   EXPECT_EQ(daemon.get(scan + "/Scan.stl?leaf_size_mm=4").status, 200);
 }
 
-/// A model of hundreds of megabytes that is being downloaded, but not taken from the socket.
+/// Starts the download of a model of hundreds of megabytes without reading it from the socket.
 FileDescriptor begin_download(const Daemon& daemon, const std::string& scan) {
   FileDescriptor socket = connected(daemon.port());
   send_text(socket,
             "GET " + scan + "/Scan.stl?leaf_size_mm=0.2 HTTP/1.1\r\nHost: localhost\r\n\r\n");
   char letter = 0;
-  EXPECT_EQ(::recv(socket.number(), &letter, 1, MSG_PEEK), 1);  // it has been counted and begins
+  EXPECT_EQ(::recv(socket.number(), &letter, 1, MSG_PEEK), 1);  // counted; the body begins
   return socket;
 }
 
@@ -128,7 +129,7 @@ TEST(ModelStream, IsOneAtATimeAndNoneDuringAScan) {
     EXPECT_EQ(refused.status, 409);
     EXPECT_EQ(parsed(refused)["code"], "busy");
   }
-  // Its client is gone: so is the work, and there is room for another.
+  // When the client is gone, the build ends, and another one is possible.
   const auto deadline = std::chrono::steady_clock::now() + patience;
   Reply again = wanted();
   while (again.status == 409 && std::chrono::steady_clock::now() < deadline) {

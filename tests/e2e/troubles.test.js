@@ -1,4 +1,4 @@
-// The page for everyone where something went wrong: what a scanner in trouble shows must shut nobody out either.
+// The accessibility of the page when something goes wrong.
 
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
@@ -21,7 +21,7 @@ async function begin(scanner, page) {
   return id;
 }
 
-/** What becomes of scans that are stopped, by a person or by a cut of the power. */
+/** States of scans that were stopped, by a person or by a power cut. */
 const stopped = (scanner) => ({
   paused: async (page) => {
     await ask(scanner, `scans/${await begin(scanner, page)}/pause`, 'POST');
@@ -47,7 +47,7 @@ const stopped = (scanner) => ({
   },
 });
 
-/** Of a scanner whose sensor has frames for a stop of the next scan, and then none. */
+/** States of a scanner whose sensor has frames for one stop of the next scan, and then none. */
 const failing = (scanner) => ({
   trying: async (page) => {
     await ask(scanner, 'scans', 'POST', longScan);

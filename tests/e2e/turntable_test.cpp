@@ -1,4 +1,4 @@
-// The turntable, moved and tested over HTTP, with a gear and wires that differ from the settings.
+// The turntable, moved and tested over HTTP, with a gear and wiring that differ from the settings.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// clock_jumps JUMPS [SEED]: lets the time of day jump by up to centuries while the daemon scans. Scans finish, last no longer
-// than they did, and are listed in the order in which they were made.
+// clock_jumps JUMPS [SEED]: lets the time of day jump by up to centuries while the daemon scans. Scans must finish, report their
+// true duration, and be listed in the order in which they were made.
 
 import {join} from 'node:path';
 

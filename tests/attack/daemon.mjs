@@ -1,4 +1,4 @@
-// `octurn serve` on the simulated rig, which attacks are aimed at, and what they measure of it.
+// `octurn serve` on the simulated rig, the target of the attacks, and the measurements of it.
 
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
@@ -8,19 +8,19 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createInterface} from 'node:readline';
 
-const running = new Set(); // programs, which end with the attack
+const running = new Set(); // programs to be killed at the attack's end
 process.on('exit', () => running.forEach((program) => program.kill('SIGKILL')));
 
-const patience = 60_000; // ms: who waits in vain says so
+const patience = 60_000; // ms, timeout of each wait
 
-/** Fails the attack. */
+/** Fails the attack unless a condition holds. */
 export function require(condition, message) {
   if (!condition) {
     throw new Error(message);
   }
 }
 
-/** Fails the attack, but for a sanitized daemon, whose memory is not its own. */
+/** Fails the attack unless the daemon's memory is in bounds. Ignored for a sanitized daemon, as sanitizers take memory, too. */
 export function requireMemory(isLittle, message) {
   require(isLittle || process.env.OCTURN_SANITIZED, message);
 }
@@ -29,7 +29,7 @@ export const sleep = (ms) => new Promise((done) => {
   setTimeout(done, ms);
 });
 
-/** Waits until a question is answered by something, and gives that. */
+/** Polls until `ask` returns something truthy, and returns that. */
 export async function until(ask, what) {
   const deadline = Date.now() + patience;
   for (;;) {
@@ -42,7 +42,7 @@ export async function until(ask, what) {
   }
 }
 
-/** A folder that goes when the attack has ended well. With OCTURN_ATTACK_FOLDER it is there, and stays. */
+/** A folder that is deleted if the attack succeeds. With OCTURN_ATTACK_FOLDER it is created there and kept. */
 export function makeFolder() {
   const parent = process.env.OCTURN_ATTACK_FOLDER ?? tmpdir();
   const folder = mkdtempSync(join(parent, 'octurn-attack-'));
@@ -58,8 +58,8 @@ export function makeFolder() {
 
 export class Daemon {
   /**
-   * Starts it, and resolves when it serves.
-   * @param {string} folder  it works in
+   * Starts the daemon, and resolves when it serves.
+   * @param {string} folder  its working folder
    * @param {{more?: string[], env?: Object, port?: number, settings?: Object}} options
    */
   static async start(folder, {more = [], env = {}, port = 0, settings = {}} = {}) {
@@ -94,7 +94,7 @@ export class Daemon {
     return this.program.exitCode === null && this.program.signalCode === null;
   }
 
-  /** Ends it. @returns {Promise<[number|null, string|null]>} exit status and signal */
+  /** Ends the daemon. @returns {Promise<[number|null, string|null]>} exit status and signal */
   async end(signal = 'SIGTERM') {
     this.program.kill(signal);
     const late = setTimeout(() => {
@@ -107,7 +107,7 @@ export class Daemon {
   }
 
   /**
-   * Sends a request as the page would.
+   * Sends a request with the headers that the page would send.
    * @returns {Promise<{status: number, headers: Object, body: Buffer, json: any}>}
    */
   ask(method, path, body = undefined, localAddress = '127.0.0.1') {
@@ -127,21 +127,21 @@ export class Daemon {
     });
   }
 
-  /** Like `ask`, of a request that must succeed. @returns {Promise<any>} its JSON */
+  /** Sends a GET that must succeed. @returns {Promise<any>} the response's JSON */
   async get(path) {
     const reply = await this.ask('GET', path);
     require(reply.status === 200, `GET ${path}: ${reply.status} ${reply.body.toString('utf8', 0, 500)}`);
     return reply.json;
   }
 
-  /** Starts a scan. @returns {Promise<any>} what it is */
+  /** Starts a scan. @returns {Promise<any>} the scan */
   async scan(settings) {
     const reply = await this.ask('POST', '/api/v1/scans', settings);
     require(reply.status === 202, `POST scans: ${reply.status} ${reply.body}`);
     return reply.json;
   }
 
-  /** Waits until a scan is no longer running. @returns {Promise<any>} what it is then */
+  /** Waits until a scan is no longer running. @returns {Promise<any>} the scan then */
   whenDone(id) {
     return until(async () => {
       const scan = await this.get(`/api/v1/scans/${id}`);
@@ -149,7 +149,7 @@ export class Daemon {
     }, `scan ${id} ends`);
   }
 
-  /** Bytes that are resident. */
+  /** Resident memory, bytes. */
   memory() {
     return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${this.program.pid}/status`, 'utf8'))[1]) * 1024;
   }
@@ -159,13 +159,13 @@ export class Daemon {
   }
 }
 
-/** All files below a folder, by their paths below it. */
+/** The paths of all files below a folder. */
 export function filesBelow(folder) {
   return readdirSync(folder, {recursive: true, withFileTypes: true}).filter((entry) => !entry.isDirectory())
       .map((entry) => join(entry.path, entry.name));
 }
 
-/** Fails if a file is there in part, or one that nobody will look for again. */
+/** Fails if there is a partial file or a leftover temporary file. */
 export function requireWholeFiles(data) {
   for (const file of filesBelow(data)) {
     const name = file.slice(file.lastIndexOf('/') + 1);
@@ -181,5 +181,5 @@ export function requireWholeFiles(data) {
   }
 }
 
-/** The number that a test was given, on its command line. */
+/** A numeric argument of the command line, or a default. */
 export const argument = (index, otherwise) => Number(process.argv[2 + index] ?? otherwise);

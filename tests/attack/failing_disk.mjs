@@ -1,5 +1,5 @@
-// failing_disk FULL PLACES [SEED]: lets the disk be full from a random write on, in FULL scans, and gives PLACES files an
-// unreadable sector. The daemon lives, tells what it can, keeps every other scan, and works again when the fault has gone.
+// failing_disk FULL PLACES [SEED]: in FULL scans the disk is full from a random write on, and PLACES files get an unreadable
+// sector. The daemon must survive, serve what it can, keep every other scan, and work again when the fault is gone.
 
 import {readFileSync} from 'node:fs';
 import {join, relative} from 'node:path';
@@ -19,7 +19,7 @@ let moment = '';
 
 const modelOf = (id) => daemon.ask('GET', `/api/v1/scans/${id}/Scan.stl`);
 
-/** The daemon answers, and one scan has its model. */
+/** Checks that the daemon answers, and that a scan still has its model. */
 async function checkService(id, model) {
   require(daemon.isAlive, 'the daemon has ended');
   await daemon.get('/api/v1/status');
@@ -29,7 +29,7 @@ async function checkService(id, model) {
   require(reply.status === 200 && reply.body.equals(model), `the model of ${id} is not what it was: ${reply.status}`);
 }
 
-/** A scan on a disk that is full from one write on, until it ends; then the disk has room again. */
+/** Runs a scan on a disk that is full from one write on. After the scan's end the disk has room again. */
 async function fillDisk(faults, writes, id, model) {
   const first = 1 + random.below(writes);
   const error = random.pick(['ENOSPC', 'ENOSPC', 'EIO', 'EDQUOT']);
@@ -58,7 +58,7 @@ async function fillDisk(faults, writes, id, model) {
   }
 }
 
-/** A start on a disk that became full, or read-only, in the middle of a scan. */
+/** Starts the daemon on a disk that became full or read-only during a scan. */
 async function startOnABadDisk(faults, kinds, error, id, model) {
   moment = `start with ${error}`;
   const cut = await daemon.scan({...settings, snapshots: 100});
@@ -76,7 +76,7 @@ async function startOnABadDisk(faults, kinds, error, id, model) {
   require((await daemon.ask('DELETE', `/api/v1/scans/${cut.id}`)).status === 204, 'it cannot be deleted on a disk with room');
 }
 
-/** Starts the daemon on a file that cannot be read, or cannot be opened. */
+/** Starts the daemon with a file that cannot be read, or cannot be opened. */
 async function spoil(file, id, model) {
   const faults = new Faults(folder, file);
   moment = `${relative(folder, file)} is unreadable`;

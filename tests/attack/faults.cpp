@@ -1,9 +1,8 @@
-// A library that a test loads into the daemon before all others (LD_PRELOAD). It makes chosen calls
-// on the files of one folder fail, as a full disk or a bad sector would, and lets the time of day
-// jump.
+// A library that a test preloads into the daemon (LD_PRELOAD). It makes chosen system calls on the
+// files of one folder fail, as a full disk or a bad sector would, and lets the time of day jump.
 //
-// What fails is told by a file of eight numbers, 64 bits each, which stays mapped: the test writes
-// it at any moment. The environment has its path in OCTURN_FAULTS, and the folder's in
+// A mapped file of eight 64-bit numbers selects the failures, and the test may write it at any
+// moment. Its path is in the environment variable OCTURN_FAULTS, the folder's in
 // OCTURN_FAULTS_FOLDER.
 
 #include <dirent.h>
@@ -28,12 +27,12 @@
 
 namespace {
 
-/// What the test writes, and what it reads: the file.
+/// The file's content. The test writes all but `seen` and `failed`, which it reads.
 struct Faults {
-  std::uint64_t calls;              // which fail, bits of Call
-  std::uint64_t error;              // an errno
+  std::uint64_t calls;              // the calls that may fail, bits of Call
+  std::uint64_t error;              // errno of a failing call
   std::uint64_t first;              // number of the first such call that fails, from 1
-  std::uint64_t count;              // how many fail
+  std::uint64_t count;              // number of calls that fail
   std::atomic<std::uint64_t> seen;  // such calls so far
   std::atomic<std::uint64_t> failed;
   std::int64_t clock_seconds;  // added to the time of day
@@ -65,8 +64,8 @@ Faults* map_faults() {
   return memory == MAP_FAILED ? nullptr : static_cast<Faults*>(memory);
 }
 
-// Null until the library is initialised: a sanitizer opens and writes files before that, when there
-// is no environment yet.
+// Null until the library is initialised. A sanitizer opens and writes files before that, without an
+// environment.
 Faults* const mapped_faults = map_faults();
 const char* const folder_path = std::getenv("OCTURN_FAULTS_FOLDER");
 
@@ -86,7 +85,7 @@ bool is_ours(int file) {
   return length > 0 && is_ours(std::string_view(path.data(), static_cast<std::size_t>(length)));
 }
 
-/// Whether this call is to fail; errno then says how.
+/// Whether this call must fail; sets errno then.
 template <typename Place>
 bool fails(Call call, Place place) {
   Faults* const told = faults();
@@ -102,8 +101,8 @@ bool fails(Call call, Place place) {
   return true;
 }
 
-/// A full disk refuses what makes files, and still opens those that there are; a read-only one
-/// opens these for reading alone.
+/// Classifies an open. A full disk refuses to create files but opens existing ones; a read-only
+/// disk opens existing ones for reading only.
 Call to_call(const char* path, int flags) {
   if ((flags & O_CREAT) != 0 && ::access(path, F_OK) != 0) {
     return write_call;
@@ -113,7 +112,7 @@ Call to_call(const char* path, int flags) {
 
 }  // namespace
 
-// These have the names and types of the C library's.
+// Functions with the names and types of the C library's.
 // NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 

@@ -1,4 +1,4 @@
-// The test's side of faults.cpp: which calls of the daemon fail, and what time it is.
+// The test's side of faults.cpp: selects the daemon's failing calls, and its time of day.
 
 import {closeSync, ftruncateSync, openSync, readSync, writeSync} from 'node:fs';
 import {constants} from 'node:os';
@@ -11,32 +11,32 @@ export const reading = calls.open | calls.change | calls.read;
 const forever = 2n ** 60n;
 
 export class Faults {
-  /** @param {string} control  folder for the file that the daemon looks at @param {string} folder  whose files' calls can fail */
+  /** @param {string} control  folder for the control file @param {string} folder  calls on its files can fail */
   constructor(control, folder) {
     this.file = join(control, 'faults');
     this.descriptor = openSync(this.file, 'w+');
     this.env = {LD_PRELOAD: process.env.OCTURN_FAULTS_LIBRARY, OCTURN_FAULTS: this.file, OCTURN_FAULTS_FOLDER: folder};
-    ftruncateSync(this.descriptor, 64); // eight numbers, all 0: nothing fails
+    ftruncateSync(this.descriptor, 64); // eight numbers of 0: nothing fails
   }
 
-  /** From now on some of these calls fail: `count` of them, from the one of number `first` on, counted from 1. */
+  /** Lets `count` calls of these kinds fail from now on, beginning with number `first`, counted from 1. */
   fail(kinds, error, {first = 1, count = forever} = {}) {
     this.lift();
     [BigInt(constants.errno[error]), BigInt(first), BigInt(count), 0n, 0n].forEach((number, i) => this.put(1 + i, number));
     this.put(0, kinds);
   }
 
-  /** Nothing fails any more. */
+  /** Ends all failures. */
   lift() {
     this.put(0, 0n);
   }
 
-  /** The daemon's time of day is off by that. */
+  /** Sets the offset of the daemon's time of day. */
   setClock(seconds) {
     this.put(6, BigInt(seconds));
   }
 
-  /** How many calls of the kinds there were, and how many failed. */
+  /** The number of calls of the selected kinds, and of those that failed. */
   counts() {
     const numbers = Buffer.alloc(16);
     readSync(this.descriptor, numbers, 0, 16, 32);

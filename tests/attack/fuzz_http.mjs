@@ -1,6 +1,5 @@
-// fuzz_http REQUESTS [SEED]: sends the real daemon requests of every route, changed here and there, while scans run, are
-// resumed and removed. After each batch the daemon lives and tells its status to another address. No answer may be 500, nor JSON
-// that is none.
+// fuzz_http REQUESTS [SEED]: sends the real daemon mutated requests of every route while scans run, are resumed and deleted. After
+// each batch the daemon must be alive and give its status to another address. No response may have status 500 or invalid JSON.
 
 import {mkdirSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
 import {connect} from 'node:net';
@@ -15,9 +14,9 @@ const total = argument(0, 5000);
 const seed = argument(1, 20261123);
 const batch = 500;
 const together = 12; // fewer than the server lets one address hold
-const patience = 45_000; // ms, for a server that drains what was announced and did not come
+const patience = 45_000; // ms, as the server waits for the rest of an announced body
 
-/** Sends a request. @returns {Promise<Buffer>} what came back until the end */
+/** Sends a request. @returns {Promise<Buffer>} all bytes received until the connection ends */
 function exchange(port, {bytes, parts, ending}) {
   return new Promise((resolve, reject) => {
     const received = [];
@@ -40,7 +39,7 @@ function exchange(port, {bytes, parts, ending}) {
       }
     });
     socket.on('data', (part) => received.push(part));
-    socket.on('error', () => {}); // the server may have heard enough: what it said counts
+    socket.on('error', () => {}); // the server may close early; its response still counts
     socket.on('close', () => {
       clearTimeout(slow);
       resolve(Buffer.concat(received));
@@ -49,7 +48,7 @@ function exchange(port, {bytes, parts, ending}) {
   });
 }
 
-/** The status of an answer, which is looked at. */
+/** Checks a response. @returns its status */
 function check(answer) {
   const end = answer.indexOf('\r\n\r\n');
   if (end < 0) {
@@ -72,7 +71,7 @@ function check(answer) {
 }
 
 const folder = makeFolder();
-const root = join(folder, 'appliance'); // whose work nobody does but the fuzzer, by removing it
+const root = join(folder, 'appliance'); // its requests are not served; the fuzzer deletes them
 mkdirSync(join(root, 'requests'), {recursive: true});
 const daemon = await Daemon.start(folder, {more: ['--appliance', root], settings: {memory_limit_mb: 64}});
 const random = makeRandom(seed);
@@ -80,7 +79,7 @@ const statuses = {};
 let sent = 0;
 let recent = [];
 
-/** Sends one request after the other until the batch is through. */
+/** Sends one request after the other until the batch is complete. */
 async function sendSome(known, end) {
   while (sent < end) {
     ++sent;

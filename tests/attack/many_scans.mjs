@@ -1,5 +1,5 @@
-// many_scans SCANS: a data folder of so many scans, every second one unfinished. The start and each answer take as long for
-// a scan as with a tenth of them, within the machine's moods, and memory stays bounded.
+// many_scans SCANS: a data folder of SCANS scans, every second one unfinished. The times per scan of the start and of the list, and
+// the time of the status, must be about those with a tenth of the scans, and memory per scan is bounded.
 
 import {renameSync, rmSync} from 'node:fs';
 import {join} from 'node:path';
@@ -9,10 +9,10 @@ import {copyScan, idOf} from './scans.mjs';
 
 const count = argument(0, 2000);
 const folder = makeFolder();
-const slack = 4; // how much slower a scan may be than with a tenth of them, on a busy machine
-const moment = 2000; // ms that any machine may take for anything
+const slack = 4; // allowed factor for the load of a busy machine
+const moment = 2000; // ms, allowance for a busy machine
 
-/** The time that something takes, ms, the shortest of some. */
+/** The shortest duration of several runs of an action, ms. */
 async function time(action, times = 3) {
   let shortest = Infinity;
   for (let i = 0; i < times; ++i) {
@@ -23,7 +23,7 @@ async function time(action, times = 3) {
   return shortest;
 }
 
-/** What the daemon takes for a folder of so many scans. */
+/** Measures the daemon on the folder as it is. */
 async function measure() {
   let daemon;
   const start = await time(async () => {
@@ -65,5 +65,5 @@ for (const what of ['start', 'list']) {
   require(many[what] < moment + 10 * slack * few[what], `${what} takes longer for each scan where there are more`);
 }
 require(many.status < 50 + 2 * slack * few.status, 'status takes longer where there are more scans');
-// They are held in memory, and their list is made there as text, some times at once.
+// Scans are held in memory, and so is the text of their list, possibly several times at once.
 requireMemory(many.memory - few.memory < 50_000 * count, 'a scan takes more than 50 kB of memory');

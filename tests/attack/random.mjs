@@ -1,4 +1,4 @@
-// Numbers that look random and are the same for the same seed.
+// Reproducible pseudorandom numbers.
 
 /** @typedef {{below: (n: number) => number, chance: (p: number) => boolean, pick: <T>(list: T[]) => T, bytes: (n: number) => Buffer}} Random */
 

@@ -1,6 +1,6 @@
 // random_kills KILLS [SEED]: kills the daemon (SIGKILL) at random moments of scans, every third time while a model is built, and
-// starts it again. Every scan that was accepted is there, with every snapshot that was told of; no file is a part of one;
-// in the end all are resumed, and finish.
+// restarts it. Every accepted scan must still be there with every snapshot that was reported, and no file may be partial. At the end
+// all scans are resumed and must finish.
 
 import {argument, Daemon, makeFolder, require, requireWholeFiles, sleep, until} from './daemon.mjs';
 import {makeRandom} from './random.mjs';
@@ -9,10 +9,10 @@ const kills = argument(0, 8);
 const seed = argument(1, 20261123);
 const random = makeRandom(seed);
 const folder = makeFolder();
-const kept = 20; // finished scans, beyond which the oldest are deleted
+const kept = 20; // finished scans; older ones are deleted
 
 let daemon = await Daemon.start(folder);
-const told = new Map(); // how many snapshots of each accepted scan the daemon has told of
+const told = new Map(); // the number of snapshots that the daemon reported, by accepted scan
 const phases = {};
 let resumed = 0;
 
@@ -22,7 +22,7 @@ async function look(id) {
   return scan;
 }
 
-/** What is scanned next: an interrupted scan goes on, or a new one starts. */
+/** Resumes an interrupted scan, or starts a new one. */
 async function begin() {
   const {scans} = await daemon.get('/api/v1/scans');
   const interrupted = scans.find((scan) => scan.state === 'interrupted' || scan.state === 'paused');
@@ -38,7 +38,7 @@ async function begin() {
   return id;
 }
 
-/** Waits until the moment in which the daemon dies. */
+/** Waits until the moment at which the daemon is killed. */
 async function waitForTheMoment(id, inBuilding) {
   if (inBuilding) {
     await until(async () => {

@@ -1,4 +1,4 @@
-// Requests as clients send them, and as they do not: of every route of web/API.md, each changed here and there.
+// Requests of every route of web/API.md, valid and randomly mutated.
 
 const settings = {
   snapshots: [1, 2, 3, 0, -1, 3.5, 1e9, '3'], filter: ['basic', 'average', 'average-discard', 'none', 1], frames: [1, 2, 0, 1e9],
@@ -9,7 +9,7 @@ const settings = {
 };
 const odd = [null, true, -0, 1e999, '', '\u0000', '\ud800', 'ä€😀', [], {}, [[]], '../..', 'x'.repeat(300), 2 ** 53, -(2 ** 63)];
 
-/** JSON that is often what a route wants, and now and then far from it. */
+/** JSON that is mostly valid for a route, and sometimes far from it. */
 function someJson(random, keys) {
   if (random.chance(0.03)) {
     const depth = random.pick([10, 100, 2000, 10_000]);
@@ -38,7 +38,7 @@ const wifi = {name: ['Home', ''], password: ['open sesame', 'short'], country: [
 const queries = ['', '', '', '?leaf_size_mm=4', '?leaf_size_mm=8&level=9', '?level=x', '?leaf_size_mm=', '?&&=&a', `?${'a=1&'.repeat(50)}`,
   '?leaf_size_mm=%', '?leaf_size_mm=1e999', '?%00=%ff'];
 
-// How often, method, path, what its body is made of.
+// Relative frequency, method, path, values of the body's keys.
 const routes = [
   [4, 'GET', '/'], [2, 'GET', '/style.css'], [8, 'GET', '/api/v1/status'], [4, 'GET', '/api/v1/settings'], [4, 'GET', '/Scan.stl'],
   [0.2, 'GET', '/api/v1/doctor'], [0.2, 'GET', '/api/v1/diagnostics.zip'], [1, 'GET', '/api/v1/preview/depth.png'],
@@ -78,7 +78,7 @@ const otherHeaders = [
   ' folded: yes', 'no colon', ': no name', 'X\u0000Y: z', 'Content-Length: 0', 'Transfer-Encoding: identity', 'TE: trailers',
 ];
 
-/** The body in chunks, often as it should be. */
+/** The body in chunked transfer coding, mostly valid. */
 function inChunks(random, body) {
   const parts = [];
   for (let at = 0; at < body.length;) {
@@ -91,7 +91,7 @@ function inChunks(random, body) {
   return Buffer.concat(parts);
 }
 
-/** Some bytes of a text lost, doubled, or replaced. */
+/** Deletes, duplicates or replaces some bytes. */
 function damage(random, bytes) {
   const at = random.below(bytes.length);
   const to = Math.min(bytes.length, at + 1 + random.below(20));
@@ -130,8 +130,8 @@ function headersOf(random, port, isUpload) {
 
 /**
  * @param {import('./random.mjs').Random} random
- * @param {{ids: string[], port: number}} known  of the server
- * @returns {{bytes: Buffer, parts: number, ending: 'end'|'reset'}}  what is sent, in how many parts, and how it then ends
+ * @param {{ids: string[], port: number}} known  the server's scans and port
+ * @returns {{bytes: Buffer, parts: number, ending: 'end'|'reset'}}  the bytes, the number of writes, and how the connection ends
  */
 export function someRequest(random, known) {
   const [, usual, path, content] = someRoute(random);

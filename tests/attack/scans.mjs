@@ -1,9 +1,9 @@
-// Many scans of few: folders of scans again, under other names.
+// Multiplies scans by copying their folders under other names.
 
 import {cpSync, linkSync, mkdirSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 
-/** A scan folder again, under another name: small files copied, large ones shared. */
+/** Copies a scan folder: small files are copied, large ones hard-linked. */
 export function copyScan(from, to) {
   mkdirSync(join(to, 'snapshots'), {recursive: true});
   for (const entry of readdirSync(from, {withFileTypes: true, recursive: true})) {
@@ -18,7 +18,7 @@ export function copyScan(from, to) {
   }
 }
 
-/** The id of a scan that was taken `i` minutes after the year 2020 began. */
+/** The id of a scan taken `i` minutes after the start of 2020. */
 export function idOf(i) {
   const time = new Date(Date.UTC(2020, 0, 1) + i * 60_000).toISOString().replace(/[-:]/g, '');
   return `${time.slice(0, 8)}-${time.slice(9, 15)}-${i.toString(16).padStart(4, '0').slice(-4)}`;

@@ -1,5 +1,6 @@
-// slow_clients CLIENTS LOOKS: as many clients at once, of each kind that keeps a server waiting, from one address and from as many
-// addresses, each back as soon as it is cut off. The page of another address is answered meanwhile, LOOKS times; how fast, is told.
+// slow_clients CLIENTS LOOKS: for each kind of client that keeps a server waiting, CLIENTS of them connect at once, from one address and
+// from as many addresses, and reconnect when they are cut off. Meanwhile another address requests the page LOOKS times and must be
+// answered; the times are printed.
 
 import {connect} from 'node:net';
 
@@ -14,7 +15,7 @@ const post = (type, length) => `POST /api/v1/scans HTTP/1.1\r\nHost: localhost\r
 const get = (path) => `GET ${path} HTTP/1.1\r\nHost: localhost\r\n\r\n`;
 
 /**
- * What each kind sends at once, and each `every` ms; whether it reads what is answered.
+ * The kinds of clients: what each sends at once, what it sends every `every` ms, and whether it reads the response.
  * @param {string} model  the path of a large file
  */
 const kinds = (model) => ({
@@ -29,7 +30,7 @@ const kinds = (model) => ({
   'whole requests': {says: get('/'), leaves: true},
 });
 
-/** Clients of a kind that come back until they are told to end. */
+/** Clients of one kind that reconnect until they are told to end. */
 class Crowd {
   #isEnding = false;
   #sockets = new Set();
@@ -71,7 +72,7 @@ class Crowd {
   }
 }
 
-/** Milliseconds of each look at the page and at the status. */
+/** The durations of requests for the page and the status, ms. */
 async function timesOf(daemon) {
   const times = [];
   for (let i = 0; i < looks; ++i) {

@@ -9,7 +9,7 @@ namespace octurn {
 
 inline constexpr std::size_t shots = 8;
 
-/// Of a ball, at the size of a Kinect v1's image.
+/// Snapshots of a ball at the size of a Kinect v1's image.
 inline const std::vector<Snapshot>& snapshots() {
   static const std::vector<Snapshot> all = [] {
     std::vector<Snapshot> made;

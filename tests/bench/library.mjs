@@ -1,5 +1,5 @@
-// A library of many scans: the answer of GET scans in milliseconds and bytes, and the page that shows and scrolls them in headless
-// Chromium: the time of its main thread, the tasks that keep it for more than 50 ms, and the frames that come late.
+// Measures a library of many scans: time and bytes of GET scans, and of the page that shows and scrolls them in headless Chromium
+// the time of its main thread, the tasks longer than 50 ms, and the late frames.
 //
 //   node tests/bench/library.mjs BUILD_FOLDER [SCANS]   with the page's tests built in it (target octurn_e2e); 1000 scans
 
@@ -20,12 +20,12 @@ const tested = (name) => import(pathToFileURL(resolve(build, 'tests/e2e', name))
 const {openBrowser, openPage} = await tested('browser.js');
 const {ask, scan, startScanner} = await tested('scanner.js');
 
-const turns = 40;  // of the wheel
+const turns = 40;  // turns of the mouse wheel
 const ends = [];
 const t = {after: (end) => ends.unshift(end)};
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-/** One answer as it goes over the network. @returns {Promise<{ms: number, bytes: number}>} */
+/** Requests a URL. @returns {Promise<{ms: number, bytes: number}>} duration, and bytes as transferred */
 const answer = (url, headers) => new Promise((done, fail) => {
   const begin = performance.now();
   let bytes = 0;
@@ -48,7 +48,7 @@ async function tellAnswers(scanner) {
   console.log(`GET scans, unchanged: ${unchanged.ms.toFixed(1)} ms, ${unchanged.status}, ${unchanged.bytes} bytes`);
 }
 
-/** Does something on the page, and tells what it cost. */
+/** Runs an action on the page, and prints its cost. */
 async function tell(page, session, name, action) {
   const seconds = async () => {
     const {metrics} = await session.send('Performance.getMetrics');
@@ -78,12 +78,12 @@ async function tell(page, session, name, action) {
     return seen;
   });
   const cost = (key) => `${Math.round(1000 * (after[key] - before[key]))} ms`;
-  const late = frames.filter((interval) => interval > 25).length;  // of 16.7 ms: one was dropped at least
+  const late = frames.filter((interval) => interval > 25).length;  // at 16.7 ms a frame, at least one was dropped
   console.log(`${name}: ${Math.round(ms)} ms; main thread ${cost('main')}, of it script ${cost('script')}, style and layout ${cost('layout')}; ` +
     `${tasks.length} long tasks, ${Math.round(Math.max(0, ...tasks))} ms the longest; ${late} of ${frames.length} frames late`);
 }
 
-/** Scrolls from the top to the end by the wheel. */
+/** Scrolls from the top to the end with the mouse wheel. */
 async function scroll(page) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight - innerHeight);
   await page.evaluate(() => scrollTo(0, 0));

@@ -33,7 +33,7 @@ ReconstructOptions options_for(const benchmark::State& state, int threads = 1) {
           .threads = threads};
 }
 
-/// Everything up to the surface.
+/// A reconstruction with all snapshots added, before its surface is made.
 std::unique_ptr<Reconstructor> reconstruction_for(const benchmark::State& state) {
   std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options_for(state));
   reconstruction->add(source());
@@ -123,7 +123,7 @@ void write_the_file(benchmark::State& state) {
 }
 BENCHMARK(write_the_file)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-/// From snapshots in memory to facets that nobody takes. The second argument is the threads.
+/// From snapshots in memory to facets that are discarded. The second argument is the thread count.
 void reconstruct_the_whole(benchmark::State& state) {
   std::uint64_t facets = 0;
   for (auto unused : state) {

@@ -14,10 +14,10 @@
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 
-// The technique as its text tells it (Bennett 2014), for `compare`: nodes that point to their eight
-// children, every triangle tested from the root down by separating axes, a hash set of
-// pseudo-voxels, one thread. It reads scans and rounds corners as the library does, so that it must
-// give as many triangles; everything between is its own.
+// A direct implementation of Bennett 2014, for `compare`: nodes that point to their eight children,
+// every triangle tested from the root down by separating axes, a hash set of pseudo-voxels, one
+// thread. It reads scans and rounds corners like the library, so it must give as many triangles;
+// everything else is independent.
 //
 //   plain SCAN_DIR OUTPUT.stl LEAF_MM
 
@@ -36,7 +36,7 @@ std::int64_t dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// A triangle, and the thirteen axes on which it and a box may lie apart (Akenine-Moller 2001).
+/// A triangle, and the thirteen axes that may separate it from a box (Akenine-Moller 2001).
 struct Triangle {
   std::array<Vector, 3> corners = {};
   std::array<Vector, 13> axes = {};
@@ -151,7 +151,7 @@ class PlainOctree {
   Node root_ = {};
 };
 
-/// Marching Tetrahedra on the pseudo-voxels around every leaf, each visited once.
+/// Marching tetrahedra on the pseudo-voxels around every leaf, each visited once.
 class PlainSurface {
  public:
   PlainSurface(const PlainOctree& octree, const std::string& file)

@@ -8,15 +8,15 @@
 #include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
 
-// What happens to each snapshot before its triangles are made, at the size of a Kinect v1's image.
+// The processing of a snapshot before triangulation, at the size of a Kinect v1's image.
 
 namespace octurn {
 namespace {
 
 constexpr Intrinsics kinect{};
 
-/// A ball of 0.1 m radius, 0.7 m away in the middle of the image, before a wall at 1.1 m; one
-/// column in sixteen is without a reading.
+/// A ball of 0.1 m radius, 0.7 m away at the image's centre, in front of a wall at 1.1 m. One
+/// column in sixteen has no readings.
 DepthFrame ball_before_wall() {
   DepthFrame frame{.width = kinect.width, .height = kinect.height, .depth = {}};
   for (int v = 0; v < kinect.height; ++v) {

@@ -32,7 +32,7 @@ void integrate_a_snapshot(benchmark::State& state) {
   const ConditionedDepth depth(snapshots().front(), ball_clip);
   const double leaf_size = options_for(state).leaf_size;
   const int levels = Octree::level_for(1.0, leaf_size);
-  // A volume that it was integrated into before: no brick is new.
+  // The snapshot was integrated into this volume before, so that no brick is new.
   TsdfVolume volume(VoxelGrid(1.0, levels, ball_clip, 0.0035));
   integrate(volume, depth);
   for (auto unused : state) {
@@ -64,7 +64,7 @@ BENCHMARK(make_a_surface_of_fewer_triangles)
     ->Arg(500)
     ->Unit(benchmark::kMillisecond);
 
-/// From snapshots in memory to facets that nobody takes. The second argument is the threads.
+/// From snapshots in memory to facets that are discarded. The second argument is the thread count.
 void make_the_whole_solid(benchmark::State& state) {
   std::uint64_t facets = 0;
   for (auto unused : state) {

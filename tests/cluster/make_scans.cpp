@@ -1,10 +1,10 @@
-// Scans for tests and benchmarks.
+// Makes scans for tests and benchmarks.
 //
-//   make_scans room FOLDER POSES         a chamber, seen by few samples
-//   make_scans large-room FOLDER POSES   6 x 5 x 2.5 m, seen by a Kinect
-//   make_scans turns FOLDER COUNT        as many turns of a ball, seen by few samples:
-//   FOLDER/scan-00 and on make_scans kinect-turns FOLDER COUNT the same, of 36 snapshots by a
-//   Kinect
+//   make_scans room FOLDER POSES          a chamber, seen in few samples
+//   make_scans large-room FOLDER POSES    a room of 6 x 5 x 2.5 m, seen by a Kinect
+//   make_scans turns FOLDER COUNT         turns of a ball, seen in few samples, in
+//                                         FOLDER/scan-00, FOLDER/scan-01, ...
+//   make_scans kinect-turns FOLDER COUNT  turns of 36 snapshots by a Kinect
 
 #include <iostream>
 #include <string>
@@ -21,7 +21,7 @@ void write_turn(const std::filesystem::path& folder, int number, int snapshots,
             .intrinsics = lens,
             .platform_from_sensor = ball_sensor_pose(),
             .clip = ball_clip};
-  scan.clip.max.z() = 0.1 - 0.001 * number;  // each is another model
+  scan.clip.max.z() = 0.1 - 0.001 * number;  // makes each model different
   for (int i = 0; i < snapshots; ++i) {
     const double angle =
         ball_angle(static_cast<std::size_t>(i), static_cast<std::size_t>(snapshots));

@@ -7,8 +7,8 @@
 #include "octurn/error.hpp"
 #include "octurn/png.hpp"
 
-// Whatever the bytes, they are refused by an Error, or they are a depth image or a camera's picture
-// that comes back the same from an encoder and decoder.
+// Any bytes are refused by an Error, or give a depth image or a camera picture that survives a
+// round trip through encoder and decoder.
 
 namespace {
 
@@ -32,8 +32,8 @@ std::uint32_t big_endian(std::span<const std::byte, 4> bytes) {
   return value;
 }
 
-/// Gives each chunk its right checksum, which mutations hardly ever meet: signature of 8 bytes,
-/// then chunks of length, type, `length` bytes and checksum.
+/// Corrects each chunk's checksum, which mutations hardly ever hit. A PNG is a signature of 8
+/// bytes, then chunks of length, type, `length` bytes and checksum.
 void mend_checksums(std::span<std::byte> png) {
   std::size_t start = 8;
   while (start + 12 <= png.size()) {
@@ -72,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::abort();
     }
   } catch (const Error&) {
-    // no picture; it may be a depth image
+    // not a picture; maybe a depth image
   }
   DepthFrame frame;
   try {

@@ -7,8 +7,8 @@
 #include "camera/colour_picture.hpp"
 #include "camera/jpeg_picture.hpp"
 
-// Whatever a camera sends for a JPEG, it is a damaged picture or one of its size, and its luminance
-// is the same with its colours.
+// Any bytes sent as a JPEG give no picture, or one of the camera's size whose luminance is the same
+// whether its colours are decoded or not.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace octurn;

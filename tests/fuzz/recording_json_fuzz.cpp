@@ -7,8 +7,8 @@
 #include "octurn/error.hpp"
 #include "sensor/recording.hpp"
 
-// Whatever the text, it is refused by an Error of one line, or it is a recording that a sensor can
-// be made of.
+// Any text is refused by an Error of one line, or gives a recording from which a sensor can be
+// made.
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-// Runs a fuzzer on every file of a folder, where the compiler has no libFuzzer.
+// Runs a fuzz target on every file of a folder, for compilers without libFuzzer.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 

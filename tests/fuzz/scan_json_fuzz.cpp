@@ -9,8 +9,8 @@
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 
-// Whatever the text, it is refused by an Error of one line, or it is a scan that keeps what its
-// header promises.
+// Any text is refused by an Error of one line, or gives a scan with the properties that
+// octurn/scan_folder.hpp promises.
 
 namespace {
 

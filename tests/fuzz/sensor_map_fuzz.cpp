@@ -6,8 +6,8 @@
 #include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
 
-// Whatever the bytes, they are refused by an Error, or they are a map that comes back the same from
-// an encoder and decoder.
+// Any bytes are refused by an Error, or give a sensor map that survives a round trip through
+// encoder and decoder.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace octurn;

@@ -9,7 +9,7 @@
 #include "octurn/snapshot.hpp"
 #include "tsdf/solid_reconstructor.hpp"
 
-// Whatever the sensor says, the solid part has no open edge, no bad fan, and is one.
+// For any depths, the solid model is one closed, manifold part.
 
 namespace {
 
@@ -22,7 +22,7 @@ void require(bool promise) {
 constexpr int width = 24;
 constexpr int height = 18;
 
-/// Looks down at the platform; each byte is a sample, from 0.55 to 0.70 m away.
+/// A snapshot of a sensor that looks down at the platform. Each byte is a sample at 0.55 to 0.70 m.
 octurn::Snapshot snapshot_of(const std::uint8_t* data, double angle) {
   octurn::Snapshot snapshot;
   snapshot.intrinsics = {.width = width,

@@ -12,18 +12,18 @@
 #include "core/bennett/plain_octree.hpp"
 #include "core/mesh/surface.hpp"
 
-// Whatever the triangles, tiny or huge, without area, on the borders of leaves or outside the root:
-// the octree has the leaves of the plain one, at every level and by any slabs, its surface is the
-// plain one's, and it is closed and manifold. That holds without exception, also where leaves touch
-// along an edge or at a corner only: between two such leaves and the two empty ones beside them the
-// tetrahedra always decide the same way, so that no edge gets four facets and no vertex two fans.
+// For any triangles (tiny, huge, degenerate, on leaf faces, outside the root) the octree has the
+// plain octree's leaves, at every level and for any slabs. Its surface is the plain one's, closed
+// and manifold, also where leaves touch at an edge or a corner only: around two such leaves and the
+// two empty ones beside them the tetrahedra decide consistently, so that no edge gets four facets
+// and no vertex two fans.
 
 namespace {
 
 using namespace octurn;
 
 constexpr int most_triangles = 12;
-constexpr int most_leaves_across = 40;  // of a triangle; the plain octree is slow
+constexpr int most_leaves_across = 40;  // per triangle, as the plain octree is slow
 constexpr std::size_t most_leaves = 3000;
 
 void require(bool promise) {
@@ -32,7 +32,7 @@ void require(bool promise) {
   }
 }
 
-/// Numbers from the input's bytes; zeros when they are used up.
+/// Reads numbers from the input's bytes, and zeros after their end.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -48,7 +48,7 @@ class Bytes {
     return value;
   }
 
-  /// From low to high, both included.
+  /// An integer in [low, high].
   int between(int low, int high, std::size_t count) {
     return low + static_cast<int>(take(count) % static_cast<std::uint32_t>(high - low + 1));
   }
@@ -62,7 +62,8 @@ using Corners = std::array<SnapPoint, 3>;
 
 std::int32_t in_reach(int at) { return std::clamp(at, -root, 2 * root - 1) | 1; }
 
-/// Corners anywhere on the snap grid, or as offsets from the first, in units or in leaves.
+/// A triangle on the snap grid. Corners are anywhere, or offsets from the first in grid units or in
+/// leaves.
 Corners grid_triangle(Bytes& bytes, int levels, int kind) {
   const int leaf = 1 << (SnapGrid::bits - levels);
   Corners corners{};
@@ -73,7 +74,7 @@ Corners grid_triangle(Bytes& bytes, int levels, int kind) {
         at = in_reach(bytes.between(-root, 2 * root - 1, 3));
       } else if (kind == 1) {
         at = in_reach(corners[0][axis] + bytes.between(-128, 127, 1));
-      } else {  // beside a face of a leaf, on this side or that
+      } else {  // next to a leaf face, on either side
         const int offset = bytes.between(-128, 127, 1);
         at = in_reach((corners[0][axis] / leaf + offset / 4) * leaf - offset % 2);
       }
@@ -82,7 +83,7 @@ Corners grid_triangle(Bytes& bytes, int levels, int kind) {
   return corners;
 }
 
-/// Corners of any bits, as metres: huge, infinite and no numbers among them.
+/// A triangle whose corners are arbitrary bit patterns as metres, including infinities and NaN.
 std::optional<Corners> metre_triangle(Bytes& bytes, const SnapGrid& snap_grid) {
   Corners corners{};
   for (SnapPoint& corner : corners) {
@@ -112,7 +113,7 @@ std::vector<Corners> soup_from(Bytes& bytes, int levels) {
   return soup;
 }
 
-/// The surface of one range of layers after the other, each from an octree that holds no more.
+/// The surface made slab by slab, each from an octree with the slab's layers only.
 std::vector<Facet> surface_by_slabs(const std::vector<Corners>& soup, int levels, int height) {
   std::vector<Facet> facets;
   const int top = all_layers(Octree(1.0, levels)).end;

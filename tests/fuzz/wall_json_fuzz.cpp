@@ -7,7 +7,7 @@
 #include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
 
-// Whatever the text, it is refused by an Error, or it is a wall whose frames lie in its folder.
+// Any text is refused by an Error, or gives a wall whose frames lie in its folder.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace octurn;

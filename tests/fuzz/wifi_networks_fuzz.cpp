@@ -10,8 +10,8 @@
 #include "appliance/wifi_networks.hpp"
 #include "appliance/wifi_request.hpp"
 
-// Whatever the table, each network that is taken from it can be asked for, is there once, and none
-// is stronger than the one before it.
+// For any table, the networks taken from it can be joined by a request, are unique, and are sorted
+// by decreasing signal.
 
 namespace {
 

@@ -1,5 +1,5 @@
-// Starts the image, scans in it, and says what it cost. Arguments: the machine, the folder of its card, and how often power is
-// cut then.
+// Boots the image, scans in it, and prints times and memory. Arguments: the machine, the card's folder, and the number of power cuts
+// after that.
 
 import {readFile} from 'node:fs/promises';
 
@@ -53,11 +53,11 @@ async function testDoctor(guest) {
 }
 
 async function testSystem(guest) {
-  // The name as the others in the network know it: avahi's, which is another after a conflict.
+  // The name announced in the network is avahi's, which differs from the hostname after a conflict.
   const name = await guest.run('cat /proc/sys/kernel/hostname; busctl call org.freedesktop.Avahi / org.freedesktop.Avahi.Server GetHostName');
   require(/^boot-test\s+s "boot-test"$/.test(name), `octurn.txt gives the name boot-test, and it is ${name}`);
   const kept = await guest.run('stat -c %a /data/wifi; cat /data/wifi');
-  // The password stays until WPA2 has let the scanner in: WPA3 would need it. Here is no WiFi that could.
+  // The password is kept until the scanner has joined by WPA2, as WPA3 would need it. This machine has no WiFi to join.
   const password = Buffer.from(wifi.password).toString('hex');
   require(kept === `600\n49454545 ${wifi.key} ${password}`, `of the WiFi is kept: ${kept}`);
   const used = await guest.run('grep psk= /etc/wpa_supplicant/wpa_supplicant-wlan0.conf');
@@ -70,7 +70,7 @@ async function testSystem(guest) {
   say(`data partition of ${size} MiB, no failed units, errors in the journal: ${errors || 'none'}`);
 }
 
-/** Before the plug is pulled: the tests of power cuts and updates look for them again. */
+/** Stores the settings for which the tests of power cuts and updates look again. */
 async function testKept(guest) {
   await setWhatIsKept(guest);
   await guest.run('systemctl restart octurn', patience);
@@ -79,10 +79,10 @@ async function testKept(guest) {
   say('setting, pose and sensor map are kept when the daemon starts again');
 }
 
-/** Waits for a file on the card, which is not there before it is complete. */
+/** Waits for a file on the card, which appears only when it is complete. */
 const cardHas = (name) => until(`${name} on the card`, () => readCard(card, name).catch(() => ''), patience);
 
-/** What the scanner's owner sees when the card, of a scanner of this version, is in another computer. */
+/** Checks the files that the scanner's owner sees on the card in another computer. */
 async function testCard(version) {
   const settings = await readCard(card, 'octurn.txt');
   const given = await readFile(`${card}/octurn.txt`, 'utf8');

@@ -1,20 +1,20 @@
-// What the tests of the image have in common.
+// Functions shared by the image's tests.
 
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {secondsSince} from './guest.mjs';
 
-/** Seconds that a test waits for anything on `virt`, on a machine with other work. */
+/** Timeout of a wait on `virt`, seconds, on a busy machine. */
 export const patience = 600;
 
-/** @throws {Error}  unless something is so */
+/** @throws {Error}  unless the condition holds */
 export function require(condition, text) {
   if (!condition) {
     throw new Error(text);
   }
 }
 
-/** Waits until `ask` resolves to something true, and returns that. */
+/** Polls until `ask` resolves to something truthy, and returns that. */
 export async function until(what, ask, seconds = patience) {
   const begin = performance.now();
   for (;;) {
@@ -28,8 +28,8 @@ export async function until(what, ask, seconds = patience) {
 }
 
 /**
- * Runs a test of the guest that `guest()` gives, and always ends it: also when the test is ended. @param {string} name  of the
- * test @param {() => import('./guest.mjs').Guest | undefined} guest @param {() => Promise<void>} work
+ * Runs a test with the guest that `guest()` returns, and always stops that guest, also when the test is killed. @param {string} name
+ * of the test @param {() => import('./guest.mjs').Guest | undefined} guest @param {() => Promise<void>} work
  */
 export async function runTest(name, guest, work) {
   for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) {

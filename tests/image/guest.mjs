@@ -1,4 +1,4 @@
-// A machine in QEMU that starts from a card as the Raspberry Pi's firmware would start it.
+// A machine in QEMU that boots from a card like the Raspberry Pi's firmware would.
 
 import {execFile, spawn} from 'node:child_process';
 import {once} from 'node:events';
@@ -10,8 +10,8 @@ import {promisify} from 'node:util';
 
 import {wakeUp} from '../emulation/wake_up.mjs';
 
-/** What differs between QEMU's machines: its options, the name of the console that is QEMU's standard output, and the seconds
- * within which its page answers, where these are more than 3. */
+/** The differences between QEMU's machines: options, the name of the console on QEMU's standard output, and the timeout of its page's
+ * answers where it is more than 3 seconds. */
 const machines = {
   virt: {
     console: 'ttyAMA0',
@@ -23,7 +23,7 @@ const machines = {
       '-device', 'virtio-rng-pci',
     ],
     usb: ['-device', 'qemu-xhci'],
-    kernel: ['norandmaps'],  // or QEMU 7.2 translates a library anew for each process
+    kernel: ['norandmaps'],  // otherwise QEMU 7.2 translates a library again for each process
   },
   raspi3b: {
     console: 'ttyS1',
@@ -38,7 +38,7 @@ const machines = {
   },
 };
 
-/** @returns {Promise<number>} a port of this machine's loopback that nobody uses */
+/** @returns {Promise<number>} a free port of this machine's loopback */
 async function freePort() {
   const server = createServer().listen(0, '127.0.0.1');
   await once(server, 'listening');
@@ -48,12 +48,12 @@ async function freePort() {
   return port;
 }
 
-/** A file of the FAT partition. @param {string} card  the folder with card.img */
+/** Reads a file of the FAT partition. @param {string} card  the folder with card.img */
 export async function readCard(card, name) {
   return (await promisify(execFile)('mtype', ['-i', `${card}/card.img@@1M`, `::${name}`])).stdout;
 }
 
-/** Copies what the Pi's firmware reads, the kernel of the system that config.txt names, to the folder of the card. */
+/** Extracts the files that the Pi's firmware loads, those of the system that config.txt selects, into the card's folder. */
 async function readSystem(card) {
   const system = (await readCard(card, 'config.txt')).match(/^os_prefix=(.*)$/m)[1];
   const files = ['vmlinuz', 'initrd.img', 'cmdline.txt', 'bcm2837-rpi-3-b.dtb'].map((file) => `::${system}${file}`);
@@ -63,14 +63,14 @@ async function readSystem(card) {
 /** Seconds since `start`, of performance.now(). */
 export const secondsSince = (start) => (performance.now() - start) / 1000;
 
-// A second of its clock is half a billion instructions, however busy this machine is.
+// The guest's clock counts instructions, half a billion a second, however busy this machine is.
 machines.twin = {...machines.raspi3b, pace: ['-icount', 'shift=1'], answers: 40};
 
 export class Guest {
   #qemu;
   #said = '';
   #commands = 0;
-  #answers;  // within as many seconds, when it is there
+  #answers;  // timeout of the page's answers, seconds
 
   /** Switches on. @param {'virt' | 'raspi3b' | 'twin'} name @param {string} card  the folder with card.img
    * @param {string} [stick]  the image of a USB stick that is plugged in
@@ -80,10 +80,10 @@ export class Guest {
     const port = await freePort();
     const machine = machines[name];
     const line = (await readFile(`${card}/cmdline.txt`, 'utf8')).trim().replace(/console=\S+ */g, '');
-    // A shell on the console, which no image has of itself, is what this test looks inside with.
+    // The test runs commands in a debug shell on the console, which the image itself does not have.
     const kernel = [line, `console=${machine.console}`, `systemd.debug_shell=${machine.console}`,
       `systemd.mask=serial-getty@${machine.console}.service`, 'systemd.show_status=0',
-      // An emulated machine on a busy one takes its time, and systemd's clock does not wait.
+      // An emulated machine is slow on a busy host, but systemd's timeouts run in real time.
       'systemd.default_device_timeout_sec=600', 'systemd.default_timeout_start_sec=600', ...machine.kernel];
     const guest = new Guest();
     guest.start = performance.now();
@@ -110,7 +110,7 @@ export class Guest {
     return guest;
   }
 
-  /** Polls `ready`, which resolves to undefined until it has an answer. */
+  /** Polls until `ready` resolves to something other than undefined. */
   async #until(what, seconds, ready) {
     const begin = performance.now();
     while (secondsSince(begin) < seconds) {
@@ -136,7 +136,7 @@ export class Guest {
           found ??= secondsSince(this.start);
         }
       } catch {
-        // QEMU accepts connections before the guest does, and these are lost: so others are made meanwhile.
+        // QEMU accepts connections before the guest listens, and these are lost; so new ones are made meanwhile.
       }
     };
     return this.#until('page', seconds, async () => {
@@ -146,13 +146,13 @@ export class Guest {
     });
   }
 
-  /** @returns {Promise<number>} seconds of this machine's processors that the guest has had, however busy these are */
+  /** @returns {Promise<number>} CPU seconds of QEMU so far, which do not depend on other load */
   async processorSeconds() {
     const fields = (await readFile(`/proc/${this.#qemu.pid}/stat`, 'utf8')).replace(/^.*\) /, '').split(' ');
-    return (Number(fields[11]) + Number(fields[12])) / 100;  // user and system, in the hundredths that the kernel tells
+    return (Number(fields[11]) + Number(fields[12])) / 100;  // user and system, in clock ticks of 1/100 s
   }
 
-  /** Asks the API. @returns {Promise<any>} */
+  /** Calls the API. @returns {Promise<any>} */
   async ask(path, method = 'GET', body = undefined) {
     const response = await fetch(`${this.url}api/v1/${path}`, {
       method, headers: {'Content-Type': 'application/json'}, body: body && JSON.stringify(body),
@@ -163,7 +163,7 @@ export class Guest {
     return response.json();
   }
 
-  /** Starts a scan, once the sensor has sent its first frame, which an emulated processor takes its time for. */
+  /** Starts a scan as soon as the sensor has sent its first frame, which takes long on an emulated processor. */
   async startScan(settings, seconds) {
     return this.#until('scan', seconds, async () => {
       try {
@@ -181,7 +181,7 @@ export class Guest {
   async run(command, seconds = 60) {
     const name = `command-${++this.#commands}`;
     const begin = this.#said.length;
-    // The console echoes the line, so the marks are not in it as they are printed.
+    // The console echoes the command line, so the line must not contain the marks in their printed form.
     this.#qemu.stdin.write(`\nprintf '<%s\\n' ${name}; ${command}; printf '%s>\\n' ${name}\n`);
     const output = new RegExp(`<${name}\\r?\\n([^]*?)${name}>`);
     return this.#until(`answer to "${command}"`, seconds, () => {
@@ -190,7 +190,7 @@ export class Guest {
     });
   }
 
-  /** Waits until the machine starts again by itself, which ends QEMU. */
+  /** Waits until the machine reboots, which ends QEMU. */
   async restarts(seconds) {
     if (!this.#ended()) {
       await once(this.#qemu, 'exit', {signal: AbortSignal.timeout(seconds * 1000)});
@@ -201,7 +201,7 @@ export class Guest {
     return this.#qemu.exitCode !== null || this.#qemu.signalCode !== null;
   }
 
-  /** The plug is pulled. */
+  /** Cuts the power. */
   async cutPower() {
     if (!this.#ended()) {
       this.#qemu.kill('SIGKILL');

@@ -1,17 +1,17 @@
-// What a person has set on the page, and what the sensor was measured to be: a setting, a pose with a scale, a sensor's map.
-// Each of them must be there after a restart, a cut of power and an update.
+// Stored user data that must survive a restart, a power cut and an update: a setting, a calibrated pose with a scale, and a sensor
+// map.
 
 import {createHash} from 'node:crypto';
 
 import {require} from './checks.mjs';
 
-const snapshots = 23;  // of a scan, and not the default
+const snapshots = 23;  // not the default
 const scale = 1.01;
-// A sensor 0.65 m before the axis and 0.4 m above the platform that looks 30 degrees down: not where the drawing has it.
+// A sensor 0.65 m in front of the axis and 0.4 m above the platform, pitched down by 30 degrees; not the nominal pose.
 const pose = [[1, 0, 0, 0.004], [0, -0.5, Math.sqrt(0.75), -0.65], [0, -Math.sqrt(0.75), -0.5, 0.4], [0, 0, 0, 1]];
 
-// Of a sensor that is not there, so that nobody asks whether it is a map. Its bytes are those of `seq`, about as many as a
-// map's.
+// The map of a sensor that is not connected, so its content is never parsed. It holds the output of `seq`, about as many bytes as a
+// map.
 const folder = '/var/lib/octurn/sensor-maps';
 const map = `${folder}/boot-test.png`;
 const numbers = 20000;
@@ -19,7 +19,7 @@ const mapSum = createHash('sha256').update(Array.from({length: numbers}, (_, i) 
 
 const near = (a, b) => Math.abs(a - b) < 1e-9;
 
-/** Sets them. The map is written as the daemon's user does it. */
+/** Stores the data. The map is written as the daemon's user. */
 export async function setWhatIsKept(guest) {
   await guest.ask('settings', 'PATCH', {scan: {snapshots}});
   await guest.ask('calibration', 'PATCH', {platform_from_sensor: pose, scale});
@@ -28,7 +28,7 @@ export async function setWhatIsKept(guest) {
   await requireKept(guest);
 }
 
-/** @throws {Error}  unless all are as they were set */
+/** @throws {Error}  unless all data are as stored */
 export async function requireKept(guest) {
   const {settings, trouble} = await guest.ask('settings');
   require(settings.scan.snapshots === snapshots && trouble === '',

@@ -1,17 +1,17 @@
-// Pulls the plug while a scan is written, and looks what is left of it.
+// Cuts power while a scan is being written, and checks the stored data after it.
 
 import {setTimeout as sleep} from 'node:timers/promises';
 
 import {Guest, readCard, secondsSince} from './guest.mjs';
 import {requireKept} from './kept.mjs';
 
-// As octurn-wifi.service does when there is a password, but again and again. What is written is what was there.
+// Rewrites octurn.txt like octurn-wifi.service does after a password was entered, but in a loop and with unchanged content.
 const writeSettings = `{ unshare --mount sh -ec '. /usr/lib/octurn/card.sh; cd /run/octurn-settings; cp octurn.txt written;
   while :; do write_card octurn.txt written; done' >/run/writing 2>&1 & }`.replace(/\s+/g, ' ');
 
 /**
- * A scan, and settings that are written, until power fails at some moment of the first 20 seconds.
- * @returns {Promise<{id: string, snapshots: number}>} what the daemon said it had stored by then
+ * Runs a scan while settings are being written, until power fails at a random moment of the first 20 seconds.
+ * @returns {Promise<{id: string, snapshots: number}>} the scan, and the snapshots that the daemon had reported as stored
  */
 async function interruptedScan(guest, patience) {
   await guest.run(writeSettings);

@@ -1,4 +1,4 @@
-// What octurn.txt sets besides the WiFi: the time zone, who may log in, who may open the page.
+// The settings in octurn.txt other than WiFi: time zone, SSH key, page password.
 
 import {createHash, generateKeyPairSync} from 'node:crypto';
 
@@ -6,7 +6,8 @@ import {require} from './checks.mjs';
 
 const field = (bytes) => Buffer.concat([Buffer.from([0, 0, bytes.length >> 8, bytes.length & 255]), bytes]);
 
-/** A new pair of SSH keys. @returns {{line: string, secret: string}} as octurn.txt, and as dropbear's client in base64 */
+/** A new SSH key pair. @returns {{line: string, secret: string}} the public key for octurn.txt, and the private key in dropbear's format,
+ * base64 */
 export function makeSshKey() {
   const {d, x} = generateKeyPairSync('ed25519').privateKey.export({format: 'jwk'});
   const [secret, open] = [d, x].map((text) => Buffer.from(text, 'base64url'));
@@ -19,7 +20,7 @@ export function makeSshKey() {
 
 const md5 = (text) => createHash('md5').update(text).digest('hex');
 
-/** The page's status, by HTTP Digest (RFC 7616) with this password. */
+/** Requests the page by HTTP Digest (RFC 7616) with this password. @returns the status */
 async function open(url, password) {
   const wish = (await fetch(url)).headers.get('www-authenticate');
   const nonce = /nonce="([^"]*)"/.exec(wish)[1];
@@ -42,7 +43,7 @@ async function testSsh(guest, key) {
 
 async function testPassword(guest) {
   require((await fetch(guest.url)).status === 200, 'the page asks for a password that nobody has set');
-  // As a start does it, but without one.
+  // Restarts the services that a boot would start.
   const start = 'systemctl restart octurn-page-password; systemctl restart octurn';
   await guest.run('cp /etc/octurn/octurn.json /run/; echo "page_password = open sesame" >>/run/octurn-settings/octurn.txt; ' +
     `: >/run/octurn-settings/page-password; ${start}`);
@@ -58,7 +59,7 @@ async function testPassword(guest) {
   require((await fetch(guest.url)).status === 200, 'the page asks for a password that was taken away');
 }
 
-/** @param {{secret: string}} key  of which octurn.txt has the other half; octurn.txt asks for Berlin's time, too */
+/** @param {{secret: string}} key  whose public half is in octurn.txt, which also sets Berlin's time zone */
 export async function testSettings(guest, key, say) {
   const zone = await guest.run('date -d @1750000000 +%H:%M');
   require(zone === '17:06', `in Berlin it was 17:06, and not ${zone}`);

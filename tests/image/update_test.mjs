@@ -1,5 +1,5 @@
-// Gives a scanner updates by its page's interface, and looks which system it ends on. Arguments: the machine, the folder of
-// its card, and the folder of the updates good, dying, short, older and strange, and of stick.img.
+// Installs updates over the HTTP interface, and checks which system runs after each. Arguments: the machine, the card's folder, and
+// the folder with the updates good, dying, short, older and strange, and with stick.img.
 
 import {openAsBlob} from 'node:fs';
 import {setTimeout as sleep} from 'node:timers/promises';
@@ -15,7 +15,7 @@ const say = (text) => console.log(`update-test: ${text}`);
 let guest;
 let scans;
 
-/** Switches on what is off. */
+/** Boots the machine. */
 const start = async (stick) => {
   guest = await Guest.start(machine, card, stick);
   return guest.page(patience);
@@ -32,7 +32,7 @@ const reaches = (state) => until(`update ${state}`, async () => {
   return update.state === state && update;
 });
 const storedScans = async () => JSON.stringify((await guest.ask('scans')).scans.map(({id, snapshots_done}) => [id, snapshots_done]));
-/** The page is served by the system of this slot, and has every scan and setting. */
+/** Checks that the system of this slot serves the page, with every scan and setting. */
 const isOn = async (slot) => {
   const update = await until('which system runs', async () => {
     const answer = await guest.ask('update');
@@ -66,17 +66,17 @@ const goesBack = async () => {
   const begin = performance.now();
   await guest.restarts(patience);  // into the update
   guest = await Guest.start(machine, card);
-  await guest.restarts(patience);  // since its daemon dies
+  await guest.restarts(patience);  // as its daemon dies
   guest = await Guest.start(machine, card);
-  await guest.restarts(patience);  // since it is not tried twice
+  await guest.restarts(patience);  // as an update is tried only once
   await start();
   const {error} = await reaches('returned');
   await isOn('a');
   say(`update "dying": the system before it is back ${secondsSince(begin).toFixed(0)} s later: ${error}`);
 };
-/** In a shell on the scanner, with the file that the page's interface has brought there. */
+/** Runs `octurn update` in a shell on the scanner, with the uploaded file. */
 const keeps = async () => {
-  await guest.run('systemctl mask --runtime --now octurn-update.path');  // which may not have started yet
+  await guest.run('systemctl mask --runtime --now octurn-update.path');  // it may not have started yet
   await send('good');
   const begin = performance.now();
   await guest.run('{ octurn update /run/octurn-appliance/requests/update >/run/update.log 2>&1 & }');

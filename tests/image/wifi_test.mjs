@@ -1,5 +1,5 @@
-// Starts the image with three simulated radios: the scanner's, a router's and a phone's. The scanner joins the router, is a
-// hotspot when that is gone, and joins another router that the phone tells it. Argument: the folder of the card.
+// Boots the image with three simulated radios: the scanner's, a router's and a phone's. The scanner joins the router, opens a hotspot
+// when the router is gone, and joins another router that the phone enters. Argument: the card's folder.
 
 import {execFile} from 'node:child_process';
 import {writeFile} from 'node:fs/promises';
@@ -12,13 +12,13 @@ import {makeSshKey, testSettings} from './settings_test.mjs';
 const card = process.argv[2];
 const say = (text) => console.log(`wifi-test: ${text}`);
 
-/** What the appliance tells the daemon of its WiFi. @returns {Promise<Record<string, string>>} */
+/** The WiFi state that the appliance gives to the daemon. @returns {Promise<Record<string, string>>} */
 async function wifi(guest) {
   const lines = (await guest.run('cat /run/octurn-appliance/wifi')).split('\n');
   return Object.fromEntries(lines.map((line) => line.split(/ = ?/, 2)));
 }
 
-/** Waits for a state of the WiFi, and says how long it took. */
+/** Waits for a state of the WiFi, and prints how long it took. */
 async function reaches(guest, state, name) {
   const begin = performance.now();
   let answer;
@@ -32,24 +32,24 @@ async function reaches(guest, state, name) {
   return answer;
 }
 
-/** A radio does something else from now on. */
+/** Restarts a radio's wpa_supplicant with another network. */
 async function use(guest, radio, network) {
   await guest.run(`printf 'ctrl_interface=/run/wpa_supplicant\\nnetwork={\\n${network.join('\\n')}\\n}\\n' >/run/${radio}.conf; ` +
     `wpa_cli -i ${radio} terminate >/dev/null 2>&1; sleep 1; wpa_supplicant -B -D nl80211 -i ${radio} -c /run/${radio}.conf >/dev/null`);
 }
 
-/** A router, whose DHCP gives addresses of 192.168.78: with WPA2, or with WPA3 alone. */
+/** Starts a router, whose DHCP gives addresses in 192.168.78; with WPA2, or with WPA3 only. */
 const startRouter = (guest, name, password, keys = ['key_mgmt=WPA-PSK']) => use(guest, 'wlan2', ['mode=2', `ssid="${name}"`,
   `psk="${password}"`, ...keys, 'proto=RSN', 'pairwise=CCMP', 'frequency=2412']);
 const wpa3 = ['key_mgmt=SAE', 'ieee80211w=2'];
 
-/** Words of the password as the card keeps it, of every WiFi. */
+/** The password field of every stored WiFi. */
 const keptPasswords = async (guest) => (await guest.run('cut -d" " -f3 /data/wifi')).trim();
 
 const address = (guest, radio, net) => until(`address of ${radio} in ${net}`, async () =>
   (await guest.run(`ip -4 -o address show ${radio}`)).match(new RegExp(`inet (${net}\\.\\d+)/`))?.[1]);
 
-/** Simulated radios. Neither a router's nor a phone's network is this machine's way to anywhere. */
+/** Adds simulated radios. Neither the router's nor the phone's network may become a default route. */
 async function plugRadios(guest) {
   const network = (name, lines) => `printf '[Match]\\nName=${name}\\n${lines.join('\\n')}\\n' >/run/systemd/network/10-${name}.network`;
   await guest.run(['mkdir -p /run/systemd/network',
@@ -60,7 +60,7 @@ async function plugRadios(guest) {
   await until('radios', () => guest.run('[ -e /sys/class/net/wlan2 ] && echo yes'));
 }
 
-/** Sends what the phone and the scanner say to each other through the air, although both are this machine. */
+/** Routes traffic between phone and scanner over the air, although both are this machine. */
 async function separate(guest, phone) {
   await guest.run(['for name in all wlan0 wlan1; do echo 1 >/proc/sys/net/ipv4/conf/$name/accept_local; ' +
     'echo 0 >/proc/sys/net/ipv4/conf/$name/rp_filter; done',
@@ -70,15 +70,15 @@ async function separate(guest, phone) {
     'ip rule add pref 3 lookup local', 'ip rule del pref 0'].join('; '));
 }
 
-/** Undoes that. */
+/** Reverts `separate`. */
 const unite = (guest) => guest.run('ip rule add pref 0 lookup local; ' +
   'for rule in 1 1 2 2 3; do ip rule del pref $rule; done; ip route flush table 71; ip route flush table 72');
 
-/** What the scanner answers a phone that looks for something at a host. @param {string} filter  a command for the answer */
+/** The scanner's response to a phone that requests a path of any host. @param {string} filter  a command to filter the response */
 const askByAir = (guest, host, path, filter) => guest.run('timeout 60 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
   `printf 'GET ${path} HTTP/1.1\\r\\nHost: ${host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; cat <&3" | ${filter}`, 90);
 
-/** A phone that looks for the internet finds the page: by the name servers of its lease, and by what answers there. */
+/** A phone's connectivity check finds the page: through the name server of its lease, and through the captive portal. */
 async function testPortal(guest) {
   const [host, path] = ['captive.apple.com', '/hotspot-detect.html'];
   const found = await guest.run(`resolvectl query --interface=wlan1 --cache=no ${host}`, 90);
@@ -103,7 +103,7 @@ async function testHotspot(guest, hotspot) {
   await testPortal(guest);
 }
 
-/** As the daemon asks for it. */
+/** Requests a WiFi like the daemon does. */
 async function request(guest, name, password) {
   await guest.run('setpriv --reuid=octurn --regid=octurn --clear-groups sh -c "umask 077; cd /run/octurn-appliance/requests; ' +
     `printf 'wifi_name = ${name}\\nwifi_password = ${password}\\nwifi_country = DE\\n' >.wifi; mv .wifi wifi"`);
@@ -126,7 +126,7 @@ async function testWifi(guest) {
 
   await guest.run('wpa_cli -i wlan1 terminate');
   await startRouter(guest, 'IEEE', 'password');
-  await reaches(guest, 'joined', 'IEEE');  // tried again, as nobody is in the hotspot
+  await reaches(guest, 'joined', 'IEEE');  // retried, as no client is in the hotspot
   const names = await guest.run('systemctl is-active octurn-names');
   require(names === 'inactive', `outside of the hotspot octurn-names is ${names}`);
   await guest.run('wpa_cli -i wlan2 terminate');
@@ -160,7 +160,7 @@ async function testWifi(guest) {
   say('by cable, too, when that is plugged in again');
 }
 
-/** The card, after all that. */
+/** Checks octurn.txt on the card after these changes. */
 async function testCard(guest) {
   const settings = await readCard(card, 'octurn.txt');
   for (const line of ['wifi_name = Museum', 'wifi_password = ********', 'wifi_country = DE', 'rig = simulated']) {

@@ -3,7 +3,7 @@ import {test} from 'node:test';
 
 import * as api from '../../web/api.js';
 
-/** Has fetch answer with `response`, or throw it; returns the requests made. */
+/** Mocks fetch: it resolves to `response`, or throws it. @returns the requests made */
 function answering(t, response) {
   const requests = [];
   t.mock.method(globalThis, 'fetch', async (path, options) => {

@@ -14,7 +14,7 @@ const askew = {
   build: 0,
 };
 
-/** A build as the scanner tells it. */
+/** A build as in the API. */
 const build = (number, changes) => ({
   scan: 'done', build: number, state: 'finished', phase: 'done', created: '2026-11-22T08:15:00Z', snapshots_done: 36,
   snapshots_total: 36, settings: askew.settings, error: null, calibration: null, model: {...askew.model, url: `builds/${number}`},

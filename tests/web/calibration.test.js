@@ -88,7 +88,7 @@ test('each stop has a bar, and one that a finding names is marked', () => {
   const stops = [0, 0.1, -0.2, 1.84].map((off_deg, index) => ({angle_deg: 90 * index, off_deg}));
   const bars = texts.barsOf({...turnReport, stops, findings: [{code: 'slip', detail: '', hint: '', stop: 3}]});
   assert.equal(bars.usual.match(/M/g).length, 3);
-  assert.equal(bars.marked, 'M79.50 50V4.00h16.00V50Z');  // the fourth quarter, up to the largest
+  assert.equal(bars.marked, 'M79.50 50V4.00h16.00V50Z');  // the fourth quarter of the width, at the largest value
   assert.equal(bars.label, '4 stops, the largest 1.84° off');
 });
 

@@ -4,7 +4,7 @@ import {test} from 'node:test';
 
 const folder = new URL('../../web/', import.meta.url);
 
-// The pieces of the page that are fetched later stand in one document with the others.
+// Fragments that are fetched later become part of the same document.
 test('no two elements of the page have one id', async () => {
   const places = new Map();
   for (const file of (await readdir(folder)).filter((name) => name.endsWith('.html'))) {
@@ -17,7 +17,7 @@ test('no two elements of the page have one id', async () => {
   assert.ok(places.size > 100, `${places.size} ids`);
 });
 
-/** The sides of a PNG, or null of anything else (PNG, third edition, 11.2.1). @param {Buffer} file */
+/** Width and height of a PNG (third edition, 11.2.1); null for other files. @param {Buffer} file */
 const sidesOf = (file) => file.subarray(1, 4).toString() === 'PNG' ? [file.readUInt32BE(16), file.readUInt32BE(20)] : null;
 
 test('browsers and phones find the icons that the page names, in the sizes that it says', async () => {

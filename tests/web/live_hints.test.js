@@ -10,11 +10,11 @@ const clip_mm = [-140, -140, 5, 140, 140, 400];
 const rig = {pose, sensor, clip_mm};
 const [width, height] = [320, 240];
 
-/** As API.md has it. */
+/** The brightness of a depth in the preview, by API.md. */
 const brightnessAt = (metres) => metres === 0 ? 0 :
   Math.round(24 + 231 * Math.min(1, Math.max(0, (1 / metres - 1 / 2) / (1 / 0.45 - 1 / 2))));
 
-/** The distance to a box that stands on the platform, along one pixel's ray; Infinity beside it. @param {number[]} box metres */
+/** The distance along a pixel's ray to a box on the platform; Infinity if it misses. @param {number[]} box metres */
 function throughBox(from, along, box) {
   let [near, far] = [-Infinity, Infinity];
   for (let axis = 0; axis < 3; ++axis) {
@@ -24,7 +24,7 @@ function throughBox(from, along, box) {
   return near < far ? near : Infinity;
 }
 
-/** What a sensor sees of a box on a large platform. @param {number[]} box  millimetres */
+/** The preview of a box on a large platform. @param {number[]} box  millimetres */
 function pictureOf(box, eye = pose) {
   const from = toPlatform(eye, [0, 0, 0]);
   return Uint8Array.from({length: width * height}, (_, index) => {
@@ -49,7 +49,7 @@ test('an object in the middle is ready, and its size and distance are told', () 
 test('what lies in the scanned space is marked, and the platform is not', () => {
   const {inside} = seenOf(pictureOf(cube), width, rig);
   const share = inside.reduce((sum, value) => sum + value, 0) / inside.length;
-  // 8 cm at 0.66 m are 35 of the 320 pixels across; seen 28 degrees from above, front and top together are 40 to 45 of the 240
+  // 8 cm at 0.66 m are 35 of 320 columns; seen from 28 degrees above, front and top together are 40 to 45 of 240 rows.
   assert.ok(share > 35 * 38 / (width * height) && share < 38 * 47 / (width * height), `${share}`);
 });
 

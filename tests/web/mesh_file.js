@@ -1,4 +1,4 @@
-// An obvious writer and reader of binary STL, and what makes a mesh whole. Shares nothing with the page or the program.
+// A simple writer and reader of binary STL that measures closedness and volume. Shares no code with the page or the program.
 
 /** @param {number[][][]} triangles  three corners each, millimetres */
 export function stlOf(triangles) {

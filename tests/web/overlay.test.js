@@ -11,7 +11,8 @@ const overlay = (changes = {}) => overlayOf({pose, sensor, clip_mm, radius_mm: 1
 const numbers = (path) => path.match(/-?\d+(\.\d+)?/g).map(Number);
 
 test('the middle of the platform is where the sensor looks', () => {
-  // 25 degrees down from 0.36 m up meets the platform 0.36 / tan 25 = 0.772 m ahead, beyond the axis: it is below the middle
+  // The optical axis, 25 degrees down from 0.36 m, meets the platform 0.36 / tan 25 = 0.772 m ahead, beyond the turntable's axis. So the
+  // platform's centre appears below the picture's centre.
   const [x, y] = pixelOf(sensor, toSensor(pose, [0, 0, 0]));
   const angle = Math.atan2(0.36, 0.62) - 25 * Math.PI / 180;
   assert.ok(Math.abs(x - 320) < 1e-9);

@@ -58,7 +58,7 @@ test('help is a sentence for people', () => {
 
 test('a pose is told as distance, height and tilt', () => {
   const [sine, cosine] = [Math.sin(Math.PI / 6), Math.cos(Math.PI / 6)];
-  // 0.6 m before the axis and 0.3 m up, looking along Y and 30 degrees down.
+  // 0.6 m in front of the axis and 0.3 m up, looking along Y, pitched down by 30 degrees.
   const pose = [[1, 0, 0, 0], [0, -sine, cosine, -0.6], [0, -cosine, -sine, 0.3], [0, 0, 0, 1]];
   assert.equal(poseText(pose), '600 mm from the platform’s axis, 300 mm above its surface, looking 30.0° down.');
 });

@@ -4,7 +4,7 @@ import {test} from 'node:test';
 
 const style = await readFile(new URL('../../web/style.css', import.meta.url), 'utf8');
 
-/** The colours of a scheme: the first :root is light, that of the dark scheme is over it. */
+/** The custom colour properties of both schemes: the first :root is light, the second overrides it for dark. */
 const [light, darkOver] = style.split(':root {').slice(1, 3).map((block) =>
   Object.fromEntries([...block.slice(0, block.indexOf('}')).matchAll(/--([a-z-]+): (#[0-9a-f]{6});/g)].map(([, name, colour]) => [name, colour])));
 const schemes = {light, dark: {...light, ...darkOver}};

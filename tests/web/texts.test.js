@@ -10,12 +10,12 @@ const files = new Map(await Promise.all(Object.keys(languages).map(async (langua
   /** @type {const} */ ([language, await import(`../../web/texts/${language}.js`)]))));
 const english = files.get('en').texts;
 
-/** Of the page; what is for programmers and for the build is in English alone. */
+/** The page's sources. Pages for programmers and build scripts exist in English only. */
 const sources = (await readdir(folder)).filter((name) => /\.(js|html)$/.test(name) && !/^(bundle|interface|openapi|render_help|three|uqr)\./.test(name));
 const written = new Map(await Promise.all(sources.map(async (name) =>
   /** @type {const} */ ([name, await readFile(new URL(name, folder), 'utf8')]))));
 
-/** Keys that a file names: whole, and the beginnings of those that it puts together. */
+/** Text keys used in a file: whole ones, and prefixes of keys that it composes. */
 function namedIn(source) {
   const whole = [...source.matchAll(/data-text(?:-label|-title|-placeholder)?="([^"]+)"/g)].map(([, key]) => key);
   const quoted = [...source.matchAll(/'([a-z][a-z-]*(?:\.[a-z0-9_-]+)*)'/g)].map(([, key]) => key).filter((key) => key in english);
@@ -35,7 +35,7 @@ test('every key that the page names has a text', () => {
   }
 });
 
-/** The modules that come with a module, itself first. */
+/** A module and all modules that it imports, directly or not. */
 function comingWith(name, seen = new Set()) {
   if (!seen.has(name) && written.has(name)) {
     seen.add(name);
@@ -50,7 +50,7 @@ test('what comes with the page names no text that comes later, but where its par
   const pieces = [...written.get('index.html').matchAll(/#include file="([^"]+)"/g)].map(([, name]) => name);
   const first = [...comingWith('main.js'), ...pieces, 'index.html'];
   assert.ok(first.length > 40 && pieces.length >= 5, first.join(' '));
-  // Of the library, of the settings, and one that tells reasons as the scanner does until their texts have come.
+  // These belong to the library or the settings, or show the scanner's own words until the texts are loaded.
   const ofOtherParts = new Set(['bin.js', 'power.js', 'wording.js']);
   for (const name of first.filter((file) => !ofOtherParts.has(file))) {
     const {whole, quoted, begun} = namedIn(written.get(name));
@@ -95,7 +95,7 @@ for (const [language, {texts, said}] of files) {
   });
 }
 
-/** All that the scanner could say: the literals of its sources, parts of one sentence joined. */
+/** All texts that the scanner may send: the string literals of its sources, with parts of a sentence joined. */
 async function scannersWords() {
   const source = new URL(`file://${process.env.OCTURN_SOURCE}/`);
   const files = (await Promise.all(['core/src/', 'firmware-app/'].map(async (path) =>
@@ -112,7 +112,7 @@ test('each sentence that has a translation is one of the scanner', async () => {
   });
   for (const sentence of Object.keys(files.get('de').said)) {
     const unknown = pairsOf(sentence).filter((pair) => !words.includes(pair));
-    assert.ok(unknown.length <= 3, `${sentence}: ${unknown}`);  // where the scanner joins parts
+    assert.ok(unknown.length <= 3, `${sentence}: ${unknown}`);  // where the scanner composes sentences
   }
 });
 

@@ -8,7 +8,7 @@ const idle = {
   sending: null, isScanning: false, isAway: false, isFollowed: false, failure: '',
 };
 
-/** The page's state when the scanner tells this, and the page knows that. */
+/** The page's state for an update as the scanner reports it, and further known state. */
 const when = (update, known = {}) => ({...idle, update: {...idle.update, ...update}, ...known});
 
 test('at rest the page tells what runs, and nothing of an update of long ago', () => {

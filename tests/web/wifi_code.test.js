@@ -17,7 +17,7 @@ test('a code has an empty border of four modules, and a finder in three of its c
   const dark = new Set([...path.matchAll(/M(\d+) (\d+)h1v1h-1z/g)].map(([, x, y]) => `${x} ${y}`));
   const isDark = (x, y) => dark.has(`${x} ${y}`);
   assert.ok([...dark].every((place) => place.split(' ').every((at) => at >= 4 && at < size - 4)));
-  const rings = [1, 0, 1, 1, 1, 0, 1].map(Boolean);  // across the middle of a finder
+  const rings = [1, 0, 1, 1, 1, 0, 1].map(Boolean);  // a row through the centre of a finder pattern
   const across = (left, top) => rings.map((_, index) => isDark(left + index, top + 3));
   assert.deepEqual([across(4, 4), across(size - 11, 4), across(4, size - 11)], [rings, rings, rings]);
 });

@@ -1,5 +1,5 @@
-// The driver of cameras on a machine that QEMU emulates: its kernel's uvcvideo and its libcamera see a USB camera, whose pictures
-// this test makes.
+// The camera driver on a machine emulated by QEMU. The guest's uvcvideo and libcamera see a USB camera whose pictures this test
+// makes.
 
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
@@ -13,17 +13,17 @@ import {UvcCamera} from './uvc_camera.mjs';
 
 const {OCTURN_CAMERA: results} = process.env;
 
-// As of most USB cameras: only small pictures are there without compression at a good rate, and large ones with it alone.
+// Like most USB cameras: uncompressed, only small pictures have a good frame rate; large ones exist only compressed.
 const lens = {formats: [
   {kind: 'mjpeg', sizes: [
     {width: 800, height: 600, picturesPerSecond: 15}, {width: 512, height: 384, picturesPerSecond: 15}, {width: 400, height: 304, picturesPerSecond: 15}]},
   {kind: 'yuy2', sizes: [{width: 400, height: 304, picturesPerSecond: 15}, {width: 512, height: 384, picturesPerSecond: 5}]},
 ]};
 
-/** Of each mode that it was asked a picture in. */
+/** The modes in which pictures were requested. */
 const modes = new Set();
 
-/** A picture that no other has: pixel by pixel, or block by block if it is compressed. @param {boolean} isCut  it ends in its middle */
+/** A picture that identifies its number, by pixels, or by blocks if it is compressed. @param {boolean} isCut  whether it is truncated */
 function picture(number, mode, isCut) {
   const {width, height, kind} = mode;
   modes.add(`${kind} ${width}`);
@@ -40,9 +40,9 @@ function picture(number, mode, isCut) {
   return grey;
 }
 
-/** Runs the machine to its end. @param {(line: string) => void} hear  what its check says @returns {Promise<string[]>} all of that */
+/** Runs the machine to its end. @param {(line: string) => void} hear  called with each line of its check @returns {Promise<string[]>} all lines */
 async function run(camera, hear) {
-  // Its clock counts what it computes: on a busy machine it is late with the pictures, and no picture is late.
+  // The guest's clock counts its instructions (-icount): on a busy machine it slows down with the guest, so no picture is late.
   const machine = spawn('qemu-system-x86_64', [
     '-accel', 'tcg', '-icount', 'shift=3', '-m', '512', '-nodefaults', '-display', 'none', '-monitor', 'none', '-serial', 'stdio', '-no-reboot',
     '-kernel', `${results}/kernel`, '-initrd', `${results}/initrd`, '-append', 'console=ttyS0 loglevel=3 panic=-1',
@@ -90,8 +90,8 @@ test('pictures come through USB, uvcvideo and libcamera, and what goes wrong is 
     assert.match(rest.shift(), new RegExp(`^error ${error}: camera: Camera of a test .*`));
   }
   assert.deepEqual(rest, ['ended well']);
-  // Without compression where that is as fast, with it where that is faster or alone.
+  // Uncompressed where that is as fast, compressed where that is faster or the only choice.
   assert.deepEqual([...modes].sort(), ['mjpeg 512', 'mjpeg 800', 'yuy2 400']);
-  // By hand, 10 ms in units of 100 us, and the least gain that libcamera knows: the default.
+  // Manual exposure, 10 ms in units of 100 us, and libcamera's smallest gain, which is the default.
   assert.deepEqual([...camera.values].sort(), [['1 2', 1], ['1 4', 100], ['2 4', 64]]);
 });

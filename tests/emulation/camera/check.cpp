@@ -1,5 +1,5 @@
-// Takes pictures with the driver of cameras, on the machine of `machine`. What it prints is looked
-// at by camera.test.mjs, which shows it the pictures and pulls the plug where it says so.
+// Takes pictures with the camera driver, on the machine of `machine`. camera.test.mjs checks its
+// output, makes the pictures, and unplugs the camera where the output asks for it.
 
 #include <dlfcn.h>
 
@@ -22,9 +22,9 @@ using std::chrono::steady_clock;
 
 void say(const std::string& text) { std::cout << "check: " << text << std::endl; }
 
-/// Pixels that are not those of the picture whose number is the first pixel: x + 2 y more than it,
-/// or that of its block. Those in colour are as grey: the camera sends no colour.
-/// @param block  pixels that are alike
+/// Counts wrong pixels. The first pixel is the picture's number; the pixel at (x, y) is x + 2 y
+/// more, with x and y in blocks. Colours must be grey, as the camera sends none.
+/// @param block  side of a uniform block, pixels
 std::size_t wrong_pixels(const TimedPicture& timed, int block) {
   const Picture& picture = timed.picture;
   std::size_t wrong = 0;
@@ -66,13 +66,13 @@ void take(Camera& camera, int count, int block) {
   }
 }
 
-/// Reads until an error comes.
+/// Reads until an error is thrown.
 void take_until_it_fails(Camera& camera) {
   while (camera.read({})) {
   }
 }
 
-/// @param then  what is to go wrong after some pictures; empty: nothing
+/// @param then  the fault after some pictures; empty: none
 void check(const CameraModule& module, const CameraWish& as, int block, const std::string& then) {
   try {
     const std::unique_ptr<Camera> camera = module.open(as);

@@ -1,23 +1,23 @@
-// Pictures as motion JPEG, of blocks of 8 x 8 pixels that have one level each: so every pixel comes back as it was. As most cameras do, it
-// leaves out the Huffman tables, which are those of ITU-T T.81, annex K.
+// An encoder of motion JPEG for pictures of uniform blocks of 8 x 8 pixels, whose decoded pixels are exact. Like most cameras, it leaves
+// out the Huffman tables, which are those of ITU-T T.81, annex K.
 
-/** Code words of the difference to the block before, by how many bits that has (table K.3), and that of "no more in this block". */
+/** Code words of the DC difference by its number of bits (table K.3), and the code words of the end of a block. */
 const differences = ['00', '010', '011', '100', '101', '110', '1110', '11110', '111110'];
 const [endOfLuminance, colourless] = ['1010', '00' + '00'];
 
 const segment = (marker, ...bytes) => [0xff, marker, bytes.length + 2 >> 8, bytes.length + 2 & 0xff, ...bytes];
 const word = (value) => [value >> 8, value & 0xff];
 
-/** With quanta of 8 a coefficient of the mean is a level. */
+/** Quantisation by 8 makes a unit of the DC coefficient one grey level. */
 const quanta = (table) => segment(0xdb, table, ...new Array(64).fill(8));
 
-/** A difference of levels: how many bits it has, and these; a negative one has those of one less. */
+/** The code of a difference of levels: its number of bits, then the bits, of value - 1 if it is negative (T.81, F.1.2.1). */
 function difference(value) {
   const bits = 32 - Math.clz32(Math.abs(value));
   return differences[bits] + (bits === 0 ? '' : (value > 0 ? value : value + (1 << bits) - 1).toString(2).padStart(bits, '0'));
 }
 
-/** Eight bits a byte; what could be taken for a marker is followed by a zero. */
+/** Packs bits into bytes, with a zero byte stuffed after 0xff. */
 function packed(bits) {
   const padded = bits + '1'.repeat((8 - bits.length % 8) % 8);
   const bytes = [];
@@ -29,12 +29,12 @@ function packed(bits) {
 }
 
 /**
- * A JPEG without colours, which has them for two pixels of a row each.
+ * A grey JPEG in 4:2:2, with neutral chrominance.
  * @param {{width: number, height: number}} size  multiples of 8
  * @param {(x: number, y: number) => number} level  of the block in this column and row of blocks
  */
 export function mjpeg({width, height}, level) {
-  const sampling = [3, 1, 0x21, 0, 2, 0x11, 1, 3, 0x11, 1];  // two blocks of luminance beside each other, one of each colour
+  const sampling = [3, 1, 0x21, 0, 2, 0x11, 1, 3, 0x11, 1];  // two luminance blocks side by side, one block of each chrominance
   const last = width / 8 - 1;
   let before = 128;
   let bits = '';

@@ -1,18 +1,18 @@
-// What a camera of USB Video Class answers about its exposure and gain.
+// The exposure and gain controls of a USB Video Class camera.
 
 import {cameraTerminal, processingUnit} from './uvc_descriptors.mjs';
 
-/** Requests of the video class. */
+/** Request codes of the video class. */
 export const request = {set: 0x01, current: 0x81, min: 0x82, max: 0x83, resolution: 0x84, length: 0x85, info: 0x86, default: 0x87};
 
-/** Controls by entity and number: how many bytes, least, most, step, and the value at first. */
+/** Controls by entity and selector: bytes, minimum, maximum, resolution, default. */
 const controls = new Map([
-  [`${cameraTerminal} 2`, {bytes: 1, min: 1, max: 8, resolution: 0b1001, default: 8}],  // mode of exposure: 1 manual, 8 by aperture
-  [`${cameraTerminal} 4`, {bytes: 4, min: 1, max: 5000, resolution: 1, default: 333}],  // exposure, in 100 us
+  [`${cameraTerminal} 2`, {bytes: 1, min: 1, max: 8, resolution: 0b1001, default: 8}],  // exposure mode: 1 manual, 8 aperture priority
+  [`${cameraTerminal} 4`, {bytes: 4, min: 1, max: 5000, resolution: 1, default: 333}],  // exposure time, units of 100 us
   [`${processingUnit} 4`, {bytes: 2, min: 0, max: 255, resolution: 1, default: 64}],  // gain
 ]);
 
-/** @param {Map<string, number>} values  what the host has set, by entity and number @returns {Buffer | null} null: there is no such control */
+/** @param {Map<string, number>} values  set by the host, by entity and selector @returns {Buffer | null} null: there is no such control */
 export function answerControl(values, key, code, data) {
   const control = controls.get(key);
   if (!control) {

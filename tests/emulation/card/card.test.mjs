@@ -1,5 +1,4 @@
-// The initrd of the card, started by QEMU as a Pi's firmware would start it: which system it hands over to, and what of an
-// update it undoes.
+// The card's initrd, started by QEMU like a Pi's firmware would: which system it boots, and how it rolls back an update.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -23,7 +22,7 @@ async function onImage(work) {
 const read = (position, length) => onImage(async (file) => (await file.read({buffer: Buffer.alloc(length), position})).buffer);
 const write = (position, bytes) => onImage((file) => file.write(bytes, 0, bytes.length, position));
 
-/** First byte of a partition, and the byte after its last. @param {number} number  1 to 4 */
+/** The byte range of a partition, its end exclusive. @param {number} number  1 to 4 */
 async function partition(number) {
   const entry = await read(446 + (number - 1) * 16, 16);
   const begin = entry.readUInt32LE(8) * 512;
@@ -38,7 +37,7 @@ async function nameSlot(slot) {
   execFileSync('mcopy', ['-o', '-i', `${image}@@1M`, `${folder}/config.txt`, '::']);
 }
 
-/** Switches the machine on. @returns {Promise<string>} what it said until it started again */
+/** Switches the machine on. @returns {Promise<string>} its console output until it restarted */
 async function start() {
   const guest = await Guest.start('virt', folder);
   try {

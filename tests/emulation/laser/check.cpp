@@ -1,9 +1,8 @@
-// Runs on the emulated Pi: the pictures of a scan by laser line, taken by Octurn's own rig: its
-// camera by libcamera and the kernel's uvcvideo, its lasers and its stepper on the GPIO lines of
-// the chip.
+// Runs on the emulated Pi and takes the pictures of a scan by laser line with Octurn's own rig: the
+// camera through libcamera and the kernel's uvcvideo, lasers and stepper on the chip's GPIO lines.
 //
-// usage: laser_check STOPS: takes them, and waits for a signal with all devices open. The kernel's
-// trace is told of each picture that counts. What it prints is looked at by laser.test.mjs.
+// usage: laser_check STOPS: takes the pictures, then waits for a signal with all devices open. Each
+// picture that counts is marked in the kernel's trace. laser.test.mjs checks the output.
 
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +21,7 @@
 
 namespace octurn {
 
-/// The rig has no depth sensor, and this program no OpenNI2.
+/// The rig has no depth sensor, and this program is not linked to OpenNI2.
 std::unique_ptr<DepthSensor> open_sensor(const std::string& /*uri*/) { return nullptr; }
 
 namespace {
@@ -33,7 +32,7 @@ void mark(const std::string& text) {
   std::ofstream("/sys/kernel/tracing/trace_marker") << text << "\n";
 }
 
-/// The column of the brightest pixel in the picture's middle row, or "dark".
+/// The column of the brightest pixel in the middle row, or "dark".
 std::string line_in(const Picture& picture) {
   const auto row = picture.samples.begin() + picture.height / 2 * picture.width;
   const auto brightest = std::max_element(row, row + picture.width);

@@ -1,5 +1,5 @@
-// The lasers of a scan on an emulated Raspberry Pi 3: Octurn's rig has its camera by libcamera and the kernel's uvcvideo, and its
-// lasers and its motor on the chip's GPIO lines. What the test's camera sees is what these lines light.
+// The lasers of a scan on an emulated Raspberry Pi 3. Octurn's rig reads its camera through libcamera and the kernel's uvcvideo and
+// drives lasers and motor by the chip's GPIO lines. The test's camera shows the lasers that these lines switch on.
 
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
@@ -13,13 +13,13 @@ import {wakeUp} from '../wake_up.mjs';
 
 const {OCTURN_LASER: folder, OCTURN_DEBIAN: debian} = process.env;
 const lens = {width: 320, height: 240, picturesPerSecond: 1};
-const columns = new Map([[23, 100], [24, 220]]);  // of the lasers' lines in a picture, by those of the chip
+const columns = new Map([[23, 100], [24, 220]]);  // picture column of each laser's line, by GPIO line
 const [left, right] = columns.keys();
 const step = 17;
-const base = 512;  // the number of the header's first line, for Debian 13's kernel
+const base = 512;  // number of the first GPIO line in Debian 13's kernel
 const names = ['turn', 'cancel', 'kill', 'crash', 'silent', 'lost'];
 
-/** Boots, and lets it run to its end. @returns {Promise<{said: string[], writes: object[]}>} by the console, and to registers */
+/** Boots the machine and runs it to its end. @returns {Promise<{said: string[], writes: object[]}>} console lines, and register writes */
 async function boot() {
   const lit = new Set();
   const said = [];
@@ -36,7 +36,7 @@ async function boot() {
   });
   const qemu = spawn('qemu-system-aarch64', [
     '-M', 'raspi3b', '-nographic', '-no-reboot', '-monitor', 'none',
-    '-icount', 'shift=1',  // a second of its clock is half a billion instructions, however busy this machine is
+    '-icount', 'shift=1',  // the guest's clock counts instructions, half a billion a second, however busy this machine is
     '-serial', 'null', '-serial', 'stdio', ...traceOptions, ...camera.options,
     '-kernel', `${debian}/kernel`, '-dtb', `${debian}/pi3.dtb`, '-initrd', `${folder}/initrd.gz`,
     '-append', 'console=ttyS1,115200 panic=-1 rdinit=/init quiet loglevel=3'], {stdio: ['ignore', 'pipe', 'pipe']});
@@ -54,7 +54,7 @@ async function boot() {
           camera.unplug();
         }
       } else {
-        lit.delete(write.line);  // resistors pull an input down
+        lit.delete(write.line);  // an input is pulled down by its resistor
       }
     }
   });
@@ -76,7 +76,7 @@ async function boot() {
   return {said, writes};
 }
 
-/** A run of the check: what it said, and what the kernel's trace has: {time, line, level}, {time, released}, {time, signal}, {time, mark}. */
+/** A run of the check: its output, and the events of the kernel's trace: {time, line, level}, {time, released}, {time, signal}, {time, mark}. */
 function runOf(said, name) {
   const run = {said: [], events: []};
   for (const text of said.slice(said.indexOf(`BEGIN ${name}`) + 1, said.indexOf(`END ${name}`))) {
@@ -92,7 +92,7 @@ function runOf(said, name) {
   return run;
 }
 
-/** The times in which a laser is on: {line, from, to, within: the marks and signals in it}. */
+/** The intervals in which a laser is on: {line, from, to, within: marks and signals in the interval}. */
 function lightsIn({events}) {
   const lights = [];
   const on = new Map();
@@ -147,7 +147,7 @@ test('a cancel, a camera that is silent and one whose plug is pulled switch the 
 });
 
 test('after kill -9 the laser is off within 10 ms of its machine\'s own time, and a crash waits for no core dump', () => {
-  // A second, if it did. QEMU lets its four processors take turns, and the clock goes on for those that wait: 4 to 11 ms were seen.
+  // A core dump would take a second. QEMU runs its four processors in turn, while the clock goes on for all: 4 to 11 ms were measured.
   for (const [name, number, limit] of [['kill', 9, 0.010], ['crash', 11, 0.1]]) {
     const {time: sent} = runs[name].events.find(({signal}) => signal === number);
     const released = runs[name].events.filter((event) => columns.has(event.released) && event.time >= sent);

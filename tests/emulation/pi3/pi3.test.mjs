@@ -1,4 +1,4 @@
-// What the emulated Pi made of its GPIO lines, as its kernel traced them and as QEMU saw the registers.
+// The GPIO lines of the emulated Pi, as its kernel traced them and as QEMU logged register writes.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { GpioRegisters } from './registers.mjs';
 
 const folder = process.env.OCTURN_PI3;
-const base = 512; // the number of the header's first line, for Debian 13's kernel
+const base = 512; // number of the first GPIO line in Debian 13's kernel
 const step = 17;
 const direction = 27;
 const enable = 5;
@@ -15,7 +15,7 @@ const lines = [enable, step, 22, 23, 24, direction];
 
 const consoleText = readFileSync(`${folder}/console.log`, 'latin1').replaceAll('\r', '');
 
-/** One run of stepper_check: what it said, and what the kernel saw: {time, line, level} or {time, mark}. */
+/** One run of stepper_check: its output, and the kernel's trace events: {time, line, level} or {time, mark}. */
 function run(name) {
   const all = consoleText.split(`BEGIN ${name}\n`)[1].split(`END ${name}\n`)[0].trim().split('\n');
   const said = [];
@@ -62,8 +62,8 @@ test('the motor is on, and its direction set, before the first pulse, and it is 
   assert.ok(on.time < first.time && off.time > last.time);
   assert.ok(first.time - chosen.time > 200e-9); // the A4988's set-up time
   assert.equal(chosen.level, 1);
-  assert.equal(levels(events, enable), '101'); // off from the moment that the line is driven
-  assert.equal([22, 23, 24].map((line) => levels(events, line)).join(''), '010'); // quarter steps
+  assert.equal(levels(events, enable), '101'); // off as soon as the line is driven
+  assert.equal([22, 23, 24].map((line) => levels(events, line)).join(''), '010'); // quarter-step mode
 });
 
 test('each level lasts 1 us or more', () => {
@@ -104,7 +104,7 @@ test('lines that somebody else has are refused by name', () => {
   assert.equal(rises(runs.busy.events).length, 400);
 });
 
-/** What was written to the GPIO registers of our lines: {line, level}, or {line, input}. */
+/** Register writes to our GPIO lines: {line, level}, or {line, input}. */
 function registerWrites() {
   const registers = new GpioRegisters(lines);
   return readFileSync(`${folder}/registers.log`, 'latin1').trim().split('\n').flatMap((text) => registers.take(text));
@@ -120,8 +120,8 @@ test('the registers were written as the kernel says, change for change', () => {
 
 test('a program that is killed leaves the motor off: its lines are inputs, which resistors pull', () => {
   const { events } = runs.kill;
-  assert.equal(levels(events, enable), '10'); // it could not switch off
+  assert.equal(levels(events, enable), '10'); // the killed program could not switch the motor off
   assert.ok(rises(events).length < 800);
   const released = registerWrites().filter(({ input }) => input);
-  assert.equal(released.filter(({ line }) => line === enable).length, names.length); // at each end
+  assert.equal(released.filter(({ line }) => line === enable).length, names.length); // at the end of each run
 });

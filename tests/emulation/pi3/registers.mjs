@@ -1,24 +1,24 @@
-// What a program writes to the GPIO registers of the chip, as QEMU traces it.
+// Decodes writes to the chip's GPIO registers from QEMU's trace.
 
-const base = 0x3f200000;  // of the block (BCM2835 peripherals, 6.1)
+const base = 0x3f200000;  // of the GPIO block (BCM2835 peripherals, 6.1)
 const [set, clear] = [0x1c, 0x28];
 const output = 1;
 
-/** What QEMU is to be started with: it traces each write to a device's register. */
+/** QEMU's options to trace each write to a device register. */
 export const traceOptions = ['-trace', 'memory_region_ops_write'];
 
-/** Follows the lines of the chip through what is written. */
+/** Tracks the state of GPIO lines through register writes. */
 export class GpioRegisters {
   #functions = new Map();
 
-  /** @param {number[]} lines  to be followed */
+  /** @param {number[]} lines  to be tracked */
   constructor(lines) {
     this.lines = lines;
   }
 
   /**
    * @param {string} text  a line of the trace
-   * @returns {{line: number, level?: 0 | 1, input?: true}[]} levels that were written, and lines that were outputs and are inputs
+   * @returns {{line: number, level?: 0 | 1, input?: true}[]} written levels, and lines that changed from output to input
    */
   take(text) {
     const [, address, value] = /addr 0x([0-9a-f]+) value 0x([0-9a-f]+) .*bcm2835_gpio/.exec(text) ?? [];
@@ -28,7 +28,7 @@ export class GpioRegisters {
     const register = parseInt(address, 16) - base;
     const bits = parseInt(value, 16);
     return this.lines.flatMap((line) => {
-      // GPFSELn has three bits for each of ten lines; GPSET0 and GPCLR0 one.
+      // GPFSELn has three bits for each of ten lines; GPSET0 and GPCLR0 have one bit a line.
       if (register === 4 * Math.floor(line / 10)) {
         const now = (bits >>> (3 * (line % 10))) & 7;
         const before = this.#functions.get(line);

@@ -1,5 +1,6 @@
-// Runs on the emulated Pi: turns to each position of its command line by Octurn's own stepper on
-// the real GPIO lines, and says where it stands. SIGTERM stops it; the kernel's trace is told.
+// Runs on the emulated Pi: moves to each position of its command line with Octurn's own stepper on
+// the chip's GPIO lines, and prints its position. SIGTERM stops it, which is marked in the kernel's
+// trace.
 
 #include <charconv>
 #include <cstring>

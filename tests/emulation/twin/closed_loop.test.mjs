@@ -1,6 +1,6 @@
-// A scan on an emulated Raspberry Pi 3, of which nothing above the hardware is a stand-in: Octurn's stepper on the chip's GPIO
-// lines, whose pulses turn a platform, and Octurn's Kinect driver on libfreenect, libusb and the kernel's USB, whose Kinect sees
-// that platform. The model that Octurn makes of its frames is compared with the object.
+// A scan on an emulated Raspberry Pi 3, with real software down to the hardware: Octurn's stepper on the chip's GPIO lines, whose
+// pulses turn an emulated platform, and Octurn's Kinect driver on libfreenect, libusb and the kernel's USB, whose emulated Kinect sees
+// that platform. The model is compared with the object.
 
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
@@ -20,9 +20,9 @@ const frameBytes = 2 * 640 * 480;
 const pulsesInTurn = (stops - 1) * stepsPerTurn / stops;
 
 /**
- * Boots, takes turns of 8 stops, and ends. @param {number} turns @param {Turntable} turntable
+ * Boots the machine, takes turns of 8 stops, and ends. @param {number} turns @param {Turntable} turntable
  * @param {(kinect: TwinKinect) => Promise<void>} prepare  before the Kinect is plugged in
- * @returns {Promise<{said: string, frames: Buffer[][]}>} by the console, and on the disk, those of each turn
+ * @returns {Promise<{said: string, frames: Buffer[][]}>} the console's output, and each turn's frames from the disk
  */
 async function boot(turns, turntable, prepare) {
   const kinect = await TwinKinect.listen(() => turntable.angle);
@@ -31,7 +31,7 @@ async function boot(turns, turntable, prepare) {
   const list = Array(turns).fill(stops).join(',');
   const qemu = spawn('qemu-system-aarch64', [
     '-M', 'raspi3b', '-nographic', '-no-reboot', '-monitor', 'none',
-    '-icount', 'shift=1',  // a second of its clock is half a billion instructions, however busy this machine is
+    '-icount', 'shift=1',  // the guest's clock counts instructions, half a billion a second, however busy this machine is
     '-serial', 'null', '-serial', `file:${folder}/console.log`,
     '-kernel', `${debian}/kernel`, '-dtb', `${debian}/pi3.dtb`, '-initrd', `${folder}/initrd.gz`,
     '-netdev', 'user,id=net', '-device', 'usb-net,netdev=net',
@@ -71,8 +71,8 @@ function scanOf(frames, name) {
   return scan;
 }
 
-/** Has Octurn make a model of a scan. @returns {{mean_mm: number, missing: number, quality: object}} how far it is from the
- * object, and Octurn's own verdict */
+/** Lets Octurn make a model of a scan. @returns {{mean_mm: number, missing: number, quality: object}} its distance from the object,
+ * and Octurn's own verdict */
 function modelOf(scan) {
   const words = ['reconstruct', scan, '--method', 'solid', '--leaf-size-mm', '2', '-o', `${scan}.stl`, '--json'];
   const told = execFileSync(`${programs}/octurn`, words, {stdio: ['ignore', 'pipe', 'ignore']});
@@ -89,7 +89,7 @@ let turn;
 
 before(async () => {
   turn = await boot(3, turntable, async (kinect) => {
-    await kinect.tell('lose 3 100 5');  // every third frame is torn
+    await kinect.tell('lose 3 100 5');  // every third frame loses packets
     turntable.atPulse(350, () => kinect.tell('unplug').then(() => kinect.tell('plug')));
     turntable.lose(20, pulsesInTurn + 350);  // in the second turn, on the way to stop 4
     turntable.atPulse(2 * pulsesInTurn, () => {
@@ -114,14 +114,14 @@ test('torn frames are told and not taken, and a Kinect whose plug was pulled is 
 
 test('the model is the object that stood on the platform', () => {
   const {mean_mm: mean, missing, verdict} = modelOf(scanOf(turn.frames[0], 'whole'));
-  // The same object, scanned by the simulated rig with as many stops: 0.44 to 0.47 mm.
+  // The simulated rig scans the same object with as many stops to 0.44 to 0.47 mm.
   assert.ok(mean < 1 && missing < 0.1, `${mean} mm, ${missing} missing`);
   assert.equal(verdict, 'good');
 });
 
 test('pulses that the motor lost make another model, which is not called good', () => {
   const {mean_mm: mean, verdict} = modelOf(scanOf(turn.frames[1], 'lost'));
-  assert.ok(mean > 3, `${mean} mm`);  // 9 degrees, at half of the stops
+  assert.ok(mean > 3, `${mean} mm`);  // half of the stops are 9 degrees off
   assert.notEqual(verdict, 'good');
 });
 

@@ -1,17 +1,17 @@
-// A Kinect v1 on USB for the machine that this runs on, beside a platform that turns elsewhere:
-// plugs it into the kernel's vhci_hcd by USB/IP, and shows what it would see at the angle that it
-// is told. The kernel, libusb, libfreenect and Octurn's driver above it are as with a real one.
-// Needs root, and the kernel's module vhci-hcd.
+// Emulates a Kinect v1 on the USB of the machine on which it runs: it attaches the device to the
+// kernel's vhci_hcd by USB/IP and renders its view at a platform angle that a peer reports. Kernel,
+// libusb, libfreenect and Octurn's driver above it are the real ones. Needs root, and the kernel
+// module vhci-hcd.
 //
-// Before each frame it sends the line "look" to ADDRESS PORT, and waits for "angle RADIANS", the
-// platform's, counter-clockwise seen from above: so no frame shows the platform as it was before
-// the pulses that came before the frame. Other lines from there are orders, each answered by "ok"
-// or what is wrong:
+// Before each frame it sends the line "look" to ADDRESS PORT and waits for "angle RADIANS", the
+// platform's angle, counter-clockwise seen from above. So each frame shows the effect of all pulses
+// before it. Other lines from the peer are orders, each answered by "ok" or an error text:
 //
-//   plug, unplug              the Kinect's plug
-//   frames                    answered by "SENT DAMAGED", so far
-//   speed FACTOR              of its frames, which are 30 a second until then
-//   lose PERIOD FIRST COUNT   of each PERIOD-th frame, COUNT packets from the FIRST on; 1 0 0: none
+//   plug, unplug              attaches or detaches the Kinect
+//   frames                    answered by the numbers so far, "SENT DAMAGED"
+//   speed FACTOR              sets the frame rate as a multiple of 30 a second
+//   lose PERIOD FIRST COUNT   drops COUNT packets from FIRST on in every PERIOD-th frame; 1 0 0:
+//   none
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -50,10 +50,10 @@ namespace {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// The line to whoever knows the platform.
+/// The connection to the peer that knows the platform's angle.
 class Control {
  public:
-  /// @param address  of IPv4, in numbers
+  /// @param address  IPv4, dotted decimal
   Control(const char* address, const char* port) {
     sockaddr_in to = {};
     to.sin_family = AF_INET;
@@ -80,7 +80,8 @@ class Control {
     }
   }
 
-  /// Takes in what has come, or waits for something. @throws std::runtime_error  if it is closed
+  /// Reads from the connection; blocks until there is data. @throws std::runtime_error  if it is
+  /// closed
   void receive() {
     std::array<char, 4096> buffer = {};
     const ssize_t count = ::recv(number(), buffer.data(), buffer.size(), 0);
@@ -94,7 +95,7 @@ class Control {
     }
   }
 
-  /// The next order that has come.
+  /// The next received order, if any.
   std::optional<std::string> take_order() {
     if (lines_.empty()) {
       return std::nullopt;
@@ -104,7 +105,7 @@ class Control {
     return line;
   }
 
-  /// Asks where the platform is now. Orders that come before the answer wait.
+  /// Asks for the platform's current angle. Orders that arrive before the answer are queued.
   double ask_angle() {
     constexpr std::string_view answer = "angle ";
     send("look");
@@ -126,7 +127,7 @@ class Control {
   std::deque<std::string> lines_;
 };
 
-/// What the simulated Kinect sees, as the readings of a real one.
+/// The simulated Kinect's view as raw readings.
 class View {
  public:
   View() : kinect_(Scene(simulator_object()), 1, 1, 1) {
@@ -151,7 +152,7 @@ class View {
   std::vector<std::uint16_t> picture_ = std::vector<std::uint16_t>(pixels(camera));
 };
 
-/// Writes a line to a file of the kernel. @return whether the kernel has taken it
+/// Writes a line to a sysfs file. @return whether the kernel accepted it
 bool tell_kernel(const char* file, const std::string& line) {
   const FileDescriptor opened(::open(file, O_WRONLY | O_CLOEXEC));
   if (!opened.is_open()) {
@@ -160,9 +161,8 @@ bool tell_kernel(const char* file, const std::string& line) {
   return ::write(opened.number(), line.data(), line.size()) == static_cast<ssize_t>(line.size());
 }
 
-/// Plugs a USB device of high speed into a free port, and another one than that of the device
-/// before: the kernel may not have noticed yet that its plug was pulled. @return the device's end
-/// of its connection
+/// Attaches a high-speed USB device to a free port, different from the previous device's, whose
+/// detachment the kernel may not have noticed yet. @return the device's end of the connection
 FileDescriptor plug_into_kernel(unsigned device_number) {
   constexpr const char* attach = "/sys/devices/platform/vhci_hcd.0/attach";
   constexpr unsigned high_speed_ports = 8;
@@ -188,7 +188,7 @@ class TwinKinect {
  public:
   explicit TwinKinect(Control& control) : control_(control) {}
 
-  /// Until the control's other end is closed.
+  /// Obeys orders until the peer closes the connection.
   void obey_orders() {
     for (;;) {
       while (const auto order = control_.take_order()) {
@@ -236,7 +236,7 @@ class TwinKinect {
     return words ? "ok" : "a number is missing";
   }
 
-  /// Carries on the USB traffic as far as it has come, or waits for more of it, or for an order.
+  /// Handles pending USB traffic, or waits for more or for an order.
   void serve() {
     std::vector<pollfd> files = {{.fd = control_.number(), .events = POLLIN, .revents = 0}};
     for (const auto& device : devices_) {

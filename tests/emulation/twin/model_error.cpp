@@ -1,7 +1,7 @@
-// model_error Scan.stl: how far a model is from the object that stood before the twin's Kinect.
-// Prints one line of JSON: of the model's corners, the distance to the object's surface (mean, root
-// mean square, 95 of 100, largest, mm), and the share of that surface which is farther than 5 mm
-// from every corner, of what is more than 5 mm above the platform.
+// model_error Scan.stl: compares a model with the object that stood before the twin's Kinect.
+// Prints one line of JSON: the distance of the model's corners from the object's surface (mean,
+// root mean square, 95th percentile, largest; mm), and the share of that surface, where it is more
+// than 5 mm above the platform, that is farther than 5 mm from every corner.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -44,8 +44,8 @@ std::vector<Vector3d> corners_of(const std::string& file) {
   return corners;
 }
 
-/// To first order: the distance field over its slope (Taubin 1991), which is less than 1 where
-/// solids are blended.
+/// The first-order distance, metres: the distance field over its gradient's norm (Taubin 1991),
+/// which is less than 1 where solids are blended.
 double distance_to_object(const Vector3d& point) {
   constexpr double h = 1e-5;
   Vector3d slope;
@@ -58,7 +58,7 @@ double distance_to_object(const Vector3d& point) {
   return std::abs(simulator_object_distance(point)) / std::max(slope.norm(), 0.1);
 }
 
-/// Points in cubes of a side of `far_off`, so that what is near is in a neighbour.
+/// Points in a grid of cells of side `far_off`, so that near points are in neighbouring cells.
 class NearPoints {
  public:
   explicit NearPoints(const std::vector<Vector3d>& points) {

@@ -1,8 +1,8 @@
-// Runs on the emulated Pi: a turn of stops by Octurn's own stepper on the real GPIO lines, at each
-// of which Octurn's own Kinect driver takes a frame by libfreenect, libusb and the kernel.
+// Runs on the emulated Pi: Octurn's own stepper makes a turn of stops on the chip's GPIO lines, and
+// at each stop Octurn's own Kinect driver takes a frame through libfreenect, libusb and the kernel.
 //
 // usage: scan_check STOPS FILE: writes the depth images to FILE, one after the other: 640 x 480
-// tenths of a millimetre, 16 bits with the low byte first. A Kinect that is gone is waited for.
+// values in units of 0.1 mm, little-endian 16 bits. If the Kinect is gone, it waits for it.
 
 #include <algorithm>
 #include <charconv>
@@ -41,7 +41,7 @@ class Watch {
           came_.notify_all();
         }) {}
 
-  /// Waits for a frame that began to come after that time. @return its depths; none if the Kinect
+  /// Waits for a frame whose transfer began after that time. @return its depths; none if the Kinect
   /// is gone
   std::vector<std::uint16_t> frame_after(Clock::time_point time) {
     std::unique_lock lock(mutex_);
@@ -70,13 +70,13 @@ class Watch {
   std::jthread stream_;  // the last member: it joins before the members that it uses are destroyed
 };
 
-/// When STEP rose, in moves of the same number of pulses.
+/// The times of STEP's rising edges, in moves of the same number of pulses.
 class PulseTimes {
  public:
   explicit PulseTimes(int pulses_in_move)
       : pulses_in_move_(static_cast<std::size_t>(pulses_in_move)) {}
 
-  /// The same lines, watched. This object has to live as long.
+  /// Wraps a function that sets lines, to record the edges. This object must outlive the result.
   Stepper::SetLine watching(Stepper::SetLine set_line) {
     return [this, set_line = std::move(set_line)](Stepper::Line line, bool high) {
       set_line(line, high);
@@ -86,9 +86,8 @@ class PulseTimes {
     };
   }
 
-  /// By how much each interval of a move was longer than the shortest of its place in all moves,
-  /// the smallest first: no pulse comes before its time, so the shortest is near to what was
-  /// planned.
+  /// The delay of each interval between pulses, relative to the shortest interval at the same index
+  /// of all moves; sorted. No pulse is early, so the shortest interval is close to the planned one.
   std::vector<Clock::duration> lateness() const {
     std::vector<Clock::duration> late;
     const std::size_t moves = rises_.size() / pulses_in_move_;
@@ -123,7 +122,8 @@ std::unique_ptr<Kinect> open_kinect() {
   }
 }
 
-/// A frame of the platform as it is from now on. A Kinect that is lost meanwhile is waited for.
+/// Takes frames that show the platform as it is from now on. Reopens a Kinect that is lost
+/// meanwhile.
 class Eye {
  public:
   std::vector<std::uint16_t> look() {

@@ -1,11 +1,11 @@
-// An obvious writer of scan folders, version 1, of depth images in tenths of a millimetre. It shares nothing with Octurn.
+// A simple writer of scan folders, version 1, with depth images in units of 0.1 mm. It shares no code with Octurn.
 
 import {writeFileSync} from 'node:fs';
 import {deflateSync} from 'node:zlib';
 
 const [width, height] = [640, 480];
 
-/** The checksum of PNG, annex D. @param {Buffer} bytes */
+/** The CRC of PNG, annex D. @param {Buffer} bytes */
 function crc(bytes) {
   let value = 0xffffffff;
   for (const byte of bytes) {
@@ -25,7 +25,7 @@ function chunk(name, data) {
   return Buffer.concat([length, body, check]);
 }
 
-/** @param {Buffer} depth  16 bits with the low byte first, row by row @returns {Buffer} a PNG of 16-bit grey */
+/** @param {Buffer} depth  little-endian 16 bits, row by row @returns {Buffer} a PNG of 16-bit grey */
 function png(depth) {
   const header = Buffer.alloc(13);
   header.writeUInt32BE(width, 0);
@@ -38,11 +38,11 @@ function png(depth) {
     chunk('IDAT', deflateSync(Buffer.concat(rows))), chunk('IEND', Buffer.alloc(0))]);
 }
 
-/** The pose of a sensor on a rig built to the drawing: 0.62 m before the axis, 0.36 m above the platform, 25 degrees down. */
+/** The nominal pose of the sensor: 0.62 m in front of the axis, 0.36 m above the platform, pitched down by 25 degrees. */
 const [sine, cosine] = [Math.sin(25 * Math.PI / 180), Math.cos(25 * Math.PI / 180)];
 const pose = [[1, 0, 0, 0], [0, -sine, cosine, -0.62], [0, -cosine, -sine, 0.36], [0, 0, 0, 1]];
 
-/** @param {string} folder  with a folder snapshots @param {Buffer[]} depths  of a turn of even stops */
+/** @param {string} folder  must contain a folder snapshots @param {Buffer[]} depths  of a turn of evenly spaced stops */
 export function writeScanFolder(folder, depths) {
   const files = depths.map((_, i) => `snapshots/${String(i).padStart(3, '0')}.png`);
   depths.forEach((depth, i) => writeFileSync(`${folder}/${files[i]}`, png(depth)));

@@ -1,20 +1,20 @@
-// The turntable of the appliance's twin: its motor's driver hangs on the GPIO lines of the chip that QEMU emulates.
+// The turntable of the appliance's twin: its motor driver is connected to the GPIO lines of the chip that QEMU emulates.
 
 import {once} from 'node:events';
 import {createServer} from 'node:net';
 import {createInterface} from 'node:readline';
 
-/** Octurn's lines as it has them by default, by their numbers on the chip. */
+/** Octurn's default lines, as GPIO numbers. */
 const lines = {step: 17, direction: 27, enable: 5};
 
-/** Microsteps of a turn: a motor of 1.8 degrees on the platform's shaft, in quarter steps. */
+/** Microsteps a turn: a 1.8 degree motor on the platform's shaft, in quarter steps. */
 export const stepsPerTurn = 800;
 
-/** Microsteps of the coils' period, four whole steps. The driver begins at one place of each when it gets power (A4988, table 2:
- * "home"). */
+/** Microsteps of the coils' electrical period, four full steps. At power-up the driver starts at the period's home position (A4988,
+ * table 2). */
 const stepsPerPeriod = 16;
 
-/** As the resistors on the board have them until somebody drives the lines. */
+/** The levels by the board's resistors while nothing drives the lines. */
 const undriven = {[lines.step]: 0, [lines.direction]: 0, [lines.enable]: 1};
 
 /** An A4988, a motor, and the platform on it. */
@@ -22,19 +22,19 @@ export class Turntable {
   #levels = {...undriven};
   #toLose = [];
   #lossPeriod = Infinity;
-  #isAtHome = false;  // the driver, since it got power
+  #isAtHome = false;  // whether the driver is at its home position, since power-up
   #actions = new Map();
 
-  /** Where the platform stands, in microsteps counter-clockwise. */
+  /** The platform's position, microsteps, counter-clockwise. */
   position = 0;
 
-  /** Where it would stand if no step had been lost. */
+  /** The position if no step had been lost, microsteps. */
   commanded = 0;
 
   /** Rising edges of STEP so far. */
   pulses = 0;
 
-  /** Whether the driver's ENABLE has no contact, and its own resistor keeps the motor off. */
+  /** Whether the driver's ENABLE is disconnected, so that its pull-up keeps the motor off. */
   isEnableStuck = false;
 
   get isOn() {
@@ -46,34 +46,34 @@ export class Turntable {
     return 2 * Math.PI * this.position / stepsPerTurn;
   }
 
-  /** Radians, where it would stand if no step had been lost. */
+  /** The angle if no step had been lost, radians. */
   get commandedAngle() {
     return 2 * Math.PI * this.commanded / stepsPerTurn;
   }
 
-  /** Of the pulses to come, the motor misses `count` after `after` others. */
+  /** Lets the motor miss `count` pulses, after `after` more pulses. */
   lose(count, after = 0) {
     this.#toLose = Array.from({length: count}, (_, i) => this.pulses + after + i + 1);
   }
 
-  /** From now on the motor misses each `period`-th pulse, as one that is too weak for its load; Infinity: none. */
+  /** Lets the motor miss every `period`-th pulse from now on, as one too weak for its load does; Infinity: none. */
   loseEach(period) {
     this.#lossPeriod = period;
   }
 
-  /** Power fails, and comes back: the lines are as nobody drives them, and as soon as the driver switches the motor on, that
-   * jumps to the nearest place at which the driver begins. */
+  /** Cuts and restores power: the lines are undriven, and when the motor is enabled next, it jumps to the nearest home position of
+   * the driver. */
   losePower() {
     this.#levels = {...undriven};
     this.#isAtHome = true;
   }
 
-  /** Has something happen after a pulse: after the 350th, say, in the middle of a move. */
+  /** Calls `action` after pulse `number`, for example in the middle of a move. */
   atPulse(number, action) {
     this.#actions.set(number, action);
   }
 
-  /** A line of the chip changes. @param {number} line @param {0 | 1} level */
+  /** Handles the change of a GPIO line. @param {number} line @param {0 | 1} level */
   change(line, level) {
     const rises = level === 1 && this.#levels[line] === 0;
     this.#levels[line] = level;
@@ -92,7 +92,7 @@ export class Turntable {
   }
 }
 
-/** The GPIO block of QEMU's Raspberry Pi 3: its name, and its registers (BCM2835 peripherals, 6.1). */
+/** The GPIO block of QEMU's Raspberry Pi 3: its QOM path, and its registers (BCM2835 peripherals, 6.1). */
 const block = '/machine/soc/peripherals/gpio';
 const registers = 0x3f200000;
 const set = registers + 0x1c;
@@ -100,8 +100,8 @@ const functions = (line) => registers + 4 * Math.floor(line / 10);
 const output = (line) => 1 << (3 * (line % 10));
 
 /**
- * QEMU's own witness of the chip's lines: its test protocol tells each change of a line that is an output. A line that
- * becomes an input again keeps its level there, while a resistor would pull it.
+ * Observes the chip's GPIO lines by QEMU's qtest protocol, which reports each change of an output. In QEMU a line that becomes an
+ * input keeps its level, although a resistor would pull it.
  */
 export class GpioWitness {
   #server;
@@ -115,12 +115,12 @@ export class GpioWitness {
     return witness;
   }
 
-  /** What QEMU is to be started with. */
+  /** Options for QEMU. */
   get options() {
     return ['-qtest', `tcp:127.0.0.1:${this.#server.address().port}`, '-qtest-log', 'none'];
   }
 
-  /** Writes a register, as the chip's processor would. */
+  /** Writes a register like the chip's processor. */
   write(register, value) {
     this.#socket.write(`writel 0x${register.toString(16)} 0x${value.toString(16)}\n`);
   }
@@ -133,7 +133,7 @@ export class GpioWitness {
 
   #watch(socket, change) {
     this.#socket = socket;
-    socket.on('error', () => {});  // QEMU is killed, as power is cut
+    socket.on('error', () => {});  // QEMU is killed when power is cut
     createInterface({input: socket}).on('line', (text) => {
       const [, level, line] = /^IRQ (raise|lower) ([0-9]+)$/.exec(text) ?? [];
       if (level) {
@@ -141,7 +141,7 @@ export class GpioWitness {
       }
     });
     socket.write(`irq_intercept_out ${block}\n`);
-    // GPIO0 to 8 are pulled up while the Pi boots, and so is ENABLE: QEMU's chip has no resistors.
+    // On a Pi, GPIO0 to 8 are pulled up at boot, ENABLE among them. QEMU's chip has no resistors, so it is driven high here.
     this.write(functions(lines.enable), output(lines.enable));
     this.write(set, 1 << lines.enable);
     this.write(functions(lines.enable), 0);

@@ -1,4 +1,4 @@
-// The twin's turntable: alone, and on the GPIO block of QEMU's Raspberry Pi 3, whose registers are written here.
+// The twin's turntable: alone, and on the GPIO block of QEMU's Raspberry Pi 3, whose registers this test writes.
 
 import assert from 'node:assert/strict';
 import {spawn} from 'node:child_process';
@@ -92,7 +92,7 @@ test('after a cut of power the lines are undriven, and the motor jumps to where 
   turntable.change(enable, 0);
   assert.equal(turntable.position, 96);
   turntable.change(direction, 1);
-  steps(turntable, 4);  // also the first, though STEP was high
+  steps(turntable, 4);  // including the first, although STEP was high before
   assert.equal(turntable.position, 100);
   turntable.change(enable, 1);
   turntable.change(enable, 0);
@@ -114,7 +114,7 @@ test('something happens with a pulse, after the platform has made its step', () 
 test('QEMU tells each change of the lines that are outputs', async () => {
   const changes = [];
   const witness = await GpioWitness.listen((line, level) => changes.push([line, level]));
-  // -S: its processor stands still, so that nobody else writes to the registers.
+  // -S stops the processor, so that nothing else writes to the registers.
   const qemu = spawn('qemu-system-aarch64', ['-M', 'raspi3b', '-S', '-display', 'none', '-monitor', 'none', ...witness.options],
     {stdio: 'ignore'});
   const until = async (count) => {
@@ -124,7 +124,7 @@ test('QEMU tells each change of the lines that are outputs', async () => {
     }
   };
   try {
-    await until(1);  // ENABLE, pulled up
+    await until(1);  // ENABLE goes high
     const [functions1, functions2, set, clear] = [0x3f200004, 0x3f200008, 0x3f20001c, 0x3f200028];
     witness.write(functions1, 1 << 21);  // GPIO17 is an output
     witness.write(set, 1 << step | 1 << direction);

@@ -1,4 +1,4 @@
-// frames.mjs FOLDER: makes the pictures of the virtual camera, each with blocks of its own.
+// frames.mjs FOLDER: writes the virtual camera's pictures, each with different blocks.
 
 import {mkdirSync, writeFileSync} from 'node:fs';
 

@@ -1,4 +1,4 @@
-// The driver of cameras above Debian 13's libcamera, whose virtual camera shows pictures of this test.
+// The camera driver on Debian 13's libcamera, whose virtual camera shows this test's pictures.
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
@@ -11,7 +11,7 @@ const {OCTURN_VIRTUAL: folder, OCTURN_DEBIAN: debian} = process.env;
 test('pictures of libcamera\'s virtual camera come as they are, in grey and in colour', () => {
   const console = execFileSync('qemu-system-aarch64', [
     '-M', 'virt', '-cpu', 'cortex-a57', '-m', '512', '-nographic', '-no-reboot', '-monitor', 'none', '-serial', 'stdio', '-nic', 'none',
-    '-icount', 'shift=2',  // its clock is late where this machine is
+    '-icount', 'shift=2',  // the guest's clock slows down with this machine
     '-kernel', `${debian}/kernel`, '-initrd', `${folder}/initrd.gz`,
     '-append', 'console=ttyAMA0 panic=-1 rdinit=/init quiet loglevel=3'], {encoding: 'utf8', timeout: 800_000, stdio: ['ignore', 'pipe', 'inherit']});
   const said = [...console.matchAll(/check: (.*?)\r?$/gm)].map(([, text]) => text);

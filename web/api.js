@@ -1,4 +1,4 @@
-// Requests to the scanner. What it answers is described in API.md.
+// Requests to the scanner. API.md describes the responses.
 
 import {text} from './texts.js';
 import {refusalText} from './wording.js';
@@ -15,7 +15,7 @@ import {refusalText} from './wording.js';
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
  *
  * @typedef {import('./wording.js').Parameters} Parameters
- * @typedef {{code: string, detail: string, hint: string, parameters?: Parameters, places_mm?: number[][]}} Reason  places_mm: where, in the model's frame
+ * @typedef {{code: string, detail: string, hint: string, parameters?: Parameters, places_mm?: number[][]}} Reason  places_mm: affected places, in the model's frame
  *
  * @typedef {Object} Model
  * @property {string} url
@@ -27,9 +27,9 @@ import {refusalText} from './wording.js';
  * @property {number[]} size_mm
  * @property {number} seconds
  * @property {number | null} parts
- * @property {number | null} [dropped_parts]  that are not in the model
+ * @property {number | null} [dropped_parts]  parts left out of the model
  * @property {number | null} [dropped_volume_cm3]
- * @property {number | null} filled_share  of the surface's area, that nobody saw
+ * @property {number | null} filled_share  share of the surface's area that was not observed
  * @property {{verdict: 'good' | 'look' | 'bad', reasons: Reason[]} | null} [quality]
  *
  * @typedef {{accepted: boolean, confirms_told: boolean, reason: string, solved: {after_mm: number} | null, findings?: Reason[]}} ScanCalibration
@@ -45,18 +45,18 @@ import {refusalText} from './wording.js';
  * @property {number} snapshots_total
  * @property {number} seconds_elapsed
  * @property {number | null} seconds_left
- * @property {number | null} seconds_until_pause  while a stop is tried again
+ * @property {number | null} seconds_until_pause  while a failed stop is retried
  * @property {boolean} [can_resume]
  * @property {Settings} settings
- * @property {number} late_pulses  of the motor
- * @property {{code: string, detail: string, hint: string, parameters?: Parameters} | null} error  of a running scan: what is being tried again
+ * @property {number} late_pulses  motor pulses that came late
+ * @property {{code: string, detail: string, hint: string, parameters?: Parameters} | null} error  in a running scan, the error for which a stop is retried
  * @property {Model | null} model
- * @property {ScanCalibration | null} [calibration]  by the scan itself
- * @property {number} [build]  whose model it is; 0 is what the scan itself made
- * @property {{scan: string, registration: import('./api_poses.js').Registration | null} | null} [pose_of]  of a scan of another pose
- * @property {import('./api_poses.js').Pose[]} [poses]  of the same object
- * @property {boolean} [has_colours]  its pictures do
- * @property {{url: string, snapshots: number} | null} preview  what was seen so far; only while it runs
+ * @property {ScanCalibration | null} [calibration]  solved by the scan itself
+ * @property {number} [build]  the build that `model` is from; 0: the scan itself
+ * @property {{scan: string, registration: import('./api_poses.js').Registration | null} | null} [pose_of]  for a scan of a further pose
+ * @property {import('./api_poses.js').Pose[]} [poses]  further poses of the same object
+ * @property {boolean} [has_colours]  whether its pictures are coloured
+ * @property {{url: string, snapshots: number} | null} preview  mesh of the snapshots so far; null unless it runs
  *
  * @typedef {Object} Device
  * @property {'unknown' | 'ready' | 'missing' | 'failed'} state
@@ -69,30 +69,30 @@ import {refusalText} from './wording.js';
  * @property {Device} sensor
  * @property {Device} turntable
  * @property {number} disk_free_bytes
- * @property {boolean} appliance  it has updates and WiFi
+ * @property {boolean} appliance  whether it has updates and WiFi
  * @property {Finding[]} [warnings]  about the computer
  * @property {Scan | null} scan
- * @property {import('./api_builds.js').Build | null} [build]  that goes on, or the last one
- * @property {import('./api_builds.js').Build[] | null} [cluster_builds]  those that Slurm has; null: builds are made here
+ * @property {import('./api_builds.js').Build | null} [build]  the running build, or the last one
+ * @property {import('./api_builds.js').Build[] | null} [cluster_builds]  builds in Slurm; null: the scanner builds by itself
  * @property {string | null} newest
- * @property {number} scans_revision  changes with every scan that comes, ends, is renamed or goes
+ * @property {number} scans_revision  changes whenever a scan is added, ends, is renamed or deleted
  *
- * @typedef {Object} Finding  of one check
- * @property {string} check  its name for programs
+ * @typedef {Object} Finding  the result of one check
+ * @property {string} check  machine-readable name of the check
  * @property {string} name
  * @property {'ok' | 'warning' | 'fault' | 'unknown'} state
  * @property {string} measured  with units
- * @property {string} advice  what to do, or empty
- * @property {'' | 'measure-turn' | 'set-pose' | 'open-settings' | 'choose-scans'} action  what the page can do by itself
+ * @property {string} advice  remedy, or empty
+ * @property {'' | 'measure-turn' | 'set-pose' | 'open-settings' | 'choose-scans'} action  remedy that the page offers
  *
- * @typedef {Object} Report  of the scanner's doctor
+ * @typedef {Object} Report  the report of the scanner's doctor
  * @property {string} version
  * @property {string} time
  * @property {'ok' | 'warning' | 'fault'} state
  * @property {Finding[]} findings
  *
  * @typedef {Object} Update
- * @property {string} version  that runs
+ * @property {string} version  running version
  * @property {string} slot
  * @property {'none' | 'receiving' | 'installing' | 'restarting' | 'failed' | 'trial' | 'kept' | 'returned'} state
  * @property {string} update_version
@@ -109,19 +109,19 @@ import {refusalText} from './wording.js';
  * @property {string} country
  * @property {string} hotspot
  * @property {string} error
- * @property {string} host  the scanner's name
+ * @property {string} host  the scanner's host name
  * @property {Network[]} networks  strongest first
  */
 
 const root = '/api/v1/';
-const patience = 8000;  // milliseconds until a request counts as unanswered
-const patienceWithFile = 600000;  // while a file is sent
-const patienceWithDoctor = 60000;  // who watches the sensor first, after whoever else does
+const patience = 8000;  // request timeout, milliseconds
+const patienceWithFile = 600000;  // timeout while a file is sent
+const patienceWithDoctor = 60000;  // timeout of a check, which waits for the sensor and watches it
 
-/** Why the scanner did not do what it was asked, in the words of its problem+json. */
+/** The scanner's refusal of a request, from its problem+json. */
 export class Problem extends Error {
   /**
-   * @param {string} code  "unreachable" when no answer came at all
+   * @param {string} code  "unreachable" if there was no response
    * @param {string} title
    * @param {string} [detail]
    * @param {string} [hint]
@@ -153,7 +153,7 @@ async function problemOf(response) {
  * @param {string} path  below the API's root, or absolute
  * @param {RequestInit} [options]
  * @param {number} [timeout]  milliseconds
- * @returns {Promise<Response>} a good one
+ * @returns {Promise<Response>} with a status of success
  * @throws {Problem}
  */
 async function request(path, options = {}, timeout = patience) {
@@ -178,7 +178,7 @@ async function request(path, options = {}, timeout = patience) {
 export async function json(path, options, timeout) {
   const response = await request(path, options, timeout);
   return response.json().catch(() => {
-    throw unreachable();  // cut short, or something else than the scanner answers at this address
+    throw unreachable();  // truncated, or not from the scanner
   });
 }
 
@@ -201,13 +201,13 @@ const scan = (/** @type {string} */ id) => `scans/${encodeURIComponent(id)}`;
 /** @returns {Promise<Status>} */
 export const status = () => json('status');
 
-/** @returns {Promise<Report>} what a check of the scanner finds; it takes a few seconds */
+/** Checks the scanner, which takes a few seconds. @returns {Promise<Report>} */
 export const examine = () => json('doctor', {}, patienceWithDoctor);
 
 /** @returns {Promise<Scan[]>} newest first */
 export const scans = async () => (await json('scans')).scans;
 
-/** @returns {Promise<Settings>} what a scan uses unless told otherwise */
+/** @returns {Promise<Settings>} the default settings of a scan */
 export const defaults = async () => (await json('settings')).defaults;
 
 /**
@@ -222,7 +222,7 @@ export const cancel = (id) => json(`${scan(id)}/cancel`, sending('POST'));
 /** @param {string} id @returns {Promise<Scan>} */
 export const pause = (id) => json(`${scan(id)}/pause`, sending('POST'));
 
-/** @param {Partial<Settings>} settings @returns {Promise<{seconds: number, bytes: number, measured: boolean}>} what such a scan takes */
+/** @param {Partial<Settings>} settings @returns {Promise<{seconds: number, bytes: number, measured: boolean}>} time and disk space of such a scan */
 export const estimate = (settings) => json('scans/estimate', sending('POST', settings));
 
 /** @param {string} id  of a scan that was paused, interrupted or ended @returns {Promise<Scan>} */
@@ -238,11 +238,11 @@ export const label = (id, what) => json(scan(id), sending('PATCH', what));
 /** @param {string} id */
 export const remove = (id) => withoutAnswer(scan(id), 'DELETE');
 
-/** @returns {Promise<Blob>} what the sensor sees now, as a PNG */
+/** @returns {Promise<Blob>} the sensor's current picture, a PNG */
 export const preview = async () => (await request('preview/depth.png')).blob();
 
 /**
- * What a running scan has seen so far, as a coarse mesh.
+ * The coarse preview mesh of a running scan.
  *
  * @param {string} url
  * @param {AbortSignal} signal
@@ -254,7 +254,7 @@ export async function growing(url, signal) {
 }
 
 /**
- * A finished model, as it arrives. It may take minutes, and the browser may keep it.
+ * A finished model as a stream. The download may take minutes, and the browser may cache it.
  *
  * @param {string} url
  * @param {AbortSignal} signal
@@ -265,26 +265,26 @@ export async function model(url, signal) {
   return /** @type {ReadableStream<Uint8Array>} */ (body);
 }
 
-/** @returns {Promise<Update>} of the appliance alone */
+/** @returns {Promise<Update>} available on an appliance only */
 export const update = () => json('update');
 
-/** @returns {Promise<Wifi>} of the appliance alone */
+/** @returns {Promise<Wifi>} available on an appliance only */
 export const wifi = () => json('wifi');
 
 /** @param {{name: string, password?: string, country: string}} wanted @returns {Promise<Wifi>} */
 export const joinWifi = (wanted) => json('wifi', sending('PUT', wanted));
 
 /**
- * Sends an update, which may take minutes.
+ * Uploads an update, which may take minutes.
  *
  * @param {Blob} file
  * @param {(sent: number) => void} onProgress  bytes so far
  * @param {AbortSignal} signal
- * @param {boolean} takesOlder  also a version that is older than the one that runs
+ * @param {boolean} takesOlder  whether a version older than the running one is allowed
  * @returns {Promise<Update>}
  */
 export const sendUpdate = (file, onProgress, signal, takesOlder) => new Promise((resolve, reject) => {
-  const request = new XMLHttpRequest();  // fetch does not tell how much is sent
+  const request = new XMLHttpRequest();  // fetch has no upload progress
   request.open('PUT', `${root}update${takesOlder ? '?older=yes' : ''}`);
   request.setRequestHeader('Content-Type', 'application/octet-stream');
   request.upload.addEventListener('progress', ({loaded}) => onProgress(loaded));

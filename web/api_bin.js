@@ -1,10 +1,10 @@
-// Requests about the scans that were deleted.
+// Requests about deleted scans.
 
 import {json, sending, withoutAnswer} from './api.js';
 
 /** @typedef {{id: string, name: string, created: string, state: string, snapshots_done: number, deleted: string, kept_until: string}} Binned */
 
-/** @returns {Promise<Binned[]>} what was deleted last comes first */
+/** @returns {Promise<Binned[]>} the most recently deleted first */
 export const bin = async () => (await json('bin')).scans;
 
 /** @param {string} id @returns {Promise<import('./api.js').Scan>} */

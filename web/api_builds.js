@@ -1,4 +1,4 @@
-// Requests to the scanner about the models that are built from a stored scan.
+// Requests about the models built from a stored scan.
 
 import {json, sending, withoutAnswer} from './api.js';
 
@@ -7,7 +7,7 @@ import {json, sending, withoutAnswer} from './api.js';
 /**
  * @typedef {Object} Build
  * @property {string} scan  its id
- * @property {number} build  its number; 0 is what the scan itself made
+ * @property {number} build  its number; 0: made by the scan itself
  * @property {'waiting' | 'running' | 'finished' | 'failed' | 'cancelled'} state
  * @property {'starting' | 'calibrating' | 'registering' | 'rebuilding' | 'building' | 'done'} phase
  * @property {string} created
@@ -17,17 +17,17 @@ import {json, sending, withoutAnswer} from './api.js';
  * @property {{code: string, detail: string, hint: string} | null} error
  * @property {import('./api.js').ScanCalibration | null} calibration
  * @property {import('./api.js').Model | null} model
- * @property {string[]} [poses]  scans of other poses that are in it
- * @property {{id: string, detail: string} | null} [cluster_job]  of a build that is made elsewhere
- * @property {boolean} chosen  it is the scan's model
+ * @property {string[]} [poses]  scans of further poses in it
+ * @property {{id: string, detail: string} | null} [cluster_job]  of a build on a cluster
+ * @property {boolean} chosen  whether it is the scan's model
  */
 
 const path = (/** @type {string} */ scan) => `scans/${encodeURIComponent(scan)}/builds`;
 
-/** @param {string} scan @returns {Promise<Build[]>} what the scan made first */
+/** @param {string} scan @returns {Promise<Build[]>} the scan's own first */
 export const builds = async (scan) => (await json(path(scan))).builds;
 
-/** @param {string} scan @param {Object} settings  those that are to differ; `choose` makes it the scan's model @returns {Promise<Build>} */
+/** @param {string} scan @param {Object} settings  that differ from the scan's; `choose` makes the build the scan's model @returns {Promise<Build>} */
 export const build = (scan, settings) => json(path(scan), sending('POST', settings));
 
 /** @param {string} scan @param {number} number @returns {Promise<Build>} */

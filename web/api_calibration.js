@@ -1,4 +1,4 @@
-// Requests about the sensor's pose. What the scanner answers is described in API.md.
+// Requests about the sensor's pose. API.md describes the responses.
 
 import {json, sending} from './api.js';
 
@@ -13,9 +13,9 @@ import {json, sending} from './api.js';
  * @property {number | null} after_mm
  * @property {number} scale
  *
- * @typedef {Object} TurnReport  what the stops of a turn tell of the pose
+ * @typedef {Object} TurnReport  the pose solved from the stops of a turn
  * @property {boolean} accepted
- * @property {string} reason  why not
+ * @property {string} reason  of a refusal
  * @property {number | null} shift_mm
  * @property {number | null} tilt_deg
  * @property {number | null} sigma_mm
@@ -29,7 +29,7 @@ import {json, sending} from './api.js';
  *
  * @typedef {{fx: number, fy: number, cx: number, cy: number, k1: number, k2: number}} Lens
  *
- * @typedef {Object} LensReport  what a printed board told of a camera's lens
+ * @typedef {Object} LensReport  a camera's lens solved from a printed board
  * @property {boolean} accepted
  * @property {string} reason
  * @property {Lens | null} lens
@@ -47,8 +47,8 @@ import {json, sending} from './api.js';
  * @property {'turning' | 'solving' | 'looking'} phase
  * @property {number} stop
  * @property {number} stops
- * @property {TurnReport | WallReport | LensReport | null} report  of its kind
- * @property {BoardLook | null} look  of a lens
+ * @property {TurnReport | WallReport | LensReport | null} report  by `kind`
+ * @property {BoardLook | null} look  in a run for a lens, the current view of the board
  * @property {{code: string, detail: string, hint: string} | null} error
  *
  * @typedef {PoseRecord & {
@@ -61,7 +61,7 @@ import {json, sending} from './api.js';
  * @typedef {{sensor: import('./overlay.js').Sensor, points_mm: import('./pose.js').Point[]}} Points  in the optical frame
  */
 
-/** @returns {Promise<Points>} every eighth reading of the last frame, both ways */
+/** @returns {Promise<Points>} every eighth reading of the last frame, in rows and columns */
 export const points = () => json('preview/points');
 
 /** @returns {Promise<Calibration>} */
@@ -75,7 +75,7 @@ export const sensorMap = () => json('calibration/sensor-map');
 
 export const cancel = () => json('calibration/cancel', sending('POST'));
 
-/** Brings back the pose before the one in force. */
+/** Restores the pose before the one in force. */
 export const undo = () => json('calibration/undo', sending('POST'));
 
 /** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null, lens?: 'keep' | 'discard' | null}} wanted */

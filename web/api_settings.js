@@ -1,9 +1,9 @@
-// Requests about what the scanner is told to keep, and about its turntable. What it answers is described in API.md.
+// Requests about the scanner's settings and its turntable. API.md describes the responses.
 
 import {json, sending} from './api.js';
 
 /**
- * @typedef {Object} SettingSchema  of one setting
+ * @typedef {Object} SettingSchema  JSON schema of one setting
  * @property {string} type
  * @property {string} description
  * @property {string} [x-unit]
@@ -14,24 +14,24 @@ import {json, sending} from './api.js';
  *
  * @typedef {Object} Configuration
  * @property {any} settings  in force, every key
- * @property {any} preset  what they are where the page has set nothing
- * @property {any} stored  what the page has set
+ * @property {any} preset  values without the page's settings
+ * @property {any} stored  values set by the page
  * @property {any} settings_schema
  * @property {string[]} restart_needed  keys that are not in force yet
- * @property {string} trouble  with the stored ones, or empty
+ * @property {string} trouble  problem with the stored settings, or empty
  * @property {'everybody' | 'page' | 'octurn.json'} password
  *
- * @typedef {{name: string, time_zone: string, error: string}} Machine  of the appliance
+ * @typedef {{name: string, time_zone: string, error: string}} Machine  name and time of the appliance
  *
  * @typedef {{code: string, detail: string, hint: string}} Trouble
  *
- * @typedef {Object} TurnFinding  of a test of the turntable
+ * @typedef {Object} TurnFinding  a result of the turntable's test
  * @property {string} check
  * @property {string} name
  * @property {'ok' | 'warning' | 'fault'} state
  * @property {string} measured
  * @property {string} advice
- * @property {Object} set  settings of the turntable that cure it
+ * @property {Object} set  turntable settings that remedy it
  *
  * @typedef {Object} TurntableState
  * @property {'idle' | 'jogging' | 'testing'} state
@@ -39,10 +39,10 @@ import {json, sending} from './api.js';
  * @property {{state: 'running' | 'done' | 'failed' | 'cancelled', done: number, findings: TurnFinding[], error: Trouble | null} | null} test
  */
 
-/** @returns {Promise<Machine>} of the appliance alone */
+/** @returns {Promise<Machine>} available on an appliance only */
 export const machine = () => json('machine');
 
-/** @param {{name?: string, time_zone?: string}} wanted @returns {Promise<Machine>} as it is before that is done */
+/** @param {{name?: string, time_zone?: string}} wanted @returns {Promise<Machine>} as before the change */
 export const changeMachine = (wanted) => json('machine', sending('PATCH', wanted));
 
 /** @returns {Promise<TurntableState>} */
@@ -54,11 +54,11 @@ export const moveTurntable = (what) => json('turntable', sending('POST', what));
 /** @returns {Promise<Configuration>} */
 export const configuration = () => json('settings');
 
-/** @param {Object} change  null takes back what was set @returns {Promise<Configuration>} */
+/** @param {Object} change  null resets a setting @returns {Promise<Configuration>} */
 export const changeSettings = (change) => json('settings', sending('PATCH', change));
 
 /** @param {string} backup  the text of its file @returns {Promise<Configuration>} */
 export const restoreSettings = (backup) => json('settings/backup', {...sending('POST'), body: backup});
 
-/** @param {string | null} password  null lets everybody in @returns {Promise<Configuration>} */
+/** @param {string | null} password  null removes the password @returns {Promise<Configuration>} */
 export const setPassword = (password) => json('settings/password', sending('PUT', {password}));

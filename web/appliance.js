@@ -1,4 +1,4 @@
-// Updates and WiFi, which the page has where it is the appliance's.
+// Updates and WiFi, on an appliance's page.
 
 import * as api from './api.js';
 import {element, setText, show} from './dom.js';
@@ -10,8 +10,8 @@ const usual = {title: text('away.title'), text: text('away.text')};
 
 let isAppliance = false;
 let isScanning = false;
-let version = '';  // that the page is of
-/** @type {(typeof import('./update.js') & typeof import('./wifi.js')) | null} once its part of the page is there */
+let version = '';  // the page's own version
+/** @type {(typeof import('./update.js') & typeof import('./wifi.js')) | null} null until its fragment is loaded */
 let parts = null;
 let wake = () => {};
 
@@ -31,13 +31,13 @@ async function prepare() {
 }
 
 /**
- * Whether its part of the page is needed: it is looked at, or something goes on that the other places tell, too.
+ * Whether the fragment is needed: it is in view, or something goes on that other places show, too.
  * @param {import('./api.js').Update} update @param {import('./api.js').Wifi} wifi
  */
 const isNeeded = (update, wifi) => tabOf(location.hash.slice(1)) === 'scanner' || ['hotspot', 'joining'].includes(wifi.state) ||
     ['receiving', 'installing', 'restarting', 'trial'].includes(update.state);
 
-/** What the banner says when the scanner does not answer: that may be as it should. */
+/** Explains in the banner why the scanner does not answer, which may be expected. */
 function explainAway() {
   const {title, text: detail} = parts?.updateAway() ?? parts?.wifiAway() ?? usual;
   setText(element('away-title'), title);
@@ -48,7 +48,7 @@ async function look() {
   try {
     const [update, wifi] = await Promise.all([api.update(), api.wifi()]);
     if (version && version !== update.version) {
-      location.reload();  // the page is of the version before
+      location.reload();  // the page is older than the scanner's program
     }
     version = update.version;
     if (!parts && isNeeded(update, wifi)) {
@@ -64,7 +64,7 @@ async function look() {
   explainAway();
 }
 
-/** Looks again and again, for as long as the page is open. */
+/** Polls updates and WiFi as long as the page is open. */
 export async function watchAppliance() {
   addEventListener('hashchange', () => parts || wake());
   for (;;) {

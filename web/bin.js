@@ -1,4 +1,4 @@
-// The bin below the list of scans: what was deleted, and can be restored.
+// The bin below the list of scans: deleted scans, which can be restored.
 
 import * as requests from './api_bin.js';
 import {element, list, part, setText, show} from './dom.js';
@@ -7,7 +7,7 @@ import {text} from './texts.js';
 
 const undoLasts = 20000;  // milliseconds
 
-let revision = 0;  // of the scans, when the bin was read
+let revision = 0;  // of the scans, at the last read of the bin
 let timer = 0;
 
 /** @param {requests.Binned} scan @param {Date} now */
@@ -31,9 +31,9 @@ function render(scans) {
   });
 }
 
-/** Reads the bin where scans came or went. @param {number} current  revision of the scans */
+/** Reads the bin if scans were added or deleted. @param {number} current  revision of the scans */
 export async function seeRevision(current) {
-  if (current === revision || !element('bin')) {  // nobody has been in the library yet
+  if (current === revision || !element('bin')) {  // the library's fragment is not loaded yet
     return;
   }
   const before = revision;
@@ -41,11 +41,11 @@ export async function seeRevision(current) {
   try {
     render(await requests.bin());
   } catch {
-    revision = before;  // the next look asks again
+    revision = before;  // retried at the next poll
   }
 }
 
-/** Reads the bin again at the next look. */
+/** Makes the next poll read the bin again. */
 export function refresh() {
   revision = 0;
 }
@@ -55,7 +55,7 @@ export function hideUndo() {
   show(element('deleted'), false);
 }
 
-/** Offers for a while to bring a scan back that has just been deleted. @param {string} name @param {() => void} undo */
+/** Offers for a while to restore a scan that has just been deleted. @param {string} name @param {() => void} undo */
 export function offerUndo(name, undo) {
   clearTimeout(timer);
   setText(element('deleted-text'), text('bin.moved', {name}));

@@ -1,4 +1,4 @@
-// What the page shows of the models that were built from a scan. Pure: state in, texts and choices out.
+// The view of the models built from a scan. Pure: state in, texts and choices out.
 
 import * as format from './format.js';
 import {badgeOf} from './quality.js';
@@ -15,14 +15,14 @@ const faultsOfPose = new Set(['stops-disagree', 'floats', 'sunk']);
 /** @param {Build} build */
 export const isGoing = ({state}) => state === 'waiting' || state === 'running';
 
-/** Tells one state of a build from another. @param {Build | null | undefined} build */
+/** A key that changes with a build's state. @param {Build | null | undefined} build */
 export const markOf = (build) => build ? `${build.scan} ${build.build} ${build.state}` : '';
 
-/** Tells one state of all builds that go on from another. @param {import('./api.js').Status | null | undefined} status */
+/** A key that changes with the state of any running build. @param {import('./api.js').Status | null | undefined} status */
 export const markOfBuilds = (status) => [status?.build, ...status?.cluster_builds ?? []].map(markOf).join(' ');
 
 /**
- * The build of a scan that goes on, here or on a cluster, or the last one that left no model.
+ * The running build of a scan, here or on a cluster, or the last one that left no model.
  * @param {State} state @param {string} scan @returns {Build | null}
  */
 export function runOf({status}, scan) {
@@ -30,23 +30,23 @@ export function runOf({status}, scan) {
   return runs.find((run) => run && isGoing(run)) ?? runs.at(-1) ?? null;
 }
 
-/** Whether no other build can begin now: a cluster takes any number. @param {State} state @param {string} scan */
+/** Whether no further build can begin now; a cluster takes any number. @param {State} state @param {string} scan */
 export function isBuildBusy(state, scan) {
   const run = state.status?.cluster_builds ? runOf(state, scan) : state.status?.build;
   return Boolean(run && isGoing(run)) || Boolean(state.status?.scan && !state.status.cluster_builds);
 }
 
-/** The builds of a scan that have a model, as far as they are known. @param {State} state @param {string} id */
+/** The known builds of a scan that have a model. @param {State} state @param {string} id */
 const modelsOf = ({builds}, id) => builds?.scan === id ? builds.list.filter(({model}) => model !== null) : [];
 
-/** The build that is looked at. @param {State} state @param {Scan} scan @returns {Build | null} */
+/** The build in view. @param {State} state @param {Scan} scan @returns {Build | null} */
 export function buildShown(state, scan) {
   const models = modelsOf(state, scan.id);
   return models.find(({build}) => build === state.shownBuild) ?? models.find(({chosen}) => chosen) ?? null;
 }
 
 /**
- * A scan with the model that is looked at, and with what that was made with.
+ * A scan with the model in view and the settings of that model.
  * @param {State} state @param {Scan} scan @returns {Scan}
  */
 export function asShown(state, scan) {
@@ -60,10 +60,10 @@ export function asShown(state, scan) {
   return {...scan, settings, model: {...build.model, url}, calibration: isSolvedAlready ? scan.calibration : build.calibration};
 }
 
-/** Where the picture gets a scan's model from: another address for each build. @param {Scan} scan @param {Build | null} build */
+/** The URL of the model in the picture, different for each build. @param {Scan} scan @param {Build | null} build */
 export const pictureUrl = (scan, build) => `/api/v1/scans/${scan.id}/builds/${build?.build ?? scan.build ?? 0}/Scan.stl`;
 
-/** Whether a solved pose may cure what a model has that was made without one. @param {Scan} scan  as it is shown */
+/** Whether a model was made without a solved pose and has faults that one may cure. @param {Scan} scan  as shown */
 export const isCrooked = ({model, settings, calibration}) => (settings.calibrate === 'told' || !calibration) &&
     Boolean(model?.quality?.reasons.some(({code}) => faultsOfPose.has(code)));
 
@@ -89,7 +89,7 @@ function phaseText({state, phase, snapshots_done, snapshots_total, cluster_job})
   }
 }
 
-/** Reading takes the longer part. @param {Build} build @returns {number | null} 0 to 1; null: nobody knows */
+/** The progress of reading snapshots, which takes most of the time. @param {Build} build @returns {number | null} 0 to 1; null: unknown */
 const shareOf = ({phase, snapshots_done, snapshots_total}) => phase === 'rebuilding' && snapshots_total > 0 ?
     snapshots_done / snapshots_total : null;
 
@@ -113,12 +113,12 @@ const rowOf = ({build, model, settings, calibration, created, chosen, poses}, sh
   ].filter(Boolean).join(' · '),
   isShown: build === shown,
   isChosen: chosen,
-  canRemove: !chosen && build !== 0 && !poses?.length,  // those go with their poses
+  canRemove: !chosen && build !== 0 && !poses?.length,  // builds with further poses are deleted with the poses
   download: model?.url ?? '',
 });
 
 /**
- * @param {State} state @param {Scan} scan  that is looked at
+ * @param {State} state @param {Scan} scan  in view
  */
 export function buildsOf(state, scan) {
   const mine = runOf(state, scan.id);

@@ -1,4 +1,4 @@
-// The models of a scan: their list, the build that goes on, and the form "Build again".
+// The models of a scan: their list, the running build, and the form "Build again".
 
 import {element, list, part, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
@@ -10,7 +10,7 @@ import {text} from './texts.js';
 /** @typedef {import('./api.js').Settings} Settings */
 
 /**
- * @typedef {Object} Actions  what a button asks for
+ * @typedef {Object} Actions  handlers of the buttons
  * @property {(settings: Object) => void} build
  * @property {(build: number) => void} cancel
  * @property {(build: number) => void} show
@@ -18,11 +18,11 @@ import {text} from './texts.js';
  * @property {(build: number) => void} remove
  */
 
-let isHere = false;  // its part of the page
+let isHere = false;  // whether the fragment is loaded
 let isBegun = false;
 /** @type {Builds | null} */
 let last = null;
-let filledFor = '';  // the scan whose settings the form has
+let filledFor = '';  // the scan whose settings are in the form
 
 const form = () => /** @type {HTMLFormElement} */ (element('build-form'));
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...form().querySelectorAll('[data-clip]')])
@@ -62,7 +62,7 @@ function fill(settings) {
   explainFields();
 }
 
-/** What the form asks for: what the method does not use is left as it was. */
+/** The form's settings, without those that the method does not use. */
 function chosenSettings() {
   const method = chosenMethod();
   const own = method === 'solid' ? {max_error_mm: element('build-error').valueAsNumber} : {
@@ -103,7 +103,7 @@ function showGoing({going, trouble}) {
   setText(element('build-phase'), going?.text ?? '');
   const bar = element('build-progress');
   if (going?.share === null || going?.share === undefined) {
-    bar.removeAttribute('value');  // it goes on, and nobody knows how far
+    bar.removeAttribute('value');  // indeterminate
   } else {
     bar.value = going.share;
   }
@@ -112,7 +112,7 @@ function showGoing({going, trouble}) {
   setText(part(element('build-trouble'), 'p'), trouble?.text ?? '');
 }
 
-/** @param {Builds | null} builds  of the scan that is looked at */
+/** @param {Builds | null} builds  of the scan in view */
 export function renderBuilds(builds) {
   last = builds;
   show(element('builds'), Boolean(builds?.canBuild));
@@ -150,7 +150,7 @@ function listen(actions) {
   });
 }
 
-/** Fetches its part of the page, once. @param {Actions} actions */
+/** Fetches the fragment, once. @param {Actions} actions */
 export async function prepareBuilds(actions) {
   if (isBegun) {
     return;
@@ -162,6 +162,6 @@ export async function prepareBuilds(actions) {
     listen(actions);
     renderBuilds(last);
   } catch {
-    isBegun = false;  // the next look asks again
+    isBegun = false;  // retried at the next poll
   }
 }

@@ -1,8 +1,8 @@
-// Makes the page as it is served of its modules: node bundle.js SOURCE TARGET FILE...
+// Builds the served page from its modules: node bundle.js SOURCE TARGET FILE...
 //
-// The scripts and styles of each document that has some become a few files under assets/, whose names change with
-// their content, so that a browser may keep them for ever. A document takes in the pieces that it includes. Files that
-// are neither are copied. Beside each text lies the same, packed, as NAME.gz.
+// The scripts and styles of each document become a few files under assets/, whose names contain a hash of the content,
+// so that browsers may cache them for ever. Included fragments are inlined into their document. Other files are copied.
+// Each text file is also stored compressed, as NAME.gz.
 
 import {build} from 'esbuild';
 import {cp, mkdir, readFile, readdir, rm, writeFile} from 'node:fs/promises';
@@ -18,7 +18,7 @@ const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
 const {isLater} = await import(pathToFileURL(join(source, 'text_parts.js')));
 
-/** Each language in two files: what the first sight of the page needs, and the rest. */
+/** Splits each language into two files: the texts for the page's first view, and the rest. */
 const splitTexts = {name: 'texts', setup: ({onLoad, onResolve}) => {
   onResolve({filter: /\?rest$/}, ({path}) => ({path, namespace: 'rest'}));
   onLoad({filter: /\/texts\/\w+\.js$/}, async ({path}) => {
@@ -37,13 +37,13 @@ const common = {
   metafile: true, absWorkingDir: source, outdir: join(target, 'assets'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
 };
 
-/** The file of the page that an entry was made into, from `outputs` of a metafile. @returns {string} */
+/** The output file of an entry point, from `outputs` of a metafile. @returns {string} */
 function madeOf(outputs, entry) {
   const [path] = Object.entries(outputs).find(([, {entryPoint}]) => entryPoint === entry);
   return path;
 }
 
-/** What a script needs before it runs, itself first: their names below `target`. @returns {string[]} */
+/** A script and its static imports, the script first; paths below `target`. @returns {string[]} */
 function needed(outputs, path, seen = []) {
   if (!seen.includes(path)) {
     seen.push(path);
@@ -52,10 +52,10 @@ function needed(outputs, path, seen = []) {
   return seen;
 }
 
-/** @param {string} path  as esbuild has it, from `source` */
+/** @param {string} path  of esbuild, relative to `source` */
 const fromPage = (path) => relative(target, join(source, path));
 
-/** One file of a document's stylesheets, in their order. @param {string[]} files @returns {Promise<string>} */
+/** Bundles a document's stylesheets into one file, in their order. @param {string[]} files @returns {Promise<string>} */
 async function bundleStyles(files) {
   const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], stdin: {
     contents: files.map((file) => `@import "./${file}";`).join('\n'), loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
@@ -70,10 +70,10 @@ async function filesBelow(folder) {
   return below.flat();
 }
 
-/** @type {Set<string>} files that are part of others */
+/** @type {Set<string>} files inlined into others */
 const included = new Set();
 
-/** @param {string} file @returns {Promise<string>} its text, with the pieces that it includes */
+/** @param {string} file @returns {Promise<string>} its text, with the included fragments */
 async function textOf(file) {
   const text = await readFile(join(source, file), 'utf8');
   const pieces = new Map();

@@ -1,5 +1,5 @@
-// The page Calibrate: asks for the calibration, the picture and the points for as long as it is looked at, and does what
-// its buttons say.
+// The page Calibrate: polls the calibration, the picture and the points while the page is in view, and handles its
+// buttons.
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
@@ -21,9 +21,9 @@ const wallFrames = 25;
 
 /** @type {Calibration | null} */
 let calibration = null;
-let actions = 0;  // asked of the scanner so far: an answer from before one is old news after it
+let actions = 0;  // requests so far; a response from before the latest is outdated
 let isPending = false;
-/** @type {string | null} the map whose picture is shown */
+/** @type {string | null} key of the map whose picture is shown */
 let pictured = null;
 
 const isWatched = () => here() === 'calibrate' && !document.hidden;
@@ -31,13 +31,13 @@ const isWatched = () => here() === 'calibrate' && !document.hidden;
 /** @param {unknown} error */
 const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
 
-/** @type {Promise<void> | null} the card of a camera's lens, which other sensors have no use for */
+/** @type {Promise<void> | null} the card for the lens of a camera with lasers; other sensors need none */
 let lensCard = null;
 
 /** @param {Calibration} news */
 function see(news) {
   calibration = news;
-  // A camera measures no depth that a wall could flatten, that a length could scale, or by which a hand could see what it does.
+  // A camera with lasers has no depth picture, so the cards for walls, known lengths and adjustment by hand are hidden.
   ['flatten', 'by-hand', 'known-length'].forEach((id) => show(element(id), !news.lens));
   if (news.lens) {
     lensCard ??= prepareLens(act);
@@ -48,8 +48,9 @@ function see(news) {
 }
 
 /**
- * @param {string} failure  key of the text that says what did not happen then @param {() => Promise<unknown>} action
- * @param {string} [notice]  where that is said
+ * Runs a request and shows its failure.
+ * @param {string} failure  key of the failure's text @param {() => Promise<unknown>} action
+ * @param {string} [notice]  id of the element that shows the failure
  */
 async function act(failure, action, notice = 'pose-problem') {
   if (isPending) {
@@ -119,7 +120,7 @@ function measureWall() {
   }
 }
 
-/** Asks for the picture of a map that is not shown yet. @param {Calibration} calibration */
+/** Fetches the picture of a map unless it is already shown. @param {Calibration} calibration */
 async function lookAtMap({sensor_map: map}) {
   const mark = map && `${map.serial} ${map.at}`;
   if (mark !== pictured) {
@@ -154,7 +155,7 @@ async function lookAtPicture() {
     const [png, seen] = await Promise.all([api.preview(), requests.points()]);
     await showPicture(png);
     showPoints(seen);
-    return calibration?.run?.state === 'running' ? 1500 : 500;  // a turn needs the machine
+    return calibration?.run?.state === 'running' ? 1500 : 500;  // a turn needs the processor
   } catch (error) {
     const {detail, title, hint} = problemOf(error);
     showNoPicture([detail || title, hint].map(sentence).join(' '));
@@ -162,7 +163,7 @@ async function lookAtPicture() {
   }
 }
 
-/** Looks again and again, while somebody does. @param {() => Promise<number>} look  tells for how long to rest then, milliseconds */
+/** Polls while the page is in view. @param {() => Promise<number>} look  resolves to the pause after it, milliseconds */
 async function watch(look) {
   for (;;) {
     const pause = isWatched() ? await look() : 250;
@@ -185,7 +186,7 @@ function listen() {
   element('wall-ready').addEventListener('change', () => element('measure-wall').setAttribute('aria-disabled', String(!isWallReady())));
 }
 
-/** Called once, when the page is there. */
+/** Called once, when the fragment is loaded. */
 export function prepare() {
   preparePicture();
   preparePlacement({onChange: showPose, onKeep: keep});

@@ -1,4 +1,4 @@
-// Puts a calibration into the page Calibrate, except the picture and the five numbers.
+// Renders a calibration on the page Calibrate, except the picture and the numbers of the pose.
 
 import {isCalibrated} from './api_calibration.js';
 import * as texts from './calibration.js';
@@ -22,7 +22,7 @@ export function showNotice(id, notice) {
   }
 }
 
-/** Hides one of two parts and shows the other; focus that would vanish goes along. @param {string} id @param {string} other */
+/** Hides one of two elements and shows the other, and moves the focus along. @param {string} id @param {string} other */
 function swap(id, other) {
   const hadFocus = element(id).contains(document.activeElement);
   show(element(id), false);
@@ -44,7 +44,7 @@ function showRun(calibration, kind) {
   showNotice(`${kind}-outcome`, texts.outcomeOf(calibration, kind));
 }
 
-/** @type {object | null} the report that is drawn */
+/** @type {object | null} the report drawn last */
 let drawn = null;
 
 /** @param {import('./api_calibration.js').TurnReport} report */
@@ -100,7 +100,7 @@ function showHistory(calibration) {
   const poses = texts.historyOf(calibration);
   show(element('no-poses'), poses.length === 0);
   setText(element('no-poses'), texts.noPosesText(calibration));
-  show(element('undo'), poses.length > 0 || isCalibrated(calibration));  // the settings' pose is below all
+  show(element('undo'), poses.length > 0 || isCalibrated(calibration));  // the configured pose is the last that undo can restore
   list(element('poses'), poses, ({key}) => key, 'earlier-pose', (item, {title, text}) => {
     setText(part(item, '.pose-title'), title);
     setText(part(item, '.muted'), text);
@@ -110,7 +110,7 @@ function showHistory(calibration) {
 /** @param {Calibration} calibration */
 export function showCalibration(calibration) {
   const summary = texts.summaryOf(calibration);
-  const isNews = texts.outcomeOf(calibration, 'turn')?.tone === 'good';  // which says it already
+  const isNews = texts.outcomeOf(calibration, 'turn')?.tone === 'good';  // the outcome already says so
   showNotice('pose-summary', isNews ? null : {...summary, detail: summary.text});
   showRun(calibration, 'turn');
   showRun(calibration, 'wall');

@@ -1,4 +1,4 @@
-// What the page Calibrate says of a calibration. Pure: the scanner's answer in, texts and choices out.
+// The texts of the page Calibrate. Pure: the scanner's response in, texts and choices out.
 
 import {isCalibrated} from './api_calibration.js';
 import {degrees, millimetres, percent, sentence, when} from './format.js';
@@ -11,14 +11,14 @@ import {refusalText} from './wording.js';
 /** @typedef {import('./api_calibration.js').WallReport} WallReport */
 /** @typedef {import('./api_calibration.js').CalibrationRun} CalibrationRun */
 
-const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // less is no change: docs/calibration.md
-export const turnStops = 24;  // of a turn that measures the pose
+const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // smaller changes count as none: docs/calibration.md
+export const turnStops = 24;  // stops of a calibration turn
 export const scaleLimits = {min: 0.97, max: 1.03};
 
 /** @param {PoseRecord} pose */
 export const sourceOf = ({source, at}) => at ? text('pose.at', {source: text(`pose.${source}`), when: when(at)}) : text(`pose.${source}`);
 
-/** Whether anybody told where this sensor stands. @param {PoseRecord} pose */
+/** Whether the sensor's pose is configured. @param {PoseRecord} pose */
 const isTold = ({source}) => source !== 'default';
 
 /** @param {Calibration} calibration */
@@ -46,7 +46,7 @@ function phaseOf({kind, phase, stop, stops}) {
   return text(`run.${kind}`, {stop: kind === 'wall' ? stop : Math.min(stop + 1, stops), stops});
 }
 
-/** A turn or wall that is measured now, or null. @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind */
+/** The progress of a running measurement of that kind, or null. @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind */
 export function progressOf(calibration, kind) {
   const run = calibration?.run;
   if (!run || run.kind !== kind || run.state !== 'running') {
@@ -60,7 +60,7 @@ function acceptedText({shift_mm, tilt_deg, before_mm, after_mm, confirms_told}) 
   const [shift, tilt, before, after] = [shift_mm ?? 0, tilt_deg ?? 0, before_mm ?? 0, after_mm ?? 0];
   const values = {shift: millimetres(shift), tilt: degrees(tilt), before: millimetres(before), after: millimetres(after)};
   const outcome = confirms_told ?? (shift <= confirmed.shift_mm && tilt <= confirmed.tilt_deg) ? 'confirmed' : 'moved';
-  const title = confirms_told === false ? 'run.lasers' : `run.${outcome}`;  // the camera may stand where it was thought to stand
+  const title = confirms_told === false ? 'run.lasers' : `run.${outcome}`;  // the lasers changed; the camera's pose may be unchanged
   return {title: text(title, values), detail: text(`run.${outcome}-about`, values)};
 }
 
@@ -75,7 +75,7 @@ function flattenedText({rms_before, rms_after, walls}) {
 }
 
 /**
- * What came of the last turn or wall, or null while there is nothing to say.
+ * The outcome of the last measurement of that kind, or null if there is none to show.
  * @param {Calibration | null} calibration @param {CalibrationRun['kind']} kind
  * @returns {{tone: string, title: string, detail: string, hint: string} | null}
  */
@@ -96,13 +96,13 @@ export function outcomeOf(calibration, kind) {
   }
 }
 
-/** What the last turn found, if it is worth a picture. @param {CalibrationRun | null} run @returns {TurnReport | null} */
+/** The last turn's report, if there is something to draw. @param {CalibrationRun | null} run @returns {TurnReport | null} */
 export function foundBy(run) {
   const report = run?.kind === 'turn' && run.state !== 'running' ? /** @type {TurnReport | null} */ (run.report) : null;
   return report && (report.accepted || report.stops.length > 0 || report.findings.length > 0) ? report : null;
 }
 
-/** @param {TurnReport} report @returns {{label: string, text: string}[]} none where nothing was accepted */
+/** @param {TurnReport} report @returns {{label: string, text: string}[]} empty unless it was accepted */
 export function figuresOf({accepted, shift_mm, tilt_deg, sigma_mm, sigma_deg, before_mm, after_mm}) {
   return !accepted ? [] : [
     ...(shift_mm === null ? [] : [{label: text('figure.moved'), text: millimetres(shift_mm)}]),
@@ -121,14 +121,14 @@ export const historyOf = ({history}) => history.map((pose, index) => ({
     pose.scale === 1 ? '' : text('pose.scale', {scale: fixed(pose.scale, 4)})].filter(Boolean).join(', '),
 }));
 
-/** What is said where there are none. @param {Calibration} calibration */
+/** The text for an empty history. @param {Calibration} calibration */
 export const noPosesText = (calibration) => text(isCalibrated(calibration) ? 'pose.none-before' : 'pose.none');
 
 /** @param {Calibration} calibration */
 export const mapText = ({sensor_map: map}) => map ?
   text('map.done', {when: when(map.at), serial: map.serial, before: fixed(map.rms_before, 2), after: fixed(map.rms_after, 2)}) : text('map.none');
 
-/** For how long the sensor has warmed up. @param {number | null} seconds */
+/** The sensor's warm-up time so far, in words. @param {number | null} seconds */
 export function warmText(seconds) {
   if (seconds === null) {
     return '';
@@ -138,7 +138,7 @@ export function warmText(seconds) {
 }
 
 /**
- * The scale that a length asks for, on top of the one that the model was made with.
+ * The scale from a known length, combined with the scale with which the model was made.
  * @param {number} model_mm @param {number} caliper_mm @param {number} scale  in force
  * @returns {{scale: number, problem: string}}
  */
@@ -155,11 +155,11 @@ export function scaleOf(model_mm, caliper_mm, scale) {
 export const scaleText = (scale) => scale === 1 ? text('scale.none') :
   text(scale > 1 ? 'scale.larger' : 'scale.smaller', {share: percent(Math.abs(scale - 1), 2)});
 
-/** How large the largest stop's offset is drawn, degrees. @param {TurnReport['stops']} stops */
+/** The range of the bars, degrees: the largest offset, at least 0.5. @param {TurnReport['stops']} stops */
 export const barRange = (stops) => Math.max(0.5, ...stops.map(({off_deg}) => Math.abs(off_deg)));
 
 /**
- * A bar for each stop: up where the platform had turned too far. SVG paths in a drawing of 100 x 100 with the middle at 50.
+ * A bar for each stop, upwards if the platform had turned too far. SVG paths in a view box of 100 x 100, with zero at 50.
  * @param {TurnReport} report @returns {{usual: string, marked: string, label: string}}
  */
 export function barsOf({stops, findings}) {

@@ -1,4 +1,4 @@
-// What the sensor sees now, for as long as it is looked at: what will be scanned in colour, and what would spoil the scan.
+// The live depth picture while it is in view: readings in the scanned space in colour, and hints on problems of a scan.
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
@@ -14,7 +14,7 @@ import {text} from './texts.js';
 /** @typedef {import('./live_hints.js').Seen} Seen */
 
 const betweenPictures = 250;   // milliseconds; the scanner may be busy with a scan
-const betweenAttempts = 2000;  // while there is no picture
+const betweenAttempts = 2000;  // milliseconds, while there is no picture
 const betweenRigs = 5000;      // a calibration may change the pose
 
 const isWatched = () => !document.hidden && !element('main').hidden && !element('camera').hidden && element('stage').dataset.reachable === 'yes';
@@ -23,7 +23,7 @@ const isWatched = () => !document.hidden && !element('main').hidden && !element(
 let told = null;
 let toldAt = -betweenRigs;  // by performance.now()
 
-/** Asks where the sensor stands, from time to time. Without an answer the picture has no lines and no hints. */
+/** Fetches the sensor's pose from time to time. Without it the picture has no lines and no hints. */
 async function askForRig() {
   if (performance.now() - toldAt < betweenRigs) {
     return;
@@ -47,7 +47,7 @@ function rigNow() {
   return told && clip_mm ? {...told, clip_mm} : null;
 }
 
-/** @type {{brightness: Uint8Array, seen: Seen} | null} the picture before */
+/** @type {{brightness: Uint8Array, seen: Seen} | null} the previous picture */
 let before = null;
 let steady = steadyHint();
 
@@ -98,7 +98,7 @@ async function showPicture() {
   }
 }
 
-/** Runs for as long as the page. */
+/** Runs as long as the page is open. */
 export async function watchCamera() {
   drawScale(element('scale'));
   seeDistances = prepareDistance(part(element('camera'), '.frame'), element('live-pointed'));

@@ -1,11 +1,11 @@
-// What all 3D pictures do with their canvas.
+// Functions for the canvases of 3D pictures.
 
 /**
- * Makes a picture as large and as fine as its canvas is shown.
+ * Sets the renderer's size and resolution to those of its canvas.
  * @param {import('three').WebGLRenderer} renderer
  * @param {import('three').PerspectiveCamera} camera
  * @param {HTMLCanvasElement} canvas
- * @returns {boolean} whether it is shown at all
+ * @returns {boolean} whether the canvas is visible
  */
 export function fitToCanvas(renderer, camera, canvas) {
   const {clientWidth: width, clientHeight: height} = canvas;
@@ -19,9 +19,9 @@ export function fitToCanvas(renderer, camera, canvas) {
   return true;
 }
 
-const longestClick = 6;  // pixels that a pointer may move meanwhile
+const longestClick = 6;  // pixels that a pointer may move during a click
 
-/** @param {HTMLCanvasElement} canvas @param {(x: number, y: number) => void} onPoint  where it was clicked and not dragged, CSS pixels */
+/** @param {HTMLCanvasElement} canvas @param {(x: number, y: number) => void} onPoint  position of a click that is no drag, CSS pixels */
 export function onClick(canvas, onPoint) {
   /** @type {number[] | null} */
   let down = null;

@@ -1,4 +1,4 @@
-// The first visit: check the scanner, calibrate, scan. It goes away once that is done, or is dismissed.
+// The first steps: check the scanner, calibrate, scan. They are hidden once all are done, or when they are dismissed.
 
 import * as requests from './api_calibration.js';
 import {element, part, show} from './dom.js';
@@ -6,13 +6,13 @@ import {here} from './places.js';
 
 const betweenLooks = 2000;  // milliseconds
 const checkedKey = 'octurn-checked';
-const demoKey = 'octurn-demo';  // the scan that is the demo, which is nobody's first model
+const demoKey = 'octurn-demo';  // the demo's scan, which does not count as a first model
 const dismissedKey = 'octurn-first-steps-dismissed';
 
 /** @typedef {{isChecked: boolean, isCalibrated: boolean | null, hasModel: boolean | null, isDismissed: boolean}} Known  null: not known yet */
 
 /**
- * What of the first steps is done; null where they are not shown. Pure.
+ * The state of the first steps; null if they are hidden. Pure.
  * @param {Known} known
  * @returns {Record<'check' | 'calibrate' | 'scan', 'done' | 'now' | 'next'> | null}
  */
@@ -26,7 +26,7 @@ export function stepsOf({isChecked, isCalibrated: hasPose, hasModel, isDismissed
   return {check: stateOf('check'), calibrate: stateOf('calibrate'), scan: stateOf('scan')};
 }
 
-/** What this browser remembers, as long as it may. @param {string} key */
+/** Reads a note from the browser's storage, if it is allowed. @param {string} key */
 function noted(key) {
   try {
     return localStorage.getItem(key);
@@ -40,7 +40,7 @@ function note(key, value = 'yes') {
   try {
     localStorage.setItem(key, value);
   } catch {
-    // a browser that keeps nothing shows the steps again
+    // without storage the steps are shown again
   }
 }
 

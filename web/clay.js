@@ -1,4 +1,4 @@
-// What the viewer shows: a model of clay, and the platform below it.
+// The objects of the viewer: a model of clay, and the platform below it.
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
@@ -11,13 +11,13 @@ const filledColour = new Color(0xd9913f);
 export const ringStep = 50;   // millimetres between the platform's rings
 
 /**
- * Flat-shaded clay that can show its triangles. Each triangle has its own three vertices, in order, so that a vertex's number
- * tells its corner, and a pixel's distance from the nearest side comes from interpolating the corners: no further buffers.
+ * Flat-shaded clay that can show its triangles. Each triangle has three vertices of its own, in order, so a vertex's index gives its
+ * corner. A pixel's distance to the nearest edge comes from interpolated barycentric coordinates, without further buffers.
  * @param {Object} shown
- * @param {{value: number}} shown.edges  how strongly, 0 to 1
- * @param {{value: number}} shown.filled  how strongly what was filled in has its own colour, 0 to 1
- * @param {{value: number}} shown.painted  1 where the colours of the corners are shown, and 0 where clay is
- * @param {{value: number}} shown.top  millimetres: what is higher is cut off, and lets the eye see inside
+ * @param {{value: number}} shown.edges  opacity of the edges, 0 to 1
+ * @param {{value: number}} shown.filled  opacity of the colour of filled-in surface, 0 to 1
+ * @param {{value: number}} shown.painted  1: the corners' colours are shown; 0: clay
+ * @param {{value: number}} shown.top  millimetres; higher parts are cut off
  */
 export function clayMaterial({edges, filled, painted, top}) {
   const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true, side: DoubleSide});
@@ -58,7 +58,7 @@ ${shader.fragmentShader}`
   return material;
 }
 
-/** Light from beside the eye, so that a shape reads from every side. @param {any} camera */
+/** Lights that move with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
 export function lightsBeside(camera) {
   const key = new DirectionalLight(0xfff6e8, 2.1);
   key.position.set(-0.5, 0.8, 1);

@@ -1,9 +1,9 @@
-// Which sides of the scanned space a pointer takes hold of, and where they go. Pure; lengths are millimetres.
+// Picking and moving sides of the scanned space with a pointer. Pure; lengths are millimetres.
 
 /** @typedef {import('./plans.js').Plan} Plan */
 /** @typedef {import('./plans.js').Side} Side */
 
-export const thinnest = 10;  // of the space, millimetres
+export const thinnest = 10;  // minimum extent of the space, millimetres
 const farthest = 1000;
 
 /**
@@ -24,7 +24,7 @@ export function edgesAt({toPixel}, {right, up}, clip_mm, x, y, reach) {
 }
 
 /**
- * One side elsewhere, to the millimetre, so that something stays between it and the other.
+ * Moves one side, rounded to a millimetre, and keeps the minimum distance to the opposite side.
  * @param {number[]} clip_mm @param {number} index @param {number} value
  */
 export function withSide(clip_mm, index, value) {
@@ -34,7 +34,7 @@ export function withSide(clip_mm, index, value) {
   return clip_mm.map((one, at) => at === index ? kept : one);
 }
 
-/** @param {number[]} edges @param {Side} side @returns {string} the pointer over them */
+/** @param {number[]} edges @param {Side} side @returns {string} the CSS cursor over these edges */
 export function cursorOf(edges, {right}) {
   if (edges.length === 2) {
     return edges[0] < 3 === edges[1] < 3 ? 'nesw-resize' : 'nwse-resize';

@@ -1,4 +1,4 @@
-// The scanned space: dragged in the plans and in the live picture, or typed, and kept as the scanner's setting.
+// The form of the scanned space: dragged in the plans and in the live picture, or typed, and saved as the scanner's setting.
 
 import {cursorOf, edgesAt, withSide} from './clip_edges.js';
 import {draggedTo, handlesOf} from './clip_handles.js';
@@ -6,11 +6,11 @@ import {element, show} from './dom.js';
 import {plansShown, rigShown} from './pose_picture.js';
 import {text} from './texts.js';
 
-const reach = {mouse: 7, pen: 10, touch: 16};  // pixels
+const reach = {mouse: 7, pen: 10, touch: 16};  // picking distance, pixels
 
 /** @type {number[] | null} in force */
 let inForce = null;
-/** @type {number[] | null} as dragged or typed; null while it is the space in force */
+/** @type {number[] | null} as dragged or typed; null: unchanged */
 let draft = null;
 /** @type {(clip_mm: number[], isDragged: boolean) => void} */
 let onSpace = () => {};
@@ -39,7 +39,7 @@ function set(clip_mm, isDragged) {
   onSpace(clip_mm, isDragged);
 }
 
-/** Forgets what was dragged or typed. */
+/** Discards unsaved changes. */
 export function discardSpace() {
   draft = null;
   fields().forEach((field) => field.setCustomValidity(''));
@@ -49,10 +49,10 @@ export function discardSpace() {
   }
 }
 
-/** @returns {number[] | null} as dragged or typed, if it is */
+/** @returns {number[] | null} the space as dragged or typed; null: unchanged */
 export const chosenSpace = () => draft;
 
-/** @param {number[]} clip_mm  in force; what is set meanwhile stays */
+/** Shows the space in force unless there are unsaved changes. @param {number[]} clip_mm */
 export function showSpace(clip_mm) {
   inForce = clip_mm;
   if (!draft) {
@@ -61,7 +61,7 @@ export function showSpace(clip_mm) {
   }
 }
 
-/** Takes the fields, and has the browser say which of them leaves nothing. */
+/** Reads the fields, and marks those that leave no space as invalid. */
 function type() {
   const typed = fields().map((field) => field.valueAsNumber);
   fields().forEach((field, index) => field.setCustomValidity(

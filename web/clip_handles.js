@@ -1,4 +1,4 @@
-// Handles of the scanned space in the live picture: one on each side, which is dragged along its axis. Pure.
+// Handles of the scanned space in the live picture: one on each side, to be dragged along the side's axis. Pure.
 
 import {pixelOf} from './overlay.js';
 import {toPlatform, toSensor} from './pose.js';
@@ -9,15 +9,15 @@ import {toPlatform, toSensor} from './pose.js';
 
 /** @typedef {{index: number, x: number, y: number, at_mm: Point}} Handle  index into clip_mm; x and y in the picture; at_mm on the side */
 
-const nearest = 0.05;  // metres before the sensor
-const margin = 14;     // pixels from the edge of the picture, so that a handle is seen whole
-const places = [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92];  // along a side, its middle first
-const along = 0.1;     // sine of the angle between view and axis, below which a pixel says little of the axis
+const nearest = 0.05;  // metres in front of the sensor
+const margin = 14;     // pixels from the picture's edge, so that handles are wholly visible
+const places = [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92];  // candidate positions along a side, the middle first
+const along = 0.1;     // sine of the angle between view and axis below which dragging is ill-conditioned
 
 const metres = (/** @type {Point} */ point) => /** @type {Point} */ (point.map((value) => value / 1000));
 
 /**
- * Where a side is taken hold of: as near its middle as the picture shows it.
+ * The handle of a side: as near to its middle as is visible.
  * @param {Matrix} pose @param {Sensor} sensor @param {number[]} clip_mm @param {number} index @returns {Handle | null}
  */
 function handleOf(pose, sensor, clip_mm, index) {
@@ -38,15 +38,15 @@ function handleOf(pose, sensor, clip_mm, index) {
   return null;
 }
 
-/** @param {{pose: Matrix, sensor: Sensor, clip_mm: number[]}} rig @returns {Handle[]} of the sides that are in the picture */
+/** @param {{pose: Matrix, sensor: Sensor, clip_mm: number[]}} rig @returns {Handle[]} of the visible sides */
 export const handlesOf = ({pose, sensor, clip_mm}) => [0, 1, 2, 3, 4, 5]
     .map((index) => handleOf(pose, sensor, clip_mm, index)).filter((handle) => handle !== null);
 
 /**
- * How far along its axis a handle is dragged: the point of that line which is nearest to the ray of a pixel.
- * @param {{pose: Matrix, sensor: Sensor}} rig @param {Handle} handle  where it was taken hold of
+ * The position along its axis to which a handle is dragged: the axis's point nearest to a pixel's ray.
+ * @param {{pose: Matrix, sensor: Sensor}} rig @param {Handle} handle  at the start of the drag
  * @param {number} x @param {number} y  pixel
- * @returns {number | null} millimetres, for clip_mm; null where the view goes along the axis
+ * @returns {number | null} millimetres, for clip_mm; null if the view is parallel to the axis
  */
 export function draggedTo({pose, sensor}, {index, at_mm}, x, y) {
   const eye = toPlatform(pose, [0, 0, 0]);

@@ -1,4 +1,4 @@
-// The colours of a model as its STL is drawn: three corners for each triangle, in the file's order.
+// The colours of a model, in the order of its STL: three corners for each triangle.
 
 import * as api from './api.js';
 import {element, pressed} from './dom.js';
@@ -6,13 +6,13 @@ import {sentence} from './format.js';
 import {text} from './texts.js';
 
 const vertexBytes = 15;  // x, y, z as floats; red, green, blue
-const faceBytes = 14;  // how many corners, three numbers of vertices, whether it was filled in
+const faceBytes = 14;  // number of corners, three vertex indices, whether it was filled in
 
 /**
  * Reads a coloured PLY of the scanner. Its faces are the STL's, in the same order.
  * @param {ArrayBuffer} file
  * @returns {Uint8Array} nine levels for each triangle: red, green and blue of its corners
- * @throws {Error} if it is cut short, or is none
+ * @throws {Error} if the file is truncated or not such a PLY
  */
 export function readColours(file) {
   const bytes = new Uint8Array(file);
@@ -34,7 +34,7 @@ export function readColours(file) {
   return colours;
 }
 
-/** @param {string} url  of a model's STL @returns {Promise<Uint8Array>} as of `readColours` */
+/** @param {string} url  of a model's STL @returns {Promise<Uint8Array>} as from `readColours` */
 async function fetchColours(url) {
   const stream = await api.model(url.replace(/stl$/, 'ply?colour=true'), new AbortController().signal);
   return readColours(await new Response(stream).arrayBuffer());
@@ -43,10 +43,10 @@ async function fetchColours(url) {
 const isPressed = () => element('colours').getAttribute('aria-pressed') === 'true';
 
 /**
- * Paints the model, or takes the paint away.
+ * Shows or hides the model's colours.
  * @param {Object} shown
  * @param {() => import('./viewer.js').Viewer | undefined} shown.viewer
- * @param {() => string | null} shown.url  of the STL of the model that is shown and has colours
+ * @param {() => string | null} shown.url  the STL of the shown model, if it has colours
  * @param {(words: string) => void} shown.say
  */
 export async function toggleColours({viewer, url, say}) {
@@ -59,7 +59,7 @@ export async function toggleColours({viewer, url, say}) {
   say(text('view.loading'));
   try {
     const colours = await fetchColours(of);
-    if (url() === of && isPressed()) {  // and no other model came meanwhile
+    if (url() === of && isPressed()) {  // unless another model is shown by now
       viewer()?.paint(colours);
     }
     say('');

@@ -1,4 +1,4 @@
-// Where a WiFi may be: the countries of ISO 3166-1, by their two letters.
+// Countries for the WiFi's regulatory domain: ISO 3166-1 alpha-2 codes.
 
 export const codes = ('AD AE AF AG AI AL AM AO AQ AR AS AT AU AW AX AZ BA BB BD BE BF BG BH BI BJ BL BM BN BO BQ BR BS BT BV BW BY BZ ' +
   'CA CC CD CF CG CH CI CK CL CM CN CO CR CU CV CW CX CY CZ DE DJ DK DM DO DZ EC EE EG EH ER ES ET FI FJ FK FM FO FR GA GB GD GE GF ' +

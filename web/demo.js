@@ -1,6 +1,6 @@
-// The demo, for who has no rig yet: a scan of the simulated rig, which comes with the page. It is imported as any other scan
-// file is, built here, and can be deleted. demo.zip has 16 stops of `octurn serve --simulate --simulate-perfect`; of their
-// depth images what lies within 10 cm of the axis was kept, so that it is small.
+// The demo for people without a rig: a scan of the simulated rig, part of the page. It is imported like any scan file, built
+// on the scanner, and can be deleted. demo.zip has 16 stops of `octurn serve --simulate --simulate-perfect`. To keep it small, its
+// depth images hold only readings within 10 cm of the axis.
 
 import * as api from './api.js';
 import {act} from './page.js';
@@ -9,7 +9,7 @@ import {text} from './texts.js';
 
 const file = 'demo.zip';
 
-/** @param {(id: string) => void} onScan  told which scan it is */
+/** @param {(id: string) => void} onScan  called with the demo's scan */
 export const openDemo = (onScan) => act('failure.demo', async () => {
   const response = await fetch(file);
   if (!response.ok) {

@@ -1,10 +1,10 @@
-// The depth picture in colours: deep blue far away, through teal, to warm white near by.
+// Colours of the depth picture: from deep blue for far readings through teal to warm white for near ones.
 
 import {fixed, text} from './texts.js';
 
 /** Colours at equal steps of brightness, far to near. */
 const stops = [[13, 38, 66], [14, 82, 105], [28, 130, 130], [98, 182, 143], [196, 221, 150], [255, 244, 214]];
-const faintest = 24;  // what the scanner gives the farthest reading (API.md); darker is no reading
+const faintest = 24;  // brightness of the farthest reading (API.md); 0 is no reading
 
 /** @param {number} brightness  0 to 255 @returns {number[]} red, green, blue */
 export function colourOf(brightness) {
@@ -16,9 +16,9 @@ export function colourOf(brightness) {
 const table = Array.from({length: 256}, (_, brightness) => colourOf(brightness));
 
 /**
- * Colours a grey picture in place. Where nothing was read it becomes transparent.
+ * Colours a grey picture in place. Pixels without a reading become transparent.
  * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
- * @param {Uint8Array | null} [chosen]  of each pixel: all others stay grey
+ * @param {Uint8Array | null} [chosen]  1 for each pixel to colour; the others stay grey
  */
 export function colour(pixels, chosen = null) {
   for (let i = 0; i < pixels.length; i += 4) {
@@ -33,12 +33,12 @@ export function colour(pixels, chosen = null) {
   }
 }
 
-/** Where the picture's brightness ends, metres (API.md): it is even in inverse depth between the two. */
+/** The picture's depth range, metres (API.md); brightness is linear in inverse depth between its ends. */
 const range = {near: 0.45, far: 2};
 
 /**
  * @param {number} brightness  0 to 255
- * @returns {number | null} metres, no farther than the picture tells; null where nothing was read
+ * @returns {number | null} metres, at most the picture's range; null without a reading
  */
 export function distanceOf(brightness) {
   const share = (brightness - faintest) / (255 - faintest);
@@ -51,7 +51,7 @@ export const distanceText = (distance) => distance === null ? text('stage.no-rea
 
 /**
  * @param {HTMLCanvasElement} canvas @param {Blob} png
- * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  what is coloured: all, if it chooses nothing
+ * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  selects the pixels to colour; null: all
  * @returns {Promise<Uint8Array>} brightness of each pixel
  */
 export async function drawDepth(canvas, png, choose = () => null) {
@@ -67,7 +67,7 @@ export async function drawDepth(canvas, png, choose = () => null) {
   return brightness;
 }
 
-/** Draws the scale of colours. @param {HTMLCanvasElement} canvas  as wide as there are shades */
+/** Draws the colour scale. @param {HTMLCanvasElement} canvas  one column for each shade */
 export function drawScale(canvas) {
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
   const picture = context.createImageData(canvas.width, 1);

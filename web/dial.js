@@ -1,4 +1,4 @@
-// The dial of a running scan: the turn seen from above, one tick for each stop.
+// The dial of a running scan: the turn from above, with a tick for each stop.
 
 const centre = 110;
 const inner = 88;
@@ -14,7 +14,7 @@ function point(radius, share) {
  * @param {number} from
  * @param {number} to
  * @param {number} total
- * @returns {string} the path of ticks `from` up to but not including `to`, of `total` around the dial
+ * @returns {string} the SVG path of ticks `from` up to, but not including, `to`, of `total` around the dial
  */
 export function ticks(from, to, total) {
   let path = '';
@@ -24,5 +24,5 @@ export function ticks(from, to, total) {
   return path;
 }
 
-/** @param {number} total @returns {number} width of a tick that leaves air between neighbours */
+/** @param {number} total @returns {number} width of a tick that leaves gaps between neighbours */
 export const tickWidth = (total) => Math.min(7, 0.55 * 2 * Math.PI * inner / total);

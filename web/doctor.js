@@ -1,4 +1,4 @@
-// "Check the scanner": asks the scanner's doctor, and shows what it finds.
+// "Check the scanner": runs the scanner's doctor, and shows its findings.
 
 import * as api from './api.js';
 import {measure} from './api_calibration.js';
@@ -9,12 +9,12 @@ import {text, translated} from './texts.js';
 
 /** @typedef {import('./api.js').Finding} Finding */
 
-// Worst first; what is not known is worth the least attention.
+// Order of the findings: worst first, unknown ones last.
 const order = /** @type {const} */ (['fault', 'warning', 'ok', 'unknown']);
 
-const expected = 4;  // seconds that a check takes, two of them to watch the sensor
+const expected = 4;  // usual seconds of a check, two of them to watch the sensor
 
-/** What to show of a report. Pure. @param {import('./api.js').Report} report */
+/** The view of a report. Pure. @param {import('./api.js').Report} report */
 export function shownOf({findings}) {
   const numberOf = (/** @type {Finding['state']} */ state) => findings.filter((finding) => finding.state === state).length;
   const faults = numberOf('fault') > 0 ? text('count.faults', {count: numberOf('fault')}) : '';
@@ -35,7 +35,7 @@ export function shownOf({findings}) {
   };
 }
 
-/** How far a check is that has run for so many seconds: it never shows its end before it is there. @param {number} seconds */
+/** The estimated progress of a check after some seconds; it approaches 1 but never reaches it. @param {number} seconds */
 export const progressAfter = (seconds) => 1 - Math.exp(-1.5 * seconds / expected);
 
 /** @param {ReturnType<typeof shownOf>} shown */
@@ -57,12 +57,12 @@ function showReport({summary, lines}) {
 
 /** @param {boolean} isRunning */
 function showRunning(isRunning) {
-  element('examine').setAttribute('aria-disabled', String(isRunning));  // unlike disabled it keeps the focus
+  element('examine').setAttribute('aria-disabled', String(isRunning));  // unlike disabled, it keeps the focus
   show(element('doctor-progress'), isRunning);
   element('findings').classList.toggle('old', isRunning);
 }
 
-/** Moves the bar while a check runs. @returns {() => void} what ends that */
+/** Moves the progress bar while a check runs. @returns {() => void} stops it */
 function startProgress() {
   const begin = Date.now();
   const bar = element('doctor-progress');
@@ -77,18 +77,18 @@ const goTo = (/** @type {string} */ place) => {
   location.hash = place;
 };
 
-/** What the buttons of findings do. @type {Record<string, () => unknown>} */
+/** The actions of the findings' buttons. @type {Record<string, () => unknown>} */
 const actions = {
   'measure-turn': async () => {
     await measure({kind: 'turn', stops: turnStops});
-    goTo('calibrate');  // which shows how it goes
+    goTo('calibrate');  // shows the progress
   },
   'set-pose': () => goTo('calibrate'),
   'open-settings': () => goTo('settings'),
   'choose-scans': () => goTo('library'),
 };
 
-/** @param {string} failure  what did not happen @param {unknown} error */
+/** @param {string} failure  text of the failed action @param {unknown} error */
 function showProblem(failure, error) {
   const {title, detail, hint} = error instanceof api.Problem ? error : new api.Problem('page', String(error));
   setText(part(element('doctor-problem'), 'p'), [failure, detail || title, hint].filter(Boolean).map(sentence).join(' '));
@@ -130,7 +130,7 @@ export async function examine(onReport) {
   showRunning(false);
 }
 
-/** @param {(report: import('./api.js').Report) => void} onReport  told of each check */
+/** @param {(report: import('./api.js').Report) => void} onReport  called after each check */
 export function prepareDoctor(onReport) {
   element('examine').addEventListener('click', () => examine(onReport));
   element('findings').addEventListener('click', carryOut);

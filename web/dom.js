@@ -1,9 +1,9 @@
-// The few things that every module of the page does to the DOM.
+// DOM functions shared by the page's modules.
 
-/** @param {string} id @returns {any} the element of that id */
+/** @param {string} id @returns {any} the element with that id */
 export const element = (id) => document.getElementById(id);
 
-/** Changes text only where it differs, so that selections stay and screen readers hear only news.
+/** Sets text only if it differs, so that selections stay and screen readers announce only changes.
  * @param {Element} target @param {string} text */
 export function setText(target, text) {
   if (target.textContent !== text) {
@@ -17,12 +17,12 @@ export function setBadge(target, {tone, text}) {
   target.dataset.tone = tone ?? '';
 }
 
-/** @param {Element} target  also of an SVG, which has no property for it @param {boolean} isShown */
+/** @param {Element} target  may be an SVG element, which has no `hidden` property @param {boolean} isShown */
 export function show(target, isShown) {
   target.toggleAttribute('hidden', !isShown);
 }
 
-/** @param {string} id  of a button that stays pressed @param {boolean} isPressed */
+/** @param {string} id  of a toggle button @param {boolean} isPressed */
 export function pressed(id, isPressed) {
   element(id).setAttribute('aria-pressed', String(isPressed));
 }
@@ -34,7 +34,7 @@ export const copyOf = (id) => element(id).content.firstElementChild.cloneNode(tr
 export const part = (parent, selector) => parent.querySelector(selector);
 
 /**
- * Makes the children of `parent` those of `items`, in order; an item that stays keeps its element, and so its focus.
+ * Renders `items` as the children of `parent`, in order. An item that stays keeps its element and so its focus.
  *
  * @template Item
  * @param {Element} parent

@@ -1,18 +1,18 @@
-// The scanner's news as it tells them by itself, so that the page need not ask. Where there are none, the page asks.
+// The scanner's event stream, which spares the page polling. Without the stream the page polls.
 
 /** @typedef {import('./api.js').Status} Status */
 
 const address = '/api/v1/events';
-const maxSilence = 5000;  // milliseconds; a heartbeat comes every 3 s
-const retryPause = 30000;  // milliseconds, as Retry-After of a scanner that too many watch already
-const overtaking = 1000;  // milliseconds in which a status from before an answer may still arrive after it
+const maxSilence = 5000;  // milliseconds; there is a heartbeat every 3 s
+const retryPause = 30000;  // milliseconds, the Retry-After of a scanner with too many streams
+const overtaking = 1000;  // milliseconds in which an older status may still arrive after a response
 
-/** The status that the scanner told last. Pure: times are given, milliseconds. */
+/** The last status from the event stream. Pure: times are arguments, milliseconds. */
 export class HeardStatus {
   /** @type {Status | null} */
   #status = null;
   #heard = -Infinity;
-  #trusted = -Infinity;  // from when on
+  #trusted = -Infinity;  // statuses are valid from this time on
 
   /** @param {Status} status @param {number} now */
   hear(status, now) {
@@ -20,12 +20,12 @@ export class HeardStatus {
     this.#heard = now;
   }
 
-  /** The scanner is there, and nothing has changed. @param {number} now */
+  /** Handles a heartbeat: the scanner is there, and nothing has changed. @param {number} now */
   hearBeat(now) {
     this.#heard = now;
   }
 
-  /** Something was asked of the scanner: what was told before is old. @param {number} now */
+  /** Invalidates statuses from before a request. @param {number} now */
   distrust(now) {
     this.#status = null;
     this.#trusted = now + overtaking;
@@ -35,7 +35,7 @@ export class HeardStatus {
     this.#status = null;
   }
 
-  /** @param {number} now @returns {Status | null} nothing if it may be old */
+  /** @param {number} now @returns {Status | null} null if it may be outdated */
   at(now) {
     return now - this.#heard <= maxSilence ? this.#status : null;
   }
@@ -46,7 +46,7 @@ let asked = 0;
 /** @type {EventSource | null} */
 let source = null;
 
-/** The status that the scanner told, if it is of now. @param {number} asks  of the scanner so far @returns {Status | null} */
+/** The last status from the stream, if it is current. @param {number} asks  requests to the scanner so far @returns {Status | null} */
 export function told(asks) {
   if (asks !== asked) {
     asked = asks;
@@ -55,11 +55,11 @@ export function told(asks) {
   return heard.at(performance.now());
 }
 
-/** What was asked for in place of news: it counts as told, as long as there are news. @param {Status} status */
+/** Takes a polled status as the stream's last one, while the stream is open. @param {Status} status */
 export const note = (status) => source?.readyState === EventSource.OPEN && heard.hear(status, performance.now());
 
 /**
- * Listens for as long as the page is in sight: a browser has six connections for all its pages of one scanner.
+ * Listens to the stream while the page is visible, as a browser has only six connections to one scanner for all its pages.
  * @param {() => void} onNews
  */
 export function listenForNews(onNews) {

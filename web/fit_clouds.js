@@ -1,11 +1,11 @@
-// Where the two clouds of a fit stand, what the eye sees of them, and which point is clicked.
+// The two point clouds of a fit: their placement, the camera on them, and picking of points.
 
 import {BufferAttribute, BufferGeometry, Matrix4, PerspectiveCamera, Points, PointsMaterial, Sphere, Vector3} from './three.js';
 
 const pointSize = 2.6;  // pixels
-const reachOfClick = 18;  // pixels
-const gap = 0.25;  // between clouds side by side, of the larger one's breadth
-const sight = new Vector3(0.42, -0.83, 0.37);  // from the middle to the eye
+const reachOfClick = 18;  // picking distance, pixels
+const gap = 0.25;  // between clouds side by side, as a share of the sum of their radii
+const sight = new Vector3(0.42, -0.83, 0.37);  // direction from the centre to the camera
 const sightBeside = new Vector3(0, -0.9, 0.43);
 
 /** @param {number[][]} points_mm @param {number} colour */
@@ -24,7 +24,7 @@ export function makeEye() {
   return eye;
 }
 
-/** Where the second cloud stands beside the first. @param {any[]} clouds @returns {Matrix4} */
+/** The transform that puts the second cloud beside the first. @param {any[]} clouds @returns {Matrix4} */
 export function besides(clouds) {
   const [before, side] = clouds.map(({geometry}) => geometry.boundingSphere);
   const distance = (1 + gap) * (before.radius + side.radius);
@@ -32,9 +32,9 @@ export function besides(clouds) {
 }
 
 /**
- * Puts the eye where both clouds are seen.
- * @param {import('three').PerspectiveCamera} camera @param {any[]} clouds @param {boolean} isBeside  they stand side by side
- * @returns {{middle: Vector3, distance: number, depth: number}}  what is looked at, how far away it is, and the first cloud's radius
+ * Places the camera so that both clouds are visible.
+ * @param {import('three').PerspectiveCamera} camera @param {any[]} clouds @param {boolean} isBeside  whether they are side by side
+ * @returns {{middle: Vector3, distance: number, depth: number}}  the target, its distance, and the first cloud's radius
  */
 export function lookAt(camera, clouds, isBeside) {
   const balls = clouds.map(({geometry, matrixWorld}) => geometry.boundingSphere.clone().applyMatrix4(matrixWorld));
@@ -50,7 +50,7 @@ export function lookAt(camera, clouds, isBeside) {
 }
 
 /**
- * The point nearest to a place of the picture; of those in reach, the one nearest to the eye.
+ * Picks a point near a pixel: of those within reach, the one nearest to the camera.
  * @param {any[]} clouds @param {import('three').PerspectiveCamera} camera @param {{clientWidth: number, clientHeight: number}} canvas
  * @param {number} x @param {number} y  pixels
  * @returns {{cloud: number, point_mm: number[]} | null}

@@ -1,4 +1,4 @@
-// The dialog that lays a side over what was seen before: to look at, to choose another fit, to set pairs of points.
+// The dialog that lays a side's points over those seen before: to inspect the fit, choose another one, or set pairs of points.
 
 import {posePoints} from './api_poses.js';
 import {element, setText, show} from './dom.js';
@@ -35,7 +35,7 @@ function change(next) {
   }
 }
 
-/** Takes a step back: the last point, the fits in place of pairs, or the fit before. */
+/** Steps back: removes the last point, leaves the pairs, or shows the previous fit. */
 function back() {
   change(!fits.points ? withStep(fits, -1) : fits.points.length > 0 ? withoutPoint(fits) : withPairs(fits, false));
 }
@@ -60,7 +60,7 @@ export async function openFit(scan, pose) {
   }
 }
 
-/** Makes the buttons work. @param {(choice: Object) => void} choose */
+/** Attaches the buttons' handlers. @param {(choice: Object) => void} choose */
 export function prepareFit(choose) {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
   click('fit-wrong', () => change(withStep(fits, 1)));

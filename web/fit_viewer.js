@@ -1,4 +1,4 @@
-// Two clouds of points in 3D: one laid over the other, or side by side to set pairs of points.
+// Two point clouds in 3D: one laid over the other, or side by side to set pairs of points.
 
 import {Fog, Group, Matrix4, Mesh, MeshBasicMaterial, OrbitControls, Scene, SphereGeometry, WebGLRenderer} from './three.js';
 import {fitToCanvas, onClick} from './canvas.js';
@@ -8,7 +8,7 @@ import {besides, cloudOf, lookAt, makeEye, pointAt} from './fit_clouds.js';
 
 const colours = [0x35c4bd, 0xf09a3e];  // seen before, and the side
 const pairColours = [0xff5c8a, 0xffe14d, 0x9b8cff];
-const darkness = 0x14272f;  // that points far from the eye fade to
+const darkness = 0x14272f;  // fog colour of far points
 
 /** @param {number} pair @param {number} radius */
 function markOf(pair, radius) {
@@ -32,8 +32,8 @@ export class FitViewer {
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {(point_mm: number[], isSide: boolean) => void} onPoint  that was clicked while the clouds are side by side: in the
-   *     object's frame, or the frame of the side's platform
+   * @param {(point_mm: number[], isSide: boolean) => void} onPoint  a point clicked while the clouds are side by side, in the
+   *     object's frame or in the side's platform frame
    * @throws {Error} where there is no WebGL
    */
   constructor(canvas, onPoint) {
@@ -54,7 +54,7 @@ export class FitViewer {
     this.#scene.add(...this.#clouds);
   }
 
-  /** Gives the GPU's memory back. */
+  /** Frees GPU memory. */
   clear() {
     for (const object of [...this.#clouds, ...this.#marks.children]) {
       object.geometry.dispose();
@@ -65,7 +65,7 @@ export class FitViewer {
     this.#isBeside = false;
   }
 
-  /** Lays the side over what was seen before. @param {number[][]} object_from_platform  4 x 4, metres */
+  /** Lays the side over the points seen before. @param {number[][]} object_from_platform  4 x 4, metres */
   showOver(object_from_platform) {
     const isFirst = this.#isBeside || !this.#clouds[1].userData.isPlaced;
     const [x, y, z] = object_from_platform;
@@ -75,7 +75,7 @@ export class FitViewer {
     this.#showMarks([]);
   }
 
-  /** Shows both side by side, each as it stood. @param {number[][]} points_mm  that were clicked, of the one and the other in turn */
+  /** Shows both clouds side by side, each as it stood. @param {number[][]} points_mm  clicked points, alternately of each cloud */
   showBeside(points_mm) {
     const isFirst = !this.#isBeside;
     this.#isBeside = true;
@@ -83,7 +83,7 @@ export class FitViewer {
     this.#showMarks(points_mm);
   }
 
-  /** @param {Matrix4} matrix  of the side @param {boolean} isFirst  and the eye is to be put where both are seen */
+  /** @param {Matrix4} matrix  of the side @param {boolean} isFirst  whether to aim the camera at both */
   #place(matrix, isFirst) {
     const side = this.#clouds[1];
     side.matrix.copy(matrix);
@@ -111,7 +111,7 @@ export class FitViewer {
     this.#draw();
   }
 
-  /** Looks at both clouds. */
+  /** Aims the camera at both clouds. */
   #aim() {
     this.#resize();
     const {middle, distance, depth} = lookAt(this.#camera, this.#clouds, this.#isBeside);
@@ -122,7 +122,7 @@ export class FitViewer {
     this.#controls.update();
   }
 
-  /** Tells of the point where somebody clicked. */
+  /** Reports the clicked point. */
   #click(/** @type {number} */ x, /** @type {number} */ y) {
     const found = this.#isBeside ? pointAt(this.#clouds, this.#camera, this.#canvas, x, y) : null;
     if (found) {

@@ -1,4 +1,4 @@
-// How a side of an object fits to what was seen before: the poses to choose from, and pairs of points. Pure.
+// The choice of a fit for a side of an object: candidate poses, or pairs of points. Pure.
 
 import {millimetres, percent} from './format.js';
 import {text} from './texts.js';
@@ -8,13 +8,13 @@ import {text} from './texts.js';
 /** @typedef {number[]} Point  x y z, millimetres */
 
 /**
- * @typedef {Candidate & {candidate: number | null}} Fit  candidate: its number for the scanner; null: the model has it, of pairs
+ * @typedef {Candidate & {candidate: number | null}} Fit  candidate: its index for the scanner; null: the model's fit, made from pairs
  *
  * @typedef {Object} Fits
- * @property {Fit[]} all  to look at, one after the other
- * @property {number} used  that the model has; -1: none
+ * @property {Fit[]} all  in the order in which they are shown
+ * @property {number} used  index of the model's fit; -1: none
  * @property {number} shown
- * @property {Point[] | null} points  that were clicked, first of what was seen before, then of the side, and so on; null: a fit is shown
+ * @property {Point[] | null} points  clicked points, alternately of the cloud seen before and of the side; null: a fit is shown
  */
 
 export const wantedPairs = 3;
@@ -34,22 +34,22 @@ export function fitsOf({registration}) {
   return {all: all.map((fit, number) => number === candidate ? own : fit), used: candidate, shown: candidate, points: null};
 }
 
-/** Looks at another fit. @param {Fits} fits @param {number} step  1: the next, -1: the one before @returns {Fits} */
+/** Shows another fit. @param {Fits} fits @param {number} step  1: the next, -1: the previous @returns {Fits} */
 export const withStep = (fits, step) => ({...fits, shown: Math.min(Math.max(fits.shown + step, 0), fits.all.length - 1)});
 
-/** Sets pairs of points, or goes back to the fits. @param {Fits} fits @param {boolean} areSet @returns {Fits} */
+/** Starts setting pairs of points, or returns to the fits. @param {Fits} fits @param {boolean} areSet @returns {Fits} */
 export const withPairs = (fits, areSet) => ({...fits, points: areSet ? [] : null});
 
-/** Whether the next point is one of the side. @param {Fits} fits */
+/** Whether the next point is to be clicked on the side. @param {Fits} fits */
 export const isOfSide = ({points}) => (points?.length ?? 0) % 2 === 1;
 
 /** @param {Fits} fits @param {Point} point @returns {Fits} */
 export const withPoint = (fits, point) => fits.points && fits.points.length < 2 * wantedPairs ? {...fits, points: [...fits.points, point]} : fits;
 
-/** Takes the last point back. @param {Fits} fits @returns {Fits} */
+/** Removes the last point. @param {Fits} fits @returns {Fits} */
 export const withoutPoint = (fits) => ({...fits, points: fits.points && fits.points.slice(0, -1)});
 
-/** What the scanner is asked for; null: nothing yet. @param {Fits} fits @returns {Object | null} */
+/** The choice to send to the scanner; null: not complete yet. @param {Fits} fits @returns {Object | null} */
 export function choiceOf({all, used, shown, points}) {
   if (points) {
     return points.length < 2 * wantedPairs ? null :
@@ -65,7 +65,7 @@ const figuresOf = ({overlap, residual_mm, contradiction}) => [
   text('fit.contradicts', {share: percent(contradiction / 2)}),
 ].join('; ');
 
-/** What is shown, for people. @param {Fits} fits @param {number} side */
+/** The description of what is shown. @param {Fits} fits @param {number} side */
 export function textOf({all, used, shown, points}, side) {
   if (points) {
     const pair = Math.floor(points.length / 2) + 1;

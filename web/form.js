@@ -10,8 +10,8 @@ import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Settings} Settings */
 
-const memory = 'octurn-scan';  // of the browser, for the last choice
-const calm = 400;  // milliseconds after the last change, before the scanner is asked
+const memory = 'octurn-scan';  // storage key of the last choice
+const calm = 400;  // milliseconds from the last change until an estimate is requested
 
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...element('form').querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
@@ -56,7 +56,7 @@ const takesText = ({seconds, bytes}) => `${format.roughly(seconds)}, ${format.by
 const memoryText = ({memory_bytes = 0, fitting_leaf_size_mm = 0}, leaf_size_mm) => fitting_leaf_size_mm > leaf_size_mm ?
   text('form.memory', {bytes: format.bytes(memory_bytes), leaf: format.leaf(fitting_leaf_size_mm)}) : '';
 
-/** Says what the scan takes, if the scanner can tell. */
+/** Shows the scan's estimated time and space, if the scanner can estimate them. */
 async function tellEstimate() {
   if (!element('form').matches(':valid')) {
     return;
@@ -66,7 +66,7 @@ async function tellEstimate() {
   setText(element('estimate'), text);
 }
 
-/** Says of each preset what it takes. @param {Settings} defaults */
+/** Shows each preset's estimated time and space. @param {Settings} defaults */
 async function tellPresets(defaults) {
   for (const {name, settings} of presets(defaults)) {
     const taken = await estimate(formSettings(settings)).catch(() => null);
@@ -74,7 +74,7 @@ async function tellPresets(defaults) {
   }
 }
 
-/** @param {Settings} settings  without what a start does not take */
+/** The settings that a start accepts. @param {Settings} settings */
 const formSettings = (settings) => settingsOf(formOf(settings));
 
 /** @param {Settings} defaults */
@@ -87,7 +87,7 @@ function offerPresets(defaults) {
   }));
 }
 
-/** Shows which preset the fields are. @param {Settings} defaults */
+/** Selects the preset that equals the fields. @param {Settings} defaults */
 function showPreset(defaults) {
   const chosen = chosenSettings();
   const preset = presetOf(chosen, defaults);
@@ -99,7 +99,7 @@ function showPreset(defaults) {
   setText(element('preset-text'), preset ? choice : text('form.own', {choice}));
 }
 
-/** Marks clip fields whose range is empty, so that the browser says so. */
+/** Marks clip fields with an empty range as invalid. */
 function checkClip() {
   const fields = clipFields();
   for (let axis = 0; axis < 3; ++axis) {
@@ -108,7 +108,7 @@ function checkClip() {
   }
 }
 
-/** @returns {Partial<Settings>} as the fields stand */
+/** @returns {Partial<Settings>} the fields' values */
 export const chosenSettings = () => settingsOf({
   snapshots: Number(element('snapshots').value),
   method: chosenMethod(),
@@ -120,13 +120,13 @@ export const chosenSettings = () => settingsOf({
   clip_mm: clipFields().map((field) => Number(field.value)),
 });
 
-/** The space of the scan that would start now; null while there is none. @returns {number[] | null} */
+/** The scanned space in the fields; null if it is incomplete. @returns {number[] | null} */
 export function spaceChosen() {
   const clip_mm = clipFields().map((field) => field.valueAsNumber);
   return clip_mm.every(Number.isFinite) ? clip_mm : null;
 }
 
-/** Asks what a scan takes whenever the form comes into view: the scan before has told more. @param {Settings} defaults */
+/** Requests estimates whenever the form comes into view, as the last scan may have improved them. @param {Settings} defaults */
 function watchForEstimates(defaults) {
   new IntersectionObserver((entries) => {
     if (entries.some(({isIntersecting}) => isIntersecting)) {
@@ -137,7 +137,7 @@ function watchForEstimates(defaults) {
 }
 
 /**
- * Fills the form and makes it work.
+ * Fills the form and attaches its handlers.
  * @param {Settings} defaults
  */
 export function prepareForm(defaults) {
@@ -167,7 +167,7 @@ export function prepareForm(defaults) {
     checkClip();
     seeChange();
   });
-  // A fault in a folded-away field can only be shown unfolded.
+  // The browser can show an invalid field only if its details element is open.
   form.addEventListener('invalid', (/** @type {Event} */ event) => {
     part(form, '.advanced').open ||= part(form, '.advanced').contains(event.target);
   }, true);

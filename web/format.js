@@ -1,4 +1,4 @@
-// Quantities as people read them.
+// Quantities formatted for people.
 
 import {fixed, locale, number, text, translated} from './texts.js';
 
@@ -22,7 +22,7 @@ export function bytes(value) {
 /** @param {number[]} sides  millimetres @param {number} [digits]  after the point */
 export const size = (sides, digits = 1) => `${sides.map((side) => fixed(side, digits)).join(' × ')} mm`;
 
-/** @param {number} value @param {number} [digits]  after the point; without them, as many as a length needs: 0.52 mm, 18.4 mm */
+/** @param {number} value @param {number} [digits]  after the point; by default as many as a length needs: 0.52 mm, 18.4 mm */
 export const millimetres = (value, digits = Math.abs(value) < 9.995 ? 2 : 1) => `${fixed(value, digits)} mm`;
 
 /** A leaf's side. @param {number} value  millimetres */
@@ -52,8 +52,8 @@ export function duration(value) {
 }
 
 /**
- * Time left, in steps so coarse that it does not flicker.
- * @param {number | null} seconds  null while nobody can tell
+ * Remaining time, in coarse steps so that it does not flicker.
+ * @param {number | null} seconds  null if unknown
  */
 export function timeLeft(seconds) {
   if (seconds === null) {
@@ -76,7 +76,7 @@ export function clock(seconds) {
   return minutes < 60 ? `${minutes}:${two(whole % 60)}` : `${Math.floor(minutes / 60)}:${two(minutes % 60)}:${two(whole % 60)}`;
 }
 
-/** How long something takes, as people say it. @param {number} seconds */
+/** An approximate duration. @param {number} seconds */
 export function roughly(seconds) {
   const time = seconds < 100 ? `${Math.max(Math.round(seconds / 5) * 5, 5)} s` :
     seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${number(Math.round(seconds / 1800) / 2)} h`;
@@ -86,10 +86,10 @@ export function roughly(seconds) {
 /** @param {string} iso */
 export const when = (iso) => date.format(new Date(iso));
 
-/** With a capital at its beginning. @param {string} words */
+/** Capitalises the first letter. @param {string} words */
 export const capital = (words) => words && words[0].toLocaleUpperCase(locale) + words.slice(1);
 
-/** What a program says, as a sentence of the page's language. @param {string} said */
+/** A message of the scanner as a sentence in the page's language. @param {string} said */
 export function sentence(said) {
   const words = translated(said);
   return words && capital(words) + (/[.!?…]$/.test(words) ? '' : '.');

@@ -1,13 +1,13 @@
-// Pieces of the page that are fetched when they are needed: HTML files without head and body.
+// Fragments of the page, fetched when they are needed: HTML files without head and body.
 
 import {awaitTexts, fillTexts} from './texts.js';
 
-const betweenAttempts = 2000;  // milliseconds, while a piece does not arrive
+const betweenAttempts = 2000;  // milliseconds between attempts to fetch a fragment
 
-/** @type {Map<string, Promise<unknown>>} stylesheets that pieces asked for, by their addresses */
+/** @type {Map<string, Promise<unknown>>} stylesheets of fragments, by URL */
 const styles = new Map();
 
-/** Adds the stylesheets of a piece to the page. @param {Document} piece */
+/** Adds a fragment's stylesheets to the page. @param {Document} piece */
 const awaitStyles = (piece) => Promise.all([...piece.querySelectorAll('link')].map((link) => {
   const address = link.getAttribute('href') ?? '';
   link.remove();
@@ -25,7 +25,7 @@ const awaitStyles = (piece) => Promise.all([...piece.querySelectorAll('link')].m
   return styles.get(address);
 }));
 
-/** @param {Element} parent  whose children become those of the file @param {string} file */
+/** Replaces an element's children by a fragment. @param {Element} parent @param {string} file */
 export async function fetchFragment(parent, file) {
   const response = await fetch(file, {cache: 'no-cache'});
   if (!response.ok) {
@@ -37,7 +37,7 @@ export async function fetchFragment(parent, file) {
   parent.replaceChildren(...parsed.head.childNodes, ...parsed.body.childNodes);
 }
 
-/** The same, again and again until it is there. @param {Element} parent @param {string} file */
+/** Like fetchFragment, but retries until it succeeds. @param {Element} parent @param {string} file */
 export async function awaitFragment(parent, file) {
   for (;;) {
     try {

@@ -1,4 +1,4 @@
-// Shows openapi.json to people who write programs.
+// Shows openapi.json as a page for programmers.
 
 import {copyOf, element, part, setText, show} from './dom.js';
 import {answersOf, bodyOf, operationsOf, typeText} from './openapi.js';

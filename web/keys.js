@@ -1,4 +1,4 @@
-// "Keys for programs" of the settings: made, shown once, and revoked.
+// "Keys for programs" in the settings: keys are created, shown once, and revoked.
 
 import {Problem, json, sending, withoutAnswer} from './api.js';
 import {element, list, part, setText, show} from './dom.js';
@@ -7,7 +7,7 @@ import {text} from './texts.js';
 
 /** @typedef {{id: string, name: string, access: 'read' | 'full', created: string}} Key */
 
-/** What a key is, in words. Pure. @param {Key} key */
+/** The description of a key. Pure. @param {Key} key */
 export const aboutKey = ({access, created}) =>
   text(access === 'read' ? 'keys.may-read' : 'keys.may-all', {when: when(created)});
 

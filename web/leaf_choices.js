@@ -1,11 +1,11 @@
-// The choice of a leaf size, by name.
+// The choice of a leaf size by name.
 
 import {copyOf, part, setText} from './dom.js';
 import {leaf} from './format.js';
 import {leafChoices} from './settings.js';
 import {text} from './texts.js';
 
-/** Offers the named leaf sizes. @param {Element} parent @param {number} preset  millimetres; it is chosen */
+/** Offers the named leaf sizes. @param {Element} parent @param {number} preset  initial choice, millimetres */
 export function offerLeaves(parent, preset) {
   parent.replaceChildren(...leafChoices(preset).map(({mm, name}) => {
     const choice = copyOf('leaf');

@@ -1,5 +1,5 @@
-// The lens of a camera with lasers, on the page Calibrate: a board is held before the camera, and what it tells is kept or
-// discarded. Its part of the page is fetched when the scanner has such a camera.
+// The lens calibration of a camera with lasers, on the page Calibrate: a board is held in front of the camera, and the solved lens
+// is kept or discarded. The fragment is fetched if the scanner has such a camera.
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
@@ -12,10 +12,10 @@ import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf} from 
 
 const cells = 6;
 
-/** Has the lens solved from what was seen of the board so far. */
+/** Solves the lens from the views of the board so far. */
 const solve = () => api.json('calibration/solve', api.sending('POST'));
 
-/** @type {Calibration | null} as it was seen last */
+/** @type {Calibration | null} the last known calibration */
 let latest = null;
 let isDrawing = false;
 
@@ -37,7 +37,7 @@ function drawLook(context, {corners, coverage}) {
   }
 }
 
-/** Draws what the camera sees, with what was found in it; one picture at a time. */
+/** Draws the camera's picture with the corners found in it; one picture at a time. */
 async function drawPicture() {
   if (isDrawing) {
     return;
@@ -52,7 +52,7 @@ async function drawPicture() {
     bitmap.close();
     look && drawLook(context, look);
   } catch {
-    // The camera's trouble is told by the run.
+    // The run reports problems of the camera.
   }
   isDrawing = false;
 }
@@ -77,7 +77,7 @@ function showFigures(calibration) {
   show(element('lens-answers'), found !== null);
 }
 
-/** Shows what is known of the lens. @param {Calibration} calibration */
+/** Shows the state of the lens calibration. @param {Calibration} calibration */
 export function showLens(calibration) {
   latest = calibration;
   const progress = lensProgressOf(calibration);
@@ -99,8 +99,8 @@ export function showLens(calibration) {
 }
 
 /**
- * Brings the card in, once.
- * @param {(failure: string, action: () => Promise<unknown>, notice: string) => Promise<void>} act  asks the scanner, and tells in a notice if it refuses
+ * Loads the card, once.
+ * @param {(failure: string, action: () => Promise<unknown>, notice: string) => Promise<void>} act  sends a request, and shows a refusal in a notice
  */
 export async function prepareLens(act) {
   await awaitFragment(element('lens'), 'lens.html');

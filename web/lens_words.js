@@ -1,4 +1,4 @@
-// What the page says of a camera's lens. Pure: the scanner's answer in, texts and choices out.
+// The texts on a camera's lens. Pure: the scanner's response in, texts and choices out.
 
 import {millimetres, percent, sentence, when} from './format.js';
 import {fixed, text} from './texts.js';
@@ -8,9 +8,9 @@ import {refusalText} from './wording.js';
 /** @typedef {import('./api_calibration.js').LensReport} LensReport */
 /** @typedef {import('./api_calibration.js').Lens} Lens */
 
-const cells = 6;  // of the picture to a side, as the scanner counts them
-const parts = 3;  // of the same that words are for
-const usualDistance = 300;  // mm from the camera to an object: a pixel's size there is told
+const cells = 6;  // cells per side of the picture in the scanner's coverage
+const parts = 3;  // parts per side of the picture that have names
+const usualDistance = 300;  // mm from camera to object, at which errors are shown in mm
 
 /** @param {Calibration} calibration */
 export function keptText({lens}) {
@@ -19,7 +19,7 @@ export function keptText({lens}) {
 }
 
 /**
- * The part of the picture that misses most of its cells, 0 to 8 by rows.
+ * The part of the picture with the most missing cells, 0 to 8 by rows.
  * @param {number[]} coverage  1 for each cell that was seen
  */
 export function missingPart(coverage) {
@@ -33,7 +33,7 @@ export function missingPart(coverage) {
 }
 
 /**
- * What goes on, or null.
+ * The progress of a running lens calibration, or null.
  * @param {Calibration | null} calibration
  * @returns {{advice: string, taken: string, share: number, canSolve: boolean} | null}
  */
@@ -55,17 +55,17 @@ export function lensProgressOf(calibration) {
   };
 }
 
-/** @param {Calibration | null} calibration @returns {LensReport | null} that was accepted, and is neither kept nor discarded */
+/** @param {Calibration | null} calibration @returns {LensReport | null} an accepted lens that is neither kept nor discarded yet */
 export function foundLens(calibration) {
   const run = calibration?.run;
   return run?.kind === 'lens' && run.state === 'done' ? /** @type {LensReport | null} */ (run.report) : null;
 }
 
-/** How far a corner is off where an object stands, mm. @param {LensReport} report */
+/** The reprojection error at the object's distance, mm. @param {LensReport} report */
 const offAtObject = ({rms_px, lens}) => lens ? (rms_px ?? 0) * usualDistance / lens.fx : 0;
 
 /**
- * What came of the last run, or null while there is nothing to say.
+ * The outcome of the last run, or null if there is none to show.
  * @param {Calibration | null} calibration
  * @returns {{tone: string, title: string, detail: string, hint: string} | null}
  */

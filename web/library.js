@@ -1,4 +1,4 @@
-// Which scans are listed, and in what order. Pure.
+// Search and order of the listed scans. Pure.
 
 import * as format from './format.js';
 import {locale} from './texts.js';
@@ -7,13 +7,13 @@ import {locale} from './texts.js';
 
 /**
  * @typedef {Object} Library
- * @property {string} query  of the search
+ * @property {string} query  search text
  * @property {'newest' | 'oldest' | 'name' | 'largest'} order
- * @property {number} limit  cards that are shown: a thousand would take a phone seconds
- * @property {string[] | null} chosen  ids, while several are chosen
+ * @property {number} limit  maximum number of cards, as a thousand would take a phone seconds
+ * @property {string[] | null} chosen  selected ids; null: no selection mode
  */
 
-export const step = 60;  // cards that come with each "Show more"
+export const step = 60;  // cards added by each "Show more"
 
 /** @type {Library} */
 export const initial = {query: '', order: 'newest', limit: step, chosen: null};
@@ -28,7 +28,7 @@ const folded = (text) => text.normalize('NFKD').replace(/\p{Diacritic}/gu, '').t
  * @param {Scan[]} scans  newest first
  * @param {Library} library
  * @param {(scan: Scan) => string} nameOf
- * @returns {Scan[]} all that are found, in their order
+ * @returns {Scan[]} the matching scans, sorted
  */
 export function found(scans, {query, order}, nameOf) {
   const words = folded(query).split(/\s+/).filter(Boolean);
@@ -45,11 +45,11 @@ export function found(scans, {query, order}, nameOf) {
   }
 }
 
-/** @param {Library} library @param {string} id @returns {Library} with that one chosen, or no longer */
+/** Selects or deselects a scan. @param {Library} library @param {string} id @returns {Library} */
 export const withToggled = (library, id) => {
   const chosen = library.chosen ?? [];
   return {...library, chosen: chosen.includes(id) ? chosen.filter((other) => other !== id) : [...chosen, id]};
 };
 
-/** Where the picture of a model is; another address for each model. @param {Scan} scan */
+/** The URL of a model's thumbnail, different for each build. @param {Scan} scan */
 export const pictureOf = ({id, model, build}) => model ? `/api/v1/scans/${id}/thumbnail.png?build=${build ?? 0}` : '';

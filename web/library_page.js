@@ -8,7 +8,7 @@ import {change, state} from './page.js';
 import {emptyBin, importScan, remove, removeChosen, rename, restore} from './scan_actions.js';
 import * as states from './state.js';
 
-/** Makes the part of the page work that library.html is. */
+/** Attaches the handlers of library.html. */
 export function prepare() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
   element('library-query').addEventListener('input', (/** @type {any} */ event) =>

@@ -1,11 +1,11 @@
-// Puts the library into the DOM: the scans that are kept.
+// Renders the library of stored scans.
 
 import {element, list, part, setBadge, setText, show} from './dom.js';
 import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
 
-/** @param {HTMLElement} frame @param {string} url  empty: there is no picture */
+/** @param {HTMLElement} frame @param {string} url  empty: no picture */
 function showPicture(frame, url) {
   const image = part(frame, 'img');
   show(image, url !== '');
@@ -51,7 +51,7 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
   });
 }
 
-let isHere = false;  // its part of the page
+let isHere = false;  // whether the fragment is loaded
 /** @type {Screen | null} */
 let last = null;
 
@@ -63,7 +63,7 @@ export function renderLibrary(screen) {
   }
 }
 
-/** Its part of the page has arrived. */
+/** Called when the fragment is loaded. */
 export function showLibrary() {
   isHere = true;
   last && showRows(last);

@@ -1,5 +1,5 @@
-// What the live picture tells before a scan: which readings will be scanned, and what would spoil it. Pure. The frames are
-// those of pose.js; lengths are metres where a name does not say millimetres.
+// Analysis of the live picture before a scan: the readings in the scanned space, and hints on problems. Pure. The frames are those of
+// pose.js; lengths are metres unless a name says millimetres.
 
 import {distanceOf} from './depth.js';
 import {centimetres} from './format.js';
@@ -9,31 +9,31 @@ import {text} from './texts.js';
 /** @typedef {{pose: import('./pose.js').Matrix, sensor: Sensor, clip_mm: number[]}} Rig */
 
 /**
- * @typedef {Object} Seen  of one picture
- * @property {Uint8Array} inside  of each pixel: 1 where its reading lies in the scanned space
- * @property {number} read_share  of all pixels
- * @property {number} object  pixels that surely show what stands on the platform
- * @property {number} nearest  to the sensor, of these, but for the nearest hundredth
- * @property {number} distance  their median
- * @property {number} width_mm  across the sensor's view
- * @property {number} height_mm  above the platform
- * @property {number} beyond_share  of these, as far from the axis as lies outside the space at some angle
- * @property {number} unread_share  of what lies between these in the rows of the picture, without a reading
- * @property {{top: number, side: number}} cut  pixels where the surface goes on outside
+ * @typedef {Object} Seen  the analysis of one picture
+ * @property {Uint8Array} inside  1 for each pixel whose reading lies in the scanned space
+ * @property {number} read_share  share of pixels with a reading
+ * @property {number} object  number of object pixels, which surely show something on the platform
+ * @property {number} nearest  depth of the object pixels, first percentile
+ * @property {number} distance  depth of the object pixels, median
+ * @property {number} width_mm  of the object, across the sensor's view
+ * @property {number} height_mm  of the object, above the platform
+ * @property {number} beyond_share  share of object pixels so far from the axis that they leave the space at some angle
+ * @property {number} unread_share  share of pixels without a reading between object pixels of a row
+ * @property {{top: number, side: number}} cut  number of pixels where the surface continues outside the space
  *
  * @typedef {{code: string, tone: 'good' | 'warn', text: string, detail: string}} Hint
  */
 
-const clear_mm = 8;     // above the floor of the space: a pose that is 1 degree off lifts the platform's edge by 3 mm
-const oneSurface = 0.012;  // between neighbouring pixels; one step of the picture is 4 mm at 0.75 m
-const farthest = 24;    // the picture's brightness there and beyond (API.md): no distance
+const clear_mm = 8;     // height above the space's floor; a pose 1 degree off lifts the platform's edge by 3 mm
+const oneSurface = 0.012;  // metres between neighbouring pixels of a surface; one step of the picture is 4 mm at 0.75 m
+const farthest = 24;    // brightness at the end of the range and beyond (API.md), so without a distance
 const distances = Float64Array.from({length: 256}, (_, brightness) => distanceOf(brightness) ?? 0);
 
 /** @param {number[]} sorted @param {number} share */
 const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 
 /**
- * Each pixel's place in the platform's frame, x y z after one another; NaN where there is no distance.
+ * Each pixel's point in the platform's frame, as consecutive x y z; NaN without a distance.
  * @param {Uint8Array} brightness @param {number} width @param {Rig} rig
  */
 function placesOf(brightness, width, {pose, sensor}) {
@@ -55,7 +55,7 @@ function placesOf(brightness, width, {pose, sensor}) {
 }
 
 /**
- * Pixels in the space beside one outside it on the same surface.
+ * Counts pixels inside the space with a neighbour outside it on the same surface.
  * @param {Float64Array} places @param {Uint8Array} inside @param {number} width @param {number[]} clip  metres
  */
 function cutOf(places, inside, width, clip) {
@@ -80,7 +80,7 @@ function cutOf(places, inside, width, clip) {
   return cut;
 }
 
-/** The share of pixels without a reading between the first and the last of a row's. @param {Uint8Array} brightness @param {Uint8Array} isObject @param {number} width */
+/** The share of pixels without a reading between the first and the last object pixel of each row. @param {Uint8Array} brightness @param {Uint8Array} isObject @param {number} width */
 function unreadShare(brightness, isObject, width) {
   let unread = 0;
   let seen = 0;
@@ -96,7 +96,7 @@ function unreadShare(brightness, isObject, width) {
 }
 
 /**
- * @param {Uint8Array} brightness  of each pixel, as API.md has it: row by row
+ * @param {Uint8Array} brightness  of each pixel (API.md), row by row
  * @param {number} width  pixels in a row
  * @param {Rig} rig
  * @returns {Seen}
@@ -106,8 +106,8 @@ export function seenOf(brightness, width, rig) {
   const places = placesOf(brightness, width, rig);
   const inside = new Uint8Array(brightness.length);
   const isObject = new Uint8Array(brightness.length);
-  const reach = Math.min(...[0, 1, 3, 4].map((side) => Math.abs(clip[side])));  // every angle keeps what is nearer to the axis
-  /** @type {Record<'depth' | 'across' | 'up', number[]>} of the object's pixels */
+  const reach = Math.min(...[0, 1, 3, 4].map((side) => Math.abs(clip[side])));  // points nearer to the axis stay inside at every angle
+  /** @type {Record<'depth' | 'across' | 'up', number[]>} coordinates of the object pixels */
   const all = {depth: [], across: [], up: []};
   let beyond = 0;
   let read = 0;
@@ -141,11 +141,11 @@ export function seenOf(brightness, width, rig) {
 }
 
 /**
- * Which share of the scanned space's pixels another picture has at another distance: noise alone changes edges.
+ * The share of the scanned space's pixels whose distance differs between two pictures. Noise alone changes edges only.
  * @param {Uint8Array} brightness @param {Uint8Array} before @param {Seen} seen @param {Seen} seenBefore
  */
 export function movedShare(brightness, before, seen, seenBefore) {
-  const steps = 5;  // of brightness, 2 cm at 0.75 m
+  const steps = 5;  // of brightness: 2 cm at 0.75 m
   let moved = 0;
   let all = 0;
   brightness.forEach((value, index) => {
@@ -161,14 +161,14 @@ const limits = {
   read_share: 0.05,
   object: 40,           // pixels: a cube of 2 cm at 0.8 m has 60
   moved_share: 0.35,
-  nearest: 0.5,         // a Kinect v1 sees from there
-  distance: 1.2,        // where one step of its disparity is 4 mm
+  nearest: 0.5,         // a Kinect v1's minimum range
+  distance: 1.2,        // a step of a Kinect's disparity is 4 mm there
   cut: 8,               // pixels
   beyond_share: 0.03,
   unread_share: 0.25,
 };
 
-/** What stops a scan from being good, worst first, by the texts hint.CODE. @param {Seen} seen @param {number} moved_share @returns {[string, boolean][]} */
+/** Problems for a scan by the texts hint.CODE, worst first. @param {Seen} seen @param {number} moved_share @returns {[string, boolean][]} */
 const troublesOf = (seen, moved_share) => [
   ['blind', seen.read_share < limits.read_share],
   ['moves', moved_share > limits.moved_share],
@@ -194,8 +194,8 @@ export function hintOf(seen, moved_share, clip_mm) {
 }
 
 /**
- * A hint is shown once two pictures agree on it, so that noise at a limit does not make it flicker.
- * @returns {(hint: Hint) => Hint | null} what to show after each
+ * Debounces hints: a hint is shown after two successive pictures with it, so that noise at a limit does not make it flicker.
+ * @returns {(hint: Hint) => Hint | null} the hint to show after each picture
  */
 export function steadyHint() {
   /** @type {Hint | null} */

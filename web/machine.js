@@ -1,4 +1,4 @@
-// "Name and time" on the settings page, where it is the appliance's.
+// "Name and time" on the settings page of an appliance.
 
 import {Problem, status} from './api.js';
 import * as api from './api_settings.js';
@@ -8,20 +8,20 @@ import {text} from './texts.js';
 
 /** @typedef {import('./api_settings.js').Machine} Machine */
 
-const pause = 500;  // milliseconds between looks
-const patience = 20;  // looks until it counts as not done
+const pause = 500;  // milliseconds between polls
+const patience = 20;  // polls until a change counts as failed
 
-/** Why a name is none, or nothing. Pure. @param {string} name */
+/** Why a host name is invalid, or an empty text. Pure. @param {string} name */
 export const nameComplaint = (name) => /^[a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?$/i.test(name) ? '' :
   text('machine.name-shape');
 
-/** What differs from how it is, as the scanner takes it. Pure. @param {Machine} machine @param {string} name @param {string} zone */
+/** The change to send to the scanner. Pure. @param {Machine} machine @param {string} name @param {string} zone */
 export function changeOf({name: present, time_zone}, name, zone) {
   const wanted = name.toLowerCase();
   return {...(wanted === present ? {} : {name: wanted}), ...(zone === time_zone ? {} : {time_zone: zone})};
 }
 
-/** Whether the scanner has done what was asked, or says why not. Pure. @param {Machine} machine @param {{name?: string, time_zone?: string}} wanted */
+/** Whether the scanner has made the change, or reports an error. Pure. @param {Machine} machine @param {{name?: string, time_zone?: string}} wanted */
 export const isAnswered = (machine, wanted) => machine.error !== '' ||
   (wanted.name ?? machine.name) === machine.name && (wanted.time_zone ?? machine.time_zone) === machine.time_zone;
 
@@ -54,7 +54,7 @@ function complain(error) {
   setText(element('machine-complaint'), [detail || title, hint].map(sentence).join(' '));
 }
 
-/** Root does it, and answers later. @param {{name?: string, time_zone?: string}} change */
+/** Requests a change, which a root service makes later. @param {{name?: string, time_zone?: string}} change */
 async function save(change) {
   await api.changeMachine(change);
   for (let look = 0; look < patience; ++look) {
@@ -71,7 +71,7 @@ async function save(change) {
   fill();
 }
 
-/** Shows the card where this is the appliance. */
+/** Shows the card on an appliance. */
 export async function prepareMachine() {
   const card = element('machine-card');
   card.addEventListener('input', () => {

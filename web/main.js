@@ -1,4 +1,4 @@
-// Looks at the scanner again and again, and passes on what the user asks for.
+// Polls the scanner, and handles the page's controls.
 
 import * as api from './api.js';
 import * as requests from './api_builds.js';
@@ -17,12 +17,12 @@ import * as states from './state.js';
 import {awaitTexts, fillTexts, language} from './texts.js';
 import {seeWarnings} from './warnings.js';
 
-/** The builds of the scan that is looked at, if they are not known yet. @param {states.State} now */
+/** Fetches the builds of the scan in view, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  const [page] = await Promise.all([import('./scan_page.js'), awaitTexts()]);  // reasons of a verdict among them
+  const [page] = await Promise.all([import('./scan_page.js'), awaitTexts()]);  // including the reasons of verdicts
   page.prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};
@@ -34,7 +34,7 @@ async function askForStatus() {
   return status;
 }
 
-/** One look at the scanner; what changed is shown at once, the list of scans with it. */
+/** Polls the scanner once, and shows all changes at once, including the list of scans. */
 async function look() {
   const before = asked;
   try {
@@ -45,7 +45,7 @@ async function look() {
     bin.seeRevision(status.scans_revision);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
     const defaults = state.defaults ?? await api.defaults();
-    const builds = await missingBuilds(states.withStatus(state, status)).catch(() => null);  // of a scan that is gone
+    const builds = await missingBuilds(states.withStatus(state, status)).catch(() => null);  // fails if the scan was deleted
     if (before !== asked || state.isPending) {
       return;
     }
@@ -62,7 +62,7 @@ async function look() {
 
 let wake = () => {};
 
-/** Looks again and again, for as long as the page is open. */
+/** Polls as long as the page is open. */
 async function watch() {
   for (;;) {
     await look();
@@ -76,7 +76,7 @@ async function watch() {
   }
 }
 
-/** Shows what the address names: a part of the page, or a scan. */
+/** Shows the part of the page or the scan in the address. */
 function follow() {
   const isScan = here() === 'scan';
   change(isScan ? states.withSelected(state, location.hash.slice(1) || null) : state);

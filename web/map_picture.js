@@ -1,9 +1,9 @@
-// The map of the sensor's own error as a picture: amber where it sees too near, blue where too far.
+// The sensor map as a picture: amber where the sensor reads too near, blue where it reads too far.
 
 /** @typedef {{columns: number, rows: number, errors: number[]}} MapPicture  steps of disparity, row by row */
 
 const ends = {far: [47, 111, 222], none: [238, 240, 240], near: [226, 128, 32]};
-const full = 2;  // steps of disparity, for the whole colour: a Kinect's own error has 0.8, root mean square
+const full = 2;  // steps of disparity at full colour; a Kinect's fixed error is 0.8, root mean square
 
 /** @param {number} error  steps of disparity; more is nearer @returns {number[]} red, green, blue */
 export function errorColour(error) {

@@ -1,9 +1,9 @@
-// Measuring between two places of a model. Pure; points are millimetres in its frame.
+// Measuring between two points of a model. Pure; points are millimetres in its frame.
 
 import {millimetres} from './format.js';
 import {text} from './texts.js';
 
-/** The next place: the second of a pair, or the first of another. @param {number[][]} points @param {number[]} point */
+/** Adds a point: the second of a pair, or the first of a new one. @param {number[][]} points @param {number[]} point */
 export const withPoint = (points, point) => points.length === 1 ? [...points, point] : [point];
 
 /** @param {number[][]} points  none, one or two */

@@ -1,4 +1,4 @@
-// Two places of a model and the line between them, seen through the model.
+// Marks two points of a model and the line between them, drawn on top of the model.
 
 import {BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Points, PointsMaterial} from './three.js';
 
@@ -14,6 +14,6 @@ export function measureMark(points_mm) {
   if (points_mm.length === 2) {
     mark.add(new LineSegments(geometry, new LineBasicMaterial({color: colour, depthTest: false})));
   }
-  mark.renderOrder = 1;  // over the model
+  mark.renderOrder = 1;  // drawn on top of the model
   return mark;
 }

@@ -1,4 +1,4 @@
-// What is asked about the models of the scan that is looked at: to build them again, to choose one, to join another side.
+// Actions on the models of the scan in view: build again, choose one, join another side.
 
 import * as requests from './api_builds.js';
 import * as poseRequests from './api_poses.js';
@@ -7,7 +7,7 @@ import {act, change, state} from './page.js';
 import * as states from './state.js';
 import {askDeleteBuild} from './view.js';
 
-/** @param {Object} settings  of the scan that is looked at, those that are to differ */
+/** @param {Object} settings  that differ from those of the scan in view */
 export const build = (settings) => act('failure.build', async () => {
   const begun = await requests.build(/** @type {string} */ (state.selected), settings);
   return (now) => states.withBuild(now, begun);
@@ -46,7 +46,7 @@ export const buildActions = {
   remove: removeBuild,
 };
 
-let lookedAt = 0;  // pose whose fit is looked at
+let lookedAt = 0;  // pose whose fit is in view
 
 export const poseActions = {
   add: () => act('failure.start', async () => {

@@ -1,4 +1,4 @@
-// "Notes" on a scan: kept when the field is left.
+// "Notes" on a scan, saved when the field loses focus.
 
 import {Problem, label} from './api.js';
 import {element, setText} from './dom.js';
@@ -8,8 +8,8 @@ import {change, state} from './page.js';
 import {scanOf, withScan} from './state.js';
 import {text} from './texts.js';
 
-let isHere = false;  // its part of the page
-/** The scan that the field is filled for. @type {string | null} */
+let isHere = false;  // whether the fragment is loaded
+/** The scan whose notes are in the field. @type {string | null} */
 let shown = null;
 
 /** @param {string} words @param {'good' | 'bad' | ''} tone */
@@ -18,7 +18,7 @@ function say(words, tone) {
   element('notes-said').dataset.tone = tone;
 }
 
-/** Fills the field for the scan that is looked at; what somebody is writing there stays. */
+/** Fills the field for the scan in view, unless somebody is writing in it. */
 export function showNotes() {
   if (!isHere) {
     return;
@@ -49,7 +49,7 @@ async function keep() {
   }
 }
 
-/** Fetches the field, and makes it work. */
+/** Fetches the field, and attaches its handler. */
 export async function prepareNotes() {
   await awaitFragment(element('notes-field'), 'notes.html');
   element('notes').addEventListener('change', keep);

@@ -1,4 +1,4 @@
-// What an OpenAPI description says, in words.
+// Texts for an OpenAPI description.
 
 /** @typedef {{method: string, path: string, summary: string, description: string, operation: any}} Operation */
 
@@ -17,7 +17,7 @@ export function operationsOf({paths}) {
   return byTag;
 }
 
-/** What a value is, such as "Scan or null", "list of Point". @param {any} schema @returns {string} */
+/** The type of a schema in words, such as "Scan or null", "list of Point". @param {any} schema @returns {string} */
 export function typeText(schema) {
   if (schema.$ref) {
     return schema.$ref.split('/').at(-1);
@@ -44,9 +44,9 @@ export function typeText(schema) {
 const contentText = (content) => Object.entries(content)
     .map(([type, {schema}]) => schema ? typeText(schema) : type).join(', ');
 
-/** What an operation is sent, or nothing. @param {any} operation @returns {string} */
+/** The request body of an operation in words, or empty. @param {any} operation @returns {string} */
 export const bodyOf = ({requestBody}) => requestBody ? contentText(requestBody.content) : '';
 
-/** What an operation answers, by status. @param {any} operation @returns {[string, string][]} */
+/** The responses of an operation in words, by status. @param {any} operation @returns {[string, string][]} */
 export const answersOf = ({responses}) => Object.entries(responses).map(([code, answer]) => [
   code, answer.$ref ? answer.$ref.split('/').at(-1) : answer.content ? contentText(answer.content) : answer.description]);

@@ -1,4 +1,4 @@
-// "Printers" and "Tell other programs" of the settings: whom the scanner sends models to, and tells what happens.
+// "Printers" and "Tell other programs" in the settings: the receivers of models, and of webhooks.
 
 import {Problem, json, sending, withoutAnswer} from './api.js';
 import {element, list, part, setText, show} from './dom.js';
@@ -11,13 +11,13 @@ import {text} from './texts.js';
 /** @typedef {{id: string, address: string, events: string[], last: Told | null}} Webhook */
 
 const kinds = /** @type {Record<string, string>} */ ({octoprint: 'OctoPrint', moonraker: 'Moonraker', prusalink: 'PrusaLink'});
-const pause = 1000;  // milliseconds between looks at what is being sent
+const pause = 1000;  // milliseconds between polls of a delivery
 const looks = 15;
 
-/** What a printer is, in words. Pure. @param {Printer} printer */
+/** The description of a printer. Pure. @param {Printer} printer */
 export const aboutPrinter = ({kind, address}) => `${kinds[kind]} · ${address}`;
 
-/** What became of the last message, in words. Pure. @param {Webhook} webhook */
+/** The outcome of the last message. Pure. @param {Webhook} webhook */
 export function aboutWebhook({last}) {
   const words = {
     delivered: () => text('outgoing.arrived'),
@@ -79,7 +79,7 @@ async function testWebhook(id) {
   }
 }
 
-/** What the buttons of a card's rows do. @param {string} rows @param {string} place  of complaints @param {Record<string, (id: string) => Promise<unknown>>} actions */
+/** Attaches the handlers of the buttons in a card's rows. @param {string} rows @param {string} place  of complaints @param {Record<string, (id: string) => Promise<unknown>>} actions */
 function listen(rows, place, actions) {
   element(rows).addEventListener('click', (/** @type {any} */ event) => {
     const button = event.target.closest('button');
@@ -116,7 +116,7 @@ async function addWebhook() {
   await showWebhooks();
 }
 
-/** Puts both cards in the place of #outgoing. */
+/** Replaces #outgoing by both cards. */
 export async function prepareOutgoing() {
   await fetchFragment(element('outgoing'), 'outgoing.html');
   element('outgoing').replaceWith(...element('outgoing').childNodes);

@@ -1,4 +1,4 @@
-// The platform, its axis and the scanned space as the sensor would see them, by a pose. Pure: lines in the picture's pixels.
+// The platform, its axis and the scanned space projected into the sensor's picture by a pose. Pure.
 
 import {toSensor} from './pose.js';
 
@@ -6,16 +6,16 @@ import {toSensor} from './pose.js';
 /** @typedef {import('./pose.js').Point} Point */
 /** @typedef {{width: number, height: number, fx: number, fy: number, cx: number, cy: number}} Sensor */
 
-const nearest = 0.05;  // metres before the sensor; what is nearer is cut off
+const nearest = 0.05;  // near clipping plane, metres in front of the sensor
 const ringSides = 72;
 
 /**
- * @param {Sensor} sensor @param {Point} point  in the optical frame, before the sensor
+ * @param {Sensor} sensor @param {Point} point  in the optical frame, in front of the sensor
  * @returns {[number, number]} pixel
  */
 export const pixelOf = ({fx, fy, cx, cy}, [x, y, z]) => [cx + fx * x / z, cy + fy * y / z];
 
-/** The part of a line that is before the sensor, or null. @param {Point} a @param {Point} b */
+/** Clips a line to the space in front of the sensor; null if nothing is left. @param {Point} a @param {Point} b */
 function before(a, b) {
   if (a[2] < nearest && b[2] < nearest) {
     return null;

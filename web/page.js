@@ -1,4 +1,4 @@
-// The page's state, and how it changes: what is asked of the scanner, one thing at a time.
+// The page's state and its changes. Requests to the scanner are made one at a time.
 
 import * as api from './api.js';
 import {here, titleAt} from './places.js';
@@ -9,7 +9,7 @@ import {text} from './texts.js';
 import {render} from './view.js';
 
 export let state = states.initial;
-export let asked = 0;  // of the scanner so far: a status from before one is old news after it
+export let asked = 0;  // requests to the scanner so far; a status from before the latest is outdated
 
 /** @param {states.State} next */
 export function change(next) {
@@ -24,9 +24,9 @@ export function change(next) {
 }
 
 /**
- * Does what the user asked for, one thing at a time, and shows why if it fails.
- * @param {string} failure  key of the text that says what did not happen then
- * @param {() => Promise<(state: states.State) => states.State>} action  tells how its answer changes the state
+ * Runs a user's action, one at a time, and shows the reason if it fails.
+ * @param {string} failure  key of the failure's text
+ * @param {() => Promise<(state: states.State) => states.State>} action  resolves to the change of state
  */
 export async function act(failure, action) {
   if (state.isPending) {

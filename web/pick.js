@@ -1,9 +1,9 @@
-// What of a model is under a pixel. The model's points are in the GPU's memory alone, so the GPU is asked: it draws that one
-// pixel, with the place for a colour, and again with the facet's normal, both as the model lies there.
+// Picks the point of a model under a pixel. The vertices exist in GPU memory only, so the GPU renders that one pixel twice: with the
+// position as its colour, and with the facet's normal, both in the model's current pose.
 
 import {DoubleSide, FloatType, ShaderMaterial, WebGLRenderTarget} from './three.js';
 
-/** @typedef {{place: number[], normal: number[]}} Spot  millimetres; of length 1, towards the eye */
+/** @typedef {{place: number[], normal: number[]}} Spot  millimetres; unit vector towards the camera */
 
 const pixel = new WebGLRenderTarget(1, 1, {type: FloatType});
 const asNumbers = new ShaderMaterial({
@@ -37,9 +37,9 @@ function read(renderer, model, camera, isNormal) {
 
 /**
  * @param {import('three').WebGLRenderer} renderer @param {import('three').PerspectiveCamera} camera @param {any} model
- * @param {number} top  millimetres: what is higher is not there
+ * @param {number} top  millimetres; higher parts are cut off
  * @param {number} x @param {number} y  of the canvas, CSS pixels
- * @returns {Spot | null} null beside the model
+ * @returns {Spot | null} null if the pixel does not show the model
  */
 export function spotAt(renderer, camera, model, top, x, y) {
   const {clientWidth, clientHeight} = renderer.domElement;

@@ -1,4 +1,4 @@
-// The five numbers of the sensor's pose, each with a button for a little less and a little more.
+// The numbers of the sensor's pose, each with buttons to decrease and increase it.
 
 import {copyOf, element, part, setText, show} from './dom.js';
 import {degrees, millimetres} from './format.js';
@@ -19,12 +19,12 @@ const rows = [
 
 /** @type {Matrix | null} in force */
 let inForce = null;
-/** @type {Placement | null} as set by hand; null while it is the pose in force */
+/** @type {Placement | null} as set by hand; null: unchanged */
 let draft = null;
 /** @type {(pose: Matrix) => void} */
 let onPose = () => {};
 
-/** A length or angle with a minus sign that a field takes. @param {number} value @param {number} digits */
+/** A length or angle for a number field, without a negative zero. @param {number} value @param {number} digits */
 const written = (value, digits) => (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits);
 
 const fieldOf = (/** @type {string} */ key) => element(`placement-${key}`);
@@ -54,7 +54,7 @@ function set(key, value) {
   }
 }
 
-/** Forgets what was set by hand. */
+/** Discards unsaved changes. */
 export function discard() {
   draft = null;
   fill();
@@ -63,10 +63,10 @@ export function discard() {
   }
 }
 
-/** @returns {Matrix | null} as set by hand, if it is */
+/** @returns {Matrix | null} the pose as set by hand; null: unchanged */
 export const chosenPose = () => draft && poseOf(draft);
 
-/** @param {Matrix} pose  in force; what is set by hand meanwhile stays */
+/** Shows the pose in force unless there are unsaved changes. @param {Matrix} pose */
 export function showPlacement(pose) {
   inForce = pose;
   if (!draft) {
@@ -96,7 +96,7 @@ function rowOf({key, name, unit, step, digits}) {
 }
 
 /**
- * @param {{onChange: (pose: Matrix) => void, onKeep: () => void}} events  onChange: with each step
+ * @param {{onChange: (pose: Matrix) => void, onKeep: () => void}} events  onChange: called after each step
  */
 export function preparePlacement({onChange, onKeep}) {
   onPose = onChange;

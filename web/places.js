@@ -1,5 +1,5 @@
-// The places of the page: Scan, Library and Scanner, of which Calibrate and Settings are parts. Each but the first has an
-// address, '#' and its name, and a module and a piece of HTML, which are fetched when somebody first goes there.
+// The places of the page: Scan, Library and Scanner; Calibrate and Settings are parts of Scanner. Each but the first has the address
+// '#' and its name, and a module and an HTML fragment that are fetched at the first visit.
 
 import {element, setText, show} from './dom.js';
 import {fetchFragment} from './fragment.js';
@@ -7,8 +7,8 @@ import {text} from './texts.js';
 
 const first = 'scan';
 
-/** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>, piece?: string}>} piece: the id of what it is put
- * into, and its file's name; without it, the whole place's */
+/** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>, piece?: string}>} piece: the id of the fragment's
+ * container and its file's name; by default those of the whole place */
 const others = {
   library: {title: 'places.library', load: () => import('./library_page.js')},
   scanner: {title: 'places.scanner', load: () => import('./scanner_page.js'), piece: 'doctor'},
@@ -16,20 +16,20 @@ const others = {
   settings: {title: 'places.settings', load: () => import('./settings_page.js')},
 };
 
-const betweenAttempts = 2000;  // milliseconds, while a part does not arrive
+const betweenAttempts = 2000;  // milliseconds between attempts to load a place
 
-/** @param {string} hash  of an address, without '#' @returns {string} the part that it names; every other names a scan */
+/** @param {string} hash  of an address, without '#' @returns {string} the named place; any other hash names a scan */
 export const placeOf = (hash) => Object.hasOwn(others, hash) ? hash : first;
 
-/** @param {string} place @param {string} title  of the first part @returns {string} the document's */
+/** @param {string} place @param {string} title  of the first place @returns {string} the document's title */
 export const titleAt = (place, title) => place === first ? title : `${text(others[place].title)} · Octurn`;
 
-/** @returns {string} the part that is shown */
+/** @returns {string} the current place */
 export const here = () => placeOf(location.hash.slice(1));
 
 const mainOf = (/** @type {string} */ place) => /** @type {HTMLElement} */ (document.querySelector(`main[data-place=${place}]`));
 
-/** @type {Set<string>} of places that have arrived, or are on their way */
+/** @type {Set<string>} places that are loaded or loading */
 const begun = new Set();
 
 /** @param {string} place */
@@ -52,10 +52,10 @@ async function arrive(place) {
 
 const parts = new Set(['scanner', 'calibrate', 'settings']);
 
-/** Which of the three places an address belongs to: that of a scan is one of the library. @param {string} hash @returns {string} */
+/** The tab of an address; scans belong to the library. @param {string} hash @returns {string} */
 export const tabOf = (hash) => parts.has(hash) ? 'scanner' : hash === '' ? first : 'library';
 
-/** @param {string} links @param {string} name  of the one that is current */
+/** @param {string} links @param {string} name  of the current one */
 function markCurrent(links, name) {
   for (const link of document.querySelectorAll(`${links} a`)) {
     const isCurrent = /** @type {HTMLElement} */ (link).dataset.to === name;
@@ -65,7 +65,7 @@ function markCurrent(links, name) {
 
 let shown = first;
 
-/** Shows the part that the address names, another one from its top on. */
+/** Shows the place in the address, and scrolls to the top if it changed. */
 export function showPlace() {
   const place = here();
   if (place !== shown) {
@@ -81,10 +81,10 @@ export function showPlace() {
   arrive(place);
 }
 
-/** Makes the link work that skips what every part has. */
+/** Attaches the handler of the skip link. */
 export function preparePlaces() {
   element('skip').addEventListener('click', (/** @type {Event} */ event) => {
-    event.preventDefault();  // the address is the part's
+    event.preventDefault();  // the address must keep the place
     /** @type {HTMLElement | null} */ (mainOf(here()).querySelector('[tabindex="-1"]'))?.focus();
   });
 }

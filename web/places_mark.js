@@ -1,4 +1,4 @@
-// Places of a model that somebody should look at: a cloud of blobs over it.
+// Marks places of a model by a cloud of dots drawn on top of it.
 
 import {BufferAttribute, BufferGeometry, Points, PointsMaterial, Sphere, Vector3} from './three.js';
 
@@ -12,12 +12,12 @@ export function placesMark(points_mm) {
   const mark = new Points(geometry, new PointsMaterial({
     color: colour, size: blob, sizeAttenuation: false, transparent: true, opacity: 0.75, depthTest: false,
   }));
-  mark.renderOrder = 1;  // over the model
+  mark.renderOrder = 1;  // drawn on top of the model
   return mark;
 }
 
 /**
- * What has to be seen of some places: the ball around their middle that holds nine tenths of them.
+ * The sphere around the places' centroid that holds nine tenths of them.
  * @param {number[][]} points_mm
  */
 export function ballOf(points_mm) {

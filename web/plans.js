@@ -1,5 +1,5 @@
-// The readings of one picture from the side and from above, with the platform, its axis and the scanned space: drawn on
-// canvases. Lengths are millimetres in the platform's frame.
+// Draws the readings of one picture from the side and from above on canvases, with the platform, its axis and the scanned space.
+// Lengths are millimetres in the platform's frame.
 
 import {toPlatform} from './pose.js';
 
@@ -7,19 +7,19 @@ import {toPlatform} from './pose.js';
 /** @typedef {import('./pose.js').Point} Point */
 
 /**
- * Which axis of the platform's frame goes to the right, and which goes up.
+ * The axes of the platform's frame that point right and up in a plan.
  * @typedef {{right: 0 | 1, up: 1 | 2}} Side
  */
 export const fromSide = /** @type {Side} */ ({right: 1, up: 2});
 export const fromAbove = /** @type {Side} */ ({right: 0, up: 1});
 
 const colours = {object: '#74d3cb', other: 'rgb(163 181 191 / 38%)', platform: '#e6eff3', axis: '#f4c95d', box: '#8fb8ff', text: '#a3b5bf'};
-const margin = 34;  // pixels around what has to be seen
+const margin = 34;  // pixels around platform and box
 
 /** @typedef {{toPixel: (right: number, up: number) => [number, number], toMillimetres: (x: number, y: number) => [number, number], scale: number}} Plan */
 
 /**
- * How a plan lies on a canvas: platform and box are seen whole. Pure.
+ * The mapping of a plan to a canvas, which shows the whole platform and box. Pure.
  * @param {Side} side @param {number[]} clip_mm @param {number} radius_mm @param {number} width @param {number} height
  * @returns {Plan}
  */
@@ -88,11 +88,11 @@ function drawBox(context, {toPixel}, {right, up}, clip_mm) {
   context.setLineDash([]);
   context.fillStyle = colours.box;
   for (const [x, y] of [[x0, (y0 + y1) / 2], [x1, (y0 + y1) / 2], [(x0 + x1) / 2, y0], [(x0 + x1) / 2, y1]]) {
-    context.fillRect(x - 3.5, y - 3.5, 7, 7);  // to take hold of
+    context.fillRect(x - 3.5, y - 3.5, 7, 7);  // drag handle
   }
 }
 
-/** Makes a canvas as fine as the screen. @param {HTMLCanvasElement} canvas @returns {CanvasRenderingContext2D} in CSS pixels, empty */
+/** Sets a canvas's resolution to the screen's. @param {HTMLCanvasElement} canvas @returns {CanvasRenderingContext2D} in CSS pixels, empty */
 export function contextOf(canvas) {
   const ratio = Math.min(devicePixelRatio, 2);
   const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
@@ -118,7 +118,7 @@ export function drawPlan(canvas, side, {points, clip_mm, radius_mm, plan}) {
 }
 
 /**
- * Draws one picture of a slice: the same scale for both, so that they can be compared.
+ * Draws one of two pictures of a slice, both at the same scale.
  * @param {HTMLCanvasElement} canvas @param {number[][]} points @param {number[][]} all  of both pictures @param {string} colour
  */
 export function drawSlice(canvas, points, all, colour) {
@@ -137,7 +137,7 @@ export function drawSlice(canvas, points, all, colour) {
   drawLength(context, scale, height);
 }
 
-/** A bar that tells how long 10, 20 or 50 mm are. @param {CanvasRenderingContext2D} context @param {number} scale @param {number} height */
+/** A scale bar. @param {CanvasRenderingContext2D} context @param {number} scale @param {number} height */
 function drawLength(context, scale, height) {
   const length = [5, 10, 20, 50, 100].find((one) => one * scale > 40) ?? 100;
   context.fillStyle = colours.text;

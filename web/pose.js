@@ -1,17 +1,17 @@
-// The sensor's pose, as the API has it (optical frame to platform frame, metres) and as the five numbers that people set.
-// Pure. Angles in names are degrees, lengths in names millimetres; points are metres in the frame that their name says.
+// The sensor's pose as in the API (platform from optical frame, metres) and as numbers for people. Pure. The suffixes _deg and _mm
+// give the units; points are in metres in the frame of their name.
 
 /** @typedef {number[][]} Matrix  four rows of four */
 /** @typedef {[number, number, number]} Point */
 
 /**
- * Where the sensor stands, seen from behind it. Turning it around the platform's axis changes none of them but `yaw_deg`,
- * which no picture can tell: models only turn with it.
+ * The sensor's position and direction, seen from behind it. A rotation about the platform's axis changes `yaw_deg` only. No picture
+ * determines it; it only rotates models.
  *
  * @typedef {Object} Placement
- * @property {number} x_mm  how far to the right of the axis
- * @property {number} y_mm  how far beyond the axis: before it is negative
- * @property {number} z_mm  above the platform's surface
+ * @property {number} x_mm  to the right of the axis
+ * @property {number} y_mm  beyond the axis; negative in front of it
+ * @property {number} z_mm  height above the platform's surface
  * @property {number} tilt_deg  downwards
  * @property {number} roll_deg  clockwise, as the sensor sees
  * @property {number} yaw_deg  around the platform's axis, counter-clockwise from above
@@ -33,7 +33,7 @@ function aroundZ(angle) {
   return [[c, -s, 0], [s, c, 0], [0, 0, 1]];
 }
 
-/** Of a sensor that looks along Y, tilted down. @param {number} tilt  radians */
+/** The rotation of a sensor that looks along Y, tilted down. @param {number} tilt  radians */
 function lookingDown(tilt) {
   const [c, s] = [Math.cos(tilt), Math.sin(tilt)];
   return [[1, 0, 0], [0, -s, c], [0, -c, -s]];
@@ -47,7 +47,7 @@ export function poseOf({x_mm, y_mm, z_mm, tilt_deg, roll_deg, yaw_deg}) {
   return [...rotation.map((row, index) => [...row, position[index]]), [0, 0, 0, 1]];
 }
 
-/** The inverse of poseOf, for any sensor that does not look straight down. @param {Matrix} pose @returns {Placement} */
+/** The inverse of poseOf, ambiguous for a sensor that looks straight down. @param {Matrix} pose @returns {Placement} */
 export function placementOf(pose) {
   const rotation = pose.slice(0, 3).map((row) => row.slice(0, 3));
   const position = pose.slice(0, 3).map((row) => row[3]);
@@ -71,7 +71,7 @@ export function toSensor(pose, point) {
 }
 
 /**
- * What one pose lacks of another, for people.
+ * The difference between two poses, for people.
  * @param {Matrix} pose @param {Matrix} other
  * @returns {{shift_mm: number, lift_mm: number, tilt_deg: number}} how far the axis moves at the platform's surface, how far
  *     that surface rises or sinks at the axis, and how far the axis turns
@@ -80,7 +80,7 @@ export function differenceOf(pose, other) {
   const origin = toPlatform(pose, toSensor(other, [0, 0, 0]));
   const top = toPlatform(pose, toSensor(other, [0, 0, 1]));
   const along = top.map((value, axis) => value - origin[axis]);
-  const share = along[2] === 0 ? 0 : origin[2] / along[2];  // from there along the axis to the surface
+  const share = along[2] === 0 ? 0 : origin[2] / along[2];  // along the axis, from the origin to the surface
   return {
     shift_mm: millimetres(Math.hypot(origin[0] - share * along[0], origin[1] - share * along[1])),
     lift_mm: Math.abs(millimetres(origin[2])),

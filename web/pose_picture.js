@@ -1,5 +1,5 @@
-// The live depth picture with the rig drawn in by a pose, the distance under the pointer, and the readings from the side
-// and from above.
+// The live depth picture with the rig drawn in by a pose, the distance under the pointer, and plans of the readings from the
+// side and from above.
 
 import {handlesOf} from './clip_handles.js';
 import {drawDepth} from './depth.js';
@@ -11,9 +11,9 @@ import {drawLines, prepareDistance, radius_mm} from './rig_picture.js';
 
 const plans = /** @type {const} */ ([['plan-side', fromSide], ['plan-above', fromAbove]]);
 
-/** @type {Map<string, import('./plans.js').Plan>} as drawn */
+/** @type {Map<string, import('./plans.js').Plan>} as drawn last */
 const drawnPlans = new Map();
-let arePlansHeld = false;  // while something is dragged in them
+let arePlansHeld = false;  // during a drag in them
 
 /** @type {{pose: Matrix | null, clip_mm: number[], seen: import('./api_calibration.js').Points | null}} */
 const shown = {pose: null, clip_mm: [-140, -140, 5, 140, 140, 400], seen: null};
@@ -22,7 +22,7 @@ const shown = {pose: null, clip_mm: [-140, -140, 5, 140, 140, 400], seen: null};
 let seeDistances = () => {};
 let isDue = false;
 
-/** What the live picture shows: a pose, what looks from there, and the space; null before there is a picture. */
+/** The rig in the live picture: pose, sensor and scanned space; null before the first picture. */
 export const rigShown = () => shown.pose && shown.seen ? {pose: shown.pose, sensor: shown.seen.sensor, clip_mm: shown.clip_mm} : null;
 
 function drawHandles() {
@@ -57,7 +57,7 @@ function drawPlans() {
   }
 }
 
-/** Draws all in the next frame. */
+/** Redraws in the next animation frame. */
 function redraw() {
   if (!isDue) {
     isDue = true;
@@ -75,14 +75,14 @@ export function showPose(pose) {
   redraw();
 }
 
-/** @param {number[]} clip_mm @param {boolean} isDragged  then the plans stay where they lie */
+/** @param {number[]} clip_mm @param {boolean} isDragged  whether the plans keep their mapping */
 export function showClip(clip_mm, isDragged) {
   shown.clip_mm = clip_mm;
   arePlansHeld = isDragged;
   redraw();
 }
 
-/** The plans, with how each lies on its canvas once it is drawn. */
+/** The plans, each with its mapping once it is drawn. */
 export const plansShown = () => plans.map(([id, side]) => (
   {canvas: /** @type {HTMLCanvasElement} */ (element(id)), side, planNow: () => drawnPlans.get(id) ?? null}));
 

@@ -1,4 +1,4 @@
-// What the page shows of the other poses of a scan's object. Pure: state in, texts and choices out.
+// The view of further poses of a scan's object. Pure: state in, texts and choices out.
 
 import * as format from './format.js';
 import {text} from './texts.js';
@@ -7,7 +7,7 @@ import {text} from './texts.js';
 /** @typedef {import('./api_poses.js').Pose} Pose */
 /** @typedef {import('./state.js').State} State */
 
-/** Whether a scan is shown with the one that it is another pose of, and not by itself. @param {Scan} scan */
+/** Whether a scan is a further pose, which is shown with the first scan and not by itself. @param {Scan} scan */
 export const isPartOfAnother = ({pose_of, state}) => Boolean(pose_of) && state === 'finished';
 
 /** @param {Pose} pose */
@@ -23,7 +23,7 @@ function textOf({state, registration}) {
   return text(`side.${state === 'running' || state === 'paused' || state === 'interrupted' ? state : 'ended'}`);
 }
 
-/** @param {Pose} pose @param {number} last  that was merged */
+/** @param {Pose} pose @param {number} last  the last merged pose */
 const rowOf = (pose, last) => ({
   number: pose.pose,
   tone: pose.registration?.accepted ? 'good' : 'warn',
@@ -34,7 +34,7 @@ const rowOf = (pose, last) => ({
   canRemove: pose.state !== 'running' && (!pose.registration?.accepted || pose.pose === last),
 });
 
-/** @param {State} state @param {Scan} scan  that is looked at */
+/** @param {State} state @param {Scan} scan  in view */
 export function posesOf(state, scan) {
   const poses = scan.poses ?? [];
   const merged = poses.filter(({registration}) => registration?.accepted);

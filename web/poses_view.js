@@ -1,4 +1,4 @@
-// The other poses of a scan's object: the offer to scan one, how they fit, and to take them back.
+// Renders the further poses of a scan's object: how they fit, and the buttons to add and remove them.
 
 import {element, list, part, setText, show} from './dom.js';
 import {prepareFit} from './fit_view.js';
@@ -7,12 +7,12 @@ import {text} from './texts.js';
 
 /** @typedef {ReturnType<import('./poses.js').posesOf>} Poses */
 
-let isHere = false;  // its part of the page
+let isHere = false;  // whether the fragment is loaded
 let isBegun = false;
 /** @type {Poses | null} */
 let last = null;
 
-/** @param {Poses | null} poses  of the scan that is looked at */
+/** @param {Poses | null} poses  of the scan in view */
 export function renderPoses(poses) {
   last = poses;
   show(element('sides'), Boolean(poses?.canAdd));
@@ -35,7 +35,7 @@ export function renderPoses(poses) {
 }
 
 /**
- * Fetches its part of the page, once.
+ * Fetches the fragment, once.
  * @param {{add: () => void, remove: (pose: number) => void, look: (pose: number) => void, choose: (choice: Object) => void}} actions
  */
 export async function preparePoses(actions) {
@@ -59,6 +59,6 @@ export async function preparePoses(actions) {
     prepareFit(actions.choose);
     renderPoses(last);
   } catch {
-    isBegun = false;  // the next look asks again
+    isBegun = false;  // retried at the next poll
   }
 }

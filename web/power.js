@@ -1,5 +1,5 @@
-// "The scanner itself" of the settings: restart, shut down, and what the program has logged. And its clock, which an
-// appliance without internet takes from whoever looks at it.
+// "The scanner itself" in the settings: restart, shutdown, and the program's log. Also the clock of an appliance without internet,
+// which is set from the browser's clock.
 
 import {Problem, json, sending, status} from './api.js';
 import {element, setText, show} from './dom.js';
@@ -8,13 +8,13 @@ import {sentence} from './format.js';
 import {text} from './texts.js';
 
 
-/** The lines of the log to show, without the mark of their importance. Pure. @param {{log: string[], errors: string[]}} messages */
+/** The lines of the log to show, without their priority prefix. Pure. @param {{log: string[], errors: string[]}} messages */
 export const linesOf = ({log, errors}) => [...errors, ...log].map((line) => line.replace(/<\d>/, '')).join('\n');
 
-/** Whether an appliance's clock is doubtful. Pure. @param {import('./api.js').Status} status */
+/** Whether an appliance's clock may be wrong. Pure. @param {import('./api.js').Status} status */
 export const needsClock = ({appliance, warnings}) => appliance && Boolean(warnings?.some(({check}) => check === 'clock'));
 
-/** Sets the clock of an appliance that no time server has set. */
+/** Sets the clock of an appliance that has no time server. */
 export const lendClock = () => json('machine/clock', sending('PUT', {unix_s: Date.now() / 1000}));
 
 /** @param {HTMLElement} button */
@@ -42,7 +42,7 @@ async function showMessages() {
   }
 }
 
-/** Puts the card in the place of #power. */
+/** Replaces #power by the card. */
 export async function preparePower() {
   await fetchFragment(element('power'), 'power.html');
   element('power').replaceWith(...element('power').childNodes);

@@ -1,4 +1,4 @@
-// The three ways to scan that stand in front of all settings. Pure.
+// The three presets of a scan. Pure.
 
 import {leafChoices} from './settings.js';
 
@@ -13,8 +13,8 @@ import {leafChoices} from './settings.js';
 const maxSnapshots = 400;
 
 /**
- * Standard is the scanner's default. Quick and best have a third and twice as many snapshots, and the next coarser and finer leaves: a scan
- * by laser line starts from more and finer ones than a Kinect's.
+ * Standard is the scanner's default. Quick and best have a third of and twice its snapshots, and the next coarser and finer leaves, so they
+ * suit both a Kinect and a scan by laser line, which has more snapshots and smaller leaves.
  * @param {Settings} defaults
  * @returns {Preset[]}
  */
@@ -30,23 +30,23 @@ export function presets(defaults) {
   ];
 }
 
-/** Settings that a filter or a method does not use do not count. @param {Partial<Settings>} settings */
+/** A key of the settings, without those that the filter or the method does not use. @param {Partial<Settings>} settings */
 const used = ({snapshots, filter, frames, method, leaf_size_mm, threshold_m2, calibrate, clip_mm}) => JSON.stringify([
   snapshots, filter, filter === 'basic' ? 0 : frames, method, leaf_size_mm, method === 'solid' ? 0 : threshold_m2, calibrate, clip_mm,
 ]);
 
-/** @param {Partial<Settings>} settings @param {Settings} defaults @returns {Preset | null} the one that these are */
+/** @param {Partial<Settings>} settings @param {Settings} defaults @returns {Preset | null} the preset with these settings */
 export const presetOf = (settings, defaults) => presets(defaults).find((preset) => used(preset.settings) === used(settings)) ?? null;
 
-/** What a browser remembers of a scan: not where the sensor stands, nor the space, which belong to the scanner. */
+/** The settings stored in the browser; the sensor's pose and the scanned space belong to the scanner. */
 const kept = /** @type {const} */ (['snapshots', 'filter', 'frames', 'method', 'leaf_size_mm', 'threshold_m2']);
 
 /** @param {Partial<Settings>} settings @returns {string} */
 export const toKept = (settings) => JSON.stringify(Object.fromEntries(kept.map((key) => [key, settings[key]])));
 
 /**
- * What was chosen last, as far as it is still something to choose.
- * @param {string | null} text  as `toKept` has made it, or somebody else
+ * The last choice, as far as it is still valid.
+ * @param {string | null} text  from `toKept`, or anything else
  * @param {Settings} defaults
  * @returns {Settings}
  */

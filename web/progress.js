@@ -1,4 +1,4 @@
-// What is shown of a scan while it runs. Pure.
+// The view of a running scan. Pure.
 
 import * as format from './format.js';
 import {text} from './texts.js';
@@ -24,7 +24,7 @@ export function phaseText(scan) {
 export const isBuilding = ({phase}) => phasesAfterTheTurn.has(phase);
 
 /**
- * Building takes a moment after the last stop, so the last hundredths are its own.
+ * Building takes a moment after the last stop, so the last three percent are reserved for it.
  * @param {Scan} scan
  */
 function percent(scan) {
@@ -39,11 +39,11 @@ function stepStates(scan) {
   return steps.map((name, index) => ({name, state: index < now ? 'done' : index === now ? 'now' : 'next'}));
 }
 
-/** How long it has taken, and will take in all. @param {Scan} scan */
+/** Elapsed and total time. @param {Scan} scan */
 const timeOf = ({seconds_elapsed, seconds_left, error}) => seconds_left === null || error ? format.clock(seconds_elapsed) :
     text('time.of', {elapsed: format.clock(seconds_elapsed), total: format.clock(seconds_elapsed + seconds_left)});
 
-/** How long a stop that fails is still tried. @param {Scan} scan */
+/** How long a failed stop is still retried. @param {Scan} scan */
 const untilPause = ({seconds_until_pause}) => seconds_until_pause === null ? '' :
     text('phase.pauses', {time: `${Math.ceil(seconds_until_pause)} s`});
 

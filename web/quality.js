@@ -1,4 +1,4 @@
-// What the page says of a model's worth. Pure: the scanner's verdict in, texts and links out.
+// The texts on a model's quality. Pure: the scanner's verdict in, texts and links out.
 
 import {sentence} from './format.js';
 import {text} from './texts.js';
@@ -7,7 +7,7 @@ import {reasonText} from './wording.js';
 /** @typedef {import('./api.js').Model} Model */
 
 /** @typedef {import('./api.js').Reason} Reason */
-/** @typedef {{text: string, href: string}} Action  where a reason's cure is */
+/** @typedef {{text: string, href: string}} Action  link to a reason's remedy */
 
 const calibrate = {text: text('cure.calibrate'), href: '#calibrate'};
 const space = {text: text('cure.space'), href: '#calibrate'};
@@ -29,7 +29,7 @@ const actions = {
   'coarser': space,
 };
 
-/** Findings of a calibration that the verdict does not have. */
+/** Findings of a calibration that are not part of a verdict. */
 const improvable = ['no-map', 'focal-length', 'wobble'];
 
 /** @param {string | undefined} code @returns {Action | null} */
@@ -41,12 +41,12 @@ const verdicts = {
   bad: {tone: 'bad', icon: 'fault'},
 };
 
-/** @param {Model} model @returns {{tone: string, text: string} | null} null for a model that was never judged */
+/** @param {Model} model @returns {{tone: string, text: string} | null} null for a model without a verdict */
 export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: text(`verdict.${quality.verdict}-short`)} : null;
 
 /**
  * @param {Model} model
- * @param {Reason[]} findings  of the scan's calibration: what makes no model bad, and could make the next one better
+ * @param {Reason[]} findings  of the scan's calibration; some do not affect the verdict but could improve the next model
  */
 export function verdictOf({quality, watertight}, findings = []) {
   if (!quality) {

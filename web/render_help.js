@@ -1,6 +1,6 @@
-// Makes the help that the scanner serves of the documents in docs: render_help.js DOCS_FOLDER OUTPUT_FOLDER FILE.md...
-// Runs when the page is built, beside the npm packages that build it. A link to another of the files stays a link; one to
-// anything else of the repository, which a scanner does not have, becomes its text.
+// Renders the scanner's help from the documents in docs: render_help.js DOCS_FOLDER OUTPUT_FOLDER FILE.md...
+// Runs when the page is built. Links between these files stay links; a link to another file of the repository, which the scanner does
+// not serve, is replaced by its text.
 
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';
@@ -9,10 +9,10 @@ import {Marked} from 'marked';
 const [docs, output, ...files] = process.argv.slice(2);
 const names = files.map((file) => basename(file, '.md').toLowerCase());
 
-/** As GitHub makes them, so that links into a document hold in both places. @param {string} heading */
+/** The anchor of a heading as on GitHub, so that links into a document work in both places. @param {string} heading */
 const anchorOf = (heading) => heading.toLowerCase().replace(/<[^>]*>/g, '').replace(/[^\p{L}\p{N}\- ]/gu, '').replaceAll(' ', '-');
 
-/** @param {string} href @returns {string | null} on the scanner; null where it has none */
+/** @param {string} href @returns {string | null} its address on the scanner; null if there is none */
 function addressOf(href) {
   const [, path, anchor = ''] = /^([^#]*)(#.*)?$/.exec(href) ?? [];
   if (/^(https?:|mailto:)/.test(href) || path === '') {
@@ -20,7 +20,7 @@ function addressOf(href) {
   }
   const name = basename(path, '.md').toLowerCase();
   if (name === 'api') {
-    return '../interface.html';  // where the scanner shows the same
+    return '../interface.html';  // the scanner's page on the interface
   }
   return path.endsWith('.md') && names.includes(name) ? `${name}.html${anchor}` : path.endsWith('.svg') ? path : null;
 }
@@ -39,7 +39,7 @@ const marked = new Marked({
   },
 });
 
-/** Tables and blocks of code scroll by themselves where a phone is too narrow for them. A column without a name has no heading to read out. @param {string} html */
+/** Makes tables and code blocks scrollable on narrow screens. An empty header cell becomes a data cell, as it has nothing to read out. @param {string} html */
 const scrolling = (html) => html
     .replace(/<th([^>]*)><\/th>/g, '<td$1></td>')
     .replaceAll('<table>', '<div class="wide" tabindex="0"><table>').replaceAll('</table>', '</table></div>')

@@ -1,4 +1,4 @@
-// What every live depth picture has: the rig drawn in, and the distance under the pointer.
+// Functions shared by the live depth pictures: the rig's lines, and the distance under the pointer.
 
 import {distanceOf, distanceText} from './depth.js';
 import {part, setText, show} from './dom.js';
@@ -15,9 +15,9 @@ export function drawLines(overlay, {pose, sensor, clip_mm}) {
 }
 
 /**
- * Shows the distance of what is pointed at.
- * @param {HTMLElement} frame  of the picture, which it covers @param {HTMLElement} label  in it
- * @returns {(brightness: Uint8Array) => void} takes each new picture
+ * Shows the distance at the pointer.
+ * @param {HTMLElement} frame  around the picture @param {HTMLElement} label  inside the frame
+ * @returns {(brightness: Uint8Array) => void} to be called with each new picture
  */
 export function prepareDistance(frame, label) {
   const canvas = part(frame, 'canvas');

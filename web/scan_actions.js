@@ -1,4 +1,4 @@
-// What is asked about scans: to start, end, name, delete and restore them.
+// Actions on scans: start, end, name, delete and restore.
 
 import * as api from './api.js';
 import * as bin from './bin.js';
@@ -72,7 +72,7 @@ export async function remove(id) {
   }
 }
 
-/** Moves all that are chosen into the bin. */
+/** Moves all selected scans to the bin. */
 export async function removeChosen() {
   const ids = state.library.chosen ?? [];
   if (ids.length === 0) {

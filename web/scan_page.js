@@ -1,4 +1,4 @@
-// What belongs to a scan that is looked at, beside its numbers: notes, its models, its other poses, and printers.
+// The parts of a scan's page besides its figures: notes, models, further poses, and printers.
 
 import {prepareBuilds, renderBuilds} from './builds_view.js';
 import {element} from './dom.js';
@@ -33,7 +33,7 @@ function listen() {
 
 let isPrepared = false;
 
-/** Makes it work. Called again, it fetches what has not arrived. */
+/** Attaches the handlers. Further calls fetch fragments that are still missing. */
 export function prepare() {
   if (!isPrepared) {
     isPrepared = true;

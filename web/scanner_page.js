@@ -3,15 +3,15 @@
 import {seeReport} from './checklist.js';
 import {examine, prepareDoctor} from './doctor.js';
 
-let isHere = false;  // its part of the page
+let isHere = false;  // whether the fragment is loaded
 let isWanted = false;
 
-/** Checks the scanner, once its part of the page is there. */
+/** Checks the scanner as soon as the fragment is loaded. */
 export function check() {
   isHere ? examine(seeReport) : isWanted = true;
 }
 
-/** Makes the part of the page work that doctor.html is. */
+/** Attaches the handlers of doctor.html. */
 export function prepare() {
   isHere = true;
   prepareDoctor(seeReport);

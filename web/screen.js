@@ -1,4 +1,4 @@
-// What the page shows of what it knows. Pure: state in, texts and choices out. view.js puts them into the DOM.
+// The page's view model. Pure: state in, texts and choices out. view.js renders them.
 
 import {asShown, buildShown, buildsOf, isBuildBusy, isGoing, pictureUrl, runOf} from './builds.js';
 import * as format from './format.js';
@@ -56,7 +56,7 @@ function poseFacts({calibration}) {
     text(confirms_told ? 'fact.pose-confirmed' : 'fact.pose-found', {distance: format.millimetres(solved.after_mm, 2)})}];
 }
 
-/** What was left out, but for crumbs. @param {Model} model @returns {{label: string, text: string}[]} */
+/** The parts left out of the model, if they have at least 0.1 cm³. @param {Model} model @returns {{label: string, text: string}[]} */
 const droppedFacts = ({dropped_parts, dropped_volume_cm3}) => !dropped_parts || !(Number(dropped_volume_cm3) >= 0.1) ? [] :
   [{label: text('fact.left-out'), text: `${text('count.parts', {count: dropped_parts})}, ${format.number(Number(dropped_volume_cm3))} cm³`}];
 
@@ -89,8 +89,8 @@ function factsOf(scan) {
 const downloadOf = ({model}) => model && {url: model.url, about: format.bytes(model.bytes)};
 
 /**
- * The model that a scan has not got, though it has ended and has snapshots. One that did not fit into the memory is
- * offered with leaves of twice the side, which take an eighth of it.
+ * The offer to build a model for a scan that ended without one but has snapshots. A model that did not fit into memory is
+ * offered with leaves of twice the side, which take an eighth of the memory.
  * @param {State} state @param {Scan} scan
  */
 function unbuiltOf(state, {id, state: condition, model, error, settings, snapshots_done}) {
@@ -109,8 +109,8 @@ function unbuiltOf(state, {id, state: condition, model, error, settings, snapsho
 }
 
 /**
- * The verdict, and which of its places are shown.
- * @param {State} state @param {Scan} scan  as it is shown
+ * The verdict, and the reason whose places are shown.
+ * @param {State} state @param {Scan} scan  as shown
  */
 function verdictShown(state, {model, calibration}) {
   const verdict = model && verdictOf(model, calibration?.findings);
@@ -118,8 +118,8 @@ function verdictShown(state, {model, calibration}) {
 }
 
 /**
- * What else can be downloaded: the model that is shown in other formats, and the scan itself.
- * @param {Scan} scan  as it is shown
+ * Further downloads: the shown model in other formats, and the raw scan.
+ * @param {Scan} scan  as shown
  */
 function formatsOf({id, model, state, snapshots_done, has_colours}) {
   const others = model ? ['3mf', 'ply', 'glb'].map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
@@ -132,7 +132,7 @@ function formatsOf({id, model, state, snapshots_done, has_colours}) {
   return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
 }
 
-/** @param {State} state @param {Scan} scan  as it is shown */
+/** @param {State} state @param {Scan} scan  as shown */
 const detailsOf = (state, scan) => ({
   id: scan.id,
   name: nameOf(scan),
@@ -152,7 +152,7 @@ const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   id: scan.id,
   name: nameOf(scan),
   badge: scan.model && badgeOf(scan.model) || {tone: tones[scan.state], text: text(`state.${scan.state}`)},
-  when: scan.name ? format.when(scan.created) : '',  // else it is the name
+  when: scan.name ? format.when(scan.created) : '',  // otherwise the date is the name
   about: scan.model ? `${format.size(scan.model.size_mm, 0)} · ${format.bytes(scan.model.bytes)}` :
     text(scan.state === 'running' ? 'library.taken' : 'library.kept', {taken: taken(scan)}),
   download: scan.model?.url ?? null,
@@ -162,7 +162,7 @@ const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   isChosen: state.library.chosen?.includes(scan.id) ?? false,
 });
 
-/** The scans kept: those that are found, as many as are shown. @param {State} state */
+/** The library: matching scans up to the limit. @param {State} state */
 function libraryOf(state) {
   const scans = state.scans.filter((scan) => !isPartOfAnother(scan));
   const matches = found(scans, state.library, nameOf);
@@ -178,7 +178,7 @@ function libraryOf(state) {
   };
 }
 
-/** @param {'sensor' | 'turntable'} role @param {Device} device @param {boolean} isAway  the scanner: what it said last may be over */
+/** @param {'sensor' | 'turntable'} role @param {Device} device @param {boolean} isAway  whether the scanner does not answer, so that its last status may be outdated */
 function deviceOf(role, device, isAway) {
   const isReady = device.state === 'ready';
   const name = text(`device.${role}`);
@@ -206,7 +206,7 @@ function titleOf(state) {
 }
 
 /**
- * For ears: one sentence a quarter of the turn, not one a stop.
+ * The announcement for screen readers: one for each quarter of the turn, not for each stop.
  * @param {State} state
  */
 function announcementOf(state) {

@@ -1,4 +1,4 @@
-// "Send to printer" below the download of a model, where the scanner has printers.
+// "Send to printer" below a model's download, if the scanner has printers.
 
 import {Problem, json, sending} from './api.js';
 import {element, setText, show} from './dom.js';
@@ -7,9 +7,9 @@ import {text} from './texts.js';
 
 /** @typedef {{printer: string, state: 'sending' | 'sent' | 'failed' | 'cancelled', progress: number, detail: string, hint: string}} Upload */
 
-const pause = 500;  // milliseconds between looks
+const pause = 500;  // milliseconds between polls
 
-/** How a model is on its way, in words. Pure. @param {Upload} upload */
+/** The state of an upload in words. Pure. @param {Upload} upload */
 export function aboutUpload({printer, state, progress, detail, hint}) {
   const words = {
     sending: () => text('send.sending', {printer, percent: Math.floor(progress * 100)}),
@@ -31,7 +31,7 @@ function say(words, tone) {
 
 const shownScan = () => scanIn(element('download').getAttribute('href') ?? '');
 
-/** Follows an upload to its end, or until another scan is looked at. @param {string} id */
+/** Polls an upload until its end, or until another scan is in view. @param {string} id */
 async function follow(id) {
   for (;;) {
     const upload = /** @type {Upload} */ (await json(`scans/${id}/send`));
@@ -66,9 +66,9 @@ async function send() {
   }
 }
 
-let asked = '';  // for which scan the printers were asked for
+let asked = '';  // the scan for which the printers were fetched
 
-/** Offers the printers that there are when another model is shown. */
+/** Offers the printers when another model is shown. */
 async function offer() {
   const id = shownScan();
   if (element('download').hidden || id === '') {

@@ -1,4 +1,4 @@
-// The settings of a scan as the form has them, and as the API has them.
+// Conversion of a scan's settings between the form and the API.
 
 import {number, text} from './texts.js';
 
@@ -6,7 +6,7 @@ import {number, text} from './texts.js';
 
 /** @typedef {{mm: number, name: string}} Detail  name: of the texts leaf.NAME */
 
-/** Named leaf sizes, coarse to fine. Each halves the one before it, as the octree's levels do. */
+/** Named leaf sizes, coarse to fine. Each is half the previous one, like the octree's levels. */
 const details = [
   {mm: 4, name: 'draft'},
   {mm: 2, name: 'coarse'},
@@ -16,7 +16,7 @@ const details = [
 ];
 
 /**
- * The leaf sizes to choose from: the named ones from four times to half of the scanner's default, and that if it is another.
+ * The leaf sizes to choose from: the named ones from four times to half the scanner's default, and the default itself.
  * @param {number} preset  millimetres
  * @returns {Detail[]} coarse to fine
  */
@@ -28,9 +28,9 @@ export function leafChoices(preset) {
 /** @param {Settings['filter'] | Settings['method'] | Settings['calibrate']} choice */
 export const explain = (choice) => text(`explain.${choice}`);
 
-/** The longest edge of a threshold, millimetres. */
+/** The longest edge, millimetres, for a threshold of squared length. */
 export const gap = (/** @type {number} */ squareMetres) => Number((Math.sqrt(squareMetres) * 1000).toPrecision(6));
-/** The threshold of a longest edge. */
+/** The threshold, m², for a longest edge. */
 export const threshold = (/** @type {number} */ mm) => Number(((mm / 1000) ** 2).toPrecision(6));
 
 /**

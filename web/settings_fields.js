@@ -1,4 +1,4 @@
-// The fields of the settings page: one for each setting, made from its schema.
+// The fields of the settings page: one for each setting, built from its schema.
 
 import {copyOf, part, setText, show} from './dom.js';
 import {choiceName, complaintOf, helpOf, nameOf, valueText, wordsOf} from './settings_form.js';
@@ -8,8 +8,8 @@ import {text, translated} from './texts.js';
 
 /**
  * @typedef {Object} Editor
- * @property {HTMLElement} root  what is shown
- * @property {HTMLElement} input  what its label is for
+ * @property {HTMLElement} root  the visible element
+ * @property {HTMLElement} input  the labelled element
  * @property {() => any} read
  * @property {(value: any) => void} write
  */
@@ -28,7 +28,7 @@ function numberEditor(schema) {
   const input = inputOf('number');
   input.step = schema.type === 'integer' ? '1' : 'any';
   input.inputMode = schema.type === 'integer' ? 'numeric' : 'decimal';
-  let exact = 0;  // of what is shown in fewer digits
+  let exact = 0;  // value before rounding for display
   return {
     root: input, input,
     read: () => input.value === '' ? null : input.value === rounded(exact) ? exact : input.valueAsNumber,
@@ -112,15 +112,15 @@ function editorOf(schema) {
  * @property {HTMLElement} root
  * @property {() => any} read
  * @property {(value: any, preset: any, isStored: boolean) => void} write
- * @property {(text: string) => void} complain  an empty text takes a complaint back
- * @property {() => string} check  why its value is none, or nothing
+ * @property {(text: string) => void} complain  shows a complaint; an empty text removes it
+ * @property {() => string} check  why its value is invalid, or empty
  * @property {() => void} focus
  */
 
 /**
  * @param {string} key
  * @param {SettingSchema} schema
- * @param {() => void} onReset  somebody wants the preset back
+ * @param {() => void} onReset  called to restore the preset
  * @returns {SettingField}
  */
 export function makeField(key, schema, onReset) {

@@ -1,4 +1,4 @@
-// The settings of the scanner as values, and as what is said of them. Pure.
+// Values of the scanner's settings, and texts about them. Pure.
 
 import {degrees as angle, millimetres, sentence} from './format.js';
 import {isText, text} from './texts.js';
@@ -9,22 +9,22 @@ import {isText, text} from './texts.js';
 /** @param {string} key @returns {string} for people */
 export const nameOf = (key) => isText(`setting.${key}`) ? text(`setting.${key}`) : key;
 
-/** What a setting is for: as the page says it, or without Markdown as the scanner does. @param {string} key @param {SettingSchema} schema */
+/** The help text of a setting: the page's own, or the scanner's without Markdown. @param {string} key @param {SettingSchema} schema */
 export const helpOf = (key, schema) => isText(`setting-help.${key}`) ? text(`setting-help.${key}`) : sentence(schema.description.replaceAll('`', ''));
 
 /** @param {string | number} choice */
 export const choiceName = (choice) => isText(`choice.${choice}`) ? text(`choice.${choice}`) : String(choice);
 
-/** @param {any} tree @param {string} key  such as "turntable.gear_ratio" @returns {any} undefined where there is nothing */
+/** @param {any} tree @param {string} key  such as "turntable.gear_ratio" @returns {any} undefined if there is none */
 export const valueAt = (tree, key) => key.split('.').reduce((value, part) => value?.[part], tree);
 
 /** @param {any} schema  of an object @param {string} key @returns {SettingSchema} */
 export const schemaAt = (schema, key) => key.split('.').reduce((now, part) => now.properties[part], schema);
 
-/** A change of one setting, as the scanner takes it. @param {string} key @param {any} value */
+/** The API's change document for one setting. @param {string} key @param {any} value */
 export const changeOf = (key, value) => key.split('.').reduceRight((inner, part) => ({[part]: inner}), value);
 
-/** @param {Object} one @param {Object} other @returns {any} the settings of both */
+/** Merges two documents of settings. @param {Object} one @param {Object} other @returns {any} */
 export function joined(one, other) {
   /** @type {any} */
   const both = {...one};
@@ -38,7 +38,7 @@ export function joined(one, other) {
 /** @param {any} one @param {any} other */
 export const areEqual = (one, other) => JSON.stringify(one) === JSON.stringify(other);
 
-/** Why a box is none, or nothing. @param {number[]} box */
+/** Why a box is invalid, or an empty text. @param {number[]} box */
 function boxComplaint(box) {
   if (box.some((side) => !Number.isFinite(side) || Math.abs(side) > 10000)) {
     return text('settings.box-range');
@@ -46,7 +46,7 @@ function boxComplaint(box) {
   return [0, 1, 2].every((axis) => box[axis] < box[axis + 3]) ? '' : text('settings.box-empty');
 }
 
-/** Why a number is none that is allowed, or nothing. @param {SettingSchema} schema @param {any} value */
+/** Why a number is invalid, or an empty text. @param {SettingSchema} schema @param {any} value */
 function numberComplaint({type, minimum, maximum}, value) {
   const range = {minimum: minimum ?? 0, maximum: maximum ?? 0};
   if (value === null || !Number.isFinite(value)) {
@@ -59,7 +59,7 @@ function numberComplaint({type, minimum, maximum}, value) {
 }
 
 /**
- * Why a value is none that the scanner would take, or nothing.
+ * Why the scanner would refuse a value, or an empty text.
  * @param {SettingSchema} schema @param {any} value
  */
 export function complaintOf(schema, value) {
@@ -69,10 +69,10 @@ export function complaintOf(schema, value) {
   return schema.minimum === undefined ? '' : numberComplaint(schema, value);
 }
 
-/** The setting that a problem is about: of `"ports": unknown key` as of a value out of its range. @param {Refusal} problem */
+/** The setting to which a problem refers, for example in `"ports": unknown key`. @param {Refusal} problem */
 export const keyOf = ({detail, parameters = {}}) => parameters.key ?? /^"([a-z0-9_.]+)"/.exec(detail)?.[1] ?? null;
 
-/** What is wrong, without the setting's key. @param {Refusal} problem */
+/** The reason of a problem, without the setting's key. @param {Refusal} problem */
 export function reasonOf({detail, parameters = {}}) {
   const {minimum, maximum} = parameters;
   if (minimum !== undefined) {
@@ -82,7 +82,7 @@ export function reasonOf({detail, parameters = {}}) {
   return reason ? sentence(`it ${reason}`) : detail;
 }
 
-/** A value as it stands in a sentence. @param {any} value */
+/** A value for use in a sentence. @param {any} value */
 export function valueText(value) {
   if (Array.isArray(value)) {
     return value.length > 0 ? value.join(', ') : text('settings.none');
@@ -90,13 +90,13 @@ export function valueText(value) {
   return typeof value === 'boolean' ? text(value ? 'settings.on' : 'settings.off') : typeof value === 'string' ? choiceName(value) || text('settings.none') : String(value);
 }
 
-/** A list as it is typed. @param {string} text @returns {string[]} */
+/** Splits a typed list into words. @param {string} text @returns {string[]} */
 export const wordsOf = (text) => text.split(/[\s,]+/).filter(Boolean);
 
 const degrees = (/** @type {number} */ radians) => radians * 180 / Math.PI;
 
 /**
- * Where a pose has the sensor, in words.
+ * The sensor's position and direction in words.
  * @param {number[][]} pose  platform_from_sensor, metres
  */
 export function poseText(pose) {
@@ -106,10 +106,10 @@ export function poseText(pose) {
     distance: millimetres(1000 * Math.hypot(x, y), 0), height: millimetres(1000 * z, 0), angle: angle(Math.abs(down), 1)});
 }
 
-/** Steps of a turn of the platform. @param {{full_steps: number, microsteps: number, gear_ratio: number}} turntable */
+/** The microsteps of a full turn of the platform. @param {{full_steps: number, microsteps: number, gear_ratio: number}} turntable */
 export const stepsOf = ({full_steps, microsteps, gear_ratio}) => Math.round(full_steps * microsteps * gear_ratio);
 
-/** What to say while settings are not in force yet, or nothing. @param {string[]} keys @param {boolean} isScanning */
+/** The notice for settings that need a restart, or an empty text. @param {string[]} keys @param {boolean} isScanning */
 export function restartText(keys, isScanning) {
   if (keys.length === 0) {
     return '';

@@ -1,4 +1,4 @@
-// "Settings": what the scanner is told to last, on cards of which each is saved by itself.
+// "Settings": the scanner's persistent settings, on cards that are saved separately.
 
 import {Problem, status} from './api.js';
 import {calibration} from './api_calibration.js';
@@ -19,7 +19,7 @@ import {prepareTurntable} from './turntable.js';
 /** @typedef {import('./api_settings.js').Configuration} Configuration */
 /** @typedef {import('./settings_fields.js').SettingField} SettingField */
 
-const pauseUntilRestarted = 500;  // milliseconds between looks
+const pauseUntilRestarted = 500;  // milliseconds between polls
 
 /** @typedef {{form: HTMLFormElement, fields: SettingField[], saved: HTMLElement, actions: HTMLElement}} Card */
 
@@ -28,7 +28,7 @@ let told;
 /** @type {Card[]} */
 const cards = [];
 
-/** What was set, and waits for a restart or is in force. @param {string} key */
+/** The stored value of a setting, whether in force yet or not. @param {string} key */
 const valueOf = (key) => valueAt(told.stored, key) ?? valueAt(told.preset, key);
 
 /** @param {SettingField} field */
@@ -61,7 +61,7 @@ function showPassword() {
   show(element('password-remove'), password === 'page');
 }
 
-/** Shows the pose in force: a scan that solves its own changes it, and no setting. */
+/** Shows the pose in force, which a scan may change without changing a setting. */
 async function showPose() {
   try {
     const pose = await calibration();
@@ -93,7 +93,7 @@ async function showRestart() {
 
 let isFollowing = false;
 
-/** Looks until the scanner has taken up what was saved. */
+/** Polls until the saved settings are in force. */
 async function followRestart() {
   if (isFollowing) {
     return;
@@ -107,7 +107,7 @@ async function followRestart() {
       });
       told = await api.configuration();
     } catch {
-      // It starts again just now.
+      // The scanner is restarting.
     }
   }
   isFollowing = false;
@@ -199,7 +199,7 @@ function makeCard(form) {
   return card;
 }
 
-/** Sets what a test of the turntable advises. @param {Object} set @returns {Promise<boolean>} whether it is stored */
+/** Stores the settings that a test of the turntable advises. @param {Object} set @returns {Promise<boolean>} whether it is stored */
 async function setTurntable(set) {
   while (isFollowing) {
     await new Promise((done) => {
@@ -248,7 +248,7 @@ async function restore() {
   } catch (error) {
     setText(element('restore-complaint'), wordsOf(problemOf(error)));
   }
-  element('restore-file').value = '';  // or the same file could not be chosen again
+  element('restore-file').value = '';  // otherwise choosing the same file again would have no effect
 }
 
 async function begin() {
@@ -280,7 +280,7 @@ function prepareLanguage() {
   choice.addEventListener('change', () => chooseLanguage(choice.value || null));
 }
 
-/** Makes the part of the page work that settings.html is. */
+/** Attaches the handlers of settings.html. */
 export function prepare() {
   prepareLanguage();
   preparePassword();

@@ -1,4 +1,4 @@
-// The large picture: the camera, or the model of the scan that is looked at.
+// The large picture: the camera, or the model of the scan in view.
 
 import * as api from './api.js';
 import {element, pressed, setText, show} from './dom.js';
@@ -16,16 +16,16 @@ const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /** @type {import('./viewer.js').Viewer | undefined} */
 let viewer;
-/** @type {string | null} url of the model that is shown, offered or being loaded */
+/** @type {string | null} url of the model that is shown, offered or loading */
 let current = null;
-let object = '';  // the scan whose model that is
-/** @type {number[][] | null} places that are marked; null: of a model that is not there yet */
+let object = '';  // the scan of that model
+/** @type {number[][] | null} marked places; null: the model is not loaded yet */
 let marked = null;
-/** @type {Stage | null} as it should be */
+/** @type {Stage | null} the stage to be shown */
 let due = null;
 let loading = new AbortController();
 
-/** @param {string} words @param {{button?: string, progress?: number, isOver?: boolean}} [more]  isOver: a model that is shown */
+/** @param {string} words @param {{button?: string, progress?: number, isOver?: boolean}} [more]  isOver: whether a model is shown behind the note */
 function note(words, {button, progress, isOver = false} = {}) {
   show(element('model-note'), words !== '');
   element('model-note').classList.toggle('over', isOver);
@@ -46,7 +46,7 @@ async function openViewer() {
   });
 }
 
-/** Marks the places that should be, once the model is there. */
+/** Updates the marked places once the model is loaded. */
 function markPlaces() {
   if (due && marked !== null && marked !== due.places && (marked.length > 0 || due.places.length > 0)) {
     marked = due.places;
@@ -54,7 +54,7 @@ function markPlaces() {
   }
 }
 
-/** @param {import('./stl.js').Mesh} mesh @param {boolean} isFirst  of its object */
+/** @param {import('./stl.js').Mesh} mesh @param {boolean} isFirst  whether it is the first mesh of its object */
 function put(mesh, isFirst) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst});
@@ -66,7 +66,7 @@ function put(mesh, isFirst) {
 }
 
 /**
- * Shows a few triangles of a model while the rest is on its way, or is not asked for yet.
+ * Shows a coarse mesh of a model while the model is loading or not requested yet.
  * @param {Model} model @param {AbortSignal} signal
  * @returns {Promise<boolean>} whether it is shown
  */
@@ -78,11 +78,11 @@ async function putCoarse(model, signal) {
     }
     return !signal.aborted;
   } catch {
-    return false;  // the model itself tells what is wrong
+    return false;  // loading the model will report the problem
   }
 }
 
-/** Makes ready for a model. @param {boolean} isFirst @returns {Promise<AbortSignal | null>} null where nothing can be drawn */
+/** Prepares for a model. @param {boolean} isFirst @returns {Promise<AbortSignal | null>} null if nothing can be drawn */
 async function begin(isFirst) {
   loading.abort();
   loading = new AbortController();
@@ -101,7 +101,7 @@ async function begin(isFirst) {
   }
 }
 
-/** @param {Model} model @param {{isFirst?: boolean}} [growth]  another model of the same object is seen from where the eye is */
+/** @param {Model} model @param {{isFirst?: boolean}} [growth]  isFirst: false for another model of the same object, which keeps the camera */
 async function load(model, {isFirst = true} = {}) {
   const signal = await begin(isFirst);
   if (!signal) {
@@ -124,7 +124,7 @@ async function load(model, {isFirst = true} = {}) {
   }
 }
 
-/** Shows what a large model looks like, and offers the rest of it. @param {Model} model */
+/** Shows a large model's coarse mesh, and offers to load the model. @param {Model} model */
 async function offer(model) {
   const signal = await begin(true);
   const isOver = signal !== null && await putCoarse(model, signal);
@@ -133,13 +133,13 @@ async function offer(model) {
   }
 }
 
-/** @type {Stage['growing']} what of a running scan is shown, or was asked for last */
+/** @type {Stage['growing']} the preview that is shown or was requested last */
 let grown = null;
-/** @type {AbortController | null} of the request for it */
+/** @type {AbortController | null} of the request for the preview */
 let growth = null;
 
 /**
- * Shows what a running scan has seen. While one mesh is on its way, no other is asked for.
+ * Shows the preview of a running scan. Only one mesh is requested at a time.
  * @param {NonNullable<Stage['growing']>} growing
  */
 async function grow(growing) {
@@ -160,7 +160,7 @@ async function grow(growing) {
       }
     }
   } catch {
-    grown = isFirst ? null : grown;  // the next snapshot brings another mesh, and the end of the scan its model
+    grown = isFirst ? null : grown;  // the next snapshot or the scan's end brings another mesh
   }
   if (!signal.aborted) {
     growth = null;
@@ -223,7 +223,7 @@ export function renderStage(stage) {
   markPlaces();
 }
 
-/** Makes the buttons on the picture work. */
+/** Attaches the handlers of the picture's buttons. */
 export function prepareStage() {
   prepareTools(() => viewer);
   element('load-model').addEventListener('click', () => wanted && load(wanted));

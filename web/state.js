@@ -1,5 +1,4 @@
-// What the page knows, and how news change it. Pure: nothing here touches the network, the clock or the DOM.
-// screen.js tells what is shown of it.
+// The page's state and its transitions. Pure: no network, clock or DOM. screen.js derives the view from it.
 
 import {isGoing, markOfBuilds} from './builds.js';
 import {initial as library} from './library.js';
@@ -11,19 +10,19 @@ import {initial as library} from './library.js';
 
 /**
  * @typedef {Object} State
- * @property {number} failures  status requests in a row that were not answered
+ * @property {number} failures  consecutive status requests without an answer
  * @property {Status | null} status  the last one, also while the scanner is away
  * @property {Scan[]} scans  newest first
- * @property {string | null} listed  mark of the status that `scans` belongs to
+ * @property {string | null} listed  mark of the status to which `scans` belongs
  * @property {Settings | null} defaults
- * @property {string | null} selected  the scan that is looked at; null for the form or the running scan
- * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan that is looked at
- * @property {number | null} shownBuild  the one that is looked at; null for the scan's model
- * @property {string | null} shownReason  of the verdict, whose places are shown
+ * @property {string | null} selected  the scan in view; null for the form or the running scan
+ * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan in view
+ * @property {number | null} shownBuild  the build in view; null for the scan's model
+ * @property {string | null} shownReason  the verdict's reason whose places are shown
  * @property {import('./library.js').Library} library
- * @property {'camera' | 'model'} stage  what the large picture shows when there is a choice
- * @property {boolean} isPending  something was asked of the scanner and is not yet answered
- * @property {{title: string, detail: string, hint: string} | null} problem  why the last thing asked for was not done
+ * @property {'camera' | 'model'} stage  content of the large picture if there is a choice
+ * @property {boolean} isPending  whether a request is waiting for its response
+ * @property {{title: string, detail: string, hint: string} | null} problem  why the last request failed
  */
 
 /** @type {State} */
@@ -57,16 +56,16 @@ export const scanOf = (state, id) => state.scans.find((scan) => scan.id === id) 
 /** @param {Status} status */
 const mark = (status) => `${status.scan?.id} ${status.scans_revision} ${markOfBuilds(status)}`;
 
-/** Whether scans came, ended or changed since the list was read, from here or from another browser. @param {State} state */
+/** Whether scans were added, ended or changed since the list was read, by this or another browser. @param {State} state */
 export const isListStale = (state) => state.status !== null && state.listed !== mark(state.status);
 
-/** @param {Scan[]} scans @param {Scan} scan  it replaces the one it is, or is new */
+/** Replaces a scan in a list, or adds it. @param {Scan[]} scans @param {Scan} scan */
 const merged = (scans, scan) => scans.some(({id}) => id === scan.id) ?
     scans.map((other) => other.id === scan.id ? scan : other) : [scan, ...scans];
 
 /**
- * A scan that ends while it is looked at stays in view: its result appears where its progress was. That of another
- * pose has it on the page of the first scan, whose models it may have changed.
+ * A scan that ends while it is in view stays in view: its result replaces its progress. The result of a further pose is on the
+ * first scan's page, as it may have changed that scan's models.
  * @param {State} state @param {Status} status @returns {State}
  */
 export function withStatus(state, status) {
@@ -76,7 +75,7 @@ export function withStatus(state, status) {
   const shown = before?.pose_of?.scan ?? before?.id ?? null;
   const renewed = ended && before.pose_of ? {...news, builds: null, shownBuild: null} : news;
   if (status.scan && state.selected === status.scan.id) {
-    return {...renewed, selected: null};  // by its address, or resumed from another browser: its progress is shown
+    return {...renewed, selected: null};  // opened by its address, or resumed from another browser: show its progress
   }
   return ended && state.selected === null ? {...renewed, selected: shown, stage: 'model'} : renewed;
 }
@@ -93,7 +92,7 @@ export function withScans(state, scans) {
 /** @param {State} state @param {Scan} scan @returns {State} */
 export const withScan = (state, scan) => ({...state, scans: merged(state.scans, scan)});
 
-/** @param {State} state @param {Scan} scan  just started or resumed from here @returns {State} */
+/** @param {State} state @param {Scan} scan  just started or resumed by this page @returns {State} */
 export const withStarted = (state, scan) => withSelected(
     state.status ? withStatus(state, {...state.status, scan}) : withScan(state, scan), null);
 
@@ -117,7 +116,7 @@ export const withSelected = (state, selected) => ({
   problem: null,
 });
 
-/** @param {State} state @param {Build} build  just begun from here @returns {State} */
+/** @param {State} state @param {Build} build  just begun by this page @returns {State} */
 export const withBuild = (state, build) => ({
   ...state,
   status: state.status && {...state.status, ...(build.cluster_job ?
@@ -125,12 +124,12 @@ export const withBuild = (state, build) => ({
   builds: state.builds?.scan === build.scan ? {...state.builds, list: [...state.builds.list.filter(({model}) => model), build]} : state.builds,
 });
 
-/** Whether builds of the scan that is looked at came or ended since they were read. @param {State} state */
+/** Whether builds of the scan in view were added or ended since they were read. @param {State} state */
 export const areBuildsStale = ({selected, builds, status}) =>
   selected !== null && (builds?.scan !== selected || builds.mark !== markOfBuilds(status));
 
 /**
- * A build that ends while its scan is looked at comes into view.
+ * A build that ends while its scan is in view is shown.
  * @param {State} state @param {string} scan @param {Build[]} list @returns {State}
  */
 export function withBuilds(state, scan, list) {
@@ -161,12 +160,12 @@ export const withAnswer = (state) => ({...state, isPending: false});
 /** @param {State} state @param {State['problem']} problem @returns {State} */
 export const withProblem = (state, problem) => ({...state, problem});
 
-/** Something was refused: perhaps the list that it was asked from is not what there is. @param {State} state @returns {State} */
+/** Marks the list as stale after a refusal, which an outdated list may have caused. @param {State} state @returns {State} */
 export const withStaleList = (state) => ({...state, listed: null});
 
 /**
- * How long to wait before asking for the status again, milliseconds: briskly while a scan runs, ever more
- * slowly while nobody answers.
+ * The pause before the next status request, milliseconds: short while a scan runs, with exponential backoff while there is no
+ * answer.
  * @param {State} state
  */
 export function pause(state) {
@@ -178,14 +177,14 @@ export function pause(state) {
 }
 
 /**
- * Whether a model is shown without being asked for: not one that would fill the memory of a phone.
+ * Whether a model is loaded automatically; a model that could fill a phone's memory is not.
  * @param {number} bytes  of the file
  * @param {boolean} isHandheld
  */
 export const loadsUnasked = (bytes, isHandheld) => bytes <= (isHandheld ? 20e6 : 160e6);
 
-/** Whether a coarse mesh of a model is there much sooner than the model. @param {number} bytes  of the file */
+/** Whether a model is so large that its coarse mesh loads much sooner. @param {number} bytes  of the file */
 export const hasCoarse = (bytes) => bytes > 250e3;
 
-/** Where that mesh is. @param {import('./api.js').Model} model */
+/** The URL of a model's coarse mesh. @param {import('./api.js').Model} model */
 export const coarseUrl = ({url}) => url.replace(/Scan\.stl$/, 'coarse.stl');

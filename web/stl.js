@@ -1,4 +1,4 @@
-// Binary STL, read while it arrives, so that no more than the positions is ever in memory.
+// A streaming reader of binary STL, which keeps only the positions in memory.
 
 import {text} from './texts.js';
 
@@ -11,8 +11,8 @@ const filledIn = 1;
 
 /**
  * @typedef {Object} Mesh
- * @property {Float32Array} positions  nine numbers for each triangle, as in the file: millimetres
- * @property {Uint8Array | null} filled  for each corner 255 if the surface was not seen there but filled in; null if all was seen
+ * @property {Float32Array} positions  nine coordinates for each triangle, in the file's order, millimetres
+ * @property {Uint8Array | null} filled  255 for each corner of a filled-in triangle, 0 for others; null if none was filled in
  * @property {number[]} min
  * @property {number[]} max
  */
@@ -33,7 +33,7 @@ function bounds(positions) {
  * @param {AsyncIterable<Uint8Array>} chunks
  * @param {(fraction: number) => void} [onProgress]
  * @returns {Promise<Mesh>}
- * @throws {Error} if the file is cut short, goes on after its last triangle, or is empty
+ * @throws {Error} if the file is truncated, has trailing bytes, or is empty
  */
 export async function readStl(chunks, onProgress = () => {}) {
   const header = new Uint8Array(headerBytes);
@@ -83,6 +83,6 @@ export async function readStl(chunks, onProgress = () => {}) {
   if (corners.length === 0) {
     throw new Error(text('view.stl-empty'));
   }
-  const positions = new Float32Array(corners.buffer);  // every machine with WebGL is little-endian
+  const positions = new Float32Array(corners.buffer);  // all platforms with WebGL are little-endian
   return {positions, filled, ...bounds(positions)};
 }

@@ -1,6 +1,6 @@
-// The page's words in the language of its reader. Each language is a file of texts/: `texts`, the page's own words by key,
-// and `said`, the scanner's sentences by the English ones. HTML names its keys as data-text, and as data-text-label,
-// -title and -placeholder for the attributes of these names.
+// The page's texts in the reader's language. Each language is a file of texts/ with `texts`, the page's own texts by key, and `said`,
+// translations of the scanner's sentences by their English originals. HTML gives keys in data-text, and in data-text-label, -title and
+// -placeholder for the attributes of these names.
 
 /** @typedef {Record<string, string | Partial<Record<Intl.LDMLPluralRule, string>>>} Texts */
 
@@ -11,32 +11,32 @@ const files = {
   fr: () => import('./texts/fr.js'),
 };
 
-/** Their own names for themselves. */
+/** The languages' own names. */
 export const languages = {en: 'English', de: 'Deutsch', es: 'Español', fr: 'Français'};
 
-const memory = 'octurn-language';  // of the browser, where somebody has chosen one
+const memory = 'octurn-language';  // storage key of the chosen language
 
 /**
  * The language to show. Pure.
- * @param {string | null} chosen @param {readonly string[]} preferred  tags, the best first
+ * @param {string | null} chosen @param {readonly string[]} preferred  language tags, most preferred first
  * @returns {keyof typeof files}
  */
 export const languageOf = (chosen, preferred) => /** @type {keyof typeof files} */ (
   [chosen ?? '', ...preferred.map((tag) => tag.toLowerCase().split('-')[0])].find((language) => Object.hasOwn(files, language)) ?? 'en');
 
-/** Where its numbers and dates are from: "de-AT" for German, if the browser prefers that. Pure. @param {string} language @param {readonly string[]} preferred */
+/** The locale of numbers and dates: "de-AT" for German, if the browser prefers that. Pure. @param {string} language @param {readonly string[]} preferred */
 export const localeOf = (language, preferred) => preferred.find((tag) => tag.toLowerCase().split('-')[0] === language) ?? language;
 
-/** What was chosen on this page; null: whatever the browser prefers. @returns {string | null} */
+/** The language chosen on this page; null: the browser's preference. @returns {string | null} */
 export function chosenLanguage() {
   try {
     return localStorage.getItem(memory);
   } catch {
-    return null;  // of a browser that keeps nothing
+    return null;  // storage is not available
   }
 }
 
-/** @param {string | null} language  null: whatever the browser prefers */
+/** @param {string | null} language  null: the browser's preference */
 export function chooseLanguage(language) {
   language === null ? localStorage.removeItem(memory) : localStorage.setItem(memory, language);
   location.reload();
@@ -48,13 +48,13 @@ const preferred = isInBrowser ? navigator.languages : ['en-US'];
 export const language = languageOf(isInBrowser ? chosenLanguage() : null, preferred);
 export const locale = localeOf(language, preferred);
 
-/** @type {{texts: Texts, said: Record<string, string>, rest?: () => Promise<{texts: Texts}>}} rest: what a packed language leaves for later */
+/** @type {{texts: Texts, said: Record<string, string>, rest?: () => Promise<{texts: Texts}>}} rest: loads the texts that a bundled language file leaves out */
 const {texts, said, rest} = await files[language]();
 const plurals = new Intl.PluralRules(locale);
 const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
 const exact = new Intl.NumberFormat(locale, {maximumFractionDigits: 6, useGrouping: false});
 
-/** Fetches the texts that the first sight of the page does without. */
+/** Fetches the texts that the page's first view does not need. */
 export async function awaitTexts() {
   Object.assign(texts, (await rest?.())?.texts);
 }
@@ -71,7 +71,7 @@ export const isText = (key) => Object.hasOwn(texts, key);
 
 /**
  * @param {string} key
- * @param {Record<string, string | number>} [values]  `count` chooses among the plurals
+ * @param {Record<string, string | number>} [values]  `count` selects the plural form
  * @returns {string}
  */
 export function text(key, values = {}) {
@@ -80,12 +80,12 @@ export function text(key, values = {}) {
   return form.replace(/\{(\w+)\}/g, (_, name) => typeof values[name] === 'number' ? exact.format(/** @type {number} */ (values[name])) : String(values[name]));
 }
 
-const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // that the scanner puts into its sentences: a name in quotes, or a number
+const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // a value in the scanner's sentences: a name in quotes, or a number
 
-/** The translation with {} for each value, or null. @param {string} sentence */
+/** The translation of a sentence, with {} for each value, or null. @param {string} sentence */
 const saidOf = (sentence) => Object.hasOwn(said, sentence.replace(value, '{}')) ? said[sentence.replace(value, '{}')] : null;
 
-/** A sentence that is known in its parts alone, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
+/** Translates a sentence of which only the parts are known, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
 function translatedParts(sentence) {
   const parts = sentence.split(/(, |; )/);
   const isWordless = (/** @type {string} */ part) => !/[a-z]{2}/i.test(part);
@@ -94,8 +94,8 @@ function translatedParts(sentence) {
 }
 
 /**
- * What the scanner says, in the page's language: the sentence is looked up with its values taken out, which are put into
- * the translation in their order, or where {2} asks for the second. One that is not known is told as it is.
+ * Translates a sentence of the scanner. It is looked up with {} in place of its values, which are put into the translation in
+ * order, or by number ({2} is the second). An unknown sentence is returned unchanged.
  * @param {string} sentence
  */
 export function translated(sentence) {
@@ -111,7 +111,7 @@ export function translated(sentence) {
 
 const attributes = {'data-text-label': 'aria-label', 'data-text-title': 'title', 'data-text-placeholder': 'placeholder'};
 
-/** Puts the words into what HTML names them in. @param {ParentNode} root */
+/** Fills in the texts that HTML names by data-text attributes. @param {ParentNode} root */
 export function fillTexts(root) {
   for (const template of root.querySelectorAll('template')) {
     fillTexts(template.content);

@@ -1,4 +1,4 @@
-// The parts of three.js that the page draws with. The build bundles them into one small file of this name.
+// The parts of three.js that the page uses. The build bundles them into one small file of this name.
 export {
   BufferAttribute,
   BufferGeometry,

@@ -1,4 +1,4 @@
-// "Move the turntable" on the settings page: jogs it, tests it, and offers the settings that cure what a test finds.
+// "Move the turntable" on the settings page: jogs it, tests it, and offers settings that remedy the test's findings.
 
 import {Problem} from './api.js';
 import * as api from './api_settings.js';
@@ -10,9 +10,9 @@ import {text, translated} from './texts.js';
 /** @typedef {import('./api_settings.js').TurntableState} TurntableState */
 /** @typedef {import('./api_settings.js').TurnFinding} TurnFinding */
 
-const pause = 400;  // milliseconds between looks while it moves
+const pause = 400;  // milliseconds between polls while it moves
 
-/** What is said of the turntable. Pure. @param {TurntableState} now */
+/** The view of the turntable. Pure. @param {TurntableState} now */
 export function shownOf({state, error, test}) {
   const failure = error ?? (state === 'idle' ? test?.error ?? null : null);
   const isDone = state !== 'testing' && test?.state === 'done';
@@ -27,7 +27,7 @@ export function shownOf({state, error, test}) {
   };
 }
 
-/** What the button of a cure says, or nothing. Pure. @param {TurnFinding['set']} set */
+/** The label of a remedy's button, or an empty text. Pure. @param {TurnFinding['set']} set */
 export function cureText(set) {
   const [cure] = Object.entries(set);
   return cure ? text('turn.set', {name: nameOf(`turntable.${cure[0]}`), value: valueText(cure[1])}) : '';
@@ -75,7 +75,7 @@ function showError(error) {
   setText(element('turn-trouble'), [detail || title, hint].map(sentence).join(' '));
 }
 
-/** Looks until it stands still. @param {TurntableState} now @param {(set: Object) => Promise<boolean>} onSet */
+/** Polls until it stands still. @param {TurntableState} now @param {(set: Object) => Promise<boolean>} onSet */
 async function follow(now, onSet) {
   render(now, onSet);
   if (isFollowing) {
@@ -96,7 +96,7 @@ async function follow(now, onSet) {
   isFollowing = false;
 }
 
-/** @param {(set: Object) => Promise<boolean>} onSet  somebody wants these settings of the turntable */
+/** @param {(set: Object) => Promise<boolean>} onSet  called to store these turntable settings */
 export async function prepareTurntable(onSet) {
   const ask = async (/** @type {Object} */ what) => {
     try {

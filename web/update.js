@@ -1,4 +1,4 @@
-// "Update": sends a file to the scanner, and tells what becomes of it, across the restart that it takes.
+// "Update": uploads a file to the scanner, and shows the update's progress across the restart.
 
 import * as api from './api.js';
 import {element, part, setText, show} from './dom.js';
@@ -9,20 +9,20 @@ import {text} from './texts.js';
 
 /**
  * @typedef {Object} State
- * @property {Update} update  as the scanner told it last
- * @property {{sent: number, total: number} | null} sending  bytes of a file that goes there from here
+ * @property {Update} update  last reported by the scanner
+ * @property {{sent: number, total: number} | null} sending  bytes of this page's upload
  * @property {boolean} isScanning
- * @property {boolean} isAway  the scanner does not answer
- * @property {boolean} isFollowed  this page has seen the update coming
- * @property {string} failure  why the last file was not taken, or empty
+ * @property {boolean} isAway  whether the scanner does not answer
+ * @property {boolean} isFollowed  whether this page saw the update start
+ * @property {string} failure  why the last file was refused, or empty
  */
 
 const mostBytes = 160 * 2 ** 20;
-const mark = 'octurn-update';  // in the session's storage: an update was seen coming, before the page was loaded again
+const mark = 'octurn-update';  // session storage key: an update was seen to start before the page was reloaded
 
 const phases = /** @type {const} */ (['sending', 'installing', 'restarting', 'trial']);
 
-/** What is going on. Pure. @param {State} state @returns {typeof phases[number] | null} */
+/** The current phase. Pure. @param {State} state @returns {typeof phases[number] | null} */
 export function phaseOf({update, sending, isAway, isFollowed}) {
   const phase = phases.find((name) => name === update.state) ?? null;
   if (sending || update.state === 'receiving') {
@@ -63,7 +63,7 @@ function outcomeOf({update, isFollowed, failure}) {
   }
 }
 
-/** What to show. Pure. @param {State} state */
+/** The view of an update. Pure. @param {State} state */
 export function shownOf(state) {
   const phase = phaseOf(state);
   const now = phase ? phases.indexOf(phase) : -1;
@@ -78,7 +78,7 @@ export function shownOf(state) {
   };
 }
 
-/** Why a file can be no update, or nothing. Pure. @param {number} size  bytes */
+/** Why a file cannot be an update, or an empty text. Pure. @param {number} size  bytes */
 export function complaintOf(size) {
   return size === 0 ? text('update.empty') :
     size > mostBytes ? text('update.too-large', {bytes: bytes(size), most: bytes(mostBytes)}) : '';
@@ -119,7 +119,7 @@ function render() {
   }
   const bar = element('update-progress');
   if (progress === null) {
-    bar.removeAttribute('value');  // it goes on, and nobody knows how far
+    bar.removeAttribute('value');  // indeterminate
   } else {
     bar.value = progress;
   }
@@ -157,13 +157,13 @@ export const showUpdateAway = () => change({isAway: true});
 /** @param {boolean} isScanning */
 export const showScanning = (isScanning) => change({isScanning});
 
-/** What to say while the scanner does not answer, or null. */
+/** The explanation why the scanner does not answer, or null. */
 export function updateAway() {
   const phase = phaseOf(state);
   return phase === 'restarting' || phase === 'trial' ? {title: text('update.away'), text: textOf('restarting', state)} : null;
 }
 
-/** Whether news are expected soon. */
+/** Whether changes are expected soon. */
 export const isUpdating = () => phaseOf(state) !== null;
 
 async function install() {

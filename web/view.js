@@ -1,4 +1,4 @@
-// Puts a screen (screen.js) into the DOM, except the large picture (stage.js) and the form's fields (form.js).
+// Renders a screen (screen.js), except the large picture (stage.js) and the form's fields (form.js).
 
 import {tickWidth, ticks} from './dial.js';
 import {element, list, part, setBadge, setText, show} from './dom.js';
@@ -18,7 +18,7 @@ function showDevices({devices, isSimulated}) {
   });
 }
 
-/** Shows one panel; focus that would vanish with another goes to its heading. @param {string} name */
+/** Shows one panel. If the focus was in the previous panel, it moves to the new panel's heading. @param {string} name */
 function showPanel(name) {
   const panels = [...document.querySelectorAll('[data-panel]')];
   const shown = /** @type {HTMLElement} */ (panels.find((panel) => /** @type {HTMLElement} */ (panel).dataset.panel === name));
@@ -148,7 +148,7 @@ function showNotices({isAway, isScanElsewhere, problem, faults}) {
 /** @type {(screen: Screen) => void} */
 let renderScanPage = () => {};
 
-/** Shows what belongs to a scan that is looked at (scan_page.js), which comes with the first one. @param {(screen: Screen) => void} render */
+/** Sets the renderer of a scan's page (scan_page.js), which is loaded with the first scan in view. @param {(screen: Screen) => void} render */
 export function showScanPage(render) {
   renderScanPage = render;
 }
@@ -170,7 +170,7 @@ export function render(screen) {
   renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
-    element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled it keeps the focus
+    element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled, it keeps the focus
   }
   if (screen.footer) {
     setText(element('version'), screen.footer.version);
@@ -191,7 +191,7 @@ function ask(dialog) {
   });
 }
 
-/** @param {string} name @returns {Promise<string | null>} another name, or null to leave it */
+/** @param {string} name @returns {Promise<string | null>} the new name, or null to keep the old one */
 export async function askName(name) {
   const field = element('rename-name');
   field.value = name;

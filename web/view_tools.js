@@ -1,4 +1,4 @@
-// What can be done with the model in the large picture: measure between two places, cut it open, lay it on another side.
+// Tools for the model in the large picture: measure between two points, cut it open, lay it on another side.
 
 import {element, pressed, setText, show} from './dom.js';
 import * as format from './format.js';
@@ -9,14 +9,14 @@ import {text} from './texts.js';
 
 /** @type {() => Viewer | undefined} */
 let viewer = () => undefined;
-/** @type {number[][] | null} places that are measured between; null: nothing is */
+/** @type {number[][] | null} measured points; null: the tool is off */
 let measuring = null;
 /** @type {'upright' | 'waiting' | 'laid'} waiting: for the side to lay the model on */
 let lying = 'upright';
 /** @type {string | null} the STL of the model that has colours */
 let coloured = null;
 
-/** @param {string} words  on the picture; empty: none */
+/** @param {string} words  shown on the picture; empty: none */
 function say(words) {
   show(element('measured'), words !== '');
   setText(element('measured'), words);
@@ -38,7 +38,7 @@ function setMeasure(points_mm) {
   render();
 }
 
-/** @param {typeof lying} next @param {import('./pick.js').Spot} [spot]  that the model is laid on */
+/** @param {typeof lying} next @param {import('./pick.js').Spot} [spot]  facet on which the model is laid */
 function setLying(next, spot) {
   const isMoved = next === 'laid' || lying === 'laid';
   lying = next;
@@ -64,7 +64,7 @@ function setCut(isCut) {
 }
 
 /**
- * Offers the colours of the model that is shown, which stands in clay.
+ * Offers the colours of the shown model, which is drawn in clay at first.
  * @param {string | null} url  of its STL; null: it has none
  */
 export function offerColours(url) {
@@ -73,7 +73,7 @@ export function offerColours(url) {
   show(element('colours'), url !== null);
 }
 
-/** What a click on the model does. @param {import('./pick.js').Spot} spot */
+/** Handles a click on the model. @param {import('./pick.js').Spot} spot */
 export function useTool(spot) {
   if (measuring) {
     setMeasure(withPoint(measuring, spot.place));
@@ -82,13 +82,13 @@ export function useTool(spot) {
   }
 }
 
-/** Another mesh of the same object stands as it is scanned. */
+/** Resets the pose when another mesh of the same object is shown, which stands as scanned. */
 export function standUp() {
   lying = lying === 'laid' ? 'upright' : lying;
   render();
 }
 
-/** Of another model: it is whole, and as it was scanned. */
+/** Resets all tools for another model. */
 export function putToolsAway() {
   lying = 'upright';
   setMeasure(null);

@@ -1,4 +1,4 @@
-// The model in 3D, in millimetres, Z up, standing on a drawing of the platform.
+// The 3D view of a model in millimetres, Z up, on a drawing of the platform.
 
 import {
   BufferAttribute, BufferGeometry, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
@@ -16,8 +16,8 @@ import {ballOf, placesMark} from './places_mark.js';
 const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
 const down = new Vector3(0, 0, -1);
-const samplesKept = 5000;  // points of a model that tell how low and how high it reaches when it is laid on another side
-const firstSight = new Vector3(0.42, -0.83, 0.37);  // from the model to the eye
+const samplesKept = 5000;  // sampled vertices, from which the height range is computed when the model is laid on another side
+const firstSight = new Vector3(0.42, -0.83, 0.37);  // initial direction from the model to the camera
 
 export class Viewer {
   #canvas;
@@ -29,7 +29,7 @@ export class Viewer {
   #filled = {value: 0};
   #painted = {value: 0};
   #top = {value: uncut};
-  #heights = [0, 0];  // of the model as it lies, millimetres
+  #heights = [0, 0];  // height range of the model in its current pose, millimetres
   #uprightHeights = [0, 0];
   /** @type {Vector3[]} */
   #samples = [];
@@ -41,14 +41,14 @@ export class Viewer {
   #places = null;
   /** @type {any} */
   #measure = null;
-  #isAimed = false;  // by hand
+  #isAimed = false;  // whether the user has moved the camera
   #isFrameDue = false;
   #drawnAt = 0;
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onSpot: (spot: Spot) => void}} events  onSpot: of a click on the
-   *     model
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onSpot: (spot: Spot) => void}} events  onSpot: called for a
+   *     click on the model
    * @throws {Error} where there is no WebGL
    */
   constructor(canvas, {onTurning, onLost, onSpot}) {
@@ -59,7 +59,7 @@ export class Viewer {
     this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
     lightsBeside(this.#camera);
     this.#controls = new OrbitControls(this.#camera, canvas);
-    canvas.style.touchAction = 'pan-y';  // a finger that goes up or down scrolls the page, which may be no wider than the picture
+    canvas.style.touchAction = 'pan-y';  // a vertical swipe scrolls the page, as the picture may be as wide as the page
     this.#controls.enableDamping = true;
     this.#controls.autoRotateSpeed = 1.6;
     this.#controls.addEventListener('change', () => this.#draw());
@@ -77,8 +77,8 @@ export class Viewer {
   }
 
   /**
-   * @param {StlMesh} mesh  its positions are given away: they live on in the GPU only
-   * @param {{isFirst?: boolean}} [growth]  a mesh that is not the first of its object leaves the eye where somebody put it
+   * @param {StlMesh} mesh  its positions are moved to the GPU and not kept in memory
+   * @param {{isFirst?: boolean}} [growth]  isFirst: false keeps the user's camera, for a further mesh of the same object
    */
   show({positions, filled, min, max}, {isFirst = true} = {}) {
     const isTurning = this.#controls.autoRotate;
@@ -89,11 +89,11 @@ export class Viewer {
       attribute.array = /** @type {any} */ (null);
     });
     geometry.setAttribute('position', attribute);
-    if (filled) {  // where it is missing, WebGL reads 0
+    if (filled) {  // without the attribute, WebGL reads 0
       geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
     }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
-    geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // it cannot be computed later
+    geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // cannot be computed later, without the positions
     this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top}));
     this.#uprightHeights = this.#heights = [min[2], max[2]];
     const corners = positions.length / 3;
@@ -112,7 +112,7 @@ export class Viewer {
     }
   }
 
-  /** Gives the GPU's memory back. */
+  /** Frees GPU memory. */
   clear() {
     this.#subject.traverse((/** @type {any} */ object) => {
       object.geometry?.dispose();
@@ -126,7 +126,7 @@ export class Viewer {
     this.turn(false);
   }
 
-  /** Looks at the whole model, a little from above, from where the sensor stands. */
+  /** Aims the camera at the whole model, from the sensor's side and slightly above. */
   reset() {
     if (this.#model) {
       this.#isAimed = false;
@@ -134,7 +134,7 @@ export class Viewer {
     }
   }
 
-  /** Turns the model so that it lies on the facet of a spot. @param {Spot | null} spot  null: as it was scanned */
+  /** Rotates the model so that it lies on a spot's facet. @param {Spot | null} spot  null: as scanned */
   lay(spot) {
     const {quaternion, position} = this.#model;
     if (spot) {
@@ -153,7 +153,7 @@ export class Viewer {
     this.reset();
   }
 
-  /** Marks places of the model, and looks at them. @param {number[][]} points_mm  none: marks nothing */
+  /** Marks places of the model, and aims the camera at them. @param {number[][]} points_mm  empty: removes the marks */
   showPlaces(points_mm) {
     this.#places?.geometry.dispose();
     this.#places?.material.dispose();
@@ -174,7 +174,7 @@ export class Viewer {
     this.#draw();
   }
 
-  /** Draws a line between two places, or a dot. @param {number[][]} points_mm  none: nothing */
+  /** Draws a line between two points, or a dot. @param {number[][]} points_mm  empty: removes it */
   showMeasure(points_mm) {
     this.#measure?.traverse((/** @type {any} */ object) => {
       object.geometry?.dispose();
@@ -187,8 +187,8 @@ export class Viewer {
   }
 
   /**
-   * Cuts off what is above a share of the model's height.
-   * @param {number} share  1: nothing
+   * Cuts off the model above a share of its height.
+   * @param {number} share  1: no cut
    * @returns {number} the height of the cut, millimetres
    */
   cut(share) {
@@ -198,12 +198,12 @@ export class Viewer {
     return height;
   }
 
-  /** Around the model as it lies. */
+  /** The bounding sphere of the model in its current pose. */
   #ball() {
     return this.#model.geometry.boundingSphere.clone().applyMatrix4(this.#model.matrixWorld);
   }
 
-  /** Looks at the whole model, or at a ball. @param {Vector3} sight  from it to the eye, of length 1 */
+  /** Aims the camera at a sphere, by default around the whole model. @param {Vector3} sight  unit vector from it to the camera */
   #aim(sight, {center, radius} = this.#ball()) {
     const narrow = Math.min(1, this.#camera.aspect);
     const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
@@ -218,7 +218,7 @@ export class Viewer {
     this.#draw();
   }
 
-  /** @param {boolean} isTurning  by itself */
+  /** @param {boolean} isTurning  whether the camera rotates automatically */
   turn(isTurning) {
     if (this.#controls.autoRotate !== isTurning) {
       this.#controls.autoRotate = isTurning;
@@ -233,13 +233,13 @@ export class Viewer {
     this.#draw();
   }
 
-  /** @param {boolean} isShown  by a colour of its own */
+  /** @param {boolean} isShown  whether filled-in surface has its own colour */
   showFilled(isShown) {
     this.#filled.value = isShown ? 0.85 : 0;
     this.#draw();
   }
 
-  /** @param {Uint8Array | null} colours  red, green and blue of each corner of the model that is shown; null: it is of clay */
+  /** @param {Uint8Array | null} colours  red, green and blue of each corner of the shown model; null: clay */
   paint(colours) {
     const geometry = this.#model?.geometry;
     this.#painted.value = colours && colours.length === 3 * geometry?.attributes.position.count ? 1 : 0;
@@ -253,7 +253,7 @@ export class Viewer {
     }
   }
 
-  /** Draws in the next frame, and goes on for as long as something moves. */
+  /** Draws in the next animation frame, and continues as long as something moves. */
   #draw() {
     if (this.#isFrameDue || !this.#model) {
       return;
@@ -264,7 +264,7 @@ export class Viewer {
       const seconds = Math.min((now - this.#drawnAt) / 1000, 0.1);
       this.#drawnAt = now;
       if (this.#canvas.clientWidth > 0 && this.#model) {
-        this.#controls.update(seconds);  // which asks for the next frame if it moves the camera
+        this.#controls.update(seconds);  // requests the next frame if it moves the camera
         this.#renderer.render(this.#scene, this.#camera);
       }
     });

@@ -1,4 +1,4 @@
-// What is wrong with the computer, told without being asked for: supply, heat, disk, clock.
+// Warnings about the computer, shown without a check: power supply, temperature, disk, clock.
 
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
@@ -9,7 +9,7 @@ import {translated} from './texts.js';
 
 const tones = /** @type {Record<string, string>} */ ({fault: 'bad', warning: 'warn'});
 
-/** What a warning says. Pure. @param {Finding} finding */
+/** The text of a warning. Pure. @param {Finding} finding */
 export const textOf = ({name, measured, advice}) => ({title: `${translated(name)}: ${translated(measured)}.`, text: sentence(advice)});
 
 let isClockLent = false;
@@ -25,7 +25,7 @@ export function seeWarnings(status) {
     setText(part(item, 'span'), text);
   });
   if (!isClockLent && needsClock(status)) {
-    isClockLent = true;  // once for each visit: a clock that cannot be set is told of, not asked for again
+    isClockLent = true;  // once per visit: if the clock cannot be set, only the warning stays
     lendClock().catch(() => {});
   }
 }

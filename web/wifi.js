@@ -1,4 +1,4 @@
-// "WiFi": which one the scanner is in, and which one it shall join.
+// "WiFi": the scanner's current network, and the form to join another one.
 
 import * as api from './api.js';
 import {codes} from './countries.js';
@@ -10,7 +10,7 @@ import {codePath, wifiCodeText} from './wifi_code.js';
 /** @typedef {import('./api.js').Wifi} Wifi */
 /** @typedef {import('./api.js').Network} Network */
 
-/** What to say of the WiFi. Pure. @param {Wifi} wifi */
+/** The WiFi's state in words. Pure. @param {Wifi} wifi */
 export function summaryOf({state, name, hotspot}) {
   switch (state) {
     case 'joining': return text('wifi.joining', {name});
@@ -21,14 +21,14 @@ export function summaryOf({state, name, hotspot}) {
   }
 }
 
-/** What is wrong, or nothing. Pure. @param {Wifi} wifi */
+/** The problem to show, or null. Pure. @param {Wifi} wifi */
 export const troubleOf = ({state, name, error}) => !error ? null :
   {title: state !== 'joined' && name ? text('wifi.not-joined', {name}) : text('wifi.not-changed'), detail: sentence(error)};
 
-/** What comes if the scanner cannot join a WiFi. Pure. @param {Wifi} wifi */
+/** What happens if the scanner cannot join a WiFi. Pure. @param {Wifi} wifi */
 const fallbackOf = ({hotspot}) => hotspot ? text('wifi.back', {name: hotspot}) : text('wifi.fallback');
 
-/** What joining a WiFi means for who looks at this page. Pure. @param {Wifi} wifi @param {string} chosen @param {string} page  its address there */
+/** The consequence of joining a WiFi for this page's visitor. Pure. @param {Wifi} wifi @param {string} chosen @param {string} page  its address there */
 export function consequenceOf(wifi, chosen, page) {
   const {state, name, hotspot} = wifi;
   const there = chosen ? text('wifi.there', {name: chosen}) : text('wifi.there-unnamed');
@@ -37,17 +37,16 @@ export function consequenceOf(wifi, chosen, page) {
 }
 
 /**
- * The WiFi that a phone may join from this screen: the scanner's own one, or the one whose password was typed here. Pure.
- * @param {Wifi} wifi @param {{name: string, password: string} | null} told  to the scanner, which is joining it
+ * The WiFi offered as a QR code: the scanner's own, or the one whose password was typed here. Pure.
+ * @param {Wifi} wifi @param {{name: string, password: string} | null} told  the WiFi that the scanner was told to join
  */
 export const sharedOf = ({state, hotspot}, told) => told ?? (state === 'hotspot' ? {name: hotspot, password: ''} : null);
 
-/** How many of four bars a signal is worth. Pure. @param {number} dbm */
+/** The number of signal bars, 1 to 4. Pure. @param {number} dbm */
 export const barsOf = (dbm) => dbm >= -55 ? 4 : dbm >= -65 ? 3 : dbm >= -75 ? 2 : 1;
 
 /**
- * Networks in the order in which they are shown: those that are there keep their places, under a finger that wants one,
- * and the chosen one stays. Pure.
+ * Networks in display order: shown ones keep their places, so that nothing moves under a finger, and the chosen one stays. Pure.
  * @param {Network[]} shown @param {Network[]} found @param {string | null} chosen
  */
 export function inPlace(shown, found, chosen) {
@@ -56,7 +55,7 @@ export function inPlace(shown, found, chosen) {
   return [...staying, ...found.filter(({name}) => !shown.some((other) => other.name === name))];
 }
 
-/** Why a password is none, or nothing. Pure. @param {string} password @param {boolean} mayBeOpen */
+/** Why a password is invalid, or an empty text. Pure. @param {string} password @param {boolean} mayBeOpen */
 export function passwordComplaint(password, mayBeOpen) {
   if (password === '') {
     return mayBeOpen ? '' : text('wifi.needs-password');
@@ -67,11 +66,11 @@ export function passwordComplaint(password, mayBeOpen) {
   return /^([ -~]{8,63}|[0-9A-Fa-f]{64})$/.test(password) ? '' : text('wifi.password-shape');
 }
 
-/** Why a name is none, or nothing. Pure. @param {string} name */
+/** Why a name is invalid, or an empty text. Pure. @param {string} name */
 export const nameComplaint = (name) => name === '' ? text('wifi.needs-name') :
   new TextEncoder().encode(name).length > 32 ? text('wifi.name-long') : '';
 
-/** Where somebody probably is: the region of the browser's language. Pure. @param {readonly string[]} languages */
+/** The user's probable country: the region of the browser's language. Pure. @param {readonly string[]} languages */
 export const regionOf = (languages) => languages.map((language) => /-([A-Z]{2})\b/.exec(language)?.[1] ?? '')
     .find((region) => codes.includes(region)) ?? '';
 
@@ -80,14 +79,14 @@ let wifi = {state: 'none', name: '', country: '', hotspot: '', error: '', host: 
 /** @type {Network[]} */
 let networks = [];
 let isOpen = false;
-let isAsked = false;  // from here, and not answered yet
-let asked = '';  // the name of the WiFi that was asked for here last
+let isAsked = false;  // whether a request is waiting for its response
+let asked = '';  // name of the WiFi requested last on this page
 let failure = '';
-let said = '';  // the state that the form was opened or closed for
+let said = '';  // the state for which the form was opened or closed
 
 const page = () => `http://${wifi.host}.local${location.port ? `:${location.port}` : ''}`;
 
-/** @returns {string | null} the network that is chosen, empty for one that is typed; null for none */
+/** @returns {string | null} the chosen network; empty: a typed name; null: none */
 const chosen = () => part(element('wifi-form'), 'input[name=network]:checked')?.value ?? null;
 
 const chosenName = () => chosen() || element('wifi-name').value.trim();
@@ -154,7 +153,7 @@ function setOpen(open) {
   render();
 }
 
-/** In the scanner's own WiFi this is what the page is for; elsewhere it is at the page's end. */
+/** Moves the card: in the scanner's own WiFi to the top of the page, otherwise to the end. */
 function place() {
   const isFirst = wifi.state === 'hotspot' || (wifi.hotspot !== '' && wifi.state === 'joining');
   const home = element(isFirst ? 'main' : 'appliance');
@@ -166,7 +165,7 @@ function place() {
 /** @param {Wifi} news */
 export function showWifi(news) {
   if (isAsked) {
-    return;  // it is older than what was asked
+    return;  // older than the pending request
   }
   wifi = news;
   networks = inPlace(networks, news.networks, chosen());
@@ -185,7 +184,7 @@ export function showWifi(news) {
   render();
 }
 
-/** What to say while the scanner does not answer, or null. */
+/** The explanation why the scanner does not answer, or null. */
 export function wifiAway() {
   return asked && wifi.state === 'joining' ? {
     title: text('wifi.joins-title', {name: asked}),
@@ -193,7 +192,7 @@ export function wifiAway() {
   } : null;
 }
 
-/** Whether news are expected soon. */
+/** Whether changes are expected soon. */
 export const isJoining = () => wifi.state === 'joining';
 
 async function join() {
@@ -228,7 +227,7 @@ export function prepareWifi() {
   const form = element('wifi-form');
   form.addEventListener('input', (/** @type {any} */ {target}) => {
     if (target.name === 'network') {
-      element('wifi-password').value = '';  // it is another WiFi's
+      element('wifi-password').value = '';  // it was for another WiFi
     }
     showFields();
   });

@@ -1,11 +1,10 @@
-// What the scanner found, in the page's own words where it tells the values: reasons of a verdict, and why something was not
-// done. A text's key has the code and the names of the values, which tell what a sentence of that code says. Whatever has
-// none is said as the scanner says it.
+// The page's own texts for messages of the scanner: reasons of a verdict, and refusals. A text's key consists of the message's code and
+// the names of its parameters, which together identify the sentence. Without such a text the scanner's own sentence is shown.
 
 import {degrees, leaf, millimetres, number, percent} from './format.js';
 import {fixed, isText, text} from './texts.js';
 
-/** @typedef {Record<string, number | string>} Parameters  by name, which ends with the unit */
+/** @typedef {Record<string, number | string>} Parameters  by name; the name ends with the unit */
 /** @typedef {{code: string, detail: string, parameters?: Parameters}} Said */
 
 /** @param {string} name @param {any} value */
@@ -32,13 +31,13 @@ const shown = (parameters) => Object.fromEntries(Object.entries(parameters).map(
 /** @param {string} code @param {Parameters} parameters */
 const keyOf = (code, parameters) => [code, ...Object.keys(parameters).sort()].join('.');
 
-/** Findings of a calibration that a verdict has under its own code. */
+/** Findings of a calibration that have another code in a verdict. */
 const sameAs = new Map([['stops-disagree.off_deg.stop', 'slip.off_deg.stop'],
   ['stops-disagree.turn_deg', 'turn-not-whole.turn_deg'], ['stops-disagree.stops', 'still.stops']]);
 
-/** Why a model is not good, or what a calibration found. @param {Said} reason */
+/** The text of a verdict's reason or a calibration's finding. @param {Said} reason */
 export function reasonText({code, detail, parameters = {}}) {
-  const {object_side: side, ...own} = parameters;  // of a scan from several sides, which one it is about
+  const {object_side: side, ...own} = parameters;  // for a scan from several sides, the affected side
   const said = keyOf(code, own);
   const key = sameAs.get(said) ?? said;
   if (!isText(`reason.${key}`)) {
@@ -48,7 +47,7 @@ export function reasonText({code, detail, parameters = {}}) {
   return side === undefined ? words : text('reason.of-side', {side, words});
 }
 
-/** Why something was not done. @param {Said} problem */
+/** The text of a refusal. @param {Said} problem */
 export function refusalText({code, detail, parameters = {}}) {
   const key = keyOf(code, parameters);
   return isText(`refusal.${key}`) ? text(`refusal.${key}`, shown(parameters)) : detail;

@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Read by ./run and ./test, from the top of the repository: gets the machine ready to build.
+# Sourced by ./run and ./test at the top of the repository: prepares the machine for a build.
 
 say() { printf '%s\n' "octurn: $*"; }
 
@@ -18,7 +18,7 @@ as_root() {
   fi
 }
 
-# missing_packages SECTION...: prints the packages of these sections of .ci/packages that are not here.
+# missing_packages SECTION...: prints the packages of these sections of .ci/packages that are not installed.
 missing_packages() {
   for section in "$@"; do
     sed -n "/^\[$section\]/,/^\[/s/^[a-z0-9]/&/p" .ci/packages
@@ -38,7 +38,7 @@ apt_get() {
     >>build/packages.log 2>&1 </dev/null
 }
 
-# install_packages SECTION...: installs what is missing; without the network if nothing is.
+# install_packages SECTION...: installs missing packages; needs no network if there are none.
 install_packages() {
   command -v dpkg-query >/dev/null || fail "this needs Debian or one of its relatives"
   for section in "$@"; do
@@ -59,8 +59,8 @@ install_packages() {
   }
 }
 
-# build PRESET [BUILD_PRESET]: configures and builds build/PRESET, or what BUILD_PRESET names of it; with ccache, if it
-# is here.
+# build PRESET [BUILD_PRESET]: configures build/PRESET and builds it, or only the targets of BUILD_PRESET; with ccache,
+# if installed.
 build() {
   say "building build/$1"
   mkdir -p build

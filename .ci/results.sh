@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Read by ./test: what a JUnit file of CTest says.
+# Sourced by ./test: reads CTest's JUnit files.
 
 # attribute NAME FILE: the value of an attribute of the first testsuite.
 attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
@@ -7,7 +7,7 @@ attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
 # failures STAGE FILE: the name of each test that failed.
 failures() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"fail\".*/  $1: \1/p" "$2"; }
 
-# skips STAGE FILE: each skipped test with its reason, which is GoogleTest's, or the last line of output.
+# skips STAGE FILE: each skipped test with its reason: GoogleTest's message, or the last line of output.
 skips() {
   awk -v stage="$1" '
     /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)

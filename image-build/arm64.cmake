@@ -1,4 +1,4 @@
-# Debian's cross compiler, with the libraries of arm64 as Debian installs them beside those of the machine.
+# Debian's cross compiler with arm64 libraries installed by multiarch.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

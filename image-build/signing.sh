@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Read by what signs updates. A scanner trusts the key that its image was built with.
+# Sourced by programs that sign updates. A scanner trusts the key with which its image was built.
 
 signing_keys=${XDG_CONFIG_HOME:-$HOME/.config}/octurn
 
@@ -13,7 +13,7 @@ make_signing_keys() {
   )
 }
 
-# sign FILE TO: block by block, so that who reads it need not have all of it first. The key's path is in the signature.
+# sign FILE TO: signs each block, so that a reader can verify the file as a stream. The signature contains the key's path.
 sign() {
   (cd "$signing_keys" && signify-openbsd -Sz -n -s update.sec -m "$1" -x "$2.new")
   mv "$2.new" "$2"

@@ -1,12 +1,12 @@
 # shellcheck shell=sh
-# Read by the steps that install Debian packages.
+# Sourced by the steps that install Debian packages.
 
 suite=trixie
 
-# listed FILE: the names in a list, with commas between them.
+# listed FILE: prints a list's names, separated by commas.
 listed() { sed '/^#/d; /^$/d' "$1" | paste -sd, -; }
 
-# debian OPTION...: mmdebstrap of the suite, without documentation other than licences. What it mounts ends with it.
+# debian OPTION...: runs mmdebstrap for the suite, without documentation except licences, in a mount namespace of its own.
 debian() {
   image-build/mirror "$suite" main non-free-firmware |
     unshare --mount env PATH=/usr/sbin:/usr/bin:/sbin:/bin mmdebstrap --quiet --mode=root \

@@ -1,8 +1,8 @@
 # shellcheck shell=sh
-# Read by what answers the daemon, which may not do what root may: files that it reads, and the page shows. $root is empty,
-# or the folder that stands for / in a test.
+# Sourced by root's services, which answer the unprivileged daemon by files that it reads and the page shows. $root is empty, or
+# the folder that replaces / in a test.
 
-# answer NAME: makes the answer NAME of what comes in, whole.
+# answer NAME: writes standard input to the answer NAME, atomically.
 answer() (
   umask 022
   folder=${root-}/run/octurn-appliance

@@ -1,10 +1,10 @@
 # shellcheck shell=sh
-# Read by what uses the card's FAT partition. It is mounted for the moment only, so that a plug that is pulled finds it at
-# rest, and a card that is taken out is as other computers expect it.
+# Sourced by programs that use the card's FAT partition. It is mounted only while it is used, so that it is clean if power fails or
+# the card is removed.
 
 card=/boot/firmware
 
-# mount_card OPTIONS, unmount_card: one program at a time.
+# mount_card OPTIONS, unmount_card: with a lock, for one program at a time.
 mount_card() {
   exec 9>/run/card/lock
   flock 9
@@ -26,8 +26,8 @@ read_card() {
   unmount_card
 }
 
-# write_card NAME FROM: makes a file of the card the same as FROM. It takes the place of the old one when it is complete
-# on the card; then the old one's bytes, that may have been secret, are overwritten.
+# write_card NAME FROM: replaces a file of the card by a copy of FROM, once the copy is complete on the card. Then the old file's
+# bytes, which may contain secrets, are overwritten.
 write_card() {
   mount_card rw,sync || return
   cp "$2" "$card/$1.new"

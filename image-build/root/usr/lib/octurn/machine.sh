@@ -1,9 +1,9 @@
 # shellcheck shell=sh
-# Read by what gives this machine its name and its time zone: octurn.txt, or the page. $root is empty, or the folder that
-# stands for / in a test.
+# Sourced by programs that set the host name and the time zone, from octurn.txt or for the page. $root is empty, or the folder that
+# replaces / in a test.
 # shellcheck disable=SC2154 # $name and $time_zone are read_settings'
 
-# set_name: sets $name. Fails, with the reason in $wrong_name, if it can be none.
+# set_name: sets the host name to $name. Fails, with the reason in $wrong_name, if it is invalid.
 set_name() {
   [ -n "$name" ] || return 0
   name=$(echo "$name" | tr '[:upper:]' '[:lower:]')
@@ -21,7 +21,7 @@ set_name() {
   [ -n "$root" ] || echo "$name" >/proc/sys/kernel/hostname
 }
 
-# set_time_zone: sets $time_zone. Fails, with the reason in $wrong_zone, if there is none such.
+# set_time_zone: sets the time zone to $time_zone. Fails, with the reason in $wrong_zone, if there is no such zone.
 set_time_zone() {
   [ -n "$time_zone" ] || return 0
   zone=$root/usr/share/zoneinfo/$time_zone
@@ -37,7 +37,7 @@ set_time_zone() {
   return 1
 }
 
-# answer_machine [ERROR]: tells the daemon what this machine is called, and which time it has.
+# answer_machine [ERROR]: answers the daemon with the host name and the time zone.
 answer_machine() {
   zone=$(readlink "$root/etc/localtime" 2>/dev/null) || zone=
   printf 'name = %s\ntime_zone = %s\nerror = %s\n' "$(cat "$root/etc/hostname" 2>/dev/null || true)" \

@@ -1,9 +1,9 @@
 # shellcheck shell=sh
-# Read by `radio`, after wifi.sh: what the radio sees.
+# Sourced by `radio`, after wifi.sh: functions about the networks in reach.
 
 wpa() { wpa_cli -i wlan0 "$@" 2>/dev/null; }
 
-# look_around: sets $found to the networks that are there, and answers them.
+# look_around: scans, sets $found to the networks in reach, and answers the daemon with them.
 look_around() {
   wpa scan >/dev/null || true
   for _ in 1 2 3 4 5; do
@@ -14,7 +14,7 @@ look_around() {
   printf '%s\n' "$found" | answer networks
 }
 
-# why PASSWORD: what keeps the scanner from joining with or without one, yes or no, as far as can be seen from outside.
+# why PASSWORD: prints why the scanner cannot join the network, as far as can be seen from outside. PASSWORD: yes or no.
 # shellcheck disable=SC2154
 why() {
   ssid=$(wpa list_networks | sed -n 2p | cut -f2)
@@ -32,7 +32,7 @@ why() {
 
 has_guests() { wpa all_sta | grep -q '^..:..:..:..:..:..$'; }
 
-# has_cable: whether there is Ethernet.
+# has_cable: whether Ethernet is connected.
 has_cable() {
   for link in /sys/class/net/*; do
     { [ ! -e "$link/phy80211" ] && read -r type <"$link/type" && [ "$type" = 1 ] &&
@@ -41,7 +41,7 @@ has_cable() {
   return 1
 }
 
-# is_on: whether the radio is in a WiFi, or is one.
+# is_on: whether the radio has joined a WiFi, or is the hotspot.
 is_on() {
   read -r operstate </sys/class/net/wlan0/operstate && [ "$operstate" = up ]
 }

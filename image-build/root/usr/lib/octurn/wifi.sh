@@ -1,17 +1,17 @@
 # shellcheck shell=sh
-# Read by what applies the WiFi of octurn.txt, after octurn_txt.sh and answer.sh.
+# Sourced by programs that apply the WiFi of octurn.txt, after octurn_txt.sh and answer.sh.
 
 # shellcheck disable=SC2154
-# Lines with a WiFi's name in hexadecimal, its key, and its password in hexadecimal while that may be needed; the newest first.
+# One line for each WiFi, newest first: name in hexadecimal, key, and the password in hexadecimal while it may be needed.
 kept=$root/data/wifi
 configuration=$root/etc/wpa_supplicant/wpa_supplicant-wlan0.conf
 
-# hotspot: the scanner's own WiFi's name.
+# hotspot: prints the name of the scanner's own WiFi.
 hotspot() { echo "Octurn-$(head -c 4 /etc/machine-id | tr '[:lower:]' '[:upper:]')"; }
 
 hexadecimal() { printf '%s' "$1" | od -An -v -tx1 | tr -d ' \n'; }
 
-# key NAME PASSWORD: the 256 bits that WPA2 makes of both, in hexadecimal. Some routers print these as the password.
+# key NAME PASSWORD: prints WPA2's 256-bit key (PSK) of both, in hexadecimal. Some routers have it printed as the password.
 key() {
   if printf '%s' "$2" | grep -qxE '[0-9a-fA-F]{64}'; then
     printf '%s\n' "$2"
@@ -20,8 +20,8 @@ key() {
   fi
 }
 
-# find_key REPORT: sets $key, empty for an open WiFi, and $password, in hexadecimal, empty if it is not known; fails if the
-# password is none.
+# find_key REPORT: sets $key, empty for an open WiFi, and $password, in hexadecimal, empty if unknown; fails if the password is
+# invalid.
 # shellcheck disable=SC2154
 find_key() {
   key='' password=''
@@ -38,21 +38,21 @@ find_key() {
       key=$(key "$wifi_name" "$wifi_password" 2>/dev/null) || true
       [ -n "$key" ] ||
         "$1" "wifi_password has ${#wifi_password} letters: 8 to 63 without accents, or none for an open WiFi"
-      # A router that prints a key is joined with that, and so by WPA2.
+      # A key in place of the password can be used by WPA2 only.
       [ "$key" = "$wifi_password" ] || password=$(hexadecimal "$wifi_password")
       ;;
   esac
   [ -n "$key" ]
 }
 
-# known: the line of the WiFi that was found.
+# known: prints the line for $network.
 known() { echo "$network $key${password:+ $password}"; }
 
-# forget_password: WPA2 needs the key alone. Of WPA3 nothing can be kept in the password's place.
+# forget_password: deletes stored passwords, as WPA2 needs the key only. WPA3 needs the password itself.
 forget_password() { sed 's/^\([^ ]* [^ ]*\) .*/\1/' "$kept" | keep; }
 
-# find_wifi REPORT: of the settings that were read, sets $network, the name in hexadecimal, $country, $key and $password;
-# fails if it cannot be joined with these, and calls REPORT for what is wrong.
+# find_wifi REPORT: sets $network (the name in hexadecimal), $country, $key and $password from the settings; if these are not valid,
+# calls REPORT with the error and fails.
 find_wifi() {
   if [ "$(printf %s "$wifi_name" | wc -c)" -gt 32 ]; then
     "$1" "wifi_name = $wifi_name: at most 32 bytes"
@@ -70,13 +70,13 @@ find_wifi() {
   find_key "$1"
 }
 
-# keep: makes what comes in the known keys; fails if there is no data partition.
+# keep: replaces the stored lines by standard input; fails if there is no data partition.
 keep() {
   { [ -n "$root" ] || mountpoint -q /data; } &&
     cat >"$kept.new" && sync "$kept.new" && mv "$kept.new" "$kept" && sync "${kept%/*}"
 }
 
-# answer_wifi STATE [ERROR [HOTSPOT]]: for the daemon, and so for the page.
+# answer_wifi STATE [ERROR [HOTSPOT]]: answers the daemon, and so the page.
 answer_wifi() {
   {
     printf 'state = %s\nname = %s\ncountry = %s\n' "$1" "$wifi_name" "$wifi_country"

@@ -1,5 +1,5 @@
-# Builds for the appliance's processor on any other, and runs what was built under QEMU: Debian's cross
-# compiler, and Debian's arm64 packages as tests/emulation/arm64_sysroot unpacks them.
+# Cross-compiles for the appliance's processor and runs the programs under QEMU, with Debian's cross
+# compiler and Debian's arm64 packages as unpacked by tests/emulation/arm64_sysroot.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

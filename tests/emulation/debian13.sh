@@ -1,6 +1,6 @@
 # shellcheck shell=sh
-# Read by the scripts that make a machine with Debian 13's arm64, at the top of the repository. They set $debian, what
-# pi3/debian13 unpacked, and $folder.
+# Sourced, at the top of the repository, by the scripts that make a machine with Debian 13 for arm64. They set $debian, the folder
+# unpacked by pi3/debian13, and $folder.
 
 : "${debian:?}" "${folder:?}"
 root=$folder/root
@@ -8,7 +8,7 @@ objects=$folder/objects
 libraries=$debian/usr/lib/aarch64-linux-gnu
 cache=$(command -v ccache || true)
 
-# Folders of an empty root, and a shell in it.
+# Makes an empty root with a shell.
 new_root() {
   rm -rf "$root" "$objects"
   mkdir -p "$objects" "$root/bin" "$root/dev" "$root/lib" "$root/proc" "$root/run" "$root/sys"
@@ -17,7 +17,7 @@ new_root() {
   cp -L "$libraries/ld-linux-aarch64.so.1" "$root/lib/"
 }
 
-# compiled FILE OPTIONS... -- SOURCES...: by the flags of CMakeLists.txt. OPTIONS: of the linker.
+# compiled FILE OPTIONS... -- SOURCES...: compiles a program with the flags of CMakeLists.txt. OPTIONS are for the linker.
 compiled() {
   file=$1
   shift
@@ -41,7 +41,7 @@ compiled() {
   aarch64-linux-gnu-g++ $built -Wl,--gc-sections -Wl,--allow-shlib-undefined $options -o "$file"
 }
 
-# The driver of cameras, as $root/lib/libOcturnCamera.so.
+# Compiles the camera driver, $root/lib/libOcturnCamera.so.
 camera_module() {
   camera=firmware-app/src/camera
   compiled "$root/lib/libOcturnCamera.so" -shared "$libraries/libcamera.so.0.4" "$libraries/libcamera-base.so.0.4" \
@@ -50,7 +50,7 @@ camera_module() {
     $camera/jpeg_picture.cpp $camera/libcamera_camera.cpp $camera/mapped_plane.cpp $camera/pixel_formats.cpp core/src/io/error.cpp
 }
 
-# with_libraries FILE...: copies the libraries that these run on.
+# with_libraries FILE...: copies the shared libraries of these files.
 with_libraries() {
   for needing in "$@"; do
     aarch64-linux-gnu-readelf -d "$needing" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | while read -r library; do
@@ -61,5 +61,5 @@ with_libraries() {
   done
 }
 
-# The root as $folder/initrd.gz.
+# Packs the root into $folder/initrd.gz.
 pack_root() { (cd "$root" && find . | cpio -o -H newc --quiet | gzip -1) >"$folder/initrd.gz"; }

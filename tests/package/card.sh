@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Read by tests of what the card's system does with octurn.txt. They run its programs on a folder that stands for /.
+# Sourced by tests of the appliance's programs for octurn.txt. They run the programs on a folder that replaces /.
 
 if ! command -v wpa_passphrase >/dev/null; then
   echo "needs wpa_passphrase, of the package wpasupplicant"
@@ -11,7 +11,7 @@ programs=image-build/root/usr/lib/octurn
 run=$work/root/run/octurn-settings
 appliance=$work/root/run/octurn-appliance
 
-# start: as the card's system starts; what it says is in $said.
+# start: runs the programs that run at boot; their output is in $said.
 start() {
   rm -rf "$work/root/etc" "$work/root/root"
   mkdir -p "$work/root/etc/octurn" "$work/root/data" "$run" "$appliance/requests" "$work/root/usr/share/zoneinfo/Europe"
@@ -23,7 +23,7 @@ start() {
   [ "$said" = "$(cat "$run/errors/settings" "$run/errors/page-password" "$run/errors/wifi")" ]
 }
 
-# apply FORMAT: a new card starts with octurn.txt as printf makes it.
+# apply FORMAT: boots a new card whose octurn.txt is printf's output.
 apply() {
   rm -rf "$work/root"
   mkdir -p "$run"
@@ -32,7 +32,7 @@ apply() {
   start
 }
 
-# expect TEXT FILE: a whole line of the file.
+# expect TEXT FILE: fails unless TEXT is a whole line of the file.
 expect() {
   grep -qxF -- "$1" "$2" || {
     echo "no line '$1' in $2:"
@@ -41,7 +41,7 @@ expect() {
   }
 }
 
-# answered WORDS: they are among those said.
+# answered WORDS: fails unless the output contains them.
 answered() {
   case $said in
     *"$1"*) ;;
@@ -52,7 +52,7 @@ answered() {
   esac
 }
 
-# refused FORMAT WORDS FILE [TEXT]: the file is not made, or has not the text, and the words are among those said.
+# refused FORMAT WORDS FILE [TEXT]: fails unless the output contains WORDS and FILE is not made, or does not contain TEXT.
 refused() {
   apply "$1"
   answered "$2"

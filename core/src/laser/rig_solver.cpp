@@ -26,8 +26,12 @@ constexpr std::size_t platform_wanted = 6000;
 constexpr std::size_t surface_wanted = 4000;  // of each laser
 constexpr double object_height = 0.004;       // metres above the platform
 constexpr double cost_scale = 0.0001;         // metres
-// Residuals per independent residual: neighbours on a line share speckle and smoothing.
-constexpr double surface_correlation = 10;
+// Where the lines of two lasers cross, both measure one point of the surface. Away from a crossing,
+// the surface's bend between their points counts: at this distance as much as a line's noise.
+constexpr double crossing_reach = 0.0002;  // metres
+// Residuals per independent residual: neighbours on a line share speckle and smoothing, and pairs
+// near one crossing share its error.
+constexpr double surface_correlation = 40;
 constexpr double platform_correlation = 25;
 
 // Cauchy scale of each iteration, metres: wide first, for a start far from the solution.
@@ -38,6 +42,12 @@ constexpr double at_rest = 0.000002;
 
 double weight_of(double residual, double scale) {
   const double part = residual / scale;
+  return 1 / (1 + part * part);
+}
+
+/// The weight of a pair of points of two lasers, so far apart.
+double weight_of_pair(const LinePoint& p, const LinePoint& q) {
+  const double part = static_cast<double>((p.point - q.point).norm()) / crossing_reach;
   return 1 / (1 + part * part);
 }
 
@@ -208,7 +218,7 @@ void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) cons
         };
         add(p, from, 1);
         add(*q, to, -1);
-        sums.add(row, residual, weight_of(residual, scale));
+        sums.add(row, residual, weight_of(residual, scale) * weight_of_pair(p, *q));
       }
     }
   }

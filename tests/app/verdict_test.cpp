@@ -131,6 +131,7 @@ TEST_F(VerdictTest, SaysThatTheScannedSpaceBeheadsTheObject) {
   ASSERT_EQ(cut.size(), 1U) << scan;
   EXPECT_EQ(cut[0]["detail"], "the object reaches through the top of the scanned space");
   EXPECT_EQ(cut[0]["hint"], "Make the scanned space larger, or move the object.");
+  ASSERT_FALSE(cut[0]["places_mm"].empty()) << scan;
   for (const json& place : cut[0]["places_mm"]) {
     EXPECT_NEAR(place[2].get<double>(), 60, 8);  // a cell and a pixel
   }

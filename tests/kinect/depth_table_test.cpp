@@ -64,9 +64,11 @@ TEST(DepthTable, HasTheSameBitsEverywhere) {
 
 TEST(DepthTable, GrowsWithTheReading) {
   const DepthTable table = depth_table({});
-  for (std::size_t reading = 1; table[reading] != 0; ++reading) {
+  std::size_t reading = 1;
+  for (; table[reading] != 0; ++reading) {
     EXPECT_GT(table[reading], table[reading - 1]) << reading;
   }
+  EXPECT_GT(reading, 1000U);  // those of depths up to 6 m
 }
 
 TEST(KinectParameters, GiveTheFocalLengthOfATypicalUnit) {

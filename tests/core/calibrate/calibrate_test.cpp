@@ -253,7 +253,7 @@ TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
 }
 
 // A sensor map from one wall leaves an error of some 0.1 units of disparity.
-TEST(Calibrate, TellsAFocalLengthOnlyBesideSoMuchOfAPatternAsAMapLeaves) {
+TEST(Calibrate, FindsAWrongFocalLengthOnlyWithASensorMap) {
   const CalibrationTurn seen = rendered_turn(figure(), 8);
   for (const bool has_map : {false, true}) {
     CalibrationTurn turn = with_pattern(seen, has_map ? 0.1 : 0.8);

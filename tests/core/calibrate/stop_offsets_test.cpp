@@ -114,7 +114,7 @@ TEST(FindSlips, NamesAStepAtTheLastStop) {
   EXPECT_EQ(findings[0].stop, 11);
 }
 
-TEST(FindSlips, SaysWhatATurnCameOutAs) {
+TEST(FindSlips, ReportsATurnThatIsNotWhole) {
   StopOffsets solved = noisy_offsets(24);
   const auto angles = even_angles(24);
   for (std::size_t stop = 0; stop < 24; ++stop) {

@@ -150,7 +150,7 @@ TEST(VertexColours, AreThoseOfTheObjectWhereSomethingElseHidesItAtSomeStops) {
   EXPECT_LE(wrong_vertices(mesh, colours), 8);
 }
 
-TEST(VertexColours, OfAVertexThatNoPictureSeesAreItsNeighbours) {
+TEST(VertexColours, AreTakenFromNeighboursWhereNoPictureSeesAVertex) {
   const Ball mesh = both_balls();
   const std::vector<Rgb> colours = colours_in_pictures(mesh);
 

@@ -44,8 +44,8 @@ void add_common_error(DepthFrame& frame, unsigned seed) {
   for (const std::size_t stride : {width, std::size_t{1}, width, std::size_t{1}}) {
     error = box_filtered(error, stride, 2);
   }
-  // Uniform noise of width 1 has an rms of 1 / sqrt(12). Two boxes of 5 leave weights of 1, 2, 3, 4,
-  // 5, 4, 3, 2, 1 over 25 in each direction, whose squares sum to 85 / 625.
+  // Uniform noise of width 1 has an rms of 1 / sqrt(12). Two boxes of 5 leave weights of 1, 2, 3,
+  // 4, 5, 4, 3, 2, 1 over 25 in each direction, whose squares sum to 85 / 625.
   constexpr double rms = 0.2887 * 85.0 / 625;
   const Intrinsics lens;
   for (std::size_t i = 0; i < error.size(); ++i) {

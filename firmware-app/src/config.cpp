@@ -31,6 +31,7 @@ Config config_from(const json& object, const std::optional<SensorKind>& sensor) 
   config.sensor = sensor.value_or(config.sensor);
   if (config.sensor == SensorKind::laser_line) {
     use_laser_capture_defaults(config.scan);
+    config.turntable.settle_time = laser_settle_time;
   }
   const SensorKind chosen = config.sensor;
   read_fields(keys, fields(config));

@@ -73,7 +73,7 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
   const std::filesystem::path golden = std::filesystem::path(OCTURN_GOLDEN) / "version-0.1";
   json expected = json::parse(content_of(golden / "settings.json"));
   expected["scan"].update(
-      {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // which that had not
+      {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // later keys
   expected["sensor"] = "depth";
   expected["laser"] = to_json(Config())["laser"];
   EXPECT_EQ(to_json(read_config(golden / "octurn.json")), expected);
@@ -83,6 +83,16 @@ TEST(Config, IsTheDefaultWhereTheFileSaysNothing) {
   const Config config = config_of("{}");
   EXPECT_EQ(config.http.port, 8080);
   EXPECT_EQ(config.scan.snapshots, 36);
+}
+
+TEST(Config, HasAShorterSettlingTimeForLasersUnlessTheFileHasOne) {
+  EXPECT_EQ(config_of("{}").turntable.settle_time.count(), 300);
+  EXPECT_EQ(config_of(R"({"sensor": "laser-line", "turntable": {"microsteps": 8}})")
+                .turntable.settle_time.count(),
+            150);
+  EXPECT_EQ(config_of(R"({"sensor": "laser-line", "turntable": {"settle_ms": 300}})")
+                .turntable.settle_time.count(),
+            300);
 }
 
 TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {

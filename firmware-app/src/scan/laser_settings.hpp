@@ -59,6 +59,11 @@ std::vector<Field> fields(LaserLine& line);
 /// @param keys  the JSON of the settings, for messages
 void check_laser_settings(JsonObject& keys, const LaserSettings& settings);
 
+/// The default settling time of a turntable with lasers. The dark picture, in which nothing is
+/// measured, is exposed first. At 15 pictures a second the first line is therefore exposed at least
+/// 217 ms after the move, or 283 ms if the camera reads a picture out until the next one begins.
+inline constexpr std::chrono::milliseconds laser_settle_time{150};
+
 /// Sets the defaults of a laser-line scan: lines 1.8 degrees apart, one picture each, and the space
 /// that the drawing's camera and lasers cover. It begins 2 mm above the platform, as the noise is
 /// lower than a depth sensor's.

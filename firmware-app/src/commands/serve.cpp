@@ -54,7 +54,7 @@ struct Daemon {
 
 /// Whether settings wait for a restart, and nothing runs that a restart would interrupt.
 bool is_restart_due(const Machine& machine, const Daemon& daemon) {
-  return !daemon.settings.restart_needed().empty() && !daemon.scanner.status().busy() &&
+  return !daemon.settings.restart_needed().empty() && !daemon.scanner.is_busy() &&
          daemon.turntable.state().doing == TurntableState::Doing::nothing &&
          !(machine.appliance && machine.appliance->is_updating());
 }

@@ -119,7 +119,7 @@ std::vector<Finding> find_machine_warnings(const DoctorInput& input) {
 }
 
 std::vector<Finding> run_checks(DoctorInput input, Scanner& scanner) {
-  if (scanner.status().turntable.state == DeviceStatus::State::ready) {
+  if (scanner.has_turntable()) {
     input.lines = LineOwner::this_program;
   }
   SensorReading reading = Failure{.code = ErrorCode::busy,

@@ -30,7 +30,7 @@ void Scanner::restore(std::string_view id) {
 
 /// Checks that a scan neither runs nor is being built. @throws Error "busy"
 void Scanner::expect_idle(std::string_view id) const {
-  if (is_running(id)) {
+  if (slot_.has_scan(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
   if (is_building(id)) {

@@ -93,6 +93,9 @@ void Worker::carry_out(CalibrationRun run,
   }
   release_rig();
   const std::lock_guard lock(ports_.scans);
+  if (run.lens && run.lens->accepted) {
+    ports_.solved_lens = SolvedLens{.camera = run.camera, .report = *run.lens};
+  }
   ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_calibration_run(std::move(run));
 }
@@ -129,7 +132,7 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
                                                const std::stop_token& stop,
                                                const ScanObserver& observer) {
   if (rig_.laser() != nullptr) {
-    use_lens();
+    use_lens("");
     use_pose();
     return measure_laser_turn(settings, ports_.store.data(), limits_.threads, rig_, stop, observer);
   }
@@ -186,6 +189,7 @@ void Worker::introduce_sensor() {
   } catch (...) {
     log::warning("calibration", current_failure().detail);
   }
+  ports_.devices.update([&](DeviceStates& devices) { devices.serial = known.serial; });
   ports_.board.set_known_sensor(std::move(known));
 }
 

@@ -33,9 +33,7 @@ json lens_json(const App& app, const std::optional<KeptLens>& kept) {
 }
 
 /// The serial number of the known camera with lasers; empty for another sensor.
-std::string camera_of(const App& app) {
-  return app.rig.laser ? app.scanner.known_sensor()->serial : "";
-}
+std::string camera_of(const App& app) { return app.rig.laser ? app.scanner.sensor_serial() : ""; }
 
 Response send_calibration(App& app, int status) {
   std::vector<PoseRecord> records =

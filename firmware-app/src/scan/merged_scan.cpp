@@ -243,7 +243,7 @@ Registration register_turns(std::vector<StoredTurn>& turns, int threads,
     RegistrationTurn one =
         turn.scan.laser ? laser_turn(turn.folder, turn.scan, stop) : depth_turn(turn, stop);
     one.object_from_platform = turn.object_from_platform;
-    one.told_object_from_platform = turn.told_object_from_platform;
+    one.prior_object_from_platform = turn.prior_object_from_platform;
     turn.extents.assign(one.angles.size(), {});
     one.read = [&turn, lens = one.intrinsics, angles = one.angles,
                 read = std::move(one.read)](std::size_t i) {

@@ -11,7 +11,7 @@ namespace octurn {
 namespace {
 
 MeshFormat format_of(const std::filesystem::path& file) {
-  const auto format = mesh_format_of(file.extension().string());
+  const auto format = to_mesh_format(file.extension().string());
   if (!format) {
     throw Error(
         ErrorCode::bad_settings,

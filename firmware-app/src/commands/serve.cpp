@@ -34,7 +34,7 @@ enum class Outcome { end, restart };
 
 /// A restart for new settings waits at least this long, so that the response to the request that
 /// stored them is sent first.
-constexpr auto look_interval = 500ms;
+constexpr auto poll_interval = 500ms;
 
 /// The daemon's state that outlives its restarts.
 struct Machine {
@@ -64,7 +64,7 @@ bool is_restart_due(const Machine& machine, const Daemon& daemon) {
 Outcome wait(const Machine& machine, const Daemon& daemon) {
   const auto watchdog = watchdog_interval();
   const std::chrono::microseconds interval =
-      watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, look_interval) : look_interval;
+      watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, poll_interval) : poll_interval;
   bool was_due = false;
   while (!wait_for_signal(interval)) {
     if (machine.start != nullptr) {

@@ -68,7 +68,7 @@ Outcome wait(const Machine& machine, const Daemon& daemon) {
   bool was_due = false;
   while (!wait_for_signal(interval)) {
     if (machine.start != nullptr) {
-      machine.start->look();
+      machine.start->remove_when_stable();
     }
     const bool is_due = is_restart_due(machine, daemon);
     if (is_due && was_due) {

@@ -35,9 +35,9 @@ std::string real_time_refusal() {
 
 /// The GPIO lines of turntable and lasers.
 std::vector<NamedLine> lines_of_rig(const RigOptions& rig) {
-  std::vector<NamedLine> lines = lines_of(*rig.stepper);
+  std::vector<NamedLine> lines = to_gpio_lines(*rig.stepper);
   if (rig.laser) {
-    for (const std::string& line : gpio_lines_of(*rig.laser)) {
+    for (const std::string& line : to_gpio_names(*rig.laser)) {
       lines.push_back({.name = line});
     }
   }

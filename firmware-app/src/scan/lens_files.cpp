@@ -62,8 +62,8 @@ KeptLens to_kept_lens(const json& document) {
 
 }  // namespace
 
-fs::path lens_of(const fs::path& data, std::string_view serial) {
-  return data / "lenses" / sensor_map_of(data, serial).filename().replace_extension(".json");
+fs::path lens_path(const fs::path& data, std::string_view serial) {
+  return data / "lenses" / sensor_map_path(data, serial).filename().replace_extension(".json");
 }
 
 void keep_lens(const fs::path& data, std::string_view serial, const LensReport& report) {
@@ -75,7 +75,7 @@ void keep_lens(const fs::path& data, std::string_view serial, const LensReport& 
                                    .views = report.views});
   document["format"] = "octurn-lens";
   document["version"] = 1;
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   std::error_code failed;
   fs::create_directories(file.parent_path(), failed);
   if (failed) {
@@ -89,7 +89,7 @@ std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial)
   if (serial.empty()) {
     return std::nullopt;
   }
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   const auto text = read_regular_file(file, max_file_bytes);
   try {
     return text ? std::optional(to_kept_lens(parse_json(*text, ErrorCode::scan_malformed, "it")))
@@ -101,7 +101,7 @@ std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial)
 
 void remove_lens(const fs::path& data, std::string_view serial) {
   std::error_code failed;
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   fs::remove(file, failed);
   if (failed) {
     throw Error(ErrorCode::write_failed, file.string() + ": cannot be removed: " + failed.message(),

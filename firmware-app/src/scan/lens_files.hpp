@@ -31,7 +31,7 @@ struct SolvedLens {
 
 /// Returns the path of a camera's file. Characters of the serial number other than letters, digits,
 /// dots, dashes and underscores become underscores. @param data  the data folder
-std::filesystem::path lens_of(const std::filesystem::path& data, std::string_view serial);
+std::filesystem::path lens_path(const std::filesystem::path& data, std::string_view serial);
 
 /// Stores the lens of an accepted report, with the current time.
 /// @param serial  of the camera; not empty

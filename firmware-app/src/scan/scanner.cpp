@@ -233,7 +233,7 @@ bool Scanner::forget_sensor_map() {
   const std::string serial = sensor_serial();
   std::error_code unreadable;
   if (serial.empty() ||
-      !std::filesystem::exists(sensor_map_of(store_.data(), serial), unreadable)) {
+      !std::filesystem::exists(sensor_map_path(store_.data(), serial), unreadable)) {
     throw Error(ErrorCode::not_found, "this sensor has no map", "There is nothing to remove.");
   }
   remove_sensor_map(store_.data(), serial);

@@ -52,7 +52,7 @@ void Scanner::forget_lens() {
   const std::lock_guard lock(scans_);
   const std::string serial = sensor_serial();
   std::error_code unreadable;
-  if (serial.empty() || !std::filesystem::exists(lens_of(store_.data(), serial), unreadable)) {
+  if (serial.empty() || !std::filesystem::exists(lens_path(store_.data(), serial), unreadable)) {
     throw Error(ErrorCode::not_found, "no lens of this camera is kept", "The settings' holds.");
   }
   remove_lens(store_.data(), serial);

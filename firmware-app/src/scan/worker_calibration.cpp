@@ -8,7 +8,7 @@
 #include "octurn/sensor_map.hpp"
 #include "scan/measure_laser_turn.hpp"
 #include "scan/sensor_map_files.hpp"
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -35,7 +35,7 @@ PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig
 /// @throws Error "scan-malformed"
 std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std::string_view serial,
                                          const Intrinsics& lens) {
-  const std::filesystem::path file = sensor_map_of(data, serial);
+  const std::filesystem::path file = sensor_map_path(data, serial);
   if (serial.empty() || !std::filesystem::exists(file)) {
     return std::nullopt;
   }

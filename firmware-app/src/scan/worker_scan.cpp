@@ -123,7 +123,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 /// closed, so that the next use opens it again.
 void Worker::attempt(const std::stop_token& stop) {
   try {
-    rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
+    rig_.set_object_pose(static_cast<int>(to_pose_index(ports_.store, job_)));
     use_lens(first_scan());
     use_pose();
     if (job_.snapshots_done == 0) {

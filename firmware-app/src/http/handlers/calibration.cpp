@@ -15,7 +15,7 @@
 #include "scan/lens_files.hpp"
 #include "scan/pose_json.hpp"
 #include "scan/sensor_map_json.hpp"
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 #include "sensor/pixel_ray.hpp"
 
 namespace octurn {

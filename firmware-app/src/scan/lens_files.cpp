@@ -24,7 +24,7 @@ constexpr double max_focal = 100000;  // pixels
 constexpr double max_distortion = 100;
 constexpr int max_views = 100000;
 
-json numbers_of(const CameraLens& lens) {
+json to_numbers(const CameraLens& lens) {
   const Intrinsics& in = lens.intrinsics;
   return {{"fx", in.fx}, {"fy", in.fy},   {"cx", in.cx},
           {"cy", in.cy}, {"k1", lens.k1}, {"k2", lens.k2}};
@@ -126,7 +126,7 @@ CameraLens lens_in_force(const fs::path& data, std::string_view serial, const Ca
 }
 
 json to_json(const CameraLens& lens) {
-  json object = numbers_of(lens);
+  json object = to_numbers(lens);
   object["width"] = lens.intrinsics.width;
   object["height"] = lens.intrinsics.height;
   return object;
@@ -136,7 +136,7 @@ json to_json(const KeptLens& kept) {
   json object = to_json(kept.lens);
   object["serial"] = kept.serial;
   object["at"] = kept.made;
-  object["sigma"] = numbers_of(kept.sigma);
+  object["sigma"] = to_numbers(kept.sigma);
   object["rms_px"] = kept.rms;
   object["views"] = kept.views;
   return object;
@@ -148,7 +148,7 @@ json to_json(const LensReport& report) {
   return {{"accepted", report.accepted},
           {"reason", report.reason},
           {"lens", is_solved ? to_json(report.lens) : json()},
-          {"sigma", is_solved ? numbers_of(report.sigma) : json()},
+          {"sigma", is_solved ? to_numbers(report.sigma) : json()},
           {"rms_px", is_solved ? json(report.rms) : json()},
           {"tilt_deg", is_solved ? json(degrees_from_radians(report.tilt)) : json()},
           {"coverage", cells / static_cast<double>(report.coverage.size())},

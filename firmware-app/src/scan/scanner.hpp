@@ -272,7 +272,7 @@ class Scanner {
   void expect_idle(std::string_view id) const;
   void expect_last_pose(const Job& pose) const;
   void expect_solved_lens() const;
-  void take_back(const Job& pose);
+  void remove_pose(const Job& pose);
   std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);

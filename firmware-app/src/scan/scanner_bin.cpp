@@ -12,7 +12,7 @@ void Scanner::remove(std::string_view id) {
   const std::lock_guard lock(scans_);
   const Job job = store_.get(id);
   if (job.pose_of && store_.find(job.pose_of->scan)) {
-    take_back(job);
+    remove_pose(job);
     return;
   }
   const std::vector<Job> poses = store_.poses(id);

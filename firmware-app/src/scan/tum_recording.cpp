@@ -217,7 +217,7 @@ Intrinsics tum_camera(std::string_view camera) {
       .fx = values[0], .fy = values[1], .cx = values[2], .cy = values[3], .depth_unit = 1.0 / 5000};
 }
 
-std::string_view tum_camera_of(const fs::path& folder) {
+std::string_view to_tum_camera(const fs::path& folder) {
   const std::string name = fs::absolute(folder / "").parent_path().filename().string();
   for (const std::string_view camera : {"freiburg1", "freiburg2", "freiburg3"}) {
     if (name.find(camera) != std::string::npos) {

@@ -20,7 +20,7 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
     : rig_(rig), speed_(rig.speed), told_laser_(rig.laser), limits_(limits), ports_(ports) {}
 
 void Worker::work() {
-  look_for_turntable();  // so that the status shows it
+  open_turntable();  // so that the status shows it
   Clock::time_point last_use = Clock::now();
   for (;;) {
     ports_.heartbeat.beat();
@@ -49,10 +49,10 @@ void Worker::carry_out(CommandSlot::Taken& taken) {
 
 void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop) {
   if (!ports_.devices.get()->turntable_is_ready) {
-    look_for_turntable();  // its GPIO lines may be free now
+    open_turntable();  // its GPIO lines may be free now
   }
   try {
-    look(stop.get_token());
+    show_next_frame(stop.get_token());
   } catch (...) {
     const Failure failure = current_failure();
     rig_.close_sensor();
@@ -63,7 +63,7 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
 }
 
 /// Shows the sensor's next frame, or the camera's next picture with all lasers off.
-void Worker::look(const std::stop_token& stop) {
+void Worker::show_next_frame(const std::stop_token& stop) {
   if (rig_.laser() != nullptr) {
     if (const std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
       show_picture(timed->picture);
@@ -106,7 +106,7 @@ void Worker::carry_out(ResumeCommand& command, const std::stop_source& stop) {
   run(std::move(command.job), stop.get_token());
 }
 
-void Worker::look_for_turntable() {
+void Worker::open_turntable() {
   try {
     rig_.turntable();
     set_turntable_ready();

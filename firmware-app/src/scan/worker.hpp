@@ -57,7 +57,7 @@ class Worker {
   void carry_out(WallCommand& command, const std::stop_source& stop);
   void carry_out(LensCommand& command, const std::stop_source& stop);
 
-  void look_for_turntable();
+  void open_turntable();
   void run(Job job, const std::stop_token& stop);
   void run_until_it_ends(const std::stop_token& stop);
   void attempt(const std::stop_token& stop);
@@ -66,7 +66,7 @@ class Worker {
   void show_join(Phase phase);
   bool keep_merged(const Job& first, const MergedTurns& merged, const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
-  void look(const std::stop_token& stop);
+  void show_next_frame(const std::stop_token& stop);
   void set_sensor_ready(const std::string& name);
   void set_sensor_failed(const Failure& failure);
   void set_turntable_ready();
@@ -82,7 +82,7 @@ class Worker {
   std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
                                          const ScanObserver& observer);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
-  void flatten(CalibrationRun& run, const std::stop_token& stop);
+  void measure_wall(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
   std::string first_scan() const;
   void use_lens(const std::string& begun);

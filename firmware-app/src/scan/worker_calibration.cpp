@@ -45,7 +45,7 @@ std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std:
 }
 
 /// Describes the outcome of a run, for the log.
-std::string outcome_of(const CalibrationRun& run) {
+std::string describe_outcome(const CalibrationRun& run) {
   const std::string reason = run.report ? run.report->calibration.reason
                              : run.wall ? run.wall->reason
                              : run.lens ? run.lens->reason
@@ -71,7 +71,7 @@ void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
   carry_out({.kind = CalibrationRun::Kind::wall,
              .phase = CalibrationRun::Phase::looking,
              .stops = command.frames},
-            [&](CalibrationRun& run) { flatten(run, stop.get_token()); });
+            [&](CalibrationRun& run) { measure_wall(run, stop.get_token()); });
 }
 
 /// Runs a measurement, and publishes its state.
@@ -84,7 +84,7 @@ void Worker::carry_out(CalibrationRun run,
   log::info("calibration", name + " started, of=" + std::to_string(run.stops));
   try {
     measurement(run);
-    log::info("calibration", name + " " + outcome_of(run));
+    log::info("calibration", name + " " + describe_outcome(run));
   } catch (...) {
     run.failure = current_failure();
     run.state = CalibrationRun::State::failed;
@@ -143,7 +143,7 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
 }
 
 /// Reads frames of a wall, and stores the sensor's map if it is accepted.
-void Worker::flatten(CalibrationRun& run, const std::stop_token& stop) {
+void Worker::measure_wall(CalibrationRun& run, const std::stop_token& stop) {
   ports_.heartbeat.suspend();  // this takes as long as its frames
   DepthSensor& sensor = rig_.sensor();
   const std::string serial = sensor.serial();

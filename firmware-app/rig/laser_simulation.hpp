@@ -42,7 +42,7 @@ class LaserSimulator {
   LaserSimulator& operator=(const LaserSimulator&) = delete;
 
   /// Turns the object over. @param pose  number of the pose; 0 is the initial one
-  virtual void lay_object(int pose) = 0;
+  virtual void set_object_pose(int pose) = 0;
 
   /// Takes a picture of the lens's size.
   /// @param angle  of the platform, radians, counter-clockwise seen from above

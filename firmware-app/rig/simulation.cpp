@@ -32,7 +32,7 @@ std::string to_text(Number value) {
 }
 
 template <typename Number>
-Number number_of(std::string_view key, std::string_view text, Number min, Number max) {
+Number parse_number(std::string_view key, std::string_view text, Number min, Number max) {
   Number value = {};
   const auto read = std::from_chars(text.begin(), text.end(), value);
   if (read.ec != std::errc() || read.ptr != text.end() || !(value >= min && value <= max)) {
@@ -73,21 +73,21 @@ void set(Simulation& simulation, std::string_view key, std::string_view value) {
   constexpr int max_frames = std::numeric_limits<int>::max();
   if (key == "seed") {
     simulation.seed =
-        number_of(key, value, 0U, std::numeric_limits<decltype(simulation.seed)>::max());
+        parse_number(key, value, 0U, std::numeric_limits<decltype(simulation.seed)>::max());
   } else if (key == "noise") {
-    simulation.noise = number_of(key, value, 0.0, max_noise);
+    simulation.noise = parse_number(key, value, 0.0, max_noise);
   } else if (key == "pattern") {
-    simulation.pattern = number_of(key, value, 0.0, max_pattern);
+    simulation.pattern = parse_number(key, value, 0.0, max_pattern);
   } else if (key == "misalignment") {
-    simulation.misalignment = number_of(key, value, 0.0, max_misalignment);
+    simulation.misalignment = parse_number(key, value, 0.0, max_misalignment);
   } else if (key == "wall") {
-    simulation.wall = number_of(key, value, nearest_wall, farthest_wall);
+    simulation.wall = parse_number(key, value, nearest_wall, farthest_wall);
   } else if (key == "speed") {
-    simulation.speed = number_of(key, value, 1 / max_speed, max_speed);
+    simulation.speed = parse_number(key, value, 1 / max_speed, max_speed);
   } else if (key == "silent-after") {
-    simulation.silent_after = number_of(key, value, 0, max_frames);
+    simulation.silent_after = parse_number(key, value, 0, max_frames);
   } else if (key == "lost-after") {
-    simulation.lost_after = number_of(key, value, 0, max_frames);
+    simulation.lost_after = parse_number(key, value, 0, max_frames);
   } else {
     refuse("unknown key \"" + std::string(key) + "\"");
   }

@@ -75,8 +75,8 @@ void expect_own_lines(const JsonObject& keys, const Config& config) {
   if (config.sensor != SensorKind::laser_line) {
     return;
   }
-  const std::vector<NamedLine> turntable = lines_of(config.turntable);
-  for (const std::string& line : gpio_lines_of(config.laser)) {
+  const std::vector<NamedLine> turntable = to_gpio_lines(config.turntable);
+  for (const std::string& line : to_gpio_names(config.laser)) {
     if (std::ranges::find(turntable, line, &NamedLine::name) != turntable.end()) {
       keys.refuse("laser", line, "on lines that the turntable has not");
     }

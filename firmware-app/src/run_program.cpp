@@ -20,7 +20,7 @@
 namespace octurn {
 namespace {
 
-constexpr auto look_interval = std::chrono::milliseconds(5);
+constexpr auto poll_interval = std::chrono::milliseconds(5);
 constexpr std::size_t max_output = std::size_t{16} << 20U;
 
 /// Creates an anonymous file in memory for a program's output. Unlike a pipe, it never blocks the
@@ -33,7 +33,7 @@ FileDescriptor make_output() {
   return file;
 }
 
-std::string content_of(const FileDescriptor& file) {
+std::string read_content(const FileDescriptor& file) {
   const off_t end = ::lseek(file.number(), 0, SEEK_END);
   std::string content(std::min(static_cast<std::size_t>(std::max<off_t>(end, 0)), max_output), 0);
   const ssize_t got = ::pread(file.number(), content.data(), content.size(), 0);
@@ -96,7 +96,7 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::st
   const pid_t process = SpawnSetup(output, errors).start(command);
   int status = 0;
   while (::waitpid(process, &status, WNOHANG) == 0) {
-    std::this_thread::sleep_for(look_interval);
+    std::this_thread::sleep_for(poll_interval);
     if (stop.stop_requested()) {
       ::kill(process, SIGKILL);
       ::waitpid(process, &status, 0);
@@ -104,8 +104,8 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::st
     }
   }
   return {.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-          .output = content_of(output),
-          .errors = content_of(errors)};
+          .output = read_content(output),
+          .errors = read_content(errors)};
 }
 
 }  // namespace octurn

@@ -68,5 +68,51 @@ TEST(CommandSlot, ForgetsABuildThatWaitsAndStopsOneThatGoesOn) {
   EXPECT_TRUE(build->stop.stop_requested());
 }
 
+TEST(CommandSlot, SaysWhichScanOrBuildWaitsOrRuns) {
+  CommandSlot slot;
+  ASSERT_TRUE(slot.offer_build({.run = {.scan = "a", .number = 2}}));
+  for (const bool runs : {false, true}) {
+    ASSERT_EQ(runs, runs && slot.take(patience));
+    EXPECT_TRUE(slot.has_build("a"));
+    EXPECT_TRUE(slot.has_build("a", 2));
+    EXPECT_FALSE(slot.has_build("a", 1));
+    EXPECT_FALSE(slot.has_build("b"));
+    EXPECT_FALSE(slot.has_scan("a"));
+    EXPECT_TRUE(slot.is_busy());
+  }
+  ASSERT_TRUE(slot.offer_scan(ScanCommand{.job = {.id = "b"}}));
+  EXPECT_TRUE(slot.has_build("a")) << "until it has stopped";
+  slot.finish();
+  for (const bool runs : {false, true}) {
+    ASSERT_EQ(runs, runs && slot.take(patience));
+    EXPECT_TRUE(slot.has_scan("b"));
+    EXPECT_FALSE(slot.has_scan("a"));
+    EXPECT_FALSE(slot.has_measurement());
+    EXPECT_FALSE(slot.has_build("a"));
+  }
+  slot.finish();
+  EXPECT_FALSE(slot.has_scan("b"));
+  EXPECT_FALSE(slot.is_busy());
+}
+
+TEST(CommandSlot, EndsALensCalibrationEarlyOnceItHasAView) {
+  CommandSlot slot;
+  ASSERT_TRUE(slot.offer_scan(LensCommand{}));
+  EXPECT_TRUE(slot.has_measurement());
+  EXPECT_FALSE(slot.solve_lens()) << "it waits";
+  const auto lens = slot.take(patience);
+  ASSERT_TRUE(lens);
+  EXPECT_TRUE(slot.has_measurement());
+  EXPECT_FALSE(slot.solve_lens()) << "no view yet";
+  EXPECT_FALSE(lens->stop.stop_requested());
+  slot.report_lens_view();
+  EXPECT_TRUE(slot.solve_lens());
+  EXPECT_TRUE(lens->stop.stop_requested());
+  EXPECT_EQ(slot.scan_stop(), ScanStop::pause);
+  slot.finish();
+  EXPECT_FALSE(slot.solve_lens());
+  EXPECT_FALSE(slot.has_measurement());
+}
+
 }  // namespace
 }  // namespace octurn

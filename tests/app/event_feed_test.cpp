@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr FeedLimits brisk{.max_watchers = 2, .look_interval = 1ms, .heartbeat = 1h};
+constexpr FeedLimits brisk{.max_watchers = 2, .poll_interval = 1ms, .heartbeat = 1h};
 
 std::string to_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -82,7 +82,7 @@ TEST(EventFeed, EndsAStreamAfterItsLifetime) {
 }
 
 TEST(EventFeed, EndsItsStreamsAtOnce) {
-  EventFeed feed([] { return std::vector<News>{}; }, {.look_interval = 1h, .heartbeat = 1h});
+  EventFeed feed([] { return std::vector<News>{}; }, {.poll_interval = 1h, .heartbeat = 1h});
   std::atomic<bool> is_told = false;
   const std::jthread watcher([&] {
     all_of(*feed.watch(""), [&](const std::string&) {
@@ -131,7 +131,7 @@ class EventServer {
   EventFeed feed_{[] {
                     return std::vector<News>{{"status", "1"}};
                   },
-                  {.look_interval = 1ms, .heartbeat = 1ms}};
+                  {.poll_interval = 1ms, .heartbeat = 1ms}};
   HttpServer server_{{.address = "127.0.0.1", .port = 0}, [this](const Request& request) {
                        if (request.path != "/events") {
                          return Response{.body = "the page"};

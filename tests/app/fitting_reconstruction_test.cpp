@@ -42,7 +42,7 @@ TEST(FittingReconstruction, BecomesCoarserAsLongAsTheModelDoesNotFit) {
   EXPECT_TRUE(report->watertight);
   EXPECT_NEAR(report->size.x(), 0.1, 0.002);  // the ball's width
   Quality quality;
-  reconstruction.tell(quality);
+  reconstruction.add_coarser_reason(quality);
   ASSERT_EQ(quality.reasons.size(), 1U);
   EXPECT_EQ(quality.verdict, Verdict::look);
   EXPECT_EQ(quality.reasons[0].code, coarser_code);
@@ -56,7 +56,7 @@ TEST(FittingReconstruction, StaysAsItIsForAnyOtherError) {
       code_thrown_by([&] { reconstruction.make_coarser(Error(ErrorCode::write_failed, "no")); }),
       "write-failed");
   Quality quality;
-  reconstruction.tell(quality);
+  reconstruction.add_coarser_reason(quality);
   EXPECT_EQ(quality, Quality());
 }
 

@@ -26,7 +26,9 @@ Response echo(const Request& request) {
   return {.headers = {{"Content-Type", "application/json"}}, .body = said.dump()};
 }
 
-HttpServer echo_server() { return {{.address = "127.0.0.1", .port = 0, .patience = 1s}, echo}; }
+HttpServer echo_server() {
+  return {{.address = "127.0.0.1", .port = 0, .request_timeout = 1s}, echo};
+}
 
 nlohmann::json said(const Reply& reply) { return nlohmann::json::parse(reply.body); }
 
@@ -217,7 +219,7 @@ TEST(HttpServer, EndsConnectionsThatStall) {
 
 // The server's patience is longer than the test, so it answers beside stalled clients or never.
 TEST(HttpServer, AnswersOthersWhileSomeStall) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, echo);
+  const HttpServer server({.address = "127.0.0.1", .port = 0, .request_timeout = 1h}, echo);
   std::vector<FileDescriptor> stalled;
   for (int i = 0; i < 10; ++i) {
     stalled.push_back(connected(server.port()));

@@ -55,7 +55,7 @@ TEST(LaserSettings, AreReadWithTheirLinesAndPlanes) {
           {{"line", "GPIO12"}, {"plane_m", {0.6, 0, 0.8, 0.1}}, {"source_m", {0.1, 0, 0.05}}}}}}});
   EXPECT_EQ(config.sensor, SensorKind::laser_line);
   EXPECT_EQ(config.laser.lens.width, 1640);
-  EXPECT_EQ(gpio_lines_of(config.laser), std::vector<std::string>{"GPIO12"});
+  EXPECT_EQ(to_gpio_names(config.laser), std::vector<std::string>{"GPIO12"});
   const LaserCamera camera = laser_camera(config.laser);
   ASSERT_EQ(camera.lasers.size(), 1U);
   EXPECT_EQ(camera.k1, -0.05);

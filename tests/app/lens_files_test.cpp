@@ -39,7 +39,7 @@ TEST(LensFiles, KeepWhatABoardToldOfACamera) {
   EXPECT_EQ(kept->rms, 0.07);
   EXPECT_EQ(kept->views, 14);
   EXPECT_EQ(kept->made.size(), 20U);  // 2026-11-26T05:00:00Z
-  EXPECT_EQ(lens_of("/data", "usb/0c45:6366"), "/data/lenses/usb_0c45_6366.json");
+  EXPECT_EQ(lens_path("/data", "usb/0c45:6366"), "/data/lenses/usb_0c45_6366.json");
 }
 
 TEST(LensFiles, GoWithTheirCameraAndItsPictureSize) {
@@ -65,14 +65,14 @@ TEST(LensFiles, AreRemoved) {
 TEST(LensFiles, ThatAreDamagedAreNamed) {
   const TemporaryFolder data;
   keep_lens(data.path(), "A", some_report());
-  const std::string whole = content_of(lens_of(data.path(), "A"));
+  const std::string whole = content_of(lens_path(data.path(), "A"));
   for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
-    put(lens_of(data.path(), "A"), whole.substr(0, length));
+    put(lens_path(data.path(), "A"), whole.substr(0, length));
     const Error error = error_thrown_by([&] { find_lens(data.path(), "A"); });
     EXPECT_EQ(error.code(), ErrorCode::scan_malformed) << length;
     EXPECT_NE(std::string(error.what()).find("A.json"), std::string::npos) << error.what();
   }
-  put(lens_of(data.path(), "A"), R"({"format": "octurn-lens", "version": 2})");
+  put(lens_path(data.path(), "A"), R"({"format": "octurn-lens", "version": 2})");
   EXPECT_EQ(error_thrown_by([&] { find_lens(data.path(), "A"); }).code(),
             ErrorCode::scan_malformed);
 }

@@ -10,17 +10,17 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(SensorMapFiles, AreNamedAfterTheSerialNumber) {
-  EXPECT_EQ(sensor_map_of("/data", "A00361"), fs::path("/data/sensor-maps/A00361.png"));
-  EXPECT_EQ(sensor_map_of("/data", "1d27/0601@1/7"),
+  EXPECT_EQ(sensor_map_path("/data", "A00361"), fs::path("/data/sensor-maps/A00361.png"));
+  EXPECT_EQ(sensor_map_path("/data", "1d27/0601@1/7"),
             fs::path("/data/sensor-maps/1d27_0601_1_7.png"));
-  EXPECT_EQ(sensor_map_of("/data", "../../etc"), fs::path("/data/sensor-maps/.._.._etc.png"));
+  EXPECT_EQ(sensor_map_path("/data", "../../etc"), fs::path("/data/sensor-maps/.._.._etc.png"));
 }
 
 TEST(SensorMapFiles, GoIntoTheFolderOfAScan) {
   const TemporaryFolder data;
   const fs::path scan = data.path() / "scan";
   fs::create_directory(scan);
-  put(sensor_map_of(data.path(), "A1"), "a map");
+  put(sensor_map_path(data.path(), "A1"), "a map");
 
   keep_sensor_map(data.path(), "A1", scan);
 
@@ -31,8 +31,8 @@ TEST(SensorMapFiles, AreNotThoseOfAnotherSensor) {
   const TemporaryFolder data;
   const fs::path scan = data.path() / "scan";
   fs::create_directory(scan);
-  put(sensor_map_of(data.path(), "A1"), "a map");
-  put(sensor_map_of(data.path(), ""), "nobody's map");
+  put(sensor_map_path(data.path(), "A1"), "a map");
+  put(sensor_map_path(data.path(), ""), "nobody's map");
 
   keep_sensor_map(data.path(), "A2", scan);
   keep_sensor_map(data.path(), "", scan);

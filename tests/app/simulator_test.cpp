@@ -49,10 +49,10 @@ TEST(Simulator, TurnsToAWallAndBack) {
 TEST(Simulator, TurnsItsObjectOverAndBack) {
   const auto sensor = open_sensor(ideal);
   const KinectFrame before = frame_at(*sensor, 0);
-  sensor->lay_object(1);
+  sensor->set_object_pose(1);
   const KinectFrame lies = frame_at(*sensor, 0);
   EXPECT_FALSE(lies.frame.depth == before.frame.depth);
-  sensor->lay_object(0);
+  sensor->set_object_pose(0);
   EXPECT_TRUE(frame_at(*sensor, 0).frame.depth == before.frame.depth);
 }
 

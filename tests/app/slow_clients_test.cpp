@@ -42,7 +42,7 @@ Response answer(const Request& request) {
 }
 
 HttpServer server_with(std::chrono::milliseconds patience) {
-  return {{.address = "127.0.0.1", .port = 0, .patience = patience}, answer};
+  return {{.address = "127.0.0.1", .port = 0, .request_timeout = patience}, answer};
 }
 
 std::string post(const std::string& path, const std::string& type, const std::string& length) {
@@ -114,7 +114,7 @@ TEST(SlowClient, IsToldThatItsBodyCameTooSlowly) {
 TEST(SlowReader, IsLeftThoughItTakesAByteNowAndThen) {
   std::atomic<bool> ended = false;
   const HttpServer server(
-      {.address = "127.0.0.1", .port = 0, .patience = 300ms}, [&](const Request& request) {
+      {.address = "127.0.0.1", .port = 0, .request_timeout = 300ms}, [&](const Request& request) {
         Response response = answer(request);
         auto& stream = std::get<ByteStream>(response.body);
         stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
@@ -139,18 +139,19 @@ TEST(SlowReader, IsLeftAtOnceWhenTheStreamIsStopped) {
   std::stop_source scan_starts;
   std::atomic<bool> streaming = false;
   std::atomic<bool> ended = false;
-  const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {
-    ByteStream stream{.length = endless, .stop = scan_starts.get_token()};
-    stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
-      const std::vector<std::byte> part(32 << 20U);  // more than the kernel buffers
-      streaming = true;
-      streaming.notify_all();
-      EXPECT_FALSE(sink(part));
-      ended = true;
-      ended.notify_all();
-    });
-    return Response{.body = std::move(stream)};
-  });
+  const HttpServer server(
+      {.address = "127.0.0.1", .port = 0, .request_timeout = 1h}, [&](const Request&) {
+        ByteStream stream{.length = endless, .stop = scan_starts.get_token()};
+        stream.make = std::packaged_task<void(const ByteSink&)>([&](const ByteSink& sink) {
+          const std::vector<std::byte> part(32 << 20U);  // more than the kernel buffers
+          streaming = true;
+          streaming.notify_all();
+          EXPECT_FALSE(sink(part));
+          ended = true;
+          ended.notify_all();
+        });
+        return Response{.body = std::move(stream)};
+      });
   const FileDescriptor socket = connected(server.port());
   send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
   streaming.wait(false);
@@ -163,10 +164,11 @@ class CutOff : public ::testing::TestWithParam<std::string> {};
 // An incomplete request is refused and never reaches the handler.
 TEST_P(CutOff, AsksForNothing) {
   std::atomic<int> asked = 0;
-  const HttpServer server({.address = "127.0.0.1", .port = 0, .patience = 1h}, [&](const Request&) {
-    ++asked;
-    return Response{};
-  });
+  const HttpServer server({.address = "127.0.0.1", .port = 0, .request_timeout = 1h},
+                          [&](const Request&) {
+                            ++asked;
+                            return Response{};
+                          });
   const FileDescriptor socket = connected(server.port());
   send_text(socket, GetParam());
   ::shutdown(socket.number(), SHUT_WR);

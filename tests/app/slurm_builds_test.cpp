@@ -10,7 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "scan/built_elsewhere.hpp"
+#include "scan/external_build.hpp"
 #include "scan/scanner.hpp"
 #include "support/patience.hpp"
 #include "support/small_scan.hpp"

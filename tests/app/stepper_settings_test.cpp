@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 std::string levels_of(const StepperSettings& settings) {
   std::string levels;
-  for (const NamedLine& line : lines_of(settings)) {
+  for (const NamedLine& line : to_gpio_lines(settings)) {
     levels += line.name + (line.high ? "=H " : "=L ");
   }
   return levels;
@@ -40,7 +40,7 @@ TEST(StepperSettings, AreReadFromEveryKey) {
   EXPECT_TRUE(settings.reversed);
   EXPECT_EQ(settings.idle_release, 10s);
   EXPECT_EQ(settings.take_up_steps, 32);
-  const Motion motion = motion_of(settings);
+  const Motion motion = to_motion(settings);
   EXPECT_EQ(motion.steps_per_turn, 400 * 16 * 5 / 2);
   EXPECT_EQ(motion.start_steps_per_second, 100);
   EXPECT_EQ(motion.top_steps_per_second, 1000);
@@ -50,7 +50,7 @@ TEST(StepperSettings, AreReadFromEveryKey) {
 
 TEST(StepperSettings, AreQuarterStepsOfACommonMotorWhereNothingIsSaid) {
   const StepperSettings settings = stepper_settings_from(json::object());
-  EXPECT_EQ(motion_of(settings).steps_per_turn, 800);
+  EXPECT_EQ(to_motion(settings).steps_per_turn, 800);
   EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H ");
 }
 
@@ -69,11 +69,11 @@ TEST(StepperSettings, SetMicrostepsAsTheDatasheetHasThem) {
 }
 
 TEST(StepperSettings, RoundATurnToWholeSteps) {
-  EXPECT_EQ(motion_of({.gear_ratio = 60.0 / 17}).steps_per_turn, 2824);  // 2823.53
+  EXPECT_EQ(to_motion({.gear_ratio = 60.0 / 17}).steps_per_turn, 2824);  // 2823.53
 }
 
 TEST(StepperSettings, StartNoFasterThanTheyGo) {
-  EXPECT_EQ(motion_of(stepper_settings_from({{"speed_steps_per_s", 60}})).start_steps_per_second,
+  EXPECT_EQ(to_motion(stepper_settings_from({{"speed_steps_per_s", 60}})).start_steps_per_second,
             60);
 }
 

@@ -95,8 +95,8 @@ TEST(TumCamera, HasThePublishedIntrinsicsAndTakesOthers) {
   EXPECT_DOUBLE_EQ(tum_camera("default").cx, 319.5);
   EXPECT_DOUBLE_EQ(tum_camera("default").depth_unit * 5000, 1.0);
   EXPECT_DOUBLE_EQ(tum_camera("30,31,15.5,11.5").fy, 31);
-  EXPECT_EQ(tum_camera_of("/data/rgbd_dataset_freiburg2_desk/"), "freiburg2");
-  EXPECT_EQ(tum_camera_of("/data/mine"), "default");
+  EXPECT_EQ(to_tum_camera("/data/rgbd_dataset_freiburg2_desk/"), "freiburg2");
+  EXPECT_EQ(to_tum_camera("/data/mine"), "default");
   for (const char* wrong : {"", "freiburg4", "1,2,3", "1,2,3,4,5", "0,1,2,3", "a,b,c,d"}) {
     EXPECT_EQ(code_thrown_by([&] { tum_camera(wrong); }), "bad-settings") << wrong;
   }

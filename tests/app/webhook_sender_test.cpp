@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr WebhookLimits brisk{.look_interval = 1ms, .first_pause = 1ms, .max_attempts = 3};
+constexpr WebhookLimits brisk{.poll_interval = 1ms, .first_pause = 1ms, .max_attempts = 3};
 
 /// A server that answers each request with the next of these statuses, and repeats the last one.
 class Receiver {
@@ -67,8 +67,8 @@ class Sender {
         sender_(
             book_, [this] { return std::exchange(happened_, {}); }, limits) {}
 
-  void tell(const std::string& event, const std::string& body = "{}") {
-    sender_.tell(id_, {.event = event, .body = body});
+  void queue(const std::string& event, const std::string& body = "{}") {
+    sender_.queue(id_, {.name = event, .body = body});
   }
 
   WebhookState wait_for(WebhookState::Outcome outcome) const {
@@ -84,7 +84,7 @@ class Sender {
  protected:
   TemporaryFolder folder_ = {};
   AddressBook book_{folder_.path() / "addresses.json"};
-  std::vector<Happening> happened_ = {};
+  std::vector<WebhookEvent> happened_ = {};
   std::string id_;
   WebhookSender sender_;
 };
@@ -92,7 +92,7 @@ class Sender {
 TEST(WebhookSender, TellsWhatHappenedAsJson) {
   const Receiver receiver({200});
   Sender sender(receiver);
-  sender.tell("scan-finished", R"({"event":"scan-finished"})");
+  sender.queue("scan-finished", R"({"event":"scan-finished"})");
   const std::vector<Request> received = receiver.wait_for(1);
   ASSERT_EQ(received.size(), 1U);
   EXPECT_EQ(received[0].method, "POST");
@@ -105,7 +105,7 @@ TEST(WebhookSender, TellsWhatHappenedAsJson) {
 TEST(WebhookSender, TriesAgainWhatWasNotTaken) {
   const Receiver receiver({500, 503, 204});
   Sender sender(receiver);
-  sender.tell("warning");
+  sender.queue("warning");
   EXPECT_EQ(sender.wait_for(WebhookState::Outcome::delivered).event, "warning");
   EXPECT_EQ(receiver.received().size(), 3U);
 }
@@ -113,7 +113,7 @@ TEST(WebhookSender, TriesAgainWhatWasNotTaken) {
 TEST(WebhookSender, GivesUpInTheEnd) {
   const Receiver receiver({500});
   Sender sender(receiver);
-  sender.tell("warning");
+  sender.queue("warning");
   EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "it answered 500");
   EXPECT_EQ(receiver.received().size(), 3U);
 }
@@ -121,7 +121,7 @@ TEST(WebhookSender, GivesUpInTheEnd) {
 TEST(WebhookSender, DoesNotInsistWhereItIsRefused) {
   const Receiver receiver({410});
   Sender sender(receiver);
-  sender.tell("warning");
+  sender.queue("warning");
   EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "it answered 410");
   EXPECT_EQ(receiver.received().size(), 1U);
 }
@@ -129,7 +129,7 @@ TEST(WebhookSender, DoesNotInsistWhereItIsRefused) {
 TEST(WebhookSender, FollowsNoRedirect) {
   const Receiver receiver({307});
   Sender sender(receiver);
-  sender.tell("warning");
+  sender.queue("warning");
   EXPECT_NE(sender.wait_for(WebhookState::Outcome::failed).trouble.find("redirect"),
             std::string::npos);
   EXPECT_EQ(receiver.received().size(), 1U);
@@ -145,8 +145,8 @@ TEST(WebhookSender, SaysThatNobodyAnswers) {
   AddressBook book(folder.path() / "addresses.json");
   const std::string id = book.add(Webhook{.url = url}).id;
   WebhookSender sender(
-      book, [] { return std::vector<Happening>{}; }, brisk);
-  sender.tell(id, {.event = "test", .body = "{}"});
+      book, [] { return std::vector<WebhookEvent>{}; }, brisk);
+  sender.queue(id, {.name = "test", .body = "{}"});
   std::optional<WebhookState> state = sender.state(id);
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (state->outcome != WebhookState::Outcome::failed &&
@@ -164,10 +164,10 @@ TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
   limits.first_pause = 1h;
   limits.max_waiting = 2;
   Sender sender(receiver, {}, limits);
-  sender.tell("scan-started");
+  sender.queue("scan-started");
   receiver.wait_for(1);
   for (const char* event : {"scan-paused", "scan-failed", "warning"}) {
-    sender.tell(event);
+    sender.queue(event);
   }
   EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "too much waited to be sent");
 }
@@ -181,8 +181,8 @@ class News : public Sender {
             book_, [this] { return std::exchange(news_, {}); }, brisk) {}
 
  private:
-  std::vector<Happening> news_{{.event = "scan-started", .body = "1"},
-                               {.event = "scan-finished", .body = "2"}};
+  std::vector<WebhookEvent> news_{{.name = "scan-started", .body = "1"},
+                                  {.name = "scan-finished", .body = "2"}};
   WebhookSender other_;
 };
 
@@ -213,8 +213,8 @@ TEST(WebhookSender, EndsAtOnceWhileAReceiverIsSlow) {
     WebhookLimits patient = brisk;
     patient.patience = 1h;
     WebhookSender sender(
-        book, [] { return std::vector<Happening>{}; }, patient);
-    sender.tell(id, {.event = "test", .body = "{}"});
+        book, [] { return std::vector<WebhookEvent>{}; }, patient);
+    sender.queue(id, {.name = "test", .body = "{}"});
     asked.get_future().wait();
   }  // the destructor returns here, or CTest's timeout ends the test
   answered.set_value();

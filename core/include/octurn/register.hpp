@@ -30,7 +30,7 @@ struct RegistrationTurn {
   std::optional<Eigen::Isometry3d> object_from_platform = {};
   /// The same as a person estimated it, within a centimetre and some 15 degrees: the start of the
   /// refinement. It is accepted even if other poses fit as well.
-  std::optional<Eigen::Isometry3d> told_object_from_platform = {};
+  std::optional<Eigen::Isometry3d> prior_object_from_platform = {};
 };
 
 /// Renders the depth images that a depth camera in the laser camera's place would have taken, from

@@ -18,7 +18,7 @@ constexpr double max_step = 0.022;   // metres: a larger range of depth is an ed
 constexpr double min_cosine = 0.25;  // between normal and ray
 
 /// The corners of a box around what a mask contains, metres, optical frame.
-std::array<Vector3d, 8> corners_of(const ObjectView::Mask& mask) {
+std::array<Vector3d, 8> to_corners(const ObjectView::Mask& mask) {
   const Vector3d& up = mask.plane.normal;
   const Vector3d foot = mask.axis_point - mask.plane.height(mask.axis_point) * up;
   const Vector3d right = max_radius * up.unitOrthogonal();
@@ -43,7 +43,7 @@ bool ObjectView::Mask::contains(const Vector3d& point) const {
 ObjectView::ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask)
     : intrinsics_(intrinsics), mask_(mask) {
   check_size(frame, intrinsics, "calibrate");
-  window_ = find_object(frame, intrinsics, seen_pixels(intrinsics, corners_of(mask)),
+  window_ = find_object(frame, intrinsics, seen_pixels(intrinsics, to_corners(mask)),
                         [&](const Vector3d& point) { return mask.contains(point); });
   inverse_depth_.reserve(static_cast<std::size_t>(window_.width) *
                          static_cast<std::size_t>(window_.height));

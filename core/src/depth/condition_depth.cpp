@@ -187,7 +187,7 @@ void set_surface(DepthObservation& observation, const PlaneFit& fit, const Intri
 /// platform's middle, which is the same at all stops of a turn, so that weights do not depend on
 /// the sensor's distance.
 /// @param middle  of the platform, metres, object's frame
-double reference_depth_of(const Snapshot& snapshot, const Eigen::Vector3d& middle) {
+double find_reference_depth(const Snapshot& snapshot, const Eigen::Vector3d& middle) {
   const double z = (snapshot.object_from_sensor.inverse() * middle).z();
   return object_share * std::max(z, nearest_z);
 }
@@ -247,13 +247,13 @@ ConditionedDepth::ConditionedDepth(const Snapshot& snapshot,
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip)
     : ConditionedDepth(snapshot,
                        condition_depth(snapshot, ObjectVolume(snapshot, clip),
-                                       reference_depth_of(snapshot, Eigen::Vector3d::Zero()))) {}
+                                       find_reference_depth(snapshot, Eigen::Vector3d::Zero()))) {}
 
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,
                                    const Placement& placement)
     : ConditionedDepth(
           snapshot, condition_depth(snapshot, ObjectVolume(snapshot, clip, placement),
-                                    reference_depth_of(
+                                    find_reference_depth(
                                         snapshot, placement.object_from_platform.translation()))) {}
 
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot, const Box& clip,

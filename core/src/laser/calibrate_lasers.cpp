@@ -33,8 +33,8 @@ const RigTrust trusted_in_part{.pose_shift = 0.005,
                                .plane_shift = 0.0005,
                                .plane_turn = radians_from_degrees(0.1),
                                .plane_tilt = radians_from_degrees(0.1)};
-constexpr double cheaper = 0.95;      // ratio of costs from which `trusted_planes` is chosen
-constexpr double far_cheaper = 0.85;  // the same for `trusted_in_part`
+constexpr double max_cost_ratio_planes = 0.95;   // from which `trusted_planes` is chosen
+constexpr double max_cost_ratio_in_part = 0.85;  // the same for `trusted_in_part`
 
 constexpr std::size_t min_platform_points = 500;
 constexpr std::size_t min_pairs = 500;
@@ -47,13 +47,13 @@ constexpr double lever = 0.05;  // metres above the platform, where `position_si
 // The told rig is kept if a solution changes the fit by no more than this share. Two lasers of a
 // correct rig disagree by 0.1 mm; a plane that is off by `least_turn_deg`, 0.03 mm at the object,
 // adds a twentieth to that, as much as noise does from turn to turn.
-constexpr double no_change = 0.05;
+constexpr double negligible_share = 0.05;
 
 // Smallest change of a plane that is worth a new model.
 constexpr double least_shift = 0.00005;  // metres
 constexpr double least_turn_deg = 0.004;
 
-double median_of(std::vector<float> values) {
+double median(std::vector<float> values) {
   if (values.empty()) {
     return 0;
   }
@@ -65,27 +65,28 @@ double median_of(std::vector<float> values) {
 /// The median distance between the surfaces of two lasers, metres; without an object, of the lines
 /// on the platform from its plane.
 double disagreement(const RigSolution& solution) {
-  return solution.between.size() >= min_pairs ? median_of(solution.between)
-                                              : median_of(solution.platform);
+  return solution.surface_distances.size() >= min_pairs ? median(solution.surface_distances)
+                                                        : median(solution.platform_heights);
 }
 
 /// Whether a solution fits no better than the told rig: its disagreement is the same within
-/// `no_change`, and the platform's lines are not flatter by more.
+/// `negligible_share`, and the platform's lines are not flatter by more.
 bool fits_no_better(const RigSolution& solution, const RigSolution& told) {
   const double before = disagreement(told);
-  return std::abs(disagreement(solution) - before) <= no_change * before &&
-         median_of(solution.platform) >= (1 - no_change) * median_of(told.platform);
+  return std::abs(disagreement(solution) - before) <= negligible_share * before &&
+         median(solution.platform_heights) >=
+             (1 - negligible_share) * median(told.platform_heights);
 }
 
-RigSolution best_of(const RigSolver& solver) {
+RigSolution solve_best(const RigSolver& solver) {
   RigSolution best = solver.solve(trusted_pose);
   RigSolution other = solver.solve(trusted_planes);
-  if (other.cost < cheaper * best.cost) {
+  if (other.cost < max_cost_ratio_planes * best.cost) {
     best = std::move(other);
   }
-  if (disagreement(best) > max_disagreement / 4 || median_of(best.platform) > max_height / 3) {
+  if (disagreement(best) > max_disagreement / 4 || median(best.platform_heights) > max_height / 3) {
     other = solver.solve(trusted_in_part);
-    if (other.cost < far_cheaper * best.cost) {
+    if (other.cost < max_cost_ratio_in_part * best.cost) {
       best = std::move(other);
     }
   }
@@ -127,11 +128,11 @@ bool moved_a_plane(const std::vector<Laser>& told, const std::vector<Laser>& sol
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
                     const std::vector<Laser>& told) {
-  if (median_of(solution.platform) > max_height) {
-    return "the lines on the platform are " + mm_text(median_of(solution.platform), 2) +
+  if (median(solution.platform_heights) > max_height) {
+    return "the lines on the platform are " + mm_text(median(solution.platform_heights), 2) +
            " from flat";
   }
-  if (solution.between.size() >= min_pairs && disagreement(solution) > max_disagreement) {
+  if (solution.surface_distances.size() >= min_pairs && disagreement(solution) > max_disagreement) {
     return "two lasers disagree about the object by " + mm_text(disagreement(solution), 2) +
            ": the object or a laser moved";
   }
@@ -182,7 +183,7 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   }
   const RigSolution as_told = solver.as_told();
   report.before = disagreement(as_told);
-  RigSolution best = best_of(solver);
+  RigSolution best = solve_best(solver);
   report.after = disagreement(best);
   if (fits_no_better(best, as_told)) {
     best.rig = told;

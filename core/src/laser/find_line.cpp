@@ -101,7 +101,7 @@ int end_of_light(const Row& row, int peak, int step) {
 }
 
 /// The centre of mass of the light from one pixel to another.
-Candidate centre_of(const Row& row, int first, int last) {
+Candidate make_candidate(const Row& row, int first, int last) {
   double light = 0;
   double moment = 0;
   double second = 0;
@@ -138,7 +138,7 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
     if (first < 0 || last < 0 || first == last || is_glare(row, first, last)) {
       continue;
     }
-    Candidate found = centre_of(row, first, last);
+    Candidate found = make_candidate(row, first, last);
     if (found.sample.light >= min_light) {
       found.sample.row = v;
       candidates.push_back(found);

@@ -28,7 +28,7 @@ Picture read_picture(const std::filesystem::path& folder, const std::string& fil
   return decode_picture_png(file, std::as_bytes(std::span(png)), lens.width, lens.height);
 }
 
-const std::optional<SolvedPose>& solved_of(const Scan& scan, const Shot& shot) {
+const std::optional<SolvedPose>& find_solved_pose(const Scan& scan, const Shot& shot) {
   return scan.poses.empty() ? scan.solved : scan.poses[static_cast<std::size_t>(shot.pose)].solved;
 }
 
@@ -48,7 +48,7 @@ LaserLines::LaserLines(std::filesystem::path folder, Scan scan)
     return other;
   };
   for (std::size_t stop = 0; stop < count; ++stop) {
-    beside_.push_back({.previous = beside(stop, count - 1), .next = beside(stop, 1)});
+    neighbours_.push_back({.previous = beside(stop, count - 1), .next = beside(stop, 1)});
   }
 }
 
@@ -74,7 +74,7 @@ const std::vector<LineProfile>& LaserLines::at(std::size_t stop) const {
 
 Snapshot LaserLines::snapshot(std::size_t stop) const {
   const Shot& shot = scan_.shots[stop];
-  const std::vector<Laser> lasers = model_lasers(*scan_.laser, solved_of(scan_, shot));
+  const std::vector<Laser> lasers = model_lasers(*scan_.laser, find_solved_pose(scan_, shot));
   Snapshot snapshot{.intrinsics = scan_.intrinsics,
                     .object_from_sensor = model_pose(scan_, shot),
                     .pose = shot.pose};
@@ -83,7 +83,7 @@ Snapshot LaserLines::snapshot(std::size_t stop) const {
             .laser = lasers[laser],
             .object_from_sensor = model_pose(scan_, scan_.shots[of])};
   };
-  const auto [previous, next] = beside_[stop];
+  const auto [previous, next] = neighbours_[stop];
   for (std::size_t laser = 0; laser < lasers.size(); ++laser) {
     const PlacedLine before = line(previous, laser);
     const PlacedLine after = line(next, laser);

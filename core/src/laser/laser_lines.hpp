@@ -38,7 +38,7 @@ class LaserLines {
     std::once_flag read = {};
     std::vector<LineProfile> lines = {};
   };
-  struct Beside {
+  struct NeighbourStops {
     std::size_t previous = 0;  // index; the stop itself, if its pose has no other
     std::size_t next = 0;
   };
@@ -47,7 +47,7 @@ class LaserLines {
   std::filesystem::path folder_;
   LineScale scale_;
   std::unique_ptr<Stop[]> stops_;
-  std::vector<Beside> beside_ = {};
+  std::vector<NeighbourStops> neighbours_ = {};
 };
 
 }  // namespace octurn

@@ -17,12 +17,12 @@ constexpr float min_agreement = 0.7F;  // cosine between two normals
 
 using Cell = std::array<int, 3>;
 
-Cell cell_of(const Vector3f& point) {
+Cell to_cell(const Vector3f& point) {
   const auto at = [&](int axis) { return static_cast<int>(std::floor(point[axis] / cell_side)); };
   return {at(0), at(1), at(2)};
 }
 
-std::uint64_t key_of(const Cell& cell) {
+std::uint64_t to_key(const Cell& cell) {
   constexpr int offset = 1 << 20;
   const auto part = [](int at) { return static_cast<std::uint64_t>(at + offset) & 0x1fffffU; };
   return part(cell[0]) | part(cell[1]) << 21U | part(cell[2]) << 42U;
@@ -46,7 +46,7 @@ LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t
   }
   cells_.reserve(points_.size());
   for (std::uint32_t i = 0; i < points_.size(); ++i) {
-    cells_.push_back({.cell = key_of(cell_of(points_[i].point)), .point = i});
+    cells_.push_back({.cell = to_key(to_cell(points_[i].point)), .point = i});
   }
   std::ranges::sort(cells_);
 }
@@ -78,15 +78,15 @@ void LinePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_h
 }
 
 const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& normal) const {
-  const Cell middle = cell_of(point);
+  const Cell middle = to_cell(point);
   std::uint32_t best = 0;
   float best_square = max_distance * max_distance;
   bool found = false;
   // Neighbouring cells along X have consecutive keys: one search finds all three.
   for (int i = 0; i < 9; ++i) {
     const Cell cell{middle[0] - 1, middle[1] + i % 3 - 1, middle[2] + i / 3 - 1};
-    const std::uint64_t last = key_of({middle[0] + 1, cell[1], cell[2]});
-    for (auto at = std::ranges::lower_bound(cells_, key_of(cell), {}, &Filed::cell);
+    const std::uint64_t last = to_key({middle[0] + 1, cell[1], cell[2]});
+    for (auto at = std::ranges::lower_bound(cells_, to_key(cell), {}, &CellEntry::cell);
          at != cells_.end() && at->cell <= last; ++at) {
       const LinePoint& other = points_[at->point];
       const float square = (other.point - point).squaredNorm();

@@ -35,13 +35,13 @@ class LinePoints {
                 const Eigen::Vector3f& camera);
 
   std::vector<LinePoint> points_ = {};
-  struct Filed {
+  struct CellEntry {
     std::uint64_t cell = 0;
     std::uint32_t point = 0;  // index in `points_`
 
-    auto operator<=>(const Filed&) const = default;
+    auto operator<=>(const CellEntry&) const = default;
   };
-  std::vector<Filed> cells_ = {};  // sorted
+  std::vector<CellEntry> cells_ = {};  // sorted
 };
 
 }  // namespace octurn

@@ -15,7 +15,7 @@ constexpr double gap = 0.0015;           // metres, besides the platform's motio
 constexpr double max_side = 0.01;        // metres, for any number of stops
 
 /// A line's points in the optical frame of the stop whose strip is made, in the order of its rays.
-std::vector<Vector3d> points_of(const PlacedLine& line, const Eigen::Isometry3d& own_from_line) {
+std::vector<Vector3d> to_points(const PlacedLine& line, const Eigen::Isometry3d& own_from_line) {
   std::vector<Vector3d> points;
   points.reserve(line.profile.rays.size());
   for (const LineProfile::Ray& ray : line.profile.rays) {
@@ -27,16 +27,16 @@ std::vector<Vector3d> points_of(const PlacedLine& line, const Eigen::Isometry3d&
 double column(const Vector3d& point) { return point.x() / point.z(); }
 
 /// Joins a stop's line with that of a neighbouring stop.
-class Joint {
+class LineJoiner {
  public:
   /// @param first  index of the other line's first point in the strip
-  Joint(const PlacedLine& own, const std::vector<Vector3d>& own_points, const PlacedLine& other,
-        std::size_t first)
+  LineJoiner(const PlacedLine& own, const std::vector<Vector3d>& own_points,
+             const PlacedLine& other, std::size_t first)
       : own_(own.profile),
         other_(other.profile),
         own_points_(own_points),
         own_from_other_(own.object_from_sensor.inverse() * other.object_from_sensor),
-        other_points_(points_of(other, own_from_other_)),
+        other_points_(to_points(other, own_from_other_)),
         first_(first) {}
 
   const std::vector<Vector3d>& other_points() const { return other_points_; }
@@ -128,7 +128,7 @@ class Joint {
 }  // namespace
 
 LineStrip make_strip(const PlacedLine& own, const PlacedLine* previous, const PlacedLine* next) {
-  const std::vector<Vector3d> own_points = points_of(own, Eigen::Isometry3d::Identity());
+  const std::vector<Vector3d> own_points = to_points(own, Eigen::Isometry3d::Identity());
   LineStrip strip{.own_points = own_points.size()};
   const auto append = [&](const std::vector<Vector3d>& points) {
     for (const Vector3d& point : points) {
@@ -140,9 +140,9 @@ LineStrip make_strip(const PlacedLine& own, const PlacedLine* previous, const Pl
     if (other == nullptr) {
       return {};
     }
-    const Joint joint(own, own_points, *other, strip.points.size());
-    append(joint.other_points());
-    return joint.triangles();
+    const LineJoiner joiner(own, own_points, *other, strip.points.size());
+    append(joiner.other_points());
+    return joiner.triangles();
   };
   strip.to_previous = join(previous);
   strip.to_next = join(next);

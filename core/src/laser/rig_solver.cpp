@@ -40,7 +40,7 @@ constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
 // Converged below this change of each unknown, radians and metres: a micrometre at the object.
 constexpr double at_rest = 0.000002;
 
-double weight_of(double residual, double scale) {
+double cauchy_weight(double residual, double scale) {
   const double part = residual / scale;
   return 1 / (1 + part * part);
 }
@@ -51,7 +51,7 @@ double weight_of_pair(const LinePoint& p, const LinePoint& q) {
   return 1 / (1 + part * part);
 }
 
-double cost_of(const std::vector<float>& residuals) {
+double cauchy_cost(const std::vector<float>& residuals) {
   double sum = 0;
   for (const float residual : residuals) {
     const double part = static_cast<double>(residual) / cost_scale;
@@ -188,7 +188,7 @@ void RigSolver::add_platform(const LaserRig& rig, double scale, Sums& sums) cons
     const double height = seen.in_platform().z();
     row.setZero();
     seen.add_row(Vector3d::UnitZ(), 1, row);
-    sums.add(row, height, weight_of(height, scale));
+    sums.add(row, height, cauchy_weight(height, scale));
   }
 }
 
@@ -218,29 +218,30 @@ void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) cons
         };
         add(p, from, 1);
         add(*q, to, -1);
-        sums.add(row, residual, weight_of(residual, scale) * weight_of_pair(p, *q));
+        sums.add(row, residual, cauchy_weight(residual, scale) * weight_of_pair(p, *q));
       }
     }
   }
 }
 
 /// The normal equations of a rig, scaled by the residuals' inverse variance.
-struct RigSolver::Look {
+struct RigSolver::Equations {
   Eigen::MatrixXd matrix;
   VectorXd right;
 };
 
 /// @param[out] solution  residuals and cost of the rig
-RigSolver::Look RigSolver::look(const LaserRig& rig, double scale, RigSolution& solution) const {
+RigSolver::Equations RigSolver::linearise(const LaserRig& rig, double scale,
+                                          RigSolution& solution) const {
   throw_if_stopped(stop_);
   const auto unknowns = pose_unknowns + plane_unknowns * static_cast<Index>(rig.lasers.size());
   Sums of_platform(unknowns);
   Sums of_surfaces(unknowns);
   add_platform(rig, scale, of_platform);
   add_surfaces(rig, scale, of_surfaces);
-  solution.cost = cost_of(of_platform.residuals) + cost_of(of_surfaces.residuals);
-  solution.platform = std::move(of_platform.residuals);
-  solution.between = std::move(of_surfaces.residuals);
+  solution.cost = cauchy_cost(of_platform.residuals) + cauchy_cost(of_surfaces.residuals);
+  solution.platform_heights = std::move(of_platform.residuals);
+  solution.surface_distances = std::move(of_surfaces.residuals);
   const double platform = of_platform.information(platform_correlation);
   const double surfaces = of_surfaces.information(surface_correlation);
   return {.matrix = platform * of_platform.matrix + surfaces * of_surfaces.matrix,
@@ -249,7 +250,7 @@ RigSolver::Look RigSolver::look(const LaserRig& rig, double scale, RigSolution& 
 
 RigSolution RigSolver::as_told() const {
   RigSolution solution{.rig = told_};
-  look(told_, scales.back(), solution);
+  linearise(told_, scales.back(), solution);
   return solution;
 }
 
@@ -265,10 +266,10 @@ RigSolution RigSolver::solve(const RigTrust& trust) const {
   VectorXd moved_so_far = VectorXd::Zero(unknowns);
   RigSolution solution{.rig = told_};
   for (const double scale : scales) {
-    const Look at = look(solution.rig, scale, solution);
-    Eigen::MatrixXd matrix = at.matrix;
+    const Equations equations = linearise(solution.rig, scale, solution);
+    Eigen::MatrixXd matrix = equations.matrix;
     matrix.diagonal() += prior;
-    const VectorXd change = matrix.ldlt().solve(at.right - prior.cwiseProduct(moved_so_far));
+    const VectorXd change = matrix.ldlt().solve(equations.right - prior.cwiseProduct(moved_so_far));
     if (!change.allFinite()) {
       break;
     }
@@ -278,7 +279,7 @@ RigSolution RigSolver::solve(const RigTrust& trust) const {
       break;
     }
   }
-  Look last = look(solution.rig, scales.back(), solution);
+  Equations last = linearise(solution.rig, scales.back(), solution);
   last.matrix.diagonal() += prior;
   solution.covariance = last.matrix.inverse();
   return solution;

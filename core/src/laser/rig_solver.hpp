@@ -21,9 +21,10 @@ struct RigTrust {
 /// A solved rig.
 struct RigSolution {
   LaserRig rig = {};
-  Eigen::MatrixXd covariance = {};   ///< of the unknowns of `moved`
-  std::vector<float> between = {};   ///< metres: distances between the surfaces of two lasers
-  std::vector<float> platform = {};  ///< metres: magnitudes of the heights on the platform
+  Eigen::MatrixXd covariance = {};  ///< of the unknowns of `moved`
+  std::vector<float> surface_distances =
+      {};  ///< metres: distances between the surfaces of two lasers
+  std::vector<float> platform_heights = {};  ///< metres: magnitudes of the heights on the platform
   double cost = 0;  ///< mean of ln(1 + (r / 0.1 mm)^2) over both kinds, to compare solutions
 };
 
@@ -58,9 +59,9 @@ class RigSolver {
     double radius = 0;  // metres from the platform's axis
   };
   struct Sums;
-  struct Look;
+  struct Equations;
 
-  Look look(const LaserRig& rig, double scale, RigSolution& solution) const;
+  Equations linearise(const LaserRig& rig, double scale, RigSolution& solution) const;
   std::vector<Reading> read_all();
   void find_platform();
   static double usual_height(const std::vector<Reading>& readings);

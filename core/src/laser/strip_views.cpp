@@ -68,7 +68,7 @@ class StripView {
   }
 
  private:
-  ImageCorner corner_of(std::uint32_t point) const {
+  ImageCorner to_corner(std::uint32_t point) const {
     const Eigen::Vector3d& p = points_[point];
     const double inverse = 1 / p.z();
     return {.u = p.x() * inverse * lens_.fx + lens_.cx,
@@ -85,7 +85,7 @@ class StripView {
           if (!(points_[point].z() > nearest_z)) {
             return false;
           }
-          const ImageCorner at = corner_of(point);
+          const ImageCorner at = to_corner(point);
           u0 = std::min(u0, at.u);
           u1 = std::max(u1, at.u);
           v0 = std::min(v0, at.v);
@@ -108,8 +108,8 @@ class StripView {
   void draw(const LineStrip::Triangle& triangle) {
     std::array<ImageCorner, 3> corners;
     std::ranges::transform(triangle, corners.begin(),
-                           [this](std::uint32_t point) { return corner_of(point); });
-    if (const std::optional<DepthObservation> plane = plane_of(triangle)) {
+                           [this](std::uint32_t point) { return to_corner(point); });
+    if (const std::optional<DepthObservation> plane = find_plane(triangle)) {
       visit_pixels(corners, lens_.width, lens_.height,
                    [&](int u, int v, const std::array<double, 3>& shares) {
                      set(u, v, triangle, shares, inverse_depth_at(corners, shares), *plane);
@@ -118,7 +118,7 @@ class StripView {
   }
 
   /// The plane of a triangle; nothing at grazing incidence.
-  std::optional<DepthObservation> plane_of(const LineStrip::Triangle& triangle) const {
+  std::optional<DepthObservation> find_plane(const LineStrip::Triangle& triangle) const {
     const Eigen::Vector3d& p = points_[triangle[0]];
     const Eigen::Vector3d side = points_[triangle[1]] - p;
     const Eigen::Vector3d normal = side.cross(points_[triangle[2]] - p);

@@ -48,7 +48,7 @@ std::vector<std::size_t> chosen_shots(const Scan& scan) {
 }
 
 /// The vertex normals, of length one, weighted by the triangles' areas; zero without triangles.
-std::vector<Vector3f> normals_of(const VertexMesh& mesh) {
+std::vector<Vector3f> vertex_normals(const VertexMesh& mesh) {
   std::vector<Vector3f> normals(mesh.vertices.size(), Vector3f::Zero());
   const auto at = [&](std::uint32_t vertex) {
     return Eigen::Map<const Vector3f>(mesh.vertices[vertex].data());
@@ -220,7 +220,7 @@ std::vector<Rgb> vertex_colours(const std::filesystem::path& folder, const Scan&
     throw Error(ErrorCode::scan_malformed, "the scan has no pictures, and so no colours",
                 "Only a scan by laser line has them.");
   }
-  const std::vector<Vector3f> normals = normals_of(mesh);
+  const std::vector<Vector3f> normals = vertex_normals(mesh);
   std::vector<Seen> seen(mesh.vertices.size());
   for (const std::size_t index : chosen_shots(scan)) {
     throw_if_stopped(stop);

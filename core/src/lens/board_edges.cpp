@@ -47,11 +47,11 @@ std::optional<double> contrast(const GreyImage& image, const Vector2d& from, con
   for (const double share : {0.2, 0.35, 0.5, 0.65, 0.8}) {
     const Vector2d on_left = from + share * way + aside;
     const Vector2d on_right = from + share * way - aside;
-    if (!image.holds(on_left.x(), on_left.y()) || !image.holds(on_right.x(), on_right.y())) {
+    if (!image.contains(on_left.x(), on_left.y()) || !image.contains(on_right.x(), on_right.y())) {
       return std::nullopt;
     }
     const double step =
-        image.between(on_left.x(), on_left.y()) - image.between(on_right.x(), on_right.y());
+        image.bilinear(on_left.x(), on_left.y()) - image.bilinear(on_right.x(), on_right.y());
     least = std::min(least, step);
     most = std::max(most, step);
   }

@@ -59,13 +59,13 @@ bool is_one_to_one(const CameraLens& lens) {
   return RadialDistortion{.k1 = lens.k1, .k2 = lens.k2}.is_invertible_to(std::hypot(across, down));
 }
 
-double share_of(const LensCoverage& coverage) {
+double covered_share(const LensCoverage& coverage) {
   return static_cast<double>(std::ranges::count(coverage, true)) /
          static_cast<double>(coverage.size());
 }
 
 /// Returns why a lens is refused; empty if it is accepted.
-std::string fault_of(const LensReport& report) {
+std::string find_fault(const LensReport& report) {
   const double focal_sigma = std::max(report.sigma.intrinsics.fx / report.lens.intrinsics.fx,
                                       report.sigma.intrinsics.fy / report.lens.intrinsics.fy);
   const double tilt_deg = degrees_from_radians(report.tilt);
@@ -73,7 +73,7 @@ std::string fault_of(const LensReport& report) {
     return "the board was held nearly parallel in all pictures, within " + number(tilt_deg, 0) +
            " degrees: only a tilted one tells the focal length";
   }
-  if (const double share = share_of(report.coverage); share < min_coverage) {
+  if (const double share = covered_share(report.coverage); share < min_coverage) {
     return "the board was shown in " + number(100 * share, 0) +
            " % of the picture only: a lens distorts most at the edges";
   }
@@ -138,7 +138,7 @@ LensReport calibrate_lens(std::span<const BoardView> views, int width, int heigh
   report.sigma = to_lens(fit.sigma, width, height);
   report.rms = fit.rms;
   report.tilt = largest_tilt(fit.found.camera_from_board);
-  report.reason = fault_of(report);
+  report.reason = find_fault(report);
   report.accepted = report.reason.empty();
   return report;
 }

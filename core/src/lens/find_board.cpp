@@ -21,7 +21,7 @@ constexpr int most_reach = 12;
 constexpr double reach_share = 0.5;  // of the distance to the nearest corner
 
 /// The corners of a smoothed image, refined.
-std::vector<Vector2d> corners_of(const GreyImage& image) {
+std::vector<Vector2d> find_corners(const GreyImage& image) {
   std::vector<Vector2d> corners;
   for (const CornerFeature& feature : corner_features(image)) {
     Vector2d pixel = feature.pixel;
@@ -48,7 +48,7 @@ double nearest_distance(const std::vector<Vector2d>& corners,
 BoardView find_board(const Picture& picture) {
   const int side = std::max(1, picture.width / usual_width);
   const GreyImage image = smoothed(reduced(picture, side));
-  const std::vector<Vector2d> corners = corners_of(image);
+  const std::vector<Vector2d> corners = find_corners(image);
   const std::vector<LatticePlace> places = grow_lattice(corners, find_edges(image, corners));
   if (places.size() < min_corners) {
     return {};

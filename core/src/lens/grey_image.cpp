@@ -4,7 +4,7 @@
 
 namespace octurn {
 
-double GreyImage::between(double u, double v) const {
+double GreyImage::bilinear(double u, double v) const {
   const int left = static_cast<int>(u);
   const int top = static_cast<int>(v);
   const double across = u - left;

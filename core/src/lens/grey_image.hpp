@@ -18,12 +18,12 @@ struct GreyImage {
                   static_cast<std::size_t>(u)];
   }
 
-  bool holds(double u, double v) const {
+  bool contains(double u, double v) const {
     return u >= 0 && v >= 0 && u < width - 1 && v < height - 1;
   }
 
-  /// Interpolates between four pixels (bilinear). @param u, v  inside the image, see `holds`
-  double between(double u, double v) const;
+  /// Interpolates between four pixels (bilinear). @param u, v  inside the image, see `contains`
+  double bilinear(double u, double v) const;
 };
 
 /// Smooths an image by the binomial filter 1 2 1 along both axes.

@@ -13,7 +13,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Vector2d place_of(const BoardCorner& corner) { return {corner.column, corner.row}; }
+Vector2d to_place(const BoardCorner& corner) { return {corner.column, corner.row}; }
 
 /// The transform that moves the points' mean to the origin, and scales their mean distance from it
 /// to the square root of 2.
@@ -39,7 +39,7 @@ Matrix3d board_homography(const BoardView& view) {
   std::vector<Vector2d> places;
   std::vector<Vector2d> pixels;
   for (const BoardCorner& corner : view) {
-    places.push_back(place_of(corner));
+    places.push_back(to_place(corner));
     pixels.push_back(corner.pixel);
   }
   const Matrix3d of_places = normalisation(places);

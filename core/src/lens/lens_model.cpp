@@ -113,10 +113,10 @@ LensAndBoards first_lens(const std::vector<BoardView>& views, int width, int hei
   }
   const Vector2d squares = focal_squares(centred);
   const double longest = 10.0 * width;
-  const bool tells = squares.allFinite() && squares.minCoeff() > 0.01 * width * width &&
-                     squares.maxCoeff() < longest * longest;
+  const bool is_determined = squares.allFinite() && squares.minCoeff() > 0.01 * width * width &&
+                             squares.maxCoeff() < longest * longest;
   const Vector2d focal =
-      tells ? Vector2d(squares.cwiseSqrt()) : Vector2d::Constant(usual_focal * width);
+      is_determined ? Vector2d(squares.cwiseSqrt()) : Vector2d::Constant(usual_focal * width);
   LensAndBoards first;
   first.lens << focal.x(), focal.y(), middle.x(), middle.y(), 0, 0;
   for (const Matrix3d& homography : homographies) {

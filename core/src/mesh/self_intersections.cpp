@@ -10,7 +10,7 @@
 namespace octurn {
 namespace {
 
-Aabb bounds_of(const MeshTriangle& triangle, std::span<const std::array<float, 3>> vertices) {
+Aabb to_aabb(const MeshTriangle& triangle, std::span<const std::array<float, 3>> vertices) {
   const auto& [a, b, c] = triangle;
   Aabb box{.min = vertices[a], .max = vertices[a]};
   box.extend({vertices[b], vertices[b]});
@@ -37,7 +37,7 @@ std::vector<Aabb> self_intersections(std::span<const std::array<float, 3>> verti
                                      std::span<const MeshTriangle> triangles,
                                      std::size_t already_checked, ThreadTeam& team) {
   const std::vector<char> is_star_shaped = find_star_shaped_fans(vertices, triangles, team);
-  const auto bounds = [&](std::uint32_t i) { return bounds_of(triangles[i], vertices); };
+  const auto bounds = [&](std::uint32_t i) { return to_aabb(triangles[i], vertices); };
   const Bvh4 bvh(triangles.size(), bounds, team);
   std::vector<std::vector<Aabb>> found(static_cast<std::size_t>(team.size()));
   bvh.for_each_overlapping_pair(team, [&](int thread, std::uint32_t a, std::uint32_t b) {

@@ -51,20 +51,21 @@ double contradiction(const Target& target, const SeenTurn& turn,
 }
 
 /// @param points  a subset of the turn's points
-Stands make_stands(const Target& target, const SeenTurn& turn,
-                   const std::vector<SurfacePoint>& points, std::size_t point_count) {
+PlatformConstraints platform_constraints(const Target& target, const SeenTurn& turn,
+                                         const std::vector<SurfacePoint>& points,
+                                         std::size_t point_count) {
   const auto share = [](const auto& some, const auto& all) {
     return static_cast<double>(some.size()) /
            static_cast<double>(std::max<std::size_t>(all.size(), 1));
   };
-  Stands stands{.target_from_platforms = {},
-                .target_points = thinned(target.points.points(), point_count)};
-  stands.target_share = share(stands.target_points, target.points.points());
-  stands.share = share(points, turn.points);
+  PlatformConstraints constraints{.target_from_platforms = {},
+                                  .target_points = thinned(target.points.points(), point_count)};
+  constraints.target_share = share(constraints.target_points, target.points.points());
+  constraints.share = share(points, turn.points);
   for (const PlacedTurn& placed : target.turns) {
-    stands.target_from_platforms.push_back(placed.object_from_turn);
+    constraints.target_from_platforms.push_back(placed.object_from_turn);
   }
-  return stands;
+  return constraints;
 }
 
 /// Refines candidates on `point_count` points, and measures their contradiction.
@@ -73,15 +74,15 @@ std::vector<PoseCandidate> judged(std::vector<PoseCandidate> candidates, const T
                                   const SeenTurn& turn, std::size_t point_count, int steps,
                                   int threads, const std::stop_token& stop) {
   const std::vector<SurfacePoint> points = thinned(turn.points, point_count);
-  const Stands stands = make_stands(target, turn, points, point_count);
+  const PlatformConstraints constraints = platform_constraints(target, turn, points, point_count);
   std::atomic<std::size_t> next = 0;
   fork_join(threads, [&](int) {
     for (std::size_t i = next++; i < candidates.size(); i = next++) {
       throw_if_stopped(stop);
       PoseCandidate& candidate = candidates[i];
-      candidate = refine(target.points, stands, points, candidate, steps);
-      candidate.contradiction =
-          contradiction(target, turn, points, stands.target_points, candidate.target_from_points);
+      candidate = refine(target.points, constraints, points, candidate, steps);
+      candidate.contradiction = contradiction(target, turn, points, constraints.target_points,
+                                              candidate.target_from_points);
     }
   });
   std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);

@@ -168,13 +168,15 @@ RigidFit fit(const NearestPoints& target, const std::vector<SurfacePoint>& point
   return fit;
 }
 
-void add_contacts(RigidFit& fit, const Stands& stands, const std::vector<SurfacePoint>& points,
-                  const Eigen::Isometry3d& pose) {
-  for (const Eigen::Isometry3d& target_from_platform : stands.target_from_platforms) {
-    const Contact foot = find_contact(points, target_from_platform.inverse() * pose, stands.share);
+void add_contacts(RigidFit& fit, const PlatformConstraints& constraints,
+                  const std::vector<SurfacePoint>& points, const Eigen::Isometry3d& pose) {
+  for (const Eigen::Isometry3d& target_from_platform : constraints.target_from_platforms) {
+    const Contact foot =
+        find_contact(points, target_from_platform.inverse() * pose, constraints.share);
     add_moving_foot(fit, foot, pose, contact_weight);
   }
-  const Contact foot = find_contact(stands.target_points, pose.inverse(), stands.target_share);
+  const Contact foot =
+      find_contact(constraints.target_points, pose.inverse(), constraints.target_share);
   add_moving_platform(fit, foot, Eigen::Isometry3d::Identity(), contact_weight);
 }
 
@@ -193,7 +195,7 @@ std::vector<PoseCandidate> search_poses(const SearchedSide& target, const Search
   return candidates;
 }
 
-PoseCandidate refine(const NearestPoints& target, const Stands& stands,
+PoseCandidate refine(const NearestPoints& target, const PlatformConstraints& constraints,
                      const std::vector<SurfacePoint>& points, PoseCandidate candidate,
                      int iterations) {
   Eigen::Isometry3d& pose = candidate.target_from_points;
@@ -201,7 +203,7 @@ PoseCandidate refine(const NearestPoints& target, const Stands& stands,
     const double far = std::max(1 - static_cast<double>(i) / approach, 0.0);
     const double limit = near_limit + far * (far_limit - near_limit);
     RigidFit step = fit(target, points, pose, limit);
-    add_contacts(step, stands, points, pose);
+    add_contacts(step, constraints, points, pose);
     const Eigen::Isometry3d motion = step.motion();
     pose = motion * pose;
     if (i > approach && motion_length(motion, target.middle()) < settled) {

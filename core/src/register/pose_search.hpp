@@ -18,7 +18,7 @@ struct PoseCandidate {
 };
 
 /// The platforms, which constrain the height of a flat foot.
-struct Stands {
+struct PlatformConstraints {
   std::vector<Eigen::Isometry3d> target_from_platforms = {};  ///< of the target's turns
   std::vector<SurfacePoint> target_points = {};               ///< a subset of the target's points
   double target_share = 1;  ///< of the target's points, those in `target_points`
@@ -42,7 +42,7 @@ std::vector<PoseCandidate> search_poses(const SearchedSide& target, const Search
 
 /// Refines a candidate by point-to-plane ICP, with the constraint that flat feet lie on their
 /// platforms. @param points  of the turn, in its frame
-PoseCandidate refine(const NearestPoints& target, const Stands& stands,
+PoseCandidate refine(const NearestPoints& target, const PlatformConstraints& constraints,
                      const std::vector<SurfacePoint>& points, PoseCandidate candidate,
                      int iterations);
 

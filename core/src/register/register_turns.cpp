@@ -189,7 +189,7 @@ std::optional<std::pair<std::size_t, std::string>> place_all(
         continue;
       }
       Answer found = place(make_target(placed_turns(seen, poses)), seen[i],
-                           turns[i].told_object_from_platform, threads, stop);
+                           turns[i].prior_object_from_platform, threads, stop);
       if (i + 1 == seen.size()) {
         candidates = std::move(found.candidates);
       }

@@ -89,7 +89,7 @@ bool has_leaves(const Brick& brick) {
   return std::ranges::any_of(brick.layers, [](std::uint64_t leaves) { return leaves != 0; });
 }
 
-TileBricks bricks_of(const Octree& octree) {
+TileBricks to_bricks(const Octree& octree) {
   struct Found {
     TileBrick position;
     const Brick* brick;
@@ -140,7 +140,7 @@ void make_leaf_tiles(const ReconstructOptions& options, std::span<const Tile> ti
       octree.merge(octrees[i].at(tile.index));
       octrees[i].erase(tile.index);
     }
-    sink(tile, bricks_of(octree));
+    sink(tile, to_bricks(octree));
     octrees.front().erase(tile.index);
   }
 }

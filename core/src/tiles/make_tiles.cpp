@@ -10,7 +10,7 @@ namespace octurn {
 namespace {
 
 /// The snapshots of a source that the tiles use.
-SnapshotSource part_of(const SnapshotSource& snapshots, std::span<const Tile> tiles) {
+SnapshotSource only_used(const SnapshotSource& snapshots, std::span<const Tile> tiles) {
   std::set<std::size_t> taken;
   for (const Tile& tile : tiles) {
     taken.insert(tile.snapshots.begin(), tile.snapshots.end());
@@ -48,7 +48,7 @@ void make_tiles(const ReconstructOptions& options, std::span<const Tile> tiles,
   while (!tiles.empty()) {
     ReconstructOptions within = options;
     const std::span<const Tile> group = first_group(within, tiles);
-    const SnapshotSource part = part_of(snapshots, group);
+    const SnapshotSource part = only_used(snapshots, group);
     if (options.method == Method::solid) {
       make_shell_tile(within, group.front(), snapshots.count, part, sink, stop);
     } else {

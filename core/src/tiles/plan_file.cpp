@@ -68,7 +68,7 @@ TilePlan plan_from(const json& document, const ReconstructOptions& options) {
 
 }  // namespace
 
-std::uint64_t checksum_of(const Snapshot& snapshot) {
+std::uint64_t compute_checksum(const Snapshot& snapshot) {
   Checksum checksum;
   checksum.add(std::as_bytes(std::span(snapshot.frame.depth)));
   const Eigen::Matrix4d pose = snapshot.object_from_sensor.matrix();
@@ -79,7 +79,7 @@ std::uint64_t checksum_of(const Snapshot& snapshot) {
   return checksum.value();
 }
 
-std::uint64_t checksum_of(const TilePlan& plan) {
+std::uint64_t compute_checksum(const TilePlan& plan) {
   Checksum checksum;
   checksum.add(std::as_bytes(std::span(plan.snapshots)));
   for (const Tile& tile : plan.tiles) {

@@ -8,10 +8,10 @@
 namespace octurn {
 
 /// The checksum of a depth image, its intrinsics and its pose.
-std::uint64_t checksum_of(const Snapshot& snapshot);
+std::uint64_t compute_checksum(const Snapshot& snapshot);
 
 /// The checksum of the tiles' indices and of all snapshots.
-std::uint64_t checksum_of(const TilePlan& plan);
+std::uint64_t compute_checksum(const TilePlan& plan);
 
 /// Reads a tile's index, an array of three integers. @throws Error  if the value is no index
 TileIndex tile_index_from(const JsonValue& value);

@@ -175,7 +175,7 @@ Seen look(const Snapshot& snapshot, const ReconstructOptions& options, const Til
   PointGrid grid = world_points(snapshot);
   clip(grid, options.clip);
   SeenBricks own(lattice);
-  Seen seen{.tiles = {}, .checksum = checksum_of(snapshot)};
+  Seen seen{.tiles = {}, .checksum = compute_checksum(snapshot)};
   if (options.method == Method::intersection) {
     add_triangles(grid, options.threshold, lattice, own);
   } else {

@@ -84,7 +84,7 @@ class TileField {
 };
 
 /// Reads the field of a tile: its own bricks, and those around it.
-TileField field_of(const TileLattice& lattice, const TilesByIndex& tiles, const TileIndex& tile) {
+TileField make_field(const TileLattice& lattice, const TilesByIndex& tiles, const TileIndex& tile) {
   TileField field(lattice, tile);
   for (int z = tile.z - 1; z <= tile.z + 1; ++z) {
     for (int y = tile.y - 1; y <= tile.y + 1; ++y) {
@@ -100,7 +100,7 @@ TileField field_of(const TileLattice& lattice, const TilesByIndex& tiles, const 
 
 /// The number of a mask's voxels within a range of cubes: a cube belongs to the voxel at its lowest
 /// corner.
-std::uint64_t voxels_of(const VoxelMask& mask, const CubeRange& range) {
+std::uint64_t count_voxels(const VoxelMask& mask, const CubeRange& range) {
   std::uint64_t count = 0;
   for (int z = range.low.z; z < range.end.z; ++z) {
     for (int y = range.low.y; y < range.end.y; ++y) {
@@ -171,7 +171,7 @@ SurfaceCount shell_surface(std::span<const StoredTile> tiles, const FacetSink& s
     if (inside.count() == 0) {
       return;
     }
-    count.leaves += voxels_of(inside, cubes);
+    count.leaves += count_voxels(inside, cubes);
     draw_column(
         inside, field, cubes, options.target_error,
         [&](std::span<const Facet> facets) {
@@ -182,7 +182,7 @@ SurfaceCount shell_surface(std::span<const StoredTile> tiles, const FacetSink& s
         stop);
   };
   for (const TileIndex& index : drawn_tiles(by_index)) {
-    const TileField near = field_of(lattice, by_index, index);
+    const TileField near = make_field(lattice, by_index, index);
     for (int y = 0; y < side; y += width) {
       for (int x = 0; x < side; x += width) {
         draw(near.field(), {index.x * side + x - 1, index.y * side + y - 1, index.z * side - 1});

@@ -27,8 +27,8 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
   return options;
 }
 
-TileHeader header_of(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
-                     std::size_t bricks) {
+TileHeader make_header(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
+                       std::size_t bricks) {
   ReconstructOptions told{.method = options.method,
                           .leaf_size = TileLattice(options).leaf_side(),
                           .root_size = options.root_size,
@@ -39,7 +39,7 @@ TileHeader header_of(const ReconstructOptions& options, const TilePlan& plan, st
     told.threshold = options.threshold;
   }
   return {.options = told,
-          .plan = checksum_of(plan),
+          .plan = compute_checksum(plan),
           .tiles = plan.tiles.size(),
           .number = number,
           .index = plan.tiles[number].index,
@@ -89,7 +89,8 @@ void TiledReconstructor::make_tiles_once(const SnapshotSource& snapshots,
         if (options_.method == Method::solid) {
           expect_surface_room(options_, tile.index, bricks.positions);
         }
-        const TileHeader header = header_of(options_, *plan_, made.size(), bricks.positions.size());
+        const TileHeader header =
+            make_header(options_, *plan_, made.size(), bricks.positions.size());
         const std::uint64_t begin = spool_->size();
         const std::uint64_t first = write_tile_bytes(
             header, bricks, [&](std::span<const std::byte> bytes) { spool_->append(bytes); });
@@ -127,7 +128,7 @@ namespace {
 SnapshotSource planned(const SnapshotSource& snapshots, const TilePlan& plan) {
   return {.count = snapshots.count, .read = [&snapshots, &plan](std::size_t index) {
             Snapshot snapshot = snapshots.read(index);
-            if (checksum_of(snapshot) != plan.snapshots[index]) {
+            if (compute_checksum(snapshot) != plan.snapshots[index]) {
               throw Error(
                   ErrorCode::scan_malformed,
                   "snapshot " + std::to_string(index) + " has changed since the plan was made",
@@ -157,7 +158,7 @@ void write_tile(const ReconstructOptions& options, const TilePlan& plan, std::si
   make_tiles(
       checked(options), std::span(plan.tiles).subspan(number, 1), planned(snapshots, plan),
       [&](const Tile& /*tile*/, const TileBricks& bricks) {
-        write_tile_bytes(header_of(options, plan, number, bricks.positions.size()), bricks,
+        write_tile_bytes(make_header(options, plan, number, bricks.positions.size()), bricks,
                          [&](std::span<const std::byte> bytes) { output.write(bytes); });
       },
       stop);

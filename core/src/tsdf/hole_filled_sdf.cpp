@@ -171,7 +171,7 @@ HoleFilledSdf::Value HoleFilledSdf::cut_by_platforms(const Index3& voxel, Value 
 
 /// The position of a whole box of voxels relative to the platforms. Nothing below a platform is
 /// inside.
-HoleFilledSdf::Place HoleFilledSdf::place_of(const Index3& low, const Index3& size) const {
+HoleFilledSdf::Place HoleFilledSdf::to_place(const Index3& low, const Index3& size) const {
   Place place = Place::above;
   for (const PlatformCut& platform : platforms_) {
     const auto [lowest, highest] = platform.heights(low, size);

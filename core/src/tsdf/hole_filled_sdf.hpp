@@ -85,8 +85,8 @@ class HoleFilledSdf {
   Value fill_foot(const Index3& voxel, Value value) const;
   Value cut_by_platforms(const Index3& voxel, Value value) const;
   float ticks(double metres) const;
-  Place place_of(const Index3& low, const Index3& size) const;
-  Side side_of(const Index3& brick) const;
+  Place to_place(const Index3& low, const Index3& size) const;
+  Side to_side(const Index3& brick) const;
   std::uint64_t inside_bits(const Index3& first) const;
   void add_inside(const Index3& brick, VoxelMask& mask) const;
 

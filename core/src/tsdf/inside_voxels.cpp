@@ -41,11 +41,11 @@ void clear_border(VoxelMask& mask) {
 /// The side of the surface that a whole brick lies on; `both` if its blocks and their neighbours
 /// differ in sign, or if it has samples of its own.
 /// @param brick  counted from the box's lowest corner
-HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
+HoleFilledSdf::Side HoleFilledSdf::to_side(const Index3& brick) const {
   const int per_brick = grid().blocks_per_brick();
   const Index3 first{brick.x * per_brick, brick.y * per_brick, brick.z * per_brick};
   const Index3 in_grid{low_brick_.x + brick.x, low_brick_.y + brick.y, low_brick_.z + brick.z};
-  const Place place = place_of(
+  const Place place = to_place(
       {low_.x + brick.x * brick_side, low_.y + brick.y * brick_side, low_.z + brick.z * brick_side},
       {brick_side, brick_side, brick_side});
   if (place == Place::below) {
@@ -79,7 +79,7 @@ HoleFilledSdf::Side HoleFilledSdf::side_of(const Index3& brick) const {
 /// The signs of eight voxels of a brick's row, `first` the first of them: 1 where the distance is
 /// negative.
 std::uint64_t HoleFilledSdf::inside_bits(const Index3& first) const {
-  const Place place = place_of(first, {brick_side, 1, 1});
+  const Place place = to_place(first, {brick_side, 1, 1});
   if (place == Place::below) {
     return 0;
   }
@@ -102,7 +102,7 @@ std::uint64_t HoleFilledSdf::inside_bits(const Index3& first) const {
 
 /// Adds the voxels inside of a brick that is counted from the box's lowest corner.
 void HoleFilledSdf::add_inside(const Index3& brick, VoxelMask& mask) const {
-  const Side side = side_of(brick);
+  const Side side = to_side(brick);
   if (side == Side::outside) {
     return;
   }

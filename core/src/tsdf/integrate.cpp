@@ -51,7 +51,7 @@ class TsdfIntegrator {
       node = classifier_.classify_octants(lowest_voxel(brick),
                                           half * brick_side)[static_cast<std::size_t>(octant)];
     }
-    visit(octant_of(brick, half, octant), half, node);
+    visit(to_octant(brick, half, octant), half, node);
   }
 
  private:
@@ -71,7 +71,7 @@ class TsdfIntegrator {
   }
 
   /// The lowest corner of a cube's octant. @param side  of the octant
-  static Index3 octant_of(const Index3& low, int side, int octant) {
+  static Index3 to_octant(const Index3& low, int side, int octant) {
     return {low.x + (octant & 1) * side, low.y + (octant >> 1 & 1) * side,
             low.z + (octant >> 2) * side};
   }
@@ -95,7 +95,7 @@ class TsdfIntegrator {
       const int half = bricks / 2;
       const auto octants = classifier_.classify_octants(lowest_voxel(brick), half * brick_side);
       for (int octant = 0; octant < 8; ++octant) {
-        visit(octant_of(brick, half, octant), half, octants[static_cast<std::size_t>(octant)]);
+        visit(to_octant(brick, half, octant), half, octants[static_cast<std::size_t>(octant)]);
       }
     }
   }
@@ -143,7 +143,7 @@ class TsdfIntegrator {
     const auto octants = classifier_.classify_octants(
         {block.x * voxels, block.y * voxels, block.z * voxels}, voxels);
     for (int octant = 0; octant < 8; ++octant) {
-      integrate_block(brick, octant_of(block, 1, octant), octants[static_cast<std::size_t>(octant)],
+      integrate_block(brick, to_octant(block, 1, octant), octants[static_cast<std::size_t>(octant)],
                       samples);
     }
   }

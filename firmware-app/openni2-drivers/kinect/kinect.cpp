@@ -37,7 +37,7 @@ bool is_sound(const KinectParameters& parameters) {
 
 /// The accelerometer's axes are x to the left (seen from behind), y up and z forward. At rest its
 /// reading points up. A model without firmware for it reads 0 g on all axes: it has no tilt.
-std::optional<Tilt> tilt_of(const freenect_raw_tilt_state& state) {
+std::optional<Tilt> to_tilt(const freenect_raw_tilt_state& state) {
   constexpr double counts_per_g = FREENECT_COUNTS_PER_G;
   const double left = state.accelerometer_x;
   const double up = state.accelerometer_y;
@@ -108,7 +108,7 @@ void Kinect::read_tilt() {
   if (!has_accelerometer_ || freenect_update_tilt_state(device_) < 0) {
     return;
   }
-  const std::optional<Tilt> tilt = tilt_of(*freenect_get_tilt_state(device_));
+  const std::optional<Tilt> tilt = to_tilt(*freenect_get_tilt_state(device_));
   const std::lock_guard lock(tilt_mutex_);
   tilt_ = tilt;
 }

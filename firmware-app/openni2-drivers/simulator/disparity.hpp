@@ -15,7 +15,7 @@ inline constexpr float readings_times_metres = 345.489F;
 inline constexpr int no_reading = 2047;
 
 /// @param inverse_depth  1/m  @return the reading before it is rounded
-constexpr float reading_of(float inverse_depth) {
+constexpr float to_reading(float inverse_depth) {
   return reading_at_infinity - readings_times_metres * inverse_depth;
 }
 

@@ -25,7 +25,7 @@ Scene make_scene(const Simulation& simulation) {
 }
 
 /// The serial number identifies the sensor's fixed pattern, which the seed determines.
-std::string serial_of(const Simulation& simulation) {
+std::string make_serial(const Simulation& simulation) {
   const std::string serial = "simulated-" + std::to_string(simulation.seed);
   return simulation.pattern > 0 ? serial : serial + "-perfect";
 }
@@ -57,7 +57,7 @@ class Device final : public DepthDevice {
       return give_property(state_.periods / frames_per_second, data, size);
     }
     if (property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER) {
-      return give_text(serial_of(simulation_), data, size);
+      return give_text(make_serial(simulation_), data, size);
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }

@@ -18,7 +18,7 @@ constexpr double slack = 0.0025;  // 1/m, 0.3 mm at 0.35 m: surfaces must not sh
 }  // namespace
 
 LaserFan::LaserFan(const Laser& laser, const Eigen::Vector3d& target)
-    : met_(static_cast<std::size_t>(column.height), 0.0F) {
+    : shadow_map_(static_cast<std::size_t>(column.height), 0.0F) {
   const Eigen::Vector3d& source = *laser.source;
   const Eigen::Vector3d way = target - source;
   Eigen::Matrix3d axes;  // of the fan, as columns
@@ -31,7 +31,7 @@ LaserFan::LaserFan(const Laser& laser, const Eigen::Vector3d& target)
 }
 
 void LaserFan::add(const Mesh& mesh, const Eigen::Isometry3d& sensor_from_mesh) {
-  rasterise(mesh, fan_from_sensor_ * sensor_from_mesh, column, met_);
+  rasterise(mesh, fan_from_sensor_ * sensor_from_mesh, column, shadow_map_);
 }
 
 bool LaserFan::reaches(const Eigen::Vector3d& point) const {
@@ -41,7 +41,8 @@ bool LaserFan::reaches(const Eigen::Vector3d& point) const {
     return false;
   }
   const auto above = static_cast<std::size_t>(row);
-  return 1 / seen.z() + slack >= static_cast<double>(std::min(met_[above], met_[above + 1]));
+  return 1 / seen.z() + slack >=
+         static_cast<double>(std::min(shadow_map_[above], shadow_map_[above + 1]));
 }
 
 }  // namespace octurn

@@ -23,7 +23,7 @@ class LaserFan {
 
  private:
   Eigen::Isometry3d fan_from_sensor_;  // X across the plane, Z to the target
-  InverseDepth met_;                   // of the first surface along each ray of the fan
+  InverseDepth shadow_map_;            // of the first surface along each ray of the fan
 };
 
 }  // namespace octurn

@@ -72,14 +72,14 @@ LaserScene::LaserScene(const LaserSimulation& simulation)
   }
 }
 
-void LaserScene::lay_object(int pose) {
-  if (object_.lay(pose)) {
+void LaserScene::set_object_pose(int pose) {
+  if (object_.set_pose(pose)) {
     seen_.clear();
   }
 }
 
 /// Renders what camera and lasers see at an angle of the platform.
-void LaserScene::look(double angle) {
+void LaserScene::render(double angle) {
   angle_ = angle;
   const Eigen::Isometry3d sensor_from_object =
       simulation_.platform_from_sensor.inverse() * object_.platform_from_mesh(angle);
@@ -199,7 +199,7 @@ void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
 /// The light at the camera's pixels with noise, grey levels before rounding.
 std::vector<float> LaserScene::levels(double angle, std::optional<std::size_t> lit) {
   if (seen_.empty() || angle != angle_) {
-    look(angle);
+    render(angle);
   }
   const Intrinsics& lens = simulation_.lens;
   const std::uint32_t number = mixed(simulation_.seed + 1, ++pictures_);

@@ -28,7 +28,7 @@ class LaserScene {
   explicit LaserScene(const LaserSimulation& simulation);
 
   // As of `LaserSimulator`.
-  void lay_object(int pose);
+  void set_object_pose(int pose);
   Picture expose(double angle, std::optional<std::size_t> lit);
   ColourExposure expose_in_colour(double angle, std::optional<std::size_t> lit);
 
@@ -43,7 +43,7 @@ class LaserScene {
     bool is_seen = false;
   };
 
-  void look(double angle);
+  void render(double angle);
   std::vector<float> levels(double angle, std::optional<std::size_t> lit);
   Picture to_picture(const std::vector<float>& levels) const;
   Patch patch(int u, int v) const;

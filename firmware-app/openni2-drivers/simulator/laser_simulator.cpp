@@ -27,7 +27,7 @@ class SceneThroughLens final : public LaserSimulator {
   explicit SceneThroughLens(const LaserSimulation& simulation)
       : simulation_(simulation), scene_(simulation) {}
 
-  void lay_object(int pose) override { scene_.lay_object(pose); }
+  void set_object_pose(int pose) override { scene_.set_object_pose(pose); }
 
   Picture expose(double angle, std::optional<std::size_t> lit) override {
     Picture picture = scene_.expose(angle, lit);

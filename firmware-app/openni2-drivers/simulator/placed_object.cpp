@@ -10,7 +10,7 @@ namespace octurn {
 
 PlacedObject::PlacedObject(Mesh mesh) : mesh_(std::move(mesh)) {}
 
-bool PlacedObject::lay(int pose) {
+bool PlacedObject::set_pose(int pose) {
   if (pose == pose_) {
     return false;
   }

@@ -17,7 +17,7 @@ class PlacedObject {
 
   /// Turns the object over. @param pose  as of `platform_from_object`
   /// @return false if it has this pose already
-  bool lay(int pose);
+  bool set_pose(int pose);
 
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   Eigen::Isometry3d platform_from_mesh(double angle) const;

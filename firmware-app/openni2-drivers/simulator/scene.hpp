@@ -25,7 +25,7 @@ class Scene {
 
   /// Turns the object over. @param pose  as of `platform_from_object`
   /// @return false if it has this pose already
-  bool lay_object(int pose) { return object_.lay(pose); }
+  bool set_object_pose(int pose) { return object_.set_pose(pose); }
 
   /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above

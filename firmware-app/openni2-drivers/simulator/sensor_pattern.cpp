@@ -9,7 +9,7 @@
 namespace octurn {
 namespace {
 
-constexpr double readings = 0.8;               // root mean square
+constexpr double error_rms = 0.8;              // readings
 constexpr double correlation = 50;             // pixels, to 1/e
 constexpr double changing = 0.4;               // share that differs between 0.65 and 0.9 m
 constexpr double change = 1 / 0.65 - 1 / 0.9;  // 1/m
@@ -74,7 +74,7 @@ SensorPattern::SensorPattern(std::uint32_t seed, double share)
   // No other random number of the simulator is drawn with these seeds.
   const std::vector<float> here = smooth_field(mixed(seed, 0x70617474));
   const std::vector<float> there = smooth_field(mixed(seed, 0x6368616E));
-  const auto size = static_cast<float>(share * readings);
+  const auto size = static_cast<float>(share * error_rms);
   const auto stays = static_cast<float>(std::sqrt(1 - changing * changing));
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {

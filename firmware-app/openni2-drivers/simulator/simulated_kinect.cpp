@@ -30,14 +30,14 @@ std::size_t index(int u, int v) { return static_cast<std::size_t>(v * camera.wid
 /// Standard deviation of one reading, a fit to the residuals of planes in real frames: tables seen
 /// at 43 to 71 degrees from 0.65 to 1.35 m, and nearly head-on at 0.84 m. Incidence matters little,
 /// less than in Nguyen, Izadi and Lovell 2012, "Modeling Kinect Sensor Noise".
-float spread_of(const Surface& surface) {
+float to_noise_factor(const Surface& surface) {
   const float at_depth = 0.47F + 0.14F * surface.inverse_depth * surface.inverse_depth;
   const float tangent_squared = 1 / (surface.cosine * surface.cosine) - 1;
   return at_depth * (1 + 0.02F * tangent_squared);
 }
 
 /// The noise above which a pixel has no depth, standard deviations.
-float patience_of(const Surface& surface) {
+float to_loss_threshold(const Surface& surface) {
   constexpr float usual = 4.5F;
   constexpr float at_edge = 1.4F;       // a twelfth of the pixels there is lost
   constexpr float hardly_seen = 0.22F;  // cosine of 77 degrees: from there on pixels are lost,
@@ -56,8 +56,8 @@ SimulatedKinect::SimulatedKinect(Scene scene, std::uint32_t seed, double noise, 
       pattern_(seed, pattern),
       depth_table_(depth_of_readings()),
       lit_(scene_.lit_at(angle_)),
-      still_(pixels(camera)) {
-  hold_still({.left = 0, .top = 0, .right = camera.width, .bottom = camera.height});
+      pixels_(pixels(camera)) {
+  update_pixels({.left = 0, .top = 0, .right = camera.width, .bottom = camera.height});
 }
 
 void SimulatedKinect::expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth) {
@@ -71,13 +71,13 @@ void SimulatedKinect::expose(double angle, std::uint32_t frame, std::span<std::u
   for (int v = 0; v < camera.height; ++v) {
     const auto noise = field_.row(noise_part, v);
     const auto loss = field_.row(lost_part, v);
-    const Pixel* row = &still_[index(0, v)];
+    const Pixel* row = &pixels_[index(0, v)];
     std::uint16_t* out = &depth[index(0, v)];
     for (std::size_t u = 0; u < camera.width; ++u) {
       const float reading = row[u].reading + row[u].spread * static_cast<float>(noise[u]);
       const auto rounded =
           static_cast<int>(std::clamp(reading + 0.5F, 0.0F, static_cast<float>(no_reading)));
-      const bool is_lost = static_cast<float>(loss[u]) > row[u].patience;
+      const bool is_lost = static_cast<float>(loss[u]) > row[u].loss_threshold;
       out[u] = is_lost ? std::uint16_t{0} : depth_table_[static_cast<std::size_t>(rounded)];
     }
   }
@@ -90,8 +90,8 @@ void SimulatedKinect::turn_to_wall(double distance) {
   }
 }
 
-void SimulatedKinect::lay_object(int pose) {
-  if (scene_.lay_object(pose)) {
+void SimulatedKinect::set_object_pose(int pose) {
+  if (scene_.set_object_pose(pose)) {
     look_again();
   }
 }
@@ -99,7 +99,7 @@ void SimulatedKinect::lay_object(int pose) {
 void SimulatedKinect::look_again() {
   const InverseDepth before =
       std::exchange(lit_, wall_ > 0 ? Scene::of_wall(wall_).lit_at(0) : scene_.lit_at(angle_));
-  hold_still(changed_from(before));
+  update_pixels(changed_from(before));
 }
 
 /// The smallest rectangle around all pixels that may have changed.
@@ -122,17 +122,17 @@ SimulatedKinect::Rectangle SimulatedKinect::changed_from(const InverseDepth& bef
           .bottom = std::min(changed.bottom + margin, camera.height)};
 }
 
-void SimulatedKinect::hold_still(const Rectangle& part) {
+void SimulatedKinect::update_pixels(const Rectangle& part) {
   const InverseDepth depth = noise_ > 0 ? with_ragged_edges(part) : lit_;
   for (int v = part.top; v < part.bottom; ++v) {
     for (int u = part.left; u < part.right; ++u) {
       const float seen = depth[index(u, v)];
-      Pixel& pixel = still_[index(u, v)];
+      Pixel& pixel = pixels_[index(u, v)];
       if (seen <= 0 || u >= camera.width - blind_columns) {
-        pixel = {.reading = no_reading, .patience = never_lost};
+        pixel = {.reading = no_reading, .loss_threshold = never_lost};
       } else if (noise_ <= 0) {
-        pixel = {.reading = reading_of(seen) + pattern_.error(index(u, v), seen),
-                 .patience = never_lost};
+        pixel = {.reading = to_reading(seen) + pattern_.error(index(u, v), seen),
+                 .loss_threshold = never_lost};
       } else {
         pixel = noisy(surface_at(depth, u, v), u, v);
       }
@@ -165,8 +165,8 @@ InverseDepth SimulatedKinect::with_ragged_edges(const Rectangle& part) const {
 }
 
 SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int v) const {
-  const float ideal = reading_of(surface.inverse_depth);
-  const float spread = noise_ * spread_of(surface);
+  const float ideal = to_reading(surface.inverse_depth);
+  const float spread = noise_ * to_noise_factor(surface);
   // A reading is the pattern's shift to the left, in eighths of a pixel.
   const auto found = static_cast<std::size_t>(u + static_cast<int>(ideal) / 8) % 512;
   const auto pattern = static_cast<float>(field_.row(mixed(seed_, pattern_part), v)[found]);
@@ -177,7 +177,8 @@ SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int
   return {.reading = ideal + pattern_.error(index(u, v), surface.inverse_depth) +
                      fixed * spread * pattern / NoiseField::one,
           .spread = fresh * spread / NoiseField::one,
-          .patience = (NoiseField::one * patience_of(surface) / noise_ - fixed * loss) / fresh};
+          .loss_threshold =
+              (NoiseField::one * to_loss_threshold(surface) / noise_ - fixed * loss) / fresh};
 }
 
 }  // namespace octurn

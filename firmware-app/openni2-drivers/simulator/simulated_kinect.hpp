@@ -43,7 +43,7 @@ class SimulatedKinect {
   void turn_to_wall(double distance);
 
   /// Turns the object over. @param pose  as of `platform_from_object`
-  void lay_object(int pose);
+  void set_object_pose(int pose);
 
   /// Takes one frame: 640 x 480 depths in tenths of a millimetre, 0 for none.
   /// @param angle  of the platform, radians
@@ -53,9 +53,9 @@ class SimulatedKinect {
  private:
   /// A pixel's reading and its noise while the platform stands still.
   struct Pixel {
-    float reading = 0;   // before it is rounded
-    float spread = 0;    // standard deviation from frame to frame, over NoiseField::one
-    float patience = 0;  // noise above which the pixel has no depth, times NoiseField::one
+    float reading = 0;         // before it is rounded
+    float spread = 0;          // standard deviation from frame to frame, over NoiseField::one
+    float loss_threshold = 0;  // noise above which the pixel has no depth, times NoiseField::one
   };
 
   struct Rectangle {
@@ -67,7 +67,7 @@ class SimulatedKinect {
 
   void look_again();
   Rectangle changed_from(const InverseDepth& before) const;
-  void hold_still(const Rectangle& part);
+  void update_pixels(const Rectangle& part);
   InverseDepth with_ragged_edges(const Rectangle& part) const;
   Pixel noisy(const Surface& surface, int u, int v) const;
 
@@ -80,7 +80,7 @@ class SimulatedKinect {
   double angle_ = 0;
   double wall_ = 0;  // metres; 0: it looks at its scene
   InverseDepth lit_;
-  std::vector<Pixel> still_;
+  std::vector<Pixel> pixels_;
 };
 
 }  // namespace octurn

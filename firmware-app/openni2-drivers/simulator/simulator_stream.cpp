@@ -57,7 +57,7 @@ void SimulatorStream::deliver_frame() {
   const auto time = steady_clock::now();
   const double angle = device_.angle;
   kinect_.turn_to_wall(device_.wall);
-  kinect_.lay_object(device_.object_pose);
+  kinect_.set_object_pose(device_.object_pose);
   ++frames_;
   deliver(frames_, time, [&](std::span<OniDepthPixel> depth) {
     kinect_.expose(angle, static_cast<std::uint32_t>(frames_), depth);

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_answer_bytes = std::size_t{256} << 10U;  // bytes; root's are far smaller
-constexpr unsigned for_root_alone = 0600;
+constexpr unsigned private_mode = 0600;
 constexpr auto patience_with_root = std::chrono::seconds(30);
 
 /// The last bytes of a file; empty if there is none.
@@ -164,11 +164,11 @@ MachineState Appliance::machine() const {
 }
 
 void Appliance::ask_for_machine(const MachineRequest& machine) {
-  write_file(request("machine"), to_text(machine), for_root_alone);
+  write_file(request("machine"), to_text(machine), private_mode);
 }
 
 void Appliance::ask_for_control(const ControlRequest& control) {
-  write_file(request("control"), to_text(control), for_root_alone);
+  write_file(request("control"), to_text(control), private_mode);
 }
 
 std::string Appliance::errors() const { return read_end(folder_ / "errors"); }
@@ -178,7 +178,7 @@ void Appliance::ask_for_wifi(const WifiRequest& wifi) {
   const Asked asked{.wifi = {.name = wifi.name, .country = wifi.country},
                     .time = fs::file_time_type::clock::now(),
                     .until = std::chrono::steady_clock::now() + patience_with_root};
-  write_file(request("wifi"), to_text(wifi), for_root_alone);
+  write_file(request("wifi"), to_text(wifi), private_mode);
   asked_ = asked;
 }
 
@@ -190,7 +190,7 @@ Appliance::Upload::Turn::Turn(std::atomic<bool>& is_taken) : is_taken_(is_taken)
 
 Appliance::Upload::Upload(Appliance& appliance, std::uint64_t bytes, UpdateAge age)
     : turn_(appliance.is_receiving_),
-      file_(appliance.place_for_update(bytes), for_root_alone),
+      file_(appliance.place_for_update(bytes), private_mode),
       older_(appliance.request("update.older")),
       age_(age) {}
 
@@ -201,7 +201,7 @@ void Appliance::Upload::write(std::span<const std::byte> bytes) {
 void Appliance::Upload::commit() {
   in_memory([&] {
     if (age_ == UpdateAge::any) {
-      write_file(older_, "", for_root_alone);
+      write_file(older_, "", private_mode);
     } else {
       fs::remove(older_);
     }

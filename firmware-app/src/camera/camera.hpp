@@ -21,7 +21,7 @@ struct TimedPicture {
 };
 
 /// How a camera is to look. Nothing of it changes while a scan runs.
-struct CameraWish {
+struct CameraSettings {
   int width = 0;                               ///< pixels, of the lens that is told
   int height = 0;                              ///< pixels
   std::chrono::microseconds exposure{10'000};  ///< of each picture
@@ -62,7 +62,7 @@ class Camera {
 
   /// Turns the object of a simulated camera over. Others ignore it: a person does it.
   /// @param pose  which way it lies, 0: as it stood at first
-  virtual void lay_object(int pose);
+  virtual void set_object_pose(int pose);
 
   /// Waves a printed board before a simulated camera. Others ignore it: a person does it.
   /// @param is_shown  false: it is put away
@@ -74,6 +74,6 @@ class Camera {
 /// @throws Error "sensor-other"    if it makes no pictures of the size, or of no layout that is
 /// read
 /// @throws Error "sensor-failed"   if it is in use, or does not start
-std::unique_ptr<Camera> open_camera(const CameraWish& wish);
+std::unique_ptr<Camera> open_camera(const CameraSettings& settings);
 
 }  // namespace octurn

@@ -10,7 +10,7 @@ std::optional<TimedPicture> Camera::read_in_colour(const std::stop_token& stop) 
 
 void Camera::show_angle(double /*angle*/) {}
 
-void Camera::lay_object(int /*pose*/) {}
+void Camera::set_object_pose(int /*pose*/) {}
 
 void Camera::show_board(bool /*is_shown*/) {}
 

@@ -12,7 +12,7 @@ namespace octurn {
 /// What the module libOcturnCamera offers, as its symbol `octurn_camera`.
 struct CameraModule {
   /// @throws Error  as `open_camera`
-  std::unique_ptr<Camera> (*open)(const CameraWish& wish) = nullptr;
+  std::unique_ptr<Camera> (*open)(const CameraSettings& settings) = nullptr;
 };
 
 }  // namespace octurn

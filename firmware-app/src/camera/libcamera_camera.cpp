@@ -44,7 +44,8 @@ steady_clock::time_point from_boot_time(std::int64_t nanoseconds) {
 
 /// The camera's controls that it has, all fixed: light that changes from picture to picture would
 /// be taken for a laser's.
-libcamera::ControlList fixed_controls(const libcamera::Camera& camera, const CameraWish& wish) {
+libcamera::ControlList fixed_controls(const libcamera::Camera& camera,
+                                      const CameraSettings& settings) {
   libcamera::ControlList controls(camera.controls());
   const auto set = [&](const auto& control, auto value) {
     if (camera.controls().find(control.id()) != camera.controls().end()) {
@@ -53,10 +54,10 @@ libcamera::ControlList fixed_controls(const libcamera::Camera& camera, const Cam
   };
   set(libcamera::controls::AeEnable, false);
   set(libcamera::controls::AwbEnable, false);
-  set(libcamera::controls::ExposureTime, static_cast<std::int32_t>(wish.exposure.count()));
-  set(libcamera::controls::AnalogueGain, static_cast<float>(wish.gain));
+  set(libcamera::controls::ExposureTime, static_cast<std::int32_t>(settings.exposure.count()));
+  set(libcamera::controls::AnalogueGain, static_cast<float>(settings.gain));
   set(libcamera::controls::AfMode, static_cast<std::int32_t>(libcamera::controls::AfModeManual));
-  set(libcamera::controls::LensPosition, static_cast<float>(1 / wish.focus));  // dioptres
+  set(libcamera::controls::LensPosition, static_cast<float>(1 / settings.focus));  // dioptres
   return controls;
 }
 
@@ -88,13 +89,13 @@ TimedPicture of_rows(std::span<const std::span<const std::uint8_t>> planes, cons
 }
 
 /// @return nothing if the picture is damaged
-std::optional<TimedPicture> of_jpeg(std::span<const std::uint8_t> bytes, const CameraWish& wish,
-                                    Kind kind) {
+std::optional<TimedPicture> of_jpeg(std::span<const std::uint8_t> bytes,
+                                    const CameraSettings& settings, Kind kind) {
   if (kind == Kind::grey) {
-    std::optional<Picture> picture = grey_jpeg(bytes, wish.width, wish.height);
+    std::optional<Picture> picture = grey_jpeg(bytes, settings.width, settings.height);
     return picture ? std::optional(TimedPicture{.picture = std::move(*picture)}) : std::nullopt;
   }
-  const auto jpeg = jpeg_planes(bytes, wish.width, wish.height);
+  const auto jpeg = jpeg_planes(bytes, settings.width, settings.height);
   if (!jpeg) {
     return std::nullopt;
   }
@@ -111,7 +112,7 @@ std::span<const std::uint8_t> written(std::span<const std::uint8_t> plane,
 
 class LibcameraCamera final : public Camera {
  public:
-  explicit LibcameraCamera(const CameraWish& wish) : wish_(wish) {
+  explicit LibcameraCamera(const CameraSettings& settings) : settings_(settings) {
     if (manager_.start() != 0) {
       throw Error(ErrorCode::sensor_failed, "libcamera does not start", again);
     }
@@ -172,13 +173,13 @@ class LibcameraCamera final : public Camera {
     const std::unique_ptr<libcamera::CameraConfiguration> configuration =
         camera_->generateConfiguration({libcamera::StreamRole::VideoRecording});
     expect(configuration != nullptr && !configuration->empty(), "has no stream of pictures");
-    const auto layout = choose_format(*configuration, wish_, *camera_, name_);
+    const auto layout = choose_format(*configuration, settings_, *camera_, name_);
     expect(camera_->configure(configuration.get()) == 0, "cannot be set up");
     libcamera::Stream* const stream = configuration->at(0).stream();
     if (layout) {
       rows_ = {.layout = *layout,
-               .width = wish_.width,
-               .height = wish_.height,
+               .width = settings_.width,
+               .height = settings_.height,
                .stride = configuration->at(0).stride};
     }
     buffers_ = std::make_unique<libcamera::FrameBufferAllocator>(camera_);
@@ -192,7 +193,7 @@ class LibcameraCamera final : public Camera {
     }
     camera_->requestCompleted.connect(this, &LibcameraCamera::on_completed);
     camera_->disconnected.connect(this, &LibcameraCamera::on_disconnected);
-    libcamera::ControlList controls = fixed_controls(*camera_, wish_);
+    libcamera::ControlList controls = fixed_controls(*camera_, settings_);
     expect(camera_->start(&controls) == 0, "does not start");
     for (const auto& request : requests_) {
       request->controls().merge(controls);  // USB cameras take none at their start
@@ -245,7 +246,7 @@ class LibcameraCamera final : public Camera {
     mapped.begin_reading();
     std::optional<TimedPicture> picture =
         rows_ ? of_rows(mapped.planes(), *rows_, kind)
-              : of_jpeg(written(mapped.planes().front(), buffer), wish_, kind);
+              : of_jpeg(written(mapped.planes().front(), buffer), settings_, kind);
     mapped.end_reading();
     if (picture) {
       picture->begin = begin_of(request);
@@ -259,14 +260,14 @@ class LibcameraCamera final : public Camera {
     const auto told = request.metadata().get(libcamera::controls::SensorTimestamp);
     const auto exposed = request.metadata().get(libcamera::controls::ExposureTime);
     const std::chrono::microseconds exposure =
-        exposed ? std::chrono::microseconds(*exposed) : wish_.exposure;
+        exposed ? std::chrono::microseconds(*exposed) : settings_.exposure;
     const std::int64_t at =
         told ? *told
              : static_cast<std::int64_t>(request.buffers().begin()->second->metadata().timestamp);
     return from_boot_time(at) - exposure;
   }
 
-  CameraWish wish_;
+  CameraSettings settings_;
   libcamera::CameraManager manager_ = {};
   std::shared_ptr<libcamera::Camera> camera_ = {};
   std::string name_ = {};
@@ -277,8 +278,8 @@ class LibcameraCamera final : public Camera {
   CompletedRequests completed_ = {};
 };
 
-std::unique_ptr<Camera> open(const CameraWish& wish) {
-  return std::make_unique<LibcameraCamera>(wish);
+std::unique_ptr<Camera> open(const CameraSettings& settings) {
+  return std::make_unique<LibcameraCamera>(settings);
 }
 
 }  // namespace

@@ -116,9 +116,9 @@ bool is_too_slow(const PixelFormat& format, const Size& size, const libcamera::C
 }  // namespace
 
 std::optional<PixelLayout> choose_format(libcamera::CameraConfiguration& configuration,
-                                         const CameraWish& wish, const libcamera::Camera& camera,
-                                         const std::string& name) {
-  const Size size(static_cast<unsigned>(wish.width), static_cast<unsigned>(wish.height));
+                                         const CameraSettings& settings,
+                                         const libcamera::Camera& camera, const std::string& name) {
+  const Size size(static_cast<unsigned>(settings.width), static_cast<unsigned>(settings.height));
   for (const auto& [format, layout] : readable_of(camera)) {
     if (set_format(configuration, format, size)) {
       if (is_too_slow(format, size, camera) && set_format(configuration, compressed, size)) {

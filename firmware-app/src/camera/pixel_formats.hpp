@@ -17,7 +17,7 @@ namespace octurn {
 /// @return how pixels are arranged in that format; nothing if each picture is a JPEG
 /// @throws Error "sensor-other"  that tells the sizes that the camera has, the largest first
 std::optional<PixelLayout> choose_format(libcamera::CameraConfiguration& configuration,
-                                         const CameraWish& wish, const libcamera::Camera& camera,
-                                         const std::string& name);
+                                         const CameraSettings& settings,
+                                         const libcamera::Camera& camera, const std::string& name);
 
 }  // namespace octurn

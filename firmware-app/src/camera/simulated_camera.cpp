@@ -54,7 +54,7 @@ class SimulatedCamera final : public Camera {
   }
 
   void show_angle(double angle) override { angle_ = angle; }
-  void lay_object(int pose) override { simulator_->lay_object(pose); }
+  void set_object_pose(int pose) override { simulator_->set_object_pose(pose); }
   void show_board(bool is_shown) override {
     shows_board_ = is_shown;
     board_pictures_ = 0;

@@ -1,6 +1,6 @@
 #include "commands/model_commands.hpp"
 #include "process_memory.hpp"
-#include "scan/built_elsewhere.hpp"
+#include "scan/external_build.hpp"
 #include "signal_stop.hpp"
 
 namespace octurn {

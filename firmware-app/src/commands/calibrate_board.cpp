@@ -58,7 +58,7 @@ struct PictureSize {
 };
 
 /// Reads the size from a PNG's header; 1 x 1 for a file without one, which fails to decode.
-PictureSize size_of(std::string_view png) {
+PictureSize read_size(std::string_view png) {
   constexpr std::size_t header = 24;  // bytes: signature, length and type of IHDR, width, height
   const auto number = [&](std::size_t first) {
     unsigned value = 0;
@@ -98,7 +98,7 @@ LensReport report_from(const std::filesystem::path& folder) {
     }
     bar.show(static_cast<int>(views.size()), static_cast<int>(files.size()), "looking for a board");
     const std::string png = read_regular_file(file, max_picture_bytes).value_or("");
-    size = views.empty() ? size_of(png) : size;
+    size = views.empty() ? read_size(png) : size;
     views.push_back(find_board(
         decode_picture_png(file.string(), std::as_bytes(std::span(png)), size.width, size.height)));
   }

@@ -16,7 +16,7 @@ namespace {
 double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
 
 /// Views of walls, all by one sensor.
-struct Looks {
+struct WallViews {
   std::vector<WallView> views = {};
   std::string sensor_serial = {};
 };
@@ -34,20 +34,21 @@ WallView read_view(const std::filesystem::path& folder, const Wall& wall,
 }
 
 /// @throws Error "recording-malformed"  also if the folders are of several sensors
-Looks read_looks(const std::vector<std::filesystem::path>& folders, const std::stop_token& stop) {
-  Looks looks;
+WallViews read_wall_views(const std::vector<std::filesystem::path>& folders,
+                          const std::stop_token& stop) {
+  WallViews walls;
   for (const std::filesystem::path& folder : folders) {
     const Wall wall = read_wall(folder);
-    if (looks.views.empty()) {
-      looks.sensor_serial = wall.sensor_serial;
-    } else if (wall.intrinsics != looks.views.front().intrinsics() ||
-               wall.sensor_serial != looks.sensor_serial) {
+    if (walls.views.empty()) {
+      walls.sensor_serial = wall.sensor_serial;
+    } else if (wall.intrinsics != walls.views.front().intrinsics() ||
+               wall.sensor_serial != walls.sensor_serial) {
       throw Error(ErrorCode::recording_malformed, folder.string() + ": is of another sensor",
                   "Make a map from the walls of one sensor.");
     }
-    looks.views.push_back(read_view(folder, wall, stop));
+    walls.views.push_back(read_view(folder, wall, stop));
   }
-  return looks;
+  return walls;
 }
 
 /// The report as lines for people.
@@ -72,9 +73,9 @@ std::string to_text(const SensorMapReport& report) {
 bool calibrate_wall(const CalibrateWallArguments& arguments) {
   const SignalStop signal;
   expect_writable(arguments.output);
-  const Looks looks = read_looks(arguments.walls, signal.token());
-  SensorMapReport report = fit_sensor_map(looks.views);
-  report.map.serial = looks.sensor_serial;
+  const WallViews walls = read_wall_views(arguments.walls, signal.token());
+  SensorMapReport report = fit_sensor_map(walls.views);
+  report.map.serial = walls.sensor_serial;
   if (report.accepted) {
     report.map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
     write_sensor_map(arguments.output, report.map);

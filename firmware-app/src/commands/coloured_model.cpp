@@ -10,8 +10,8 @@
 namespace octurn {
 namespace {
 
-MeshFormat format_of(const std::filesystem::path& file) {
-  const auto format = mesh_format_of(file.extension().string());
+MeshFormat to_format(const std::filesystem::path& file) {
+  const auto format = to_mesh_format(file.extension().string());
   if (!format) {
     throw Error(
         ErrorCode::bad_settings,
@@ -26,7 +26,7 @@ MeshFormat format_of(const std::filesystem::path& file) {
 ColouredModel::ColouredModel(const std::filesystem::path& file, const Scan& scan)
     : file_(std::filesystem::absolute(file)),
       stl_(temporary_name(file_.string() + ".stl", 0)),
-      format_(format_of(file)) {
+      format_(to_format(file)) {
   if (!scan.laser) {
     throw Error(ErrorCode::scan_malformed, "the scan has no pictures, and so no colours",
                 "Only a scan by laser line has them.");

@@ -58,7 +58,7 @@ void take_size(const std::string& png, Intrinsics& intrinsics) {
 Scan gather(const TumRecording& recording, const ImportArguments& arguments, const fs::path& folder,
             const std::stop_token& stop) {
   const std::string camera =
-      arguments.camera.empty() ? std::string(tum_camera_of(arguments.folder)) : arguments.camera;
+      arguments.camera.empty() ? std::string(to_tum_camera(arguments.folder)) : arguments.camera;
   Scan scan{
       .sensor_name = "TUM RGB-D, " + camera, .intrinsics = tum_camera(camera), .clip = everywhere};
   fs::create_directories(folder / "snapshots");

@@ -105,7 +105,7 @@ Eigen::Isometry3d pose_from(const std::vector<double>& coordinates) {
 /// Registers the turns. The arguments may give an estimate of the last turn's pose.
 Registration register_as_told(std::vector<StoredTurn>& turns, const MergeArguments& arguments,
                               int threads, const std::stop_token& stop) {
-  auto& told = turns.back().told_object_from_platform;
+  auto& told = turns.back().prior_object_from_platform;
   if (!arguments.pairs.empty()) {
     told = pose_from(arguments.pairs);
   }

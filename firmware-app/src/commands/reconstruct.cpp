@@ -142,7 +142,7 @@ class ModelOutput {
 };
 
 /// The folder for temporary tiles, the model's own; empty for standard output.
-std::filesystem::path spool_of(const std::filesystem::path& output) {
+std::filesystem::path spool_path(const std::filesystem::path& output) {
   if (output.empty() || output == "-") {
     return {};
   }
@@ -174,7 +174,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   }
   const bool is_tiled = has_free_poses(scan);
   const std::unique_ptr<Reconstructor> reconstruction =
-      is_tiled ? make_tiled_reconstructor(options, spool_of(arguments.output))
+      is_tiled ? make_tiled_reconstructor(options, spool_path(arguments.output))
                : make_reconstructor(options);
   std::optional<PoseChecks> scan_checks;  // of scans on a platform
   if (!is_tiled) {

@@ -83,10 +83,10 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
   if (!arguments.simulate) {
     return {.sensor_uri = arguments.sensor_uri, .stepper = config.turntable};
   }
-  const double real_life = arguments.perfect ? 0 : 1;
+  const double imperfection = arguments.perfect ? 0 : 1;
   const std::string simulated = simulation_uri({.mesh_file = arguments.mesh_file,
-                                                .pattern = real_life,
-                                                .misalignment = real_life,
+                                                .pattern = imperfection,
+                                                .misalignment = imperfection,
                                                 .wall = arguments.wall,
                                                 .speed = arguments.speed});
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,

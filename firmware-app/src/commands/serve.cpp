@@ -34,7 +34,7 @@ enum class Outcome { end, restart };
 
 /// A restart for new settings waits at least this long, so that the response to the request that
 /// stored them is sent first.
-constexpr auto look_interval = 500ms;
+constexpr auto poll_interval = 500ms;
 
 /// The daemon's state that outlives its restarts.
 struct Machine {
@@ -54,7 +54,7 @@ struct Daemon {
 
 /// Whether settings wait for a restart, and nothing runs that a restart would interrupt.
 bool is_restart_due(const Machine& machine, const Daemon& daemon) {
-  return !daemon.settings.restart_needed().empty() && !daemon.scanner.status().busy() &&
+  return !daemon.settings.restart_needed().empty() && !daemon.scanner.is_busy() &&
          daemon.turntable.state().doing == TurntableState::Doing::nothing &&
          !(machine.appliance && machine.appliance->is_updating());
 }
@@ -64,11 +64,11 @@ bool is_restart_due(const Machine& machine, const Daemon& daemon) {
 Outcome wait(const Machine& machine, const Daemon& daemon) {
   const auto watchdog = watchdog_interval();
   const std::chrono::microseconds interval =
-      watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, look_interval) : look_interval;
+      watchdog ? std::min<std::chrono::microseconds>(*watchdog / 3, poll_interval) : poll_interval;
   bool was_due = false;
   while (!wait_for_signal(interval)) {
     if (machine.start != nullptr) {
-      machine.start->look();
+      machine.start->remove_when_stable();
     }
     const bool is_due = is_restart_due(machine, daemon);
     if (is_due && was_due) {

@@ -50,7 +50,7 @@ StartRecord::StartRecord(const fs::path& data) : file_(data / "starts") {
 
 StartRecord::~StartRecord() { forget(); }
 
-void StartRecord::look() {
+void StartRecord::remove_when_stable() {
   if (std::chrono::steady_clock::now() - began_ > long_enough) {
     forget();
   }

@@ -20,7 +20,7 @@ class StartRecord {
   bool is_safe_mode() const { return failed_starts_ >= 3; }
 
   /// Removes the file if a minute has passed since the start.
-  void look();
+  void remove_when_stable();
 
  private:
   void forget();

@@ -35,9 +35,9 @@ std::string real_time_refusal() {
 
 /// The GPIO lines of turntable and lasers.
 std::vector<NamedLine> lines_of_rig(const RigOptions& rig) {
-  std::vector<NamedLine> lines = lines_of(*rig.stepper);
+  std::vector<NamedLine> lines = to_gpio_lines(*rig.stepper);
   if (rig.laser) {
-    for (const std::string& line : gpio_lines_of(*rig.laser)) {
+    for (const std::string& line : to_gpio_names(*rig.laser)) {
       lines.push_back({.name = line});
     }
   }
@@ -119,7 +119,7 @@ std::vector<Finding> find_machine_warnings(const DoctorInput& input) {
 }
 
 std::vector<Finding> run_checks(DoctorInput input, Scanner& scanner) {
-  if (scanner.status().turntable.state == DeviceStatus::State::ready) {
+  if (scanner.has_turntable()) {
     input.lines = LineOwner::this_program;
   }
   SensorReading reading = Failure{.code = ErrorCode::busy,

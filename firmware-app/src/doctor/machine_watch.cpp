@@ -9,20 +9,20 @@
 
 namespace octurn {
 
-MachineWatch::MachineWatch(Looks looks, const WatchIntervals& intervals)
-    : looks_(std::move(looks)), intervals_(intervals) {
-  look(std::chrono::steady_clock::now());
+MachineWatch::MachineWatch(Sources sources, const WatchIntervals& intervals)
+    : sources_(std::move(sources)), intervals_(intervals) {
+  poll(std::chrono::steady_clock::now());
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-void MachineWatch::look(Time now) {
+void MachineWatch::poll(Time now) {
   MachineHealth health = *health_.get();
   std::string trouble;
   try {
-    health.disk_free_bytes = looks_.free_bytes();
-    if (!warnings_looked_ || now - *warnings_looked_ >= intervals_.warnings) {
-      warnings_looked_ = now;
-      health.warnings = looks_.warnings();
+    health.disk_free_bytes = sources_.free_bytes();
+    if (!warnings_polled_ || now - *warnings_polled_ >= intervals_.warnings) {
+      warnings_polled_ = now;
+      health.warnings = sources_.warnings();
     }
   } catch (const std::exception& error) {
     trouble = error.what();
@@ -38,7 +38,7 @@ void MachineWatch::look(Time now) {
 
 void MachineWatch::run(const std::stop_token& stop) {
   while (sleep_for(stop, intervals_.disk)) {
-    look(std::chrono::steady_clock::now());
+    poll(std::chrono::steady_clock::now());
   }
 }
 

@@ -35,12 +35,12 @@ class MachineWatch {
  public:
   /// Sources of the health. The constructor calls both once, then the watch's thread does. After an
   /// exception the old values stay, and the log says why.
-  struct Looks {
+  struct Sources {
     std::function<std::uint64_t()> free_bytes;
     std::function<std::vector<Finding>()> warnings;
   };
 
-  explicit MachineWatch(Looks looks, const WatchIntervals& intervals = {});
+  explicit MachineWatch(Sources sources, const WatchIntervals& intervals = {});
 
   /// Returns the same object until something changes. Touches no disk.
   std::shared_ptr<const MachineHealth> health() const { return health_.get(); }
@@ -48,12 +48,12 @@ class MachineWatch {
  private:
   using Time = std::chrono::steady_clock::time_point;
 
-  void look(Time now);
+  void poll(Time now);
   void run(const std::stop_token& stop);
 
-  Looks looks_;
+  Sources sources_;
   WatchIntervals intervals_;
-  std::optional<Time> warnings_looked_ = {};
+  std::optional<Time> warnings_polled_ = {};
   std::string trouble_ = {};  // why the last poll failed; empty: it succeeded
   Latest<MachineHealth> health_;
   std::jthread thread_;  // the last member, so that it ends before what it uses goes away

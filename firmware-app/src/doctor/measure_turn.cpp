@@ -54,7 +54,7 @@ AngleRange around(double deg, double half_width_deg) {
   return {.min_deg = deg - half_width_deg, .max_deg = deg + half_width_deg};
 }
 
-/// Moves the motor to commanded angles from the starting position ("told"), and compares the depth
+/// Moves the motor to commanded angles from the starting position, and compares the depth
 /// frames ("looks") taken there.
 class TurnMeter {
  public:
@@ -69,10 +69,10 @@ class TurnMeter {
   TurnMeasurement measure();
 
  private:
-  void move_to(double told_deg);
+  void move_to(double commanded_deg);
   DepthFrame look();
-  DepthFrame look_at(double told_deg);
-  DepthFrame look_from_below(double told_deg, double rate);
+  DepthFrame look_at(double commanded_deg);
+  DepthFrame look_from_below(double commanded_deg, double rate);
   double seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range);
   double median_rate(int moves, double move_deg, const AngleRange& range);
   double measure_rate();
@@ -85,16 +85,16 @@ class TurnMeter {
   const std::stop_token& stop_;
   const std::function<void(double)>& on_progress_;
   std::int64_t start_;
-  double told_deg_ = 0;
+  double commanded_deg_ = 0;
   DepthFrame first_look_ = {};
   std::vector<double> sharpness_ = {};
   int looks_done_ = 0;
 };
 
-void TurnMeter::move_to(double told_deg) {
+void TurnMeter::move_to(double commanded_deg) {
   Turntable& turntable = rig_.turntable();
-  const double steps = told_deg / 360 * turntable.steps_per_turn();
-  told_deg_ = told_deg;
+  const double steps = commanded_deg / 360 * turntable.steps_per_turn();
+  commanded_deg_ = commanded_deg;
   if (!turntable.move_to(start_ + std::llround(steps), stop_)) {
     throw Stopped{};
   }
@@ -122,18 +122,18 @@ DepthFrame TurnMeter::look() {
   return merge_frames(frames, DepthFilter::average);
 }
 
-DepthFrame TurnMeter::look_at(double told_deg) {
-  move_to(told_deg);
+DepthFrame TurnMeter::look_at(double commanded_deg) {
+  move_to(commanded_deg);
   return look();
 }
 
 /// Takes a frame at a commanded angle that is approached forwards, so that the backlash is taken
 /// up.
-DepthFrame TurnMeter::look_from_below(double told_deg, double rate) {
-  if (told_deg <= told_deg_) {
-    move_to(told_deg - approach_deg / std::abs(rate));
+DepthFrame TurnMeter::look_from_below(double commanded_deg, double rate) {
+  if (commanded_deg <= commanded_deg_) {
+    move_to(commanded_deg - approach_deg / std::abs(rate));
   }
-  return look_at(told_deg);
+  return look_at(commanded_deg);
 }
 
 double TurnMeter::seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range) {
@@ -151,7 +151,7 @@ double TurnMeter::median_rate(int moves, double move_deg, const AngleRange& rang
   std::vector<double> rates;
   DepthFrame before = look();
   for (int move = 0; move < moves; ++move) {
-    DepthFrame now = look_at(told_deg_ + move_deg);
+    DepthFrame now = look_at(commanded_deg_ + move_deg);
     rates.push_back(seen(before, now, range) / move_deg);
     before = std::move(now);
   }
@@ -182,10 +182,10 @@ double TurnMeter::measure_whole(double rate) {
   const double sign = rate > 0 ? 1 : -1;
   double range_deg = closing_deg;
   for (int count = 0; count < closing_looks; ++count) {
-    const double told_deg = sign * (360 + apart_deg) / rate;
-    const DepthFrame now = look_from_below(told_deg, rate);
+    const double commanded_deg = sign * (360 + apart_deg) / rate;
+    const DepthFrame now = look_from_below(commanded_deg, rate);
     const double seen_deg = seen(first_look_, now, around(sign * apart_deg, range_deg));
-    rate = (sign * 360 + seen_deg) / told_deg;
+    rate = (sign * 360 + seen_deg) / commanded_deg;
     if (std::abs(seen_deg - sign * apart_deg) < settled_deg) {
       break;
     }
@@ -198,7 +198,7 @@ double TurnMeter::measure_whole(double rate) {
 /// and after. @return by how much a move back falls short, degrees: the median, as an inexact pose
 /// causes errors of a degree now and then
 double TurnMeter::measure_play(double rate) {
-  const double there_deg = told_deg_;
+  const double there_deg = commanded_deg_;
   const double on_deg = apart_deg / std::abs(rate);
   const AngleRange range = around(0, approach_deg);
   std::vector<double> short_by;

@@ -139,9 +139,9 @@ double mean_misfit(const View& view, const Points& points, const DepthFrame& fra
 }
 
 /// Two depth frames, and their mutual misfit for a motion from the first to the second.
-class Looks {
+class FramePair {
  public:
-  Looks(const View& view, const DepthFrame& from, const DepthFrame& to)
+  FramePair(const View& view, const DepthFrame& from, const DepthFrame& to)
       : view_(view),
         from_(smoothed(view, from)),
         to_(smoothed(view, to)),
@@ -173,11 +173,11 @@ struct Candidate {
   double disagreement = 0;
 };
 
-Candidate best_rotation(const Looks& looks, const AngleRange& range) {
+Candidate best_rotation(const FramePair& frames, const AngleRange& range) {
   Candidate best{.disagreement = 1};
   for (double deg = range.min_deg; deg <= range.max_deg; deg += coarse_step_deg) {
     const PlanarMotion motion{.deg = deg};
-    if (const double value = looks.disagreement(motion); value < best.disagreement) {
+    if (const double value = frames.disagreement(motion); value < best.disagreement) {
       best = {.motion = motion, .disagreement = value};
     }
   }
@@ -185,7 +185,7 @@ Candidate best_rotation(const Looks& looks, const AngleRange& range) {
 }
 
 /// Refines a candidate in angle and translation by pattern search (Hooke and Jeeves 1961).
-Candidate refined(const Looks& looks, Candidate best) {
+Candidate refined(const FramePair& frames, Candidate best) {
   PlanarMotion step{.deg = 2, .x = 0.004, .y = 0.004};
   while (step.deg > min_step_deg) {
     bool is_better = false;
@@ -195,7 +195,7 @@ Candidate refined(const Looks& looks, Candidate best) {
         const PlanarMotion motion{.deg = best.motion.deg + sign * along.deg,
                                   .x = best.motion.x + sign * along.x,
                                   .y = best.motion.y + sign * along.y};
-        if (const double value = looks.disagreement(motion); value < best.disagreement) {
+        if (const double value = frames.disagreement(motion); value < best.disagreement) {
           best = {.motion = motion, .disagreement = value};
           is_better = true;
         }
@@ -212,15 +212,15 @@ Candidate refined(const Looks& looks, Candidate best) {
 
 std::optional<SeenRotation> seen_rotation(const View& view, const DepthFrame& from,
                                           const DepthFrame& to, const AngleRange& range) {
-  const Looks looks(view, from, to);
-  if (!looks.see_an_object()) {
+  const FramePair frames(view, from, to);
+  if (!frames.see_an_object()) {
     return std::nullopt;
   }
-  const Candidate best = refined(looks, best_rotation(looks, range));
+  const Candidate best = refined(frames, best_rotation(frames, range));
   const auto beside = [&](double deg) {
     PlanarMotion motion = best.motion;
     motion.deg += deg;
-    return looks.disagreement(motion);
+    return frames.disagreement(motion);
   };
   const double mean_beside = (beside(-beside_deg) + beside(beside_deg)) / 2;
   return SeenRotation{.deg = best.motion.deg,

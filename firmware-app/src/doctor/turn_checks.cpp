@@ -80,7 +80,7 @@ TurnFinding check_play(const TurnMeasurement& turn, const StepperSettings& setti
   }
   // 1.5 times the backlash that remains with the steps in force.
   const double seen_steps =
-      turn.play_deg / std::abs(turn.turn_deg) * motion_of(settings).steps_per_turn;
+      turn.play_deg / std::abs(turn.turn_deg) * to_motion(settings).steps_per_turn;
   const int steps = settings.take_up_steps + static_cast<int>(std::ceil(1.5 * seen_steps));
   return {.finding = play.warning(measured, "Set take_up_steps to " + std::to_string(steps) + "."),
           .set = {{"take_up_steps", steps}}};

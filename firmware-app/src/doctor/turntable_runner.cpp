@@ -41,7 +41,7 @@ void TurntableRunner::stop() {
 
 bool TurntableRunner::start(TurntableState::Doing doing, Job job) {
   const std::lock_guard lock(mutex_);
-  if (state_.doing != TurntableState::Doing::nothing || scanner_.status().busy()) {
+  if (state_.doing != TurntableState::Doing::nothing || scanner_.is_busy()) {
     return false;
   }
   state_.doing = doing;

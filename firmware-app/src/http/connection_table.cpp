@@ -114,33 +114,33 @@ void ConnectionTable::add_bytes(Key key, std::uint64_t bytes, Time now) {
 
 bool ConnectionTable::is_cut(Key key) const {
   const auto found = connections_.find(key);
-  return found != connections_.end() && (found->second.deaf || found->second.ended);
+  return found != connections_.end() && (found->second.read_shut || found->second.shut);
 }
 
 std::optional<ConnectionTable::Ending> ConnectionTable::reset(Key key) {
   const auto found = connections_.find(key);
-  if (found == connections_.end() || found->second.ended) {
+  if (found == connections_.end() || found->second.shut) {
     return std::nullopt;
   }
-  found->second.ended = true;
+  found->second.shut = true;
   return Ending{.socket = found->second.socket, .cut = Cut::reset};
 }
 
 /// Decides how a connection over its limit is cut. One that sends a body is first shut down for
 /// reading only, and has as much patience again to receive an error.
 std::optional<Cut> ConnectionTable::due(Connection& connection, Time now) const {
-  if (connection.ended) {
+  if (connection.shut) {
     return std::nullopt;
   }
   settle(connection, now, 0);
   const double patience = limits_.patience.count();
   const bool sends_body = connection.wait == Wait::body || connection.wait == Wait::upload;
   if (connection.debt > (sends_body ? 2 : 1) * patience) {
-    connection.ended = true;
+    connection.shut = true;
     return final_cut(connection.wait);
   }
-  if (sends_body && !connection.deaf && connection.debt > patience) {
-    connection.deaf = true;
+  if (sends_body && !connection.read_shut && connection.debt > patience) {
+    connection.read_shut = true;
     return Cut::reading;
   }
   return std::nullopt;
@@ -158,7 +158,7 @@ std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
     if (connection == nullptr) {
       break;  // all connections wait for the server, or are new
     }
-    connection->ended = true;
+    connection->shut = true;
     endings.push_back({.socket = connection->socket, .cut = final_cut(connection->wait)});
   }
   return endings;
@@ -166,7 +166,7 @@ std::vector<ConnectionTable::Ending> ConnectionTable::cut_all_due(Time now) {
 
 std::size_t ConnectionTable::count_held() const {
   return static_cast<std::size_t>(
-      std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.ended; }));
+      std::ranges::count_if(connections_, [](const auto& entry) { return !entry.second.shut; }));
 }
 
 /// The connections that have waited for their clients for at least the reading time.
@@ -175,7 +175,7 @@ std::vector<ConnectionTable::Connection*> ConnectionTable::candidates(Time now) 
       reading_time + turns_of_reading * lateness_, max_reading_time);
   std::vector<Connection*> waiting;
   for (auto& [key, connection] : connections_) {
-    if (!connection.ended && !waits_for_server(connection) && now - connection.since >= reading) {
+    if (!connection.shut && !waits_for_server(connection) && now - connection.since >= reading) {
       waiting.push_back(&connection);
     }
   }
@@ -195,7 +195,7 @@ ConnectionTable::Connection* ConnectionTable::worst(Time now) {
   }
   std::map<std::string_view, std::size_t> held;
   for (const auto& [key, connection] : connections_) {
-    held[connection.socket.address] += connection.ended ? 0 : 1;
+    held[connection.socket.address] += connection.shut ? 0 : 1;
   }
   return *std::ranges::max_element(waiting, {}, [&](const Connection* connection) {
     return std::pair(held[connection->socket.address], -connection->since.time_since_epoch());

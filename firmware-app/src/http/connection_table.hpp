@@ -95,8 +95,8 @@ class ConnectionTable {
     Wait wait = Wait::head;
     double debt = 0;  // seconds, at the time `settled`
     Time settled = {};
-    bool deaf = false;   // shut for reading
-    bool ended = false;  // shut wholly
+    bool read_shut = false;  // shut for reading
+    bool shut = false;       // shut wholly
   };
 
   static bool waits_for_server(const Connection& connection);

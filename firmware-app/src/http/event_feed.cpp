@@ -42,8 +42,8 @@ class EventFeed::Place {
   EventFeed* feed_;
 };
 
-EventFeed::EventFeed(Look look, const FeedLimits& limits)
-    : look_(std::move(look)), limits_(limits), board_(std::to_string(std::random_device{}())) {}
+EventFeed::EventFeed(Poll poll, const FeedLimits& limits)
+    : poll_(std::move(poll)), limits_(limits), board_(std::to_string(std::random_device{}())) {}
 
 std::optional<ByteStream> EventFeed::watch(std::string_view last_event_id) {
   const std::lock_guard lock(mutex_);
@@ -54,7 +54,7 @@ std::optional<ByteStream> EventFeed::watch(std::string_view last_event_id) {
   ByteStream stream;
   stream.make = std::packaged_task<void(const ByteSink&)>(
       [this, seen = board_.number(last_event_id), place = Place(*this)](const ByteSink& sink) {
-        tell(seen, sink);
+        stream_events(seen, sink);
       });
   return stream;
 }
@@ -70,9 +70,9 @@ void EventFeed::end() {
 /// Polls if the last poll is too old. @return the events that the watcher has not received
 std::string EventFeed::next_events(std::uint64_t& seen) {
   const std::lock_guard lock(mutex_);
-  if (const auto now = Clock::now(); now - looked_ >= limits_.look_interval) {
-    board_.publish(look_());
-    looked_ = now;
+  if (const auto now = Clock::now(); now - polled_ >= limits_.poll_interval) {
+    board_.publish(poll_());
+    polled_ = now;
   }
   return board_.events_after(seen);
 }
@@ -80,20 +80,20 @@ std::string EventFeed::next_events(std::uint64_t& seen) {
 /// Waits for the polling interval. @return false if the streams are to end
 bool EventFeed::wait() {
   std::unique_lock lock(mutex_);
-  return !ended_changed_.wait_for(lock, limits_.look_interval, [this] { return ended_; });
+  return !ended_changed_.wait_for(lock, limits_.poll_interval, [this] { return ended_; });
 }
 
-void EventFeed::tell(std::uint64_t seen, const ByteSink& sink) try {
+void EventFeed::stream_events(std::uint64_t seen, const ByteSink& sink) try {
   const auto begun = Clock::now();
-  auto told = begun;
+  auto sent = begun;
   bool is_taken = put(greeting, sink);
   while (is_taken && Clock::now() - begun < limits_.lifetime) {
     std::string events = next_events(seen);
-    if (events.empty() && Clock::now() - told >= limits_.heartbeat) {
+    if (events.empty() && Clock::now() - sent >= limits_.heartbeat) {
       events = heartbeat_event;
     }
     if (!events.empty()) {
-      told = Clock::now();
+      sent = Clock::now();
       is_taken = put(events, sink);
     }
     if (!wait()) {

@@ -17,7 +17,7 @@ namespace octurn {
 /// Limits of event streams.
 struct FeedLimits {
   int max_watchers = 8;  ///< each occupies a thread of the server
-  std::chrono::milliseconds look_interval{250};
+  std::chrono::milliseconds poll_interval{250};
   std::chrono::milliseconds heartbeat{
       3000};  ///< sent after so long without an event; detects closed connections
   std::chrono::milliseconds lifetime = std::chrono::minutes(10);  ///< of one stream
@@ -28,10 +28,10 @@ struct FeedLimits {
 /// Thread-safe.
 class EventFeed {
  public:
-  using Look = std::function<std::vector<News>()>;
+  using Poll = std::function<std::vector<News>()>;
 
-  /// @param look  returns the current events; called by one thread at a time
-  explicit EventFeed(Look look, const FeedLimits& limits = {});
+  /// @param poll  returns the current events; called by one thread at a time
+  explicit EventFeed(Poll poll, const FeedLimits& limits = {});
 
   /// A stream of events for a new watcher, which must not outlive the feed. Nothing if there are
   /// `max_watchers` already.
@@ -44,18 +44,18 @@ class EventFeed {
  private:
   class Place;
 
-  void tell(std::uint64_t seen, const ByteSink& sink);
+  void stream_events(std::uint64_t seen, const ByteSink& sink);
   std::string next_events(std::uint64_t& seen);
   bool wait();
 
-  Look look_;
+  Poll poll_;
   FeedLimits limits_;
   std::mutex mutex_ = {};  // guards what follows
   std::condition_variable ended_changed_ = {};
   bool ended_ = false;
   int watchers_ = 0;
   EventBoard board_;
-  std::chrono::steady_clock::time_point looked_ = {};
+  std::chrono::steady_clock::time_point polled_ = {};
 };
 
 }  // namespace octurn

@@ -27,8 +27,8 @@ std::string to_client(const std::string& address) {
 }  // namespace
 
 std::chrono::seconds GuessLimit::to_wait(const std::string& address, Time now) const {
-  const auto found = paid_.find(to_client(address));
-  if (found == paid_.end()) {
+  const auto found = expiry_.find(to_client(address));
+  if (found == expiry_.end()) {
     return std::chrono::seconds(0);
   }
   const auto wait = found->second - now - (free_guesses - 1) * guess_price;
@@ -36,16 +36,16 @@ std::chrono::seconds GuessLimit::to_wait(const std::string& address, Time now) c
 }
 
 void GuessLimit::count_wrong(const std::string& address, Time now) {
-  std::erase_if(paid_, [&](const auto& entry) { return entry.second <= now; });
+  std::erase_if(expiry_, [&](const auto& entry) { return entry.second <= now; });
   const std::string client = to_client(address);
-  if (paid_.size() >= max_clients && !paid_.contains(client)) {
-    paid_.erase(
-        std::ranges::min_element(paid_, {}, [](const auto& entry) { return entry.second; }));
+  if (expiry_.size() >= max_clients && !expiry_.contains(client)) {
+    expiry_.erase(
+        std::ranges::min_element(expiry_, {}, [](const auto& entry) { return entry.second; }));
   }
-  const auto [entry, fresh] = paid_.try_emplace(client, now);
+  const auto [entry, fresh] = expiry_.try_emplace(client, now);
   entry->second += guess_price;
 }
 
-void GuessLimit::forgive(const std::string& address) { paid_.erase(to_client(address)); }
+void GuessLimit::forgive(const std::string& address) { expiry_.erase(to_client(address)); }
 
 }  // namespace octurn

@@ -27,7 +27,7 @@ class GuessLimit {
   void forgive(const std::string& address);
 
  private:
-  std::map<std::string, Time> paid_ = {};  // when all wrong guesses of a client expire (GCRA)
+  std::map<std::string, Time> expiry_ = {};  // when all wrong guesses of a client expire (GCRA)
 };
 
 }  // namespace octurn

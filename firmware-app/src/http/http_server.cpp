@@ -142,11 +142,11 @@ std::string reaching(const std::string& address) {
 
 mg_context* start_civetweb(const std::string& listening, const HttpOptions& options,
                            Service& service) {
-  const std::string patience = std::to_string(options.patience.count());
+  const std::string request_timeout = std::to_string(options.request_timeout.count());
   const std::string num_threads = std::to_string(threads);
   const std::string idle = std::to_string(idle_seconds * 1000);
   std::vector<const char*> settings{
-      "listening_ports", listening.c_str(),   "request_timeout_ms",    patience.c_str(),
+      "listening_ports", listening.c_str(),   "request_timeout_ms",    request_timeout.c_str(),
       "num_threads",     num_threads.c_str(), "keep_alive_timeout_ms", idle.c_str()};
   for (const auto& [name, value] : fixed_options) {
     settings.insert(settings.end(), {name, value});
@@ -200,8 +200,8 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
   server_->address = reaching(options.address);
   server_->context = start_civetweb(address + ":" + std::to_string(options.port), options, service);
   service.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,
-                                                 .patience = options.patience});
-  defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.patience));
+                                                 .patience = options.request_timeout});
+  defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.request_timeout));
   service.started.count_down();
 }
 

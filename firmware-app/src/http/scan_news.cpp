@@ -17,18 +17,18 @@ namespace {
 
 using nlohmann::json;
 
-Happening happening(const std::string& event, const char* key, const json& about) {
-  json body{{"event", event},
+WebhookEvent make_event(const std::string& name, const char* key, const json& about) {
+  json body{{"event", name},
             {"scanner", host_name()},
             {"time", utc_text(std::chrono::system_clock::now(), rfc3339)}};
   if (key != nullptr) {
     body[key] = about;
   }
-  return {.event = event, .body = json_text(body)};
+  return {.name = name, .body = json_text(body)};
 }
 
 /// The webhook event of a state; empty if there is none.
-std::string event_of(JobState state) {
+std::string to_event_name(JobState state) {
   switch (state) {
     case JobState::running:
       return "scan-started";
@@ -54,7 +54,7 @@ std::vector<ScanEvent> changes(const ScanStates& before, const ScanStates& now,
   for (const auto& [id, state] : now) {
     const auto earlier = before.find(id);
     const bool is_news = earlier != before.end() ? earlier->second != state : id > newest;
-    if (const std::string event = event_of(state); is_news && !event.empty()) {
+    if (const std::string event = to_event_name(state); is_news && !event.empty()) {
       events.push_back({.event = event, .id = id});
     }
   }
@@ -84,33 +84,33 @@ std::vector<ScanEvent> ScanNews::next_scans(const App& app) {
   return events;
 }
 
-std::vector<Happening> ScanNews::next_warnings(const App& app) {
+std::vector<WebhookEvent> ScanNews::next_warnings(const App& app) {
   if (app.addresses.webhooks().empty()) {  // no receiver: warnings are not tracked
     warnings_.reset();
     return {};
   }
-  std::vector<Happening> happenings;
+  std::vector<WebhookEvent> events;
   std::set<std::string> now;
   const auto health = app.machine.health();
   for (const Finding& warning : health->warnings) {
     now.insert(warning.check);
     if (warnings_ && !warnings_->contains(warning.check)) {
-      happenings.push_back(
-          happening("warning", "warning", to_json(std::span(&warning, 1)).at("findings").at(0)));
+      events.push_back(
+          make_event("warning", "warning", to_json(std::span(&warning, 1)).at("findings").at(0)));
     }
   }
   warnings_ = std::move(now);
-  return happenings;
+  return events;
 }
 
-std::vector<Happening> ScanNews::next(const App& app) {
-  std::vector<Happening> happenings = next_warnings(app);
+std::vector<WebhookEvent> ScanNews::next(const App& app) {
+  std::vector<WebhookEvent> events = next_warnings(app);
   for (const ScanEvent& event : next_scans(app)) {
-    happenings.push_back(happening(event.event, "scan", to_json(app, find_scan(app, event.id))));
+    events.push_back(make_event(event.event, "scan", to_json(app, find_scan(app, event.id))));
   }
-  return happenings;
+  return events;
 }
 
-Happening test_happening() { return happening("test", nullptr, {}); }
+WebhookEvent make_test_event() { return make_event("test", nullptr, {}); }
 
 }  // namespace octurn

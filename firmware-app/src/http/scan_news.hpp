@@ -32,13 +32,13 @@ std::vector<ScanEvent> changes(const ScanStates& before, const ScanStates& now,
 /// none. Not thread-safe.
 class ScanNews {
  public:
-  std::vector<Happening> next(const App& app);
+  std::vector<WebhookEvent> next(const App& app);
 
  private:
   using Mark = std::tuple<std::uint64_t, std::string, JobState>;
 
   std::vector<ScanEvent> next_scans(const App& app);
-  std::vector<Happening> next_warnings(const App& app);
+  std::vector<WebhookEvent> next_warnings(const App& app);
 
   std::optional<Mark> mark_ = {};  // of the last poll; while it is the same, no scan has changed
   ScanStates states_ = {};
@@ -47,6 +47,6 @@ class ScanNews {
 };
 
 /// The event "test", which carries no data: it shows that a webhook works.
-Happening test_happening();
+WebhookEvent make_test_event();
 
 }  // namespace octurn

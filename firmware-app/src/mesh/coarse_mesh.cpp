@@ -18,7 +18,7 @@ constexpr double coarser = 1.15;  // growth of the side while there are too many
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-Corners corners_of(const Facet& facet) {
+Corners to_corners(const Facet& facet) {
   const auto packed = facet.corners;  // a copy: a facet's members are not aligned
   Corners corners;
   std::ranges::transform(packed, corners.begin(), [](const std::array<float, 3>& corner) {
@@ -36,7 +36,7 @@ double area(const FacetFile& facets) {
   double doubled = 0;
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      doubled += area_vector(corners_of(facet)).norm();
+      doubled += area_vector(to_corners(facet)).norm();
     }
   });
   return doubled / 2;
@@ -52,7 +52,7 @@ class Clusters {
 
   void add(const Facet& facet) {
     std::array<std::uint32_t, 3> cells{};
-    std::ranges::transform(corners_of(facet), cells.begin(),
+    std::ranges::transform(to_corners(facet), cells.begin(),
                            [this](const Eigen::Vector3d& corner) { return add(corner); });
     if (cells[0] == cells[1] || cells[1] == cells[2] || cells[2] == cells[0]) {
       return;
@@ -66,13 +66,13 @@ class Clusters {
 
   std::vector<Facet> mesh() const {
     std::vector<Facet> mesh;
-    for (const Between& between : facets_) {
+    for (const ClusterFacet& merged : facets_) {
       Corners corners;
-      std::ranges::transform(between.cells, corners.begin(), [this](std::uint32_t cell) {
+      std::ranges::transform(merged.cells, corners.begin(), [this](std::uint32_t cell) {
         return Eigen::Vector3d(cells_[cell].sum / cells_[cell].count);
       });
       const Eigen::Vector3d normal = area_vector(corners).normalized();
-      Facet facet{.attributes = between.attributes};
+      Facet facet{.attributes = merged.attributes};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto at = static_cast<Eigen::Index>(axis);
         facet.normal[axis] = static_cast<float>(normal[at]);
@@ -90,7 +90,7 @@ class Clusters {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double count = 0;
   };
-  struct Between {
+  struct ClusterFacet {
     std::array<std::uint32_t, 3> cells = {};
     std::uint16_t attributes = 0;
   };
@@ -117,7 +117,7 @@ class Clusters {
       {};  // cell indices by packed coordinates
   std::vector<Cell> cells_ = {};
   std::set<std::array<std::uint32_t, 3>> known_ = {};
-  std::vector<Between> facets_ = {};
+  std::vector<ClusterFacet> facets_ = {};
 };
 
 }  // namespace

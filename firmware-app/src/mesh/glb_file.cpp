@@ -33,7 +33,7 @@ struct Bounds {
   Vertex max = {};
 };
 
-Bounds bounds_of(std::span<const Vertex> vertices) {
+Bounds make_bounds(std::span<const Vertex> vertices) {
   Bounds bounds{vertices.front(), vertices.front()};
   for (const Vertex& vertex : vertices) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -90,7 +90,7 @@ void add_colours(json& all, std::size_t count) {
 /// @param colours  number of vertex colours; 0: none
 std::string description(std::uint64_t index_bytes, std::span<const Vertex> vertices,
                         std::size_t colours, const std::string& name) {
-  const auto [min, max] = bounds_of(vertices);
+  const auto [min, max] = make_bounds(vertices);
   const double half = std::numbers::sqrt2 / 2;  // a quarter of a turn about X: Z up becomes Y up
   const json node{{"mesh", 0},
                   {"name", name},

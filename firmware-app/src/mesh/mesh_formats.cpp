@@ -20,7 +20,7 @@ constexpr std::array formats{
 
 }  // namespace
 
-std::optional<MeshFormat> mesh_format_of(std::string_view extension) {
+std::optional<MeshFormat> to_mesh_format(std::string_view extension) {
   const auto* const found = std::ranges::find(formats, extension, &Names::extension);
   return found == formats.end() ? std::nullopt : std::optional(found->format);
 }

@@ -15,7 +15,7 @@ namespace octurn {
 enum class MeshFormat { ply, glb, threemf };
 
 /// The format of files with that extension, such as ".ply".
-std::optional<MeshFormat> mesh_format_of(std::string_view extension);
+std::optional<MeshFormat> to_mesh_format(std::string_view extension);
 
 /// The media type of a format.
 std::string_view media_type(MeshFormat format);

@@ -38,7 +38,7 @@ std::string short_text(JsonObject& object, std::string_view key) {
 std::string web_address(JsonObject& object) {
   const JsonValue given = object.at("url");
   std::string url = short_text(object, "url");
-  if (origin_of(url).empty()) {
+  if (to_origin(url).empty()) {
     given.refuse("a web address, http://HOST/PATH, without a user and a password");
   }
   return url;

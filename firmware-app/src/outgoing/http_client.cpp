@@ -50,7 +50,7 @@ class Transfer {
     set(CURLOPT_URL, request.url.c_str());
     set(CURLOPT_CUSTOMREQUEST, request.method.c_str());
     limit(request);
-    prove(request);
+    set_credentials(request);
     add_headers(request.headers);
     add_body(request);
     set(CURLOPT_WRITEFUNCTION, keep_answer);
@@ -101,7 +101,7 @@ class Transfer {
     set(CURLOPT_LOW_SPEED_TIME, still_seconds);
   }
 
-  void prove(const OutgoingRequest& request) {
+  void set_credentials(const OutgoingRequest& request) {
     if (!request.user.empty()) {
       set(CURLOPT_HTTPAUTH, CURLAUTH_DIGEST);
       set(CURLOPT_USERNAME, request.user.c_str());
@@ -162,7 +162,7 @@ class Transfer {
 };
 
 /// The result of the transfer; nothing if it has not ended.
-std::optional<CURLcode> result_of(CURLM* multi) {
+std::optional<CURLcode> find_result(CURLM* multi) {
   int left = 0;
   const CURLMsg* const message = curl_multi_info_read(multi, &left);
   return message != nullptr && message->msg == CURLMSG_DONE ? std::optional(message->data.result)
@@ -170,7 +170,7 @@ std::optional<CURLcode> result_of(CURLM* multi) {
 }
 
 /// A component of a URL; empty if the URL does not have it.
-std::string part_of(CURLU* address, CURLUPart part) {
+std::string get_part(CURLU* address, CURLUPart part) {
   char* text = nullptr;
   std::string found;
   if (curl_url_get(address, part, &text, 0) == CURLUE_OK) {
@@ -200,7 +200,7 @@ OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token
       curl_multi_poll(multi.get(), nullptr, 0, poll_ms, nullptr);
     }
   }
-  OutgoingAnswer answer = transfer.finish(result_of(multi.get()));
+  OutgoingAnswer answer = transfer.finish(find_result(multi.get()));
   curl_multi_remove_handle(multi.get(), transfer.get());
   return answer;
 }
@@ -211,12 +211,12 @@ std::string find_origin(const std::string& url) {
   if (curl_url_set(address.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) {
     return "";
   }
-  const std::string scheme = part_of(address.get(), CURLUPART_SCHEME);
-  const std::string host = part_of(address.get(), CURLUPART_HOST);
-  const std::string port = part_of(address.get(), CURLUPART_PORT);
-  const bool has_more = !part_of(address.get(), CURLUPART_USER).empty() ||
-                        !part_of(address.get(), CURLUPART_PASSWORD).empty() ||
-                        !part_of(address.get(), CURLUPART_FRAGMENT).empty();
+  const std::string scheme = get_part(address.get(), CURLUPART_SCHEME);
+  const std::string host = get_part(address.get(), CURLUPART_HOST);
+  const std::string port = get_part(address.get(), CURLUPART_PORT);
+  const bool has_more = !get_part(address.get(), CURLUPART_USER).empty() ||
+                        !get_part(address.get(), CURLUPART_PASSWORD).empty() ||
+                        !get_part(address.get(), CURLUPART_FRAGMENT).empty();
   if ((scheme != "http" && scheme != "https") || host.empty() || has_more) {
     return "";
   }
@@ -235,4 +235,4 @@ std::string escape(const std::string& text) {
 }  // namespace octurn
 
 extern "C" const octurn::HttpClientModule octurn_http_client{
-    .ask = octurn::ask_by_curl, .origin_of = octurn::find_origin, .to_path_part = octurn::escape};
+    .ask = octurn::ask_by_curl, .to_origin = octurn::find_origin, .to_path_part = octurn::escape};

@@ -44,7 +44,7 @@ OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
 
 /// The origin (scheme, host, port) of a web address: "http://printer.local:5000". Empty if the
 /// address is malformed, or has a user, a password or a fragment.
-std::string origin_of(const std::string& url);
+std::string to_origin(const std::string& url);
 
 /// Percent-encodes a text as a segment of a path (RFC 3986).
 std::string to_path_part(const std::string& text);

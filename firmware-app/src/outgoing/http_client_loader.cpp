@@ -18,7 +18,7 @@ OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,
   return loaded_module().ask(request, stop, on_sent);
 }
 
-std::string origin_of(const std::string& url) { return loaded_module().origin_of(url); }
+std::string to_origin(const std::string& url) { return loaded_module().to_origin(url); }
 
 std::string to_path_part(const std::string& text) { return loaded_module().to_path_part(text); }
 

@@ -9,7 +9,7 @@ namespace octurn {
 struct HttpClientModule {
   OutgoingAnswer (*ask)(const OutgoingRequest& request, const std::stop_token& stop,
                         const std::function<void(std::uint64_t)>& on_sent) = nullptr;
-  std::string (*origin_of)(const std::string& url) = nullptr;
+  std::string (*to_origin)(const std::string& url) = nullptr;
   std::string (*to_path_part)(const std::string& text) = nullptr;
 };
 

@@ -47,15 +47,16 @@ bool is_worth_another_attempt(const OutgoingAnswer& answer) {
          answer.status == 429 || answer.status >= 500;
 }
 
-WebhookSender::WebhookSender(const AddressBook& book, std::function<std::vector<Happening>()> look,
+WebhookSender::WebhookSender(const AddressBook& book,
+                             std::function<std::vector<WebhookEvent>()> poll,
                              const WebhookLimits& limits)
     : book_(book),
-      look_(std::move(look)),
+      poll_(std::move(poll)),
       limits_(limits),
       worker_([this](const std::stop_token& stop) { run(stop); }) {}
 
-void WebhookSender::tell(const std::string& id, Happening happening) {
-  add({.webhook = id, .happening = std::move(happening), .due = Clock::now()});
+void WebhookSender::queue(const std::string& id, WebhookEvent event) {
+  add({.webhook = id, .event = std::move(event), .due = Clock::now()});
 }
 
 std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
@@ -67,7 +68,7 @@ std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
 void WebhookSender::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
-      spread(look_());
+      spread(poll_());
       if (auto due = take_due()) {
         attempt(std::move(*due), stop);
         continue;
@@ -76,21 +77,21 @@ void WebhookSender::run(const std::stop_token& stop) {
       log::error("outgoing", std::string("webhooks are not told: ") + error.what());
     }
     std::unique_lock lock(mutex_);
-    added_.wait_for(lock, stop, limits_.look_interval, [this] {
+    added_.wait_for(lock, stop, limits_.poll_interval, [this] {
       return std::ranges::any_of(
           waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });
     });
   }
 }
 
-void WebhookSender::spread(const std::vector<Happening>& happenings) {
-  if (happenings.empty()) {
+void WebhookSender::spread(const std::vector<WebhookEvent>& events) {
+  if (events.empty()) {
     return;
   }
   for (const Webhook& webhook : book_.webhooks()) {
-    for (const Happening& happening : happenings) {
-      if (wants(webhook, happening.event)) {
-        tell(webhook.id, happening);
+    for (const WebhookEvent& event : events) {
+      if (wants(webhook, event.name)) {
+        queue(webhook.id, event);
       }
     }
   }
@@ -105,7 +106,7 @@ void WebhookSender::add(Delivery delivery) {
       waiting_.pop_front();
     }
     if (delivery.attempts == 0) {
-      states_[delivery.webhook] = {.event = delivery.happening.event};
+      states_[delivery.webhook] = {.event = delivery.event.name};
     }
     waiting_.push_back(std::move(delivery));
   }
@@ -135,7 +136,7 @@ void WebhookSender::attempt(Delivery delivery, const std::stop_token& stop) {
   const OutgoingAnswer answer = ask({.method = "POST",
                                      .url = webhook->url,
                                      .headers = {"Content-Type: application/json"},
-                                     .body = delivery.happening.body,
+                                     .body = delivery.event.body,
                                      .time_limit = limits_.patience},
                                     stop);
   const std::string trouble = webhook_trouble(answer);
@@ -145,7 +146,7 @@ void WebhookSender::attempt(Delivery delivery, const std::stop_token& stop) {
   } else if (!is_worth_another_attempt(answer) || delivery.attempts >= limits_.max_attempts) {
     set_state(delivery, WebhookState::Outcome::failed, trouble);
     log::warning("outgoing",
-                 "a webhook of " + origin_of(webhook->url) + " is given up: " + trouble);
+                 "a webhook of " + to_origin(webhook->url) + " is given up: " + trouble);
   } else {
     set_state(delivery, WebhookState::Outcome::waiting, trouble);
     std::chrono::milliseconds pause = limits_.first_pause;
@@ -161,7 +162,7 @@ void WebhookSender::set_state(const Delivery& delivery, WebhookState::Outcome ou
                               std::string trouble) {
   const std::lock_guard lock(mutex_);
   states_[delivery.webhook] = {.outcome = outcome,
-                               .event = delivery.happening.event,
+                               .event = delivery.event.name,
                                .time = utc_text(std::chrono::system_clock::now(), rfc3339),
                                .trouble = std::move(trouble)};
 }

@@ -20,13 +20,13 @@
 namespace octurn {
 
 /// An event as it is sent to webhooks.
-struct Happening {
-  std::string event = {};  ///< one of webhook_events, or "test"
-  std::string body = {};   ///< JSON
+struct WebhookEvent {
+  std::string name = {};  ///< one of webhook_events, or "test"
+  std::string body = {};  ///< JSON
 };
 
 struct WebhookLimits {
-  std::chrono::milliseconds look_interval{1000};
+  std::chrono::milliseconds poll_interval{1000};
   std::chrono::milliseconds first_pause{5000};  ///< before the first retry; then tripled each time
   int max_attempts = 6;
   std::size_t max_waiting = 64;  ///< deliveries of all webhooks; beyond it the oldest is dropped
@@ -49,14 +49,14 @@ std::string_view to_string(WebhookState::Outcome outcome);
 class WebhookSender {
  public:
   /// @param book  has to outlive this
-  /// @param look  returns the events since its last call; called on the sender's thread
-  WebhookSender(const AddressBook& book, std::function<std::vector<Happening>()> look,
+  /// @param poll  returns the events since its last call; called on the sender's thread
+  WebhookSender(const AddressBook& book, std::function<std::vector<WebhookEvent>()> poll,
                 const WebhookLimits& limits = {});
   WebhookSender(const WebhookSender&) = delete;
   WebhookSender& operator=(const WebhookSender&) = delete;
 
   /// Queues an event for one webhook.
-  void tell(const std::string& id, Happening happening);
+  void queue(const std::string& id, WebhookEvent event);
 
   /// The state of a webhook's last delivery; nothing if there was none yet.
   std::optional<WebhookState> state(std::string_view id) const;
@@ -65,20 +65,20 @@ class WebhookSender {
   using Clock = std::chrono::steady_clock;
   struct Delivery {
     std::string webhook = {};  // its id
-    Happening happening = {};
+    WebhookEvent event = {};
     int attempts = 0;
     Clock::time_point due = {};
   };
 
   void run(const std::stop_token& stop);
-  void spread(const std::vector<Happening>& happenings);
+  void spread(const std::vector<WebhookEvent>& events);
   void add(Delivery delivery);
   std::optional<Delivery> take_due();
   void attempt(Delivery delivery, const std::stop_token& stop);
   void set_state(const Delivery& delivery, WebhookState::Outcome outcome, std::string trouble);
 
   const AddressBook& book_;
-  const std::function<std::vector<Happening>()> look_;
+  const std::function<std::vector<WebhookEvent>()> poll_;
   const WebhookLimits limits_;
   mutable std::mutex mutex_ = {};  // guards what follows
   std::condition_variable_any added_ = {};

@@ -20,7 +20,7 @@ struct Layout {
   double bottom = 0;  // lower edge of the board
 };
 
-Layout layout_of(Paper paper) {
+Layout make_layout(Paper paper) {
   return paper == Paper::a4
              ? Layout{.width = 210, .height = 297, .columns = 12, .rows = 17, .bottom = 30}
              : Layout{.width = 215.9, .height = 279.4, .columns = 12, .rows = 16, .bottom = 28};
@@ -103,7 +103,7 @@ std::optional<Paper> paper_named(std::string_view name) {
 }
 
 std::string board_pdf(Paper paper) {
-  const Layout layout = layout_of(paper);
+  const Layout layout = make_layout(paper);
   const double left = (layout.width - layout.columns * board_square_mm) / 2;
   Drawing drawing;
   draw_board(drawing, layout, left);

@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Returns the model's clip box: that of the settings. If it is the scan's own box, a scan of
 /// several poses has the box that encloses the clip boxes of all poses instead.
-Box clip_of(const Scan& scan, const BuildInput& input) {
+Box choose_clip(const Scan& scan, const BuildInput& input) {
   const Box& wanted = input.settings.scan.clip;
   const Box& own = input.job.settings.clip;
   const bool is_own = wanted.min == own.min && wanted.max == own.max;
@@ -91,7 +91,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
 
   ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
   options.level = settings.level;
-  options.clip = clip_of(scan, input);
+  options.clip = choose_clip(scan, input);
   options.placements = placements(scan);
   fit_to_sensor(options, scan);
   PoseChecks checks(options.placements, options.clip, scan.shots.size());

@@ -67,7 +67,7 @@ json to_json(const TurnReport& report) {
   return object;
 }
 
-json report_of(const CalibrationRun& run) {
+json report_json(const CalibrationRun& run) {
   return run.report ? to_json(*run.report)
          : run.wall ? to_json(*run.wall)
          : run.lens ? to_json(*run.lens)
@@ -86,7 +86,7 @@ json to_json(const CalibrationRun& run) {
           {"phase", phases[static_cast<std::size_t>(run.phase)]},
           {"stop", run.stop},
           {"stops", run.stops},
-          {"report", report_of(run)},
+          {"report", report_json(run)},
           {"look", run.look ? to_json(*run.look) : json()},
           {"error", run.failure ? to_json(*run.failure) : json()}};
 }

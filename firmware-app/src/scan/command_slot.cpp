@@ -1,6 +1,7 @@
 #include "scan/command_slot.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace octurn {
@@ -13,13 +14,42 @@ constexpr std::size_t rebuild_rank = 2;
 constexpr std::size_t build_rank = 3;
 constexpr std::size_t scan_rank = 4;  // also of the alternatives after it
 
-std::size_t to_rank(const Command& command) { return std::min(command.index(), scan_rank); }
+constexpr std::size_t measurement_index = 6;  // also of the alternatives after it
+constexpr std::size_t lens_index = 8;
+static_assert(
+    std::is_same_v<std::variant_alternative_t<measurement_index, Command>, CalibrateCommand> &&
+    std::is_same_v<std::variant_alternative_t<lens_index, Command>, LensCommand>);
+
+std::size_t to_rank(std::size_t index) { return std::min(index, scan_rank); }
+
+std::size_t to_rank(const Command& command) { return to_rank(command.index()); }
 
 }  // namespace
 
+CommandSlot::Subject CommandSlot::to_subject(const Command& command) {
+  Subject subject{.index = command.index()};
+  if (const auto* const scan = std::get_if<ScanCommand>(&command)) {
+    subject.scan = scan->job.id;
+  } else if (const auto* const resumed = std::get_if<ResumeCommand>(&command)) {
+    subject.scan = resumed->job.id;
+  } else if (const auto* const build = std::get_if<BuildCommand>(&command)) {
+    subject.scan = build->run.scan;
+    subject.build = build->run.number;
+  }
+  return subject;
+}
+
+/// Whether the waiting or the running command matches.
+template <typename Matches>
+bool CommandSlot::has(Matches matches) const {
+  const std::lock_guard lock(mutex_);
+  return (waiting_ && matches(to_subject(waiting_->command))) || (running_ && matches(*running_));
+}
+
 /// Whether no command of that rank or a higher one waits or runs; `mutex_` is held.
 bool CommandSlot::rank_is_free(std::size_t rank) const {
-  return !ended_ && (!waiting_ || to_rank(waiting_->command) < rank) && (!rank_ || *rank_ < rank);
+  return !ended_ && (!waiting_ || to_rank(waiting_->command) < rank) &&
+         (!running_ || to_rank(running_->index) < rank);
 }
 
 /// Replaces the waiting command; `mutex_` is held.
@@ -29,7 +59,7 @@ void CommandSlot::put(Command command, std::stop_source stop) {
   }
   const bool is_scan = to_rank(command) == scan_rank;
   waiting_.emplace(Taken{std::move(command), std::move(stop)});
-  if (rank_ && (is_scan || *rank_ == camera_rank)) {
+  if (running_ && (is_scan || to_rank(running_->index) == camera_rank)) {
     stop_.request_stop();
   }
   changed_.notify_all();
@@ -93,7 +123,7 @@ void CommandSlot::stop_scan(ScanStop why) {
   if (waiting_ && to_rank(waiting_->command) == scan_rank) {
     waiting_->stop.request_stop();
   }
-  if (rank_ == scan_rank) {
+  if (running_ && to_rank(running_->index) == scan_rank) {
     stop_.request_stop();
   }
 }
@@ -105,15 +135,46 @@ bool CommandSlot::stop_build() {
     changed_.notify_all();
     return true;
   }
-  if (rank_ == build_rank) {
+  if (running_ && to_rank(running_->index) == build_rank) {
     stop_.request_stop();
   }
   return false;
 }
 
-bool CommandSlot::has_scan() const {
+bool CommandSlot::solve_lens() {
   const std::lock_guard lock(mutex_);
-  return (waiting_ && to_rank(waiting_->command) == scan_rank) || rank_ == scan_rank;
+  if (!running_ || !running_->has_views) {
+    return false;
+  }
+  scan_stop_ = ScanStop::pause;
+  stop_.request_stop();
+  return true;
+}
+
+bool CommandSlot::has_scan() const {
+  return has([](const Subject& subject) { return to_rank(subject.index) == scan_rank; });
+}
+
+bool CommandSlot::has_scan(std::string_view id) const {
+  return has([&](const Subject& subject) {
+    return to_rank(subject.index) == scan_rank && subject.index < measurement_index &&
+           subject.scan == id;
+  });
+}
+
+bool CommandSlot::has_measurement() const {
+  return has([](const Subject& subject) { return subject.index >= measurement_index; });
+}
+
+bool CommandSlot::is_busy() const {
+  return has([](const Subject& subject) { return to_rank(subject.index) >= build_rank; });
+}
+
+bool CommandSlot::has_build(std::string_view scan, std::optional<int> number) const {
+  return has([&](const Subject& subject) {
+    return to_rank(subject.index) == build_rank && subject.scan == scan &&
+           subject.build == number.value_or(subject.build);
+  });
 }
 
 bool CommandSlot::is_occupied() const {
@@ -147,7 +208,7 @@ std::optional<CommandSlot::Taken> CommandSlot::take(Clock::duration patience) {
     taken = Taken{};
   }
   if (taken) {
-    rank_ = to_rank(taken->command);
+    running_ = to_subject(taken->command);
     stop_ = taken->stop;
     if (ended_) {
       stop_.request_stop();
@@ -157,10 +218,17 @@ std::optional<CommandSlot::Taken> CommandSlot::take(Clock::duration patience) {
   return taken;
 }
 
+void CommandSlot::report_lens_view() {
+  const std::lock_guard lock(mutex_);
+  if (running_ && running_->index == lens_index) {
+    running_->has_views = true;
+  }
+}
+
 void CommandSlot::finish() {
   {
     const std::lock_guard lock(mutex_);
-    rank_.reset();
+    running_.reset();
   }
   changed_.notify_all();
 }

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -114,10 +115,22 @@ class CommandSlot {
   ScanStop scan_stop() const;
   /// Asks the build to stop. @return whether it was still waiting, and so will never begin
   bool stop_build();
+  /// Asks a running lens calibration to end with the views that it has.
+  /// @return false if none runs, or it has none
+  bool solve_lens();
 
   /// Whether a scan or a measurement waits or runs.
   bool has_scan() const;
+  /// Whether this scan waits or runs.
+  bool has_scan(std::string_view id) const;
+  /// Whether a measurement waits or runs.
+  bool has_measurement() const;
+  /// Whether a build of this scan waits or runs.
+  /// @param number  of the build; nullopt: any
+  bool has_build(std::string_view scan, std::optional<int> number = {}) const;
 
+  /// Whether a scan, a measurement or a build waits or runs.
+  bool is_busy() const;
   /// Whether a scan, a measurement, a build or a rebuild waits or runs.
   bool is_occupied() const;
 
@@ -130,6 +143,9 @@ class CommandSlot {
   /// Waits for a command, and takes it. @return nullopt after `patience`, or after `end`
   std::optional<Taken> take(Clock::duration patience);
 
+  /// Reports that the running lens calibration has a view of the board.
+  void report_lens_view();
+
   /// Reports that the taken command is done.
   void finish();
 
@@ -137,6 +153,17 @@ class CommandSlot {
   void wait_for_command(Clock::duration patience);
 
  private:
+  /// What a command works on.
+  struct Subject {
+    std::size_t index = 0;   ///< of the command in `Command`
+    std::string scan = {};   ///< id
+    int build = 0;           ///< number
+    bool has_views = false;  ///< of a lens calibration
+  };
+
+  static Subject to_subject(const Command& command);
+  template <typename Matches>
+  bool has(Matches matches) const;
   bool rank_is_free(std::size_t rank) const;
   bool offer(Command command, std::size_t rank);
   void put(Command command, std::stop_source stop);
@@ -144,8 +171,8 @@ class CommandSlot {
   mutable std::mutex mutex_;  // guards the members below
   std::condition_variable_any changed_;
   std::optional<Taken> waiting_;
-  std::optional<std::size_t> rank_;  // of the running command
-  std::stop_source stop_;            // of the running command
+  std::optional<Subject> running_;
+  std::stop_source stop_;  // of the running command
   ScanStop scan_stop_ = ScanStop::end;
   Clock::time_point camera_wanted_until_ = {};
   bool rebuild_waits_ = false;  // a caller waits for the previous rebuild

@@ -49,7 +49,7 @@ void FittingReconstruction::make_coarser(const Error& error) {
   start_again();
 }
 
-void FittingReconstruction::tell(Quality& quality) const {
+void FittingReconstruction::add_coarser_reason(Quality& quality) const {
   if (options_.leaf_size > asked_leaf_size_) {
     quality.verdict = std::max(quality.verdict, Verdict::look);
     quality.reasons.push_back(

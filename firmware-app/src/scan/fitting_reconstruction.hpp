@@ -32,7 +32,7 @@ class FittingReconstruction {
   void make_coarser(const Error& error);
 
   /// Adds a reason to the verdict if the leaves are larger than requested.
-  void tell(Quality& quality) const;
+  void add_coarser_reason(Quality& quality) const;
 
  private:
   std::string detail() const;

@@ -8,7 +8,7 @@ namespace {
 
 bool any(std::uint16_t depth) { return depth != 0; }
 
-auto row_of(const DepthFrame& frame, int v) {
+auto find_row(const DepthFrame& frame, int v) {
   return frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
 }
 
@@ -23,7 +23,7 @@ void KeptFrames::keep(std::size_t index, const DepthFrame& frame) {
   int top = frame.height;
   int bottom = 0;
   for (int v = 0; v < frame.height; ++v) {
-    const auto begin = row_of(frame, v);
+    const auto begin = find_row(frame, v);
     const auto end = begin + frame.width;
     const auto first = std::find_if(begin, end, any);
     if (first != end) {
@@ -50,7 +50,7 @@ void KeptFrames::keep(std::size_t index, const DepthFrame& frame) {
   } while (!room_.compare_exchange_weak(room, room - bytes));
   window.depth.reserve(bytes / sizeof(std::uint16_t));
   for (int v = window.top; v < bottom; ++v) {
-    const auto from = row_of(frame, v) + window.left;
+    const auto from = find_row(frame, v) + window.left;
     window.depth.insert(window.depth.end(), from, from + window.columns);
   }
   windows_[index] = std::move(window);

@@ -148,7 +148,7 @@ LaserCamera laser_camera(const LaserSettings& settings) {
   return camera;
 }
 
-std::vector<std::string> gpio_lines_of(const LaserSettings& settings) {
+std::vector<std::string> to_gpio_names(const LaserSettings& settings) {
   std::vector<std::string> names;
   for (const LaserLine& line : lines_of(settings)) {
     names.push_back(line.gpio_line);
@@ -189,7 +189,7 @@ std::vector<Field> fields(LaserSettings& settings) {
 }
 
 void check_laser_settings(JsonObject& keys, const LaserSettings& settings) {
-  const std::vector<std::string> lines = gpio_lines_of(settings);
+  const std::vector<std::string> lines = to_gpio_names(settings);
   if (lines.empty()) {
     keys.refuse("left", settings.left.gpio_line, "a laser with a line, or \"right\" one");
   }

@@ -45,7 +45,7 @@ struct LaserSettings {
 /// Returns the lasers with a GPIO line. The two functions below keep their order.
 std::vector<LaserLine> lines_of(const LaserSettings& settings);
 LaserCamera laser_camera(const LaserSettings& settings);
-std::vector<std::string> gpio_lines_of(const LaserSettings& settings);
+std::vector<std::string> to_gpio_names(const LaserSettings& settings);
 
 struct Field;
 

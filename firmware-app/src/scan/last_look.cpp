@@ -18,9 +18,9 @@ void warn(const Error& error) {
 
 }  // namespace
 
-std::optional<DepthFrame> look_again(Rig& rig, const ScanSettings& settings,
-                                     const std::stop_token& stop,
-                                     const ScanObserver& observer) try {
+std::optional<DepthFrame> retake_first_stop(Rig& rig, const ScanSettings& settings,
+                                            const std::stop_token& stop,
+                                            const ScanObserver& observer) try {
   const Turntable& turntable = rig.turntable();
   const std::int64_t position =
       stop_positions(turntable.position(), turntable.steps_per_turn(), 1).front();
@@ -31,7 +31,7 @@ std::optional<DepthFrame> look_again(Rig& rig, const ScanSettings& settings,
   return std::nullopt;
 }
 
-void keep_move(const std::filesystem::path& folder, const DepthFrame& again) try {
+void store_object_motion(const std::filesystem::path& folder, const DepthFrame& again) try {
   const Scan scan = read_scan(folder);
   const Snapshot first = read_snapshot(folder, scan, scan.shots.front());
   if (const auto move = measure_move(first, corrected(again, scan), scan.clip)) {

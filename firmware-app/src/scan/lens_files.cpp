@@ -24,7 +24,7 @@ constexpr double max_focal = 100000;  // pixels
 constexpr double max_distortion = 100;
 constexpr int max_views = 100000;
 
-json numbers_of(const CameraLens& lens) {
+json to_numbers(const CameraLens& lens) {
   const Intrinsics& in = lens.intrinsics;
   return {{"fx", in.fx}, {"fy", in.fy},   {"cx", in.cx},
           {"cy", in.cy}, {"k1", lens.k1}, {"k2", lens.k2}};
@@ -62,8 +62,8 @@ KeptLens to_kept_lens(const json& document) {
 
 }  // namespace
 
-fs::path lens_of(const fs::path& data, std::string_view serial) {
-  return data / "lenses" / sensor_map_of(data, serial).filename().replace_extension(".json");
+fs::path lens_path(const fs::path& data, std::string_view serial) {
+  return data / "lenses" / sensor_map_path(data, serial).filename().replace_extension(".json");
 }
 
 void keep_lens(const fs::path& data, std::string_view serial, const LensReport& report) {
@@ -75,7 +75,7 @@ void keep_lens(const fs::path& data, std::string_view serial, const LensReport& 
                                    .views = report.views});
   document["format"] = "octurn-lens";
   document["version"] = 1;
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   std::error_code failed;
   fs::create_directories(file.parent_path(), failed);
   if (failed) {
@@ -89,7 +89,7 @@ std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial)
   if (serial.empty()) {
     return std::nullopt;
   }
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   const auto text = read_regular_file(file, max_file_bytes);
   try {
     return text ? std::optional(to_kept_lens(parse_json(*text, ErrorCode::scan_malformed, "it")))
@@ -101,7 +101,7 @@ std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial)
 
 void remove_lens(const fs::path& data, std::string_view serial) {
   std::error_code failed;
-  const fs::path file = lens_of(data, serial);
+  const fs::path file = lens_path(data, serial);
   fs::remove(file, failed);
   if (failed) {
     throw Error(ErrorCode::write_failed, file.string() + ": cannot be removed: " + failed.message(),
@@ -126,7 +126,7 @@ CameraLens lens_in_force(const fs::path& data, std::string_view serial, const Ca
 }
 
 json to_json(const CameraLens& lens) {
-  json object = numbers_of(lens);
+  json object = to_numbers(lens);
   object["width"] = lens.intrinsics.width;
   object["height"] = lens.intrinsics.height;
   return object;
@@ -136,7 +136,7 @@ json to_json(const KeptLens& kept) {
   json object = to_json(kept.lens);
   object["serial"] = kept.serial;
   object["at"] = kept.made;
-  object["sigma"] = numbers_of(kept.sigma);
+  object["sigma"] = to_numbers(kept.sigma);
   object["rms_px"] = kept.rms;
   object["views"] = kept.views;
   return object;
@@ -148,7 +148,7 @@ json to_json(const LensReport& report) {
   return {{"accepted", report.accepted},
           {"reason", report.reason},
           {"lens", is_solved ? to_json(report.lens) : json()},
-          {"sigma", is_solved ? numbers_of(report.sigma) : json()},
+          {"sigma", is_solved ? to_numbers(report.sigma) : json()},
           {"rms_px", is_solved ? json(report.rms) : json()},
           {"tilt_deg", is_solved ? json(degrees_from_radians(report.tilt)) : json()},
           {"coverage", cells / static_cast<double>(report.coverage.size())},

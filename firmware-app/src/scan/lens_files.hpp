@@ -22,9 +22,16 @@ struct KeptLens {
   int views = 0;          ///< number of views of the board
 };
 
+/// The lens of a camera that was solved last, until it is kept or discarded. Its report is
+/// accepted.
+struct SolvedLens {
+  std::string camera = {};  ///< serial number
+  LensReport report = {};
+};
+
 /// Returns the path of a camera's file. Characters of the serial number other than letters, digits,
 /// dots, dashes and underscores become underscores. @param data  the data folder
-std::filesystem::path lens_of(const std::filesystem::path& data, std::string_view serial);
+std::filesystem::path lens_path(const std::filesystem::path& data, std::string_view serial);
 
 /// Stores the lens of an accepted report, with the current time.
 /// @param serial  of the camera; not empty

@@ -90,7 +90,7 @@ bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
   std::vector<std::string> poses = merged_poses(first, pose.id);
   std::vector<StoredTurn> turns =
       read_turns({store.merged_scan(first.id, poses), store.folder(pose.id)});
-  turns.back().told_object_from_platform = choice.object_from_platform;
+  turns.back().prior_object_from_platform = choice.object_from_platform;
   const Registration registration = register_turns(turns, limits.threads, stop);
   if (!registration.accepted) {
     throw Error(ErrorCode::no_model, registration.reason, "The model stayed as it was.");

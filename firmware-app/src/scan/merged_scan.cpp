@@ -81,8 +81,8 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 /// Bounding box of one stop's object points in a turn's clip box: metres, platform frame at angle
 /// 0. Every other row and column is enough.
-Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Intrinsics& lens,
-                              const Eigen::Isometry3d& pose, const Box& clip) {
+Eigen::AlignedBox3d make_extent(const DepthFrame& frame, const Intrinsics& lens,
+                                const Eigen::Isometry3d& pose, const Box& clip) {
   Eigen::AlignedBox3d extent;
   for (int v = 0; v < frame.height; v += 2) {
     const auto row = frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
@@ -100,7 +100,7 @@ Eigen::AlignedBox3d extent_of(const DepthFrame& frame, const Intrinsics& lens,
 }
 
 /// Shrinks the sides and the top of a turn's clip box to the points in it, plus a margin.
-Box drawn_in(const StoredTurn& turn) {
+Box shrunk_clip(const StoredTurn& turn) {
   const Box& clip = turn.scan.clip;
   Eigen::AlignedBox3d extent;
   for (const auto& of_stop : turn.extents) {
@@ -117,7 +117,7 @@ Box drawn_in(const StoredTurn& turn) {
 }
 
 /// Links a stop's images into a folder, as the stop of index `number`.
-Shot filed(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int number) {
+Shot link_shot(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int number) {
   Shot there = shot;
   if (turn.scan.laser) {
     there.pictures = picture_files(number, *turn.scan.laser);
@@ -159,9 +159,10 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
     merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
                             .platform_from_sensor = scan.platform_from_sensor,
                             .solved = solved_in(merged, scan),
-                            .clip = drawn_in(turns[i])});
+                            .clip = shrunk_clip(turns[i])});
     for (const Shot& shot : scan.shots) {
-      merged.shots.push_back(filed(shot, turns[i], folder, static_cast<int>(merged.shots.size())));
+      merged.shots.push_back(
+          link_shot(shot, turns[i], folder, static_cast<int>(merged.shots.size())));
       merged.shots.back().pose = static_cast<int>(i);
     }
   }
@@ -243,13 +244,13 @@ Registration register_turns(std::vector<StoredTurn>& turns, int threads,
     RegistrationTurn one =
         turn.scan.laser ? laser_turn(turn.folder, turn.scan, stop) : depth_turn(turn, stop);
     one.object_from_platform = turn.object_from_platform;
-    one.told_object_from_platform = turn.told_object_from_platform;
+    one.prior_object_from_platform = turn.prior_object_from_platform;
     turn.extents.assign(one.angles.size(), {});
     one.read = [&turn, lens = one.intrinsics, angles = one.angles,
                 read = std::move(one.read)](std::size_t i) {
       DepthFrame frame = read(i);
-      turn.extents[i] = extent_of(frame, lens, object_from_sensor(model_pose(turn.scan), angles[i]),
-                                  turn.scan.clip);
+      turn.extents[i] = make_extent(
+          frame, lens, object_from_sensor(model_pose(turn.scan), angles[i]), turn.scan.clip);
       return frame;
     };
     seen.push_back(std::move(one));

@@ -19,7 +19,7 @@ struct StoredTurn {
   /// The object's pose, if the folder's scan has it.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
   /// A person's estimate of that pose, which registration refines.
-  std::optional<Eigen::Isometry3d> told_object_from_platform = {};
+  std::optional<Eigen::Isometry3d> prior_object_from_platform = {};
   /// Cached depth images.
   std::shared_ptr<const KeptFrames> kept = {};
   /// Bounding box of each stop's points inside the clip box, set by registration: metres, platform

@@ -24,7 +24,7 @@ DepthSensor& Rig::sensor() {
     sensor_ = options_.open_sensor(options_.sensor_uri);
     sensor_since_ = std::chrono::steady_clock::now();
     sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
-    sensor_->lay_object(object_pose_);
+    sensor_->set_object_pose(object_pose_);
   }
   return *sensor_;
 }
@@ -54,7 +54,7 @@ Camera& Rig::camera() {
     camera_ = std::move(opened.camera);
     sensor_since_ = std::chrono::steady_clock::now();
     camera_->show_angle(radians_from_degrees(platform_angle_deg()));
-    camera_->lay_object(object_pose_);
+    camera_->set_object_pose(object_pose_);
   }
   return *camera_;
 }
@@ -70,13 +70,13 @@ void Rig::close_sensor() {
   sensor_.reset();
 }
 
-void Rig::lay_object(int pose) {
+void Rig::set_object_pose(int pose) {
   object_pose_ = pose;
   if (camera_) {
-    camera_->lay_object(pose);
+    camera_->set_object_pose(pose);
   }
   if (sensor_) {
-    sensor_->lay_object(pose);
+    sensor_->set_object_pose(pose);
   }
 }
 
@@ -85,7 +85,7 @@ Turntable& Rig::turntable() {
     return *turntable_;
   }
   if (options_.stepper) {
-    const int steps = motion_of(*options_.stepper).steps_per_turn;
+    const int steps = to_motion(*options_.stepper).steps_per_turn;
     turntable_ =
         std::make_unique<Stepper>(*options_.stepper, options_.open_lines(*options_.stepper),
                                   position_at(closed_angle_deg_, steps));
@@ -127,13 +127,13 @@ int Rig::late_pulses() const {
 }
 
 CameraAndLasers open_camera_and_lasers(const LaserSettings& settings) {
-  Lasers::SetLine lines = open_laser_lines(gpio_lines_of(settings));
-  const CameraWish wish{.width = settings.lens.width,
-                        .height = settings.lens.height,
-                        .exposure = settings.exposure,
-                        .gain = settings.gain,
-                        .focus = settings.platform_from_sensor.translation().norm()};
-  return {.camera = open_camera(wish), .set_line = std::move(lines)};
+  Lasers::SetLine lines = open_laser_lines(to_gpio_names(settings));
+  const CameraSettings camera_settings{.width = settings.lens.width,
+                                       .height = settings.lens.height,
+                                       .exposure = settings.exposure,
+                                       .gain = settings.gain,
+                                       .focus = settings.platform_from_sensor.translation().norm()};
+  return {.camera = open_camera(camera_settings), .set_line = std::move(lines)};
 }
 
 }  // namespace octurn

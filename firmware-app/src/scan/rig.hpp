@@ -64,8 +64,8 @@ class Rig {
   Camera& camera();
   Lasers& lasers();
 
-  /// Sets the pose of a simulated rig's object; see `DepthSensor::lay_object`.
-  void lay_object(int pose);
+  /// Sets the pose of a simulated rig's object; see `DepthSensor::set_object_pose`.
+  void set_object_pose(int pose);
 
   /// Closes the sensor, which switches its projector or its lasers off; the next use opens it
   /// again.

@@ -266,7 +266,7 @@ std::optional<Model> Run::build(Clock::time_point captured,
     return std::nullopt;
   }
   Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
-  reconstruction_.tell(quality);
+  reconstruction_.add_coarser_reason(quality);
   report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),
                .build_time = Clock::now() - captured,
@@ -283,13 +283,13 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
   if (is_unfinished && !run.take_snapshots()) {
     return std::nullopt;
   }
-  const bool looks_again = is_unfinished && rig.laser() == nullptr;
-  const auto again =
-      looks_again ? look_again(rig, settings, stop, observer) : std::optional<DepthFrame>();
+  const bool retakes = is_unfinished && rig.laser() == nullptr;
+  const auto retaken =
+      retakes ? retake_first_stop(rig, settings, stop, observer) : std::optional<DepthFrame>();
   const Clock::time_point captured = Clock::now();
   std::vector<CalibrationFinding> findings = run.calibrate();
-  if (again) {
-    keep_move(folder, *again);
+  if (retaken) {
+    store_object_motion(folder, *retaken);
   }
   add_stored_move(folder, findings);
   return run.build(captured, findings);

@@ -29,7 +29,7 @@ bool is_plain(char c) {
 }
 
 /// Lists the files of a scan, sorted, so that its archive is reproducible.
-std::vector<std::string> files_of(const fs::path& scan) {
+std::vector<std::string> list_files(const fs::path& scan) {
   std::vector<std::string> files(single_files.begin(), single_files.end());
   for (const std::string& name : names_in(scan / snapshots)) {
     files.push_back(std::string(snapshots) + name);
@@ -57,7 +57,7 @@ bool is_scan_file(std::string_view name) {
 
 void write_scan_archive(const fs::path& scan, const fs::path& archive) {
   ZipWriter zip(archive);
-  for (const std::string& name : files_of(scan)) {
+  for (const std::string& name : list_files(scan)) {
     if (const auto content = read_regular_file(scan / name, max_file_bytes)) {
       zip.begin(name, name.ends_with(".png") ? ZipMethod::stored : ZipMethod::deflated);
       zip.write(*content);

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Parses a folder's name into time of deletion and id; nullopt for other names.
-std::optional<std::pair<ScanTime, std::string>> parts_of(const std::string& name) {
+std::optional<std::pair<ScanTime, std::string>> parse_folder_name(const std::string& name) {
   const std::size_t dot = name.find('.');
   if (dot == name.npos || !is_scan_id(name.substr(0, dot)) || !is_scan_id(name.substr(dot + 1))) {
     return std::nullopt;
@@ -28,7 +28,7 @@ ScanBin::ScanBin(fs::path folder, const std::function<Job(const fs::path& folder
     : folder_(std::move(folder)) {
   clear_unfinished(folder_);
   for (const std::string& name : names_in(folder_)) {
-    const auto parts = parts_of(name);
+    const auto parts = parse_folder_name(name);
     std::error_code unknown;
     if (parts && fs::is_directory(folder_ / name, unknown)) {
       Job job = load(folder_ / name);
@@ -38,7 +38,7 @@ ScanBin::ScanBin(fs::path folder, const std::function<Job(const fs::path& folder
   }
 }
 
-fs::path ScanBin::folder_of(const BinnedScan& scan) const {
+fs::path ScanBin::path(const BinnedScan& scan) const {
   return folder_ / (to_scan_id(scan.deleted) + "." + scan.job.id);
 }
 
@@ -73,7 +73,7 @@ void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {
   fs::create_directories(folder_, error);
   const BinnedScan binned{.job = job, .deleted = now};
   if (!error) {
-    fs::rename(scan, folder_of(binned), error);
+    fs::rename(scan, path(binned), error);
   }
   if (error && error != std::errc::no_such_file_or_directory) {
     throw_data_error(scan, "move into the bin", error);
@@ -90,9 +90,9 @@ void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {
 void ScanBin::put_back(std::string_view id, const fs::path& scan) {
   const auto binned = find(id);
   std::error_code error;
-  fs::rename(folder_of(binned.value()), scan, error);
+  fs::rename(path(binned.value()), scan, error);
   if (error) {
-    throw_data_error(folder_of(*binned), "restore", error);
+    throw_data_error(path(*binned), "restore", error);
   }
   sync_folder(scan.parent_path());
   sync_folder(folder_);
@@ -105,9 +105,9 @@ void ScanBin::remove(std::string_view id) {
   const fs::path leaving = folder_ / ("." + std::string(id));
   std::error_code error;
   // Renamed first, so that a partly removed scan is never listed.
-  fs::rename(folder_of(binned.value()), leaving, error);
+  fs::rename(path(binned.value()), leaving, error);
   if (error && error != std::errc::no_such_file_or_directory) {
-    throw_data_error(folder_of(*binned), "remove", error);
+    throw_data_error(path(*binned), "remove", error);
   }
   {
     const std::lock_guard lock(mutex_);

@@ -55,7 +55,7 @@ class ScanBin {
   void remove_before(ScanTime time);
 
  private:
-  std::filesystem::path folder_of(const BinnedScan& scan) const;
+  std::filesystem::path path(const BinnedScan& scan) const;
 
   std::filesystem::path folder_;
   mutable std::mutex mutex_;  // guards scans_; never held during disk access

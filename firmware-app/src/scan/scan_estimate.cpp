@@ -20,7 +20,7 @@ constexpr double unmeasured_leaf = 0.001;              // metres
 constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's depth image, as PNG
 constexpr double unmeasured_model_bytes = 1'500'000;   // with leaves of that size
 
-int frames_of(const ScanSettings& settings) {
+int depth_frames(const ScanSettings& settings) {
   return settings.filter == DepthFilter::basic ? 1 : settings.frames;
 }
 
@@ -29,26 +29,27 @@ double growth(double leaf, double measured_leaf) {
   return (measured_leaf / leaf) * (measured_leaf / leaf);
 }
 
-/// Returns the scans with the minimum `unlikeness`, newest first, at most `max_looked_at`.
+/// Returns the scans with the minimum `dissimilarity`, newest first, at most `max_looked_at`.
 /// @param unlikeness  of a scan to the one to estimate; 0 if they are alike
-template <typename Unlikeness>
-std::vector<const EarlierScan*> most_alike(const std::vector<const EarlierScan*>& scans,
-                                           Unlikeness unlikeness) {
-  std::vector<const EarlierScan*> alike;
+template <typename Dissimilarity>
+std::vector<const EarlierScan*> most_similar(const std::vector<const EarlierScan*>& scans,
+                                             Dissimilarity dissimilarity) {
+  std::vector<const EarlierScan*> similar;
   for (const EarlierScan* const scan : scans) {
-    const double difference = alike.empty() ? 0 : unlikeness(*scan) - unlikeness(*alike.front());
+    const double difference =
+        similar.empty() ? 0 : dissimilarity(*scan) - dissimilarity(*similar.front());
     if (difference < 0) {
-      alike.clear();
+      similar.clear();
     }
-    if (difference <= 0 && alike.size() < max_looked_at) {
-      alike.push_back(scan);
+    if (difference <= 0 && similar.size() < max_looked_at) {
+      similar.push_back(scan);
     }
   }
-  return alike;
+  return similar;
 }
 
 template <typename Fits>
-std::vector<const EarlierScan*> those(const std::vector<EarlierScan>& scans, Fits fits) {
+std::vector<const EarlierScan*> matching(const std::vector<EarlierScan>& scans, Fits fits) {
   std::vector<const EarlierScan*> found;
   for (const EarlierScan& scan : scans) {
     if (scan.job.state == JobState::finished && scan.job.model && scan.job.settings.snapshots > 0 &&
@@ -60,7 +61,7 @@ std::vector<const EarlierScan*> those(const std::vector<EarlierScan>& scans, Fit
 }
 
 template <typename Value>
-Seconds median_of(const std::vector<const EarlierScan*>& scans, Value value) {
+Seconds median_value(const std::vector<const EarlierScan*>& scans, Value value) {
   std::vector<Seconds> values;
   values.reserve(scans.size());
   for (const EarlierScan* const scan : scans) {
@@ -82,33 +83,34 @@ Seconds median(std::vector<Seconds> values) {
 
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings) {
   const int snapshots = settings.snapshots;
-  const auto stops = most_alike(
-      those(earlier,
-            [&](const ScanSettings& other) {
-              return other.filter == settings.filter && frames_of(other) == frames_of(settings);
-            }),
+  const auto stops = most_similar(
+      matching(earlier,
+               [&](const ScanSettings& other) {
+                 return other.filter == settings.filter &&
+                        depth_frames(other) == depth_frames(settings);
+               }),
       [&](const EarlierScan& scan) {
         return std::abs(std::log(static_cast<double>(scan.job.settings.snapshots) / snapshots));
       });
-  const auto models = most_alike(
-      those(earlier, [&](const ScanSettings& other) { return other.method == settings.method; }),
+  const auto models = most_similar(
+      matching(earlier, [&](const ScanSettings& other) { return other.method == settings.method; }),
       [&](const EarlierScan& scan) {
         return std::abs(std::log(scan.job.settings.leaf_size / settings.leaf_size));
       });
   const double unmeasured_growth = growth(settings.leaf_size, unmeasured_leaf);
   ScanEstimate estimate{
-      .stop = unmeasured_stop + Seconds(frames_of(settings) / rate_hz),
+      .stop = unmeasured_stop + Seconds(depth_frames(settings) / rate_hz),
       .build = unmeasured_growth * unmeasured_model + snapshots * unmeasured_snapshot,
       .is_measured = !stops.empty() && !models.empty()};
   double bytes = snapshots * unmeasured_snapshot_bytes + unmeasured_growth * unmeasured_model_bytes;
   if (!stops.empty()) {
-    estimate.stop = median_of(stops, [](const EarlierScan& scan) {
+    estimate.stop = median_value(stops, [](const EarlierScan& scan) {
       const Job& job = scan.job;
       return (job.times.elapsed - job.model->build_time) / (job.settings.snapshots + 1);
     });
   }
   if (!models.empty()) {
-    estimate.build = median_of(models, [&](const EarlierScan& scan) {
+    estimate.build = median_value(models, [&](const EarlierScan& scan) {
       const ScanSettings& other = scan.job.settings;
       return scan.job.model->build_time * growth(settings.leaf_size, other.leaf_size) * snapshots /
              other.snapshots;

@@ -46,7 +46,7 @@ std::optional<Box> box_from(const json& mm) {
   return (box.min.array() < box.max.array()).all() ? std::optional(box) : std::nullopt;
 }
 
-json mm_of(const Box& box) {
+json to_mm(const Box& box) {
   json mm = json::array();
   for (const Eigen::Vector3d& corner : {box.min, box.max}) {
     for (const double metres : corner) {
@@ -69,7 +69,7 @@ Access box(Box& value) {
                 }
                 value = *box;
               },
-          .write = [&value] { return mm_of(value); },
+          .write = [&value] { return to_mm(value); },
           .schema = {{"type", "array"}, {"items", side}, {"minItems", 6}, {"maxItems", 6}}};
 }
 
@@ -245,7 +245,7 @@ void check_clip(const JsonObject& keys, const ScanSettings& settings) {
   // Tolerates the rounding of millimetres to metres.
   const double thinnest = settings.leaf_size * (1 - 1e-9);
   if (((settings.clip.max - settings.clip.min).array() < thinnest).any()) {
-    keys.refuse("clip_mm", mm_of(settings.clip), "as thick as leaf_size_mm or thicker");
+    keys.refuse("clip_mm", to_mm(settings.clip), "as thick as leaf_size_mm or thicker");
   }
 }
 

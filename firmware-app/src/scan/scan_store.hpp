@@ -166,8 +166,8 @@ class ScanStore {
   void enter(const std::filesystem::path& beginning, const Job& job);
   void recover();
   void finish_discards();
-  void bring_back(const BinnedScan& scan);
-  void take_away(const Job& job);
+  void move_from_bin(const BinnedScan& scan);
+  void move_to_bin(const Job& job);
   void write_job(const Job& job) const;
 
   std::filesystem::path data_;

@@ -13,7 +13,7 @@ ScanTime now() { return std::chrono::floor<ScanTime::duration>(std::chrono::syst
 }  // namespace
 
 /// `writing_` is held.
-void ScanStore::take_away(const Job& job) {
+void ScanStore::move_to_bin(const Job& job) {
   bin_.take(folder(job.id), job, now());
   const std::lock_guard lock(mutex_);
   jobs_.erase(job.id);
@@ -21,7 +21,7 @@ void ScanStore::take_away(const Job& job) {
 }
 
 /// `writing_` is held.
-void ScanStore::bring_back(const BinnedScan& scan) {
+void ScanStore::move_from_bin(const BinnedScan& scan) {
   bin_.put_back(scan.job.id, folder(scan.job.id));
   const std::lock_guard lock(mutex_);
   jobs_.insert_or_assign(scan.job.id, scan.job);
@@ -34,9 +34,9 @@ void ScanStore::discard(std::string_view id) {
   const std::lock_guard writing(writing_);
   const Job job = get(id);
   const std::vector<Job> others = poses(id);
-  take_away(job);
+  move_to_bin(job);
   for (const Job& other : others) {
-    take_away(other);
+    move_to_bin(other);
   }
   bin_.remove_before(now() - days_in_bin);
 }
@@ -48,10 +48,10 @@ void ScanStore::restore(std::string_view id) {
     throw Error(ErrorCode::no_such_scan, "there is no scan " + std::string(id) + " in the bin",
                 "GET /api/v1/bin lists them.");
   }
-  bring_back(*scan);
+  move_from_bin(*scan);
   for (const BinnedScan& other : bin_.list()) {
     if (other.job.pose_of && other.job.pose_of->scan == id) {
-      bring_back(other);
+      move_from_bin(other);
     }
   }
 }
@@ -82,12 +82,12 @@ void ScanStore::finish_discards() {
   try {
     for (const Job& job : list()) {
       if (job.pose_of && !find(job.pose_of->scan) && bin_.find(job.pose_of->scan)) {
-        take_away(job);
+        move_to_bin(job);
       }
     }
     for (const BinnedScan& scan : bin_.list()) {
       if (scan.job.pose_of && find(scan.job.pose_of->scan)) {
-        bring_back(scan);
+        move_from_bin(scan);
       }
     }
     bin_.remove_before(now() - days_in_bin);

@@ -1,6 +1,8 @@
 #include "scan/scanner.hpp"
 
+#include <filesystem>
 #include <future>
+#include <system_error>
 #include <utility>
 
 #include "scan/worker.hpp"
@@ -37,7 +39,9 @@ Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
   slot_.want_camera(Clock::now() + camera_interest);  // so that the status shows the devices
   worker_ =
       std::jthread([this, limits, rig = at_angle(std::move(rig), store.platform_angle_deg())] {
-        Worker(rig, limits, {store_, board_, slot_, heartbeat_, calibration_, scans_}).work();
+        Worker(rig, limits,
+               {store_, board_, devices_, slot_, heartbeat_, calibration_, scans_, solved_lens_})
+            .work();
       });
 }
 
@@ -94,11 +98,6 @@ std::optional<Job> Scanner::hand_over(Job job, Command command) {
   return job;
 }
 
-bool Scanner::is_running(std::string_view id) const {
-  const Status now = status();
-  return now.is_scanning() && now.job->id == id;
-}
-
 bool Scanner::can_resume(const Job& job) const {
   const bool is_ended = job.state == JobState::cancelled && !job.model;
   return is_resumable(job.state) || (is_ended && store_.newest_id() == job.id);
@@ -106,7 +105,7 @@ bool Scanner::can_resume(const Job& job) const {
 
 bool Scanner::pause(std::string_view id) {
   const std::lock_guard lock(scans_);
-  if (!is_running(id)) {
+  if (!slot_.has_scan(id)) {
     return false;
   }
   slot_.stop_scan(ScanStop::pause);
@@ -115,7 +114,7 @@ bool Scanner::pause(std::string_view id) {
 
 bool Scanner::cancel(std::string_view id) {
   const std::lock_guard lock(scans_);
-  if (is_running(id)) {
+  if (slot_.has_scan(id)) {
     slot_.stop_scan(ScanStop::end);
     return true;
   }
@@ -187,19 +186,16 @@ std::shared_ptr<const CameraFrame> Scanner::camera_frame() {
 }
 
 void Scanner::expect_ready() {
-  const auto is_ready = [](const DeviceStatus& device) {
-    return device.state == DeviceStatus::State::ready;
-  };
   if (slot_.is_occupied()) {
     return;  // the worker cannot check the devices now
   }
-  Status now = status();
-  if (!is_ready(now.sensor) || !is_ready(now.turntable)) {
+  auto now = devices_.get();
+  if (!now->sensor_is_ready || !now->turntable_is_ready) {
     camera_frame();  // opens both
-    now = status();
+    now = devices_.get();
   }
-  if (!now.busy() && !is_ready(now.turntable)) {
-    throw to_error(now.turntable.failure);
+  if (!is_busy() && now->turntable_failure) {
+    throw to_error(*now->turntable_failure);
   }
 }
 
@@ -219,6 +215,7 @@ bool Scanner::begin(CalibrationRun run, Command command) {
   if (slot_.has_scan() || slot_.has_ended()) {
     return false;
   }
+  solved_lens_.reset();
   board_.set_calibration_run(run);
   if (!slot_.offer_scan(std::move(command))) {
     run.state = CalibrationRun::State::cancelled;  // the scanner is ending
@@ -233,18 +230,20 @@ bool Scanner::forget_sensor_map() {
   if (slot_.has_scan()) {
     return false;
   }
-  const auto sensor = known_sensor();
-  if (!sensor->map) {
+  const std::string serial = sensor_serial();
+  std::error_code unreadable;
+  if (serial.empty() ||
+      !std::filesystem::exists(sensor_map_path(store_.data(), serial), unreadable)) {
     throw Error(ErrorCode::not_found, "this sensor has no map", "There is nothing to remove.");
   }
-  remove_sensor_map(store_.data(), sensor->serial);
+  remove_sensor_map(store_.data(), serial);
   board_.clear_sensor_map();
   return true;
 }
 
 bool Scanner::cancel_calibration() {
   const std::lock_guard lock(scans_);
-  if (!status().is_measuring) {
+  if (!slot_.has_measurement()) {
     return false;
   }
   slot_.stop_scan(ScanStop::end);

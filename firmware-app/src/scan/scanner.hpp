@@ -14,7 +14,10 @@
 
 #include "scan/calibration_store.hpp"
 #include "scan/command_slot.hpp"
+#include "scan/device_states.hpp"
 #include "scan/heartbeat.hpp"
+#include "scan/latest.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/scan_store.hpp"
 #include "scan/slurm_builds.hpp"
 #include "scan/status_board.hpp"
@@ -38,8 +41,11 @@ namespace octurn {
 ///     any thread --- Scanner --- CommandSlot (one waits, one is carried out) --> Worker
 ///                       |                                                          |
 ///                       |   stores: scans and poses on the disk, held in memory    |  the rig,
-///                       +-- StatusBoard: status, camera frame, mesh preview <------+  the volume,
-///                       +-- ModelPipe: the bytes of a model <----------------------+  the scan
+///                       +-- DeviceStates: whether they work <----------------------+  the volume,
+///                       +-- StatusBoard: status, camera frame, mesh preview <------+  the scan
+///                       +-- ModelPipe: the bytes of a model <----------------------+
+///
+/// Both decide by the slot, the stores and the device states. The StatusBoard is for display alone.
 class Scanner {
  public:
   /// @param slurm  builds the models of stored scans; nullopt: the worker builds them
@@ -136,6 +142,15 @@ class Scanner {
   /// Waits until no scan and no measurement runs, for at most `patience`.
   Status wait_until_done(std::chrono::milliseconds patience) const;
 
+  /// Whether a scan, a measurement or a build of the worker waits or runs.
+  bool is_busy() const { return slot_.is_busy(); }
+
+  /// Whether the turntable worked at its last use, so that this program has its lines.
+  bool has_turntable() const { return devices_.get()->turntable_is_ready; }
+
+  /// The serial number of the sensor that is open, or was open last; empty: none, or it has none.
+  std::string sensor_serial() const { return devices_.get()->serial; }
+
   /// Returns the current depth image or picture; the last one during a scan or while a model is
   /// made.
   /// @throws Error  if there is none, with the reason
@@ -176,7 +191,7 @@ class Scanner {
   /// @throws Error "not-found"  if it has none; "write-failed"
   bool forget_sensor_map();
 
-  /// The sensor that is open, or was open last.
+  /// The sensor that is open, or was open last, for display.
   std::shared_ptr<const KnownSensor> known_sensor() const { return board_.known_sensor().get(); }
 
   /// Asks the running measurement to stop. @return false if none runs
@@ -253,12 +268,11 @@ class Scanner {
   void request_stop();
 
  private:
-  bool is_running(std::string_view id) const;
   bool is_building(std::string_view id) const;
   void expect_idle(std::string_view id) const;
   void expect_last_pose(const Job& pose) const;
-  CalibrationRun found_lens() const;
-  void take_back(const Job& pose);
+  void expect_solved_lens() const;
+  void remove_pose(const Job& pose);
   std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);
   bool begin(CalibrationRun run, Command command);
@@ -268,11 +282,13 @@ class Scanner {
   Limits limits_;
   CalibrationStore calibration_;
   StatusBoard board_;
+  Latest<DeviceStates> devices_;
   CommandSlot slot_;
   Heartbeat heartbeat_;
   std::stop_source ending_;
   std::optional<SlurmBuilds> slurm_ = {};
-  std::mutex scans_;     // serialises changes of scans' states
+  std::mutex scans_;  // serialises changes of scans' states, and guards the lens
+  std::optional<SolvedLens> solved_lens_ = {};
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };
 

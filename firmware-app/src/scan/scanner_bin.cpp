@@ -12,7 +12,7 @@ void Scanner::remove(std::string_view id) {
   const std::lock_guard lock(scans_);
   const Job job = store_.get(id);
   if (job.pose_of && store_.find(job.pose_of->scan)) {
-    take_back(job);
+    remove_pose(job);
     return;
   }
   const std::vector<Job> poses = store_.poses(id);
@@ -30,7 +30,7 @@ void Scanner::restore(std::string_view id) {
 
 /// Checks that a scan neither runs nor is being built. @throws Error "busy"
 void Scanner::expect_idle(std::string_view id) const {
-  if (is_running(id)) {
+  if (slot_.has_scan(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
   if (is_building(id)) {

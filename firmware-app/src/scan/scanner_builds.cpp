@@ -40,8 +40,7 @@ std::optional<BuildRun> Scanner::build(std::string_view id, const BuildOrder& or
 /// `scans_` is held.
 std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
   store_.make_room(max_model_bytes(), "a model");
-  const auto last = build_run();
-  if (slot_.has_scan() || slot_.has_ended() || (*last && !(*last)->has_ended())) {
+  if (slot_.is_busy() || slot_.has_ended()) {
     return std::nullopt;
   }
   BuildRun& run = command.run;
@@ -60,8 +59,7 @@ bool Scanner::cancel_build(std::string_view id, int number) {
     return true;
   }
   const std::lock_guard lock(scans_);
-  const auto run = build_run();
-  if (!*run || (*run)->has_ended() || (*run)->scan != id || (*run)->number != number) {
+  if (!slot_.has_build(id, number)) {
     return false;
   }
   if (slot_.stop_build()) {
@@ -71,8 +69,7 @@ bool Scanner::cancel_build(std::string_view id, int number) {
 }
 
 bool Scanner::is_building(std::string_view id) const {
-  return std::ranges::any_of(
-      build_runs(), [&](const BuildRun& run) { return run.scan == id && !run.has_ended(); });
+  return slot_.has_build(id) || (slurm_ && slurm_->is_building(id));
 }
 
 std::vector<BuildRun> Scanner::build_runs() const {

@@ -1,5 +1,10 @@
 // Scanner: the lens of a camera with lasers.
 
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <system_error>
+
 #include "octurn/error.hpp"
 #include "scan/lens_files.hpp"
 #include "scan/scanner.hpp"
@@ -13,48 +18,44 @@ bool Scanner::look_at_board() {
 
 bool Scanner::solve_lens() {
   const std::lock_guard lock(scans_);
-  const auto run = calibration_run();
-  const bool is_looking = status().is_measuring && *run &&
-                          (*run)->kind == CalibrationRun::Kind::lens && (*run)->stop > 0;
-  if (is_looking) {
-    slot_.stop_scan(ScanStop::pause);
-  }
-  return is_looking;
+  return slot_.solve_lens();
 }
 
-/// Returns the last run if its lens was accepted. @throws Error "not-found"
-CalibrationRun Scanner::found_lens() const {
-  const auto run = calibration_run();
-  if (!*run || !(*run)->lens || !(*run)->lens->accepted) {
+/// Checks that a lens waits to be kept; `scans_` is held. @throws Error "not-found"
+void Scanner::expect_solved_lens() const {
+  if (!solved_lens_) {
     throw Error(ErrorCode::not_found, "no lens was found that could be kept",
                 "POST /api/v1/calibration with the kind \"lens\" looks for one.");
   }
-  return **run;
 }
 
 void Scanner::keep_lens() {
   const std::lock_guard lock(scans_);
-  const CalibrationRun run = found_lens();
-  octurn::keep_lens(store_.data(), run.camera, *run.lens);
-  if (known_sensor()->serial == run.camera) {
-    board_.set_lens(find_lens(store_.data(), run.camera));
+  expect_solved_lens();
+  const std::string& camera = solved_lens_->camera;
+  octurn::keep_lens(store_.data(), camera, solved_lens_->report);
+  if (sensor_serial() == camera) {
+    board_.set_lens(find_lens(store_.data(), camera));
   }
+  solved_lens_.reset();
   board_.forget_calibration_run();
 }
 
 void Scanner::discard_lens() {
   const std::lock_guard lock(scans_);
-  found_lens();
+  expect_solved_lens();
+  solved_lens_.reset();
   board_.forget_calibration_run();
 }
 
 void Scanner::forget_lens() {
   const std::lock_guard lock(scans_);
-  const auto sensor = known_sensor();
-  if (!sensor->lens) {
+  const std::string serial = sensor_serial();
+  std::error_code unreadable;
+  if (serial.empty() || !std::filesystem::exists(lens_path(store_.data(), serial), unreadable)) {
     throw Error(ErrorCode::not_found, "no lens of this camera is kept", "The settings' holds.");
   }
-  remove_lens(store_.data(), sensor->serial);
+  remove_lens(store_.data(), serial);
   board_.set_lens(std::nullopt);
 }
 

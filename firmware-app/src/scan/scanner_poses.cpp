@@ -91,11 +91,11 @@ std::optional<BuildRun> Scanner::choose_pose(std::string_view id, int number,
 
 void Scanner::remove_pose(std::string_view id, int number) {
   const std::lock_guard lock(scans_);
-  take_back(find_pose(id, number));
+  remove_pose(find_pose(id, number));
 }
 
 /// `scans_` is held.
-void Scanner::take_back(const Job& pose) {
+void Scanner::remove_pose(const Job& pose) {
   const std::string& first = pose.pose_of->scan;
   expect_idle(pose.id);
   if (is_building(first)) {

@@ -19,7 +19,7 @@ constexpr std::string_view allowed =
 
 }  // namespace
 
-std::filesystem::path sensor_map_of(const std::filesystem::path& data, std::string_view serial) {
+std::filesystem::path sensor_map_path(const std::filesystem::path& data, std::string_view serial) {
   std::string name(serial);
   for (char& letter : name) {
     letter = allowed.find(letter) == allowed.npos ? '_' : letter;
@@ -27,17 +27,17 @@ std::filesystem::path sensor_map_of(const std::filesystem::path& data, std::stri
   return data / "sensor-maps" / (name + ".png");
 }
 
-std::filesystem::path wall_looks_of(const std::filesystem::path& data, std::string_view serial) {
-  return sensor_map_of(data, serial).replace_extension();
+std::filesystem::path wall_views_path(const std::filesystem::path& data, std::string_view serial) {
+  return sensor_map_path(data, serial).replace_extension();
 }
 
 void remove_sensor_map(const std::filesystem::path& data, std::string_view serial) {
-  const std::filesystem::path map = sensor_map_of(data, serial);
+  const std::filesystem::path map = sensor_map_path(data, serial);
   std::error_code failed_map;
-  std::error_code failed_looks;
+  std::error_code failed_views;
   std::filesystem::remove(map, failed_map);
-  std::filesystem::remove_all(wall_looks_of(data, serial), failed_looks);
-  if (const std::error_code& failed = failed_map ? failed_map : failed_looks) {
+  std::filesystem::remove_all(wall_views_path(data, serial), failed_views);
+  if (const std::error_code& failed = failed_map ? failed_map : failed_views) {
     throw Error(ErrorCode::write_failed, map.string() + ": cannot be removed: " + failed.message(),
                 "Look at the disk.");
   }
@@ -67,7 +67,7 @@ SensorMapSummary summarise(const SensorMap& map) {
 
 std::optional<SensorMapSummary> find_map_summary(const std::filesystem::path& data,
                                                  std::string_view serial) {
-  const std::filesystem::path file = sensor_map_of(data, serial);
+  const std::filesystem::path file = sensor_map_path(data, serial);
   return serial.empty() || !std::filesystem::exists(file)
              ? std::nullopt
              : std::optional(summarise(read_sensor_map(file)));
@@ -79,7 +79,7 @@ void keep_sensor_map(const std::filesystem::path& data, std::string_view serial,
     return;
   }
   if (const std::optional<std::string> map =
-          read_regular_file(sensor_map_of(data, serial), max_map_bytes)) {
+          read_regular_file(sensor_map_path(data, serial), max_map_bytes)) {
     write_file(folder / sensor_map_file, *map);
   }
 }

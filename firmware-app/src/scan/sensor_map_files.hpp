@@ -13,10 +13,10 @@ namespace octurn {
 /// Returns the path of the map of a sensor's depth error: `sensor-maps/SERIAL.png`. Characters of
 /// the serial number other than letters, digits, dots, dashes and underscores become underscores.
 /// @param data  the data folder
-std::filesystem::path sensor_map_of(const std::filesystem::path& data, std::string_view serial);
+std::filesystem::path sensor_map_path(const std::filesystem::path& data, std::string_view serial);
 
 /// Returns the folder of the wall views that this map is fitted to: `sensor-maps/SERIAL`.
-std::filesystem::path wall_looks_of(const std::filesystem::path& data, std::string_view serial);
+std::filesystem::path wall_views_path(const std::filesystem::path& data, std::string_view serial);
 
 /// Removes the map and its wall views. @throws Error "write-failed"
 void remove_sensor_map(const std::filesystem::path& data, std::string_view serial);

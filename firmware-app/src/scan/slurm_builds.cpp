@@ -7,7 +7,7 @@
 #include "log.hpp"
 #include "octurn/file.hpp"
 #include "scan/build_file.hpp"
-#include "scan/built_elsewhere.hpp"
+#include "scan/external_build.hpp"
 #include "utc.hpp"
 
 namespace octurn {
@@ -59,7 +59,7 @@ void SlurmBuilds::find_again() {
       }
     }
   }
-  is_news_ = !entries_.empty();
+  wake_ = !entries_.empty();
 }
 
 BuildRun SlurmBuilds::add(BuildRun run, bool becomes_model) {
@@ -85,7 +85,7 @@ BuildRun SlurmBuilds::add(BuildRun run, bool becomes_model) {
   {
     const std::lock_guard lock(mutex_);
     entries_.push_back(std::move(entry));
-    is_news_ = true;
+    wake_ = true;
   }
   changed_.notify_all();
   return run;
@@ -106,7 +106,7 @@ bool SlurmBuilds::cancel(std::string_view id, int number) {
       return false;
     }
     found->is_unwanted = true;
-    is_news_ = true;
+    wake_ = true;
   }
   changed_.notify_all();
   return true;
@@ -122,14 +122,14 @@ void SlurmBuilds::work(const std::stop_token& stop) {
     {
       std::unique_lock lock(mutex_);
       if (entries_.empty()) {
-        changed_.wait(lock, stop, [&] { return is_news_; });
+        changed_.wait(lock, stop, [&] { return wake_; });
       } else {
-        changed_.wait_for(lock, stop, options_.interval, [&] { return is_news_; });
+        changed_.wait_for(lock, stop, options_.interval, [&] { return wake_; });
       }
-      is_news_ = false;
+      wake_ = false;
     }
     try {
-      look(stop);
+      poll(stop);
     } catch (const Stopped&) {
       return;
     } catch (...) {

@@ -69,9 +69,9 @@ class SlurmBuilds {
 
   void find_again();
   void work(const std::stop_token& stop);
-  void look(const std::stop_token& stop);
+  void poll(const std::stop_token& stop);
   std::vector<Entry> entries();
-  void look_at(Entry& entry, const std::vector<SlurmJob>& jobs, const std::stop_token& stop);
+  void update(Entry& entry, const std::vector<SlurmJob>& jobs, const std::stop_token& stop);
   void submit(Entry& entry, const std::stop_token& stop);
   void keep(Entry& entry);
   void choose(const BuildTask& task);
@@ -86,7 +86,7 @@ class SlurmBuilds {
   std::mutex mutex_;  // guards the members below
   std::condition_variable_any changed_;
   std::vector<Entry> entries_;  // that have not ended
-  bool is_news_ = false;        // wakes the thread before the next poll
+  bool wake_ = false;           // before the next poll
   std::jthread thread_;         // the last member, so that it ends first
 };
 

@@ -79,7 +79,7 @@ struct MeshPreview {
 };
 
 /// The published state of devices, scan, builds and measurements, and what the sensor sees. The
-/// worker and the Scanner write it. Thread-safe.
+/// worker and the Scanner write it, and decide nothing by it. Thread-safe.
 class StatusBoard {
  public:
   explicit StatusBoard(const RigOptions& rig);

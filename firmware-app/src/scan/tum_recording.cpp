@@ -26,7 +26,7 @@ struct TimedPose {
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
 };
 
-std::optional<double> number_of(std::string_view text) {
+std::optional<double> parse_number(std::string_view text) {
   double number = 0;
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
@@ -70,7 +70,7 @@ class ListFile {
   }
 
   double number(const std::string& word) const {
-    const auto number = number_of(word);
+    const auto number = parse_number(word);
     if (!number) {
       refuse("\"" + word + "\" is no number");
     }
@@ -199,7 +199,7 @@ Intrinsics tum_camera(std::string_view camera) {
     std::istringstream words(text);
     std::size_t count = 0;
     for (std::string word; words >> word; ++count) {
-      const auto number = number_of(word);
+      const auto number = parse_number(word);
       if (!number || count >= values.size()) {
         count = 0;
         break;
@@ -217,7 +217,7 @@ Intrinsics tum_camera(std::string_view camera) {
       .fx = values[0], .fy = values[1], .cx = values[2], .cy = values[3], .depth_unit = 1.0 / 5000};
 }
 
-std::string_view tum_camera_of(const fs::path& folder) {
+std::string_view to_tum_camera(const fs::path& folder) {
   const std::string name = fs::absolute(folder / "").parent_path().filename().string();
   for (const std::string_view camera : {"freiburg1", "freiburg2", "freiburg3"}) {
     if (name.find(camera) != std::string::npos) {

@@ -41,6 +41,6 @@ Intrinsics tum_camera(std::string_view camera);
 
 /// Returns the camera's name in the name of a data set's folder, "rgbd_dataset_freiburg1_xyz"; else
 /// "default".
-std::string_view tum_camera_of(const std::filesystem::path& folder);
+std::string_view to_tum_camera(const std::filesystem::path& folder);
 
 }  // namespace octurn

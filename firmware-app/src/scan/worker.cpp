@@ -20,7 +20,7 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
     : rig_(rig), speed_(rig.speed), told_laser_(rig.laser), limits_(limits), ports_(ports) {}
 
 void Worker::work() {
-  look_for_turntable();  // so that the status shows it
+  open_turntable();  // so that the status shows it
   Clock::time_point last_use = Clock::now();
   for (;;) {
     ports_.heartbeat.beat();
@@ -48,22 +48,22 @@ void Worker::carry_out(CommandSlot::Taken& taken) {
 }
 
 void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop) {
-  if (!turntable_is_ready_) {
-    look_for_turntable();  // its GPIO lines may be free now
+  if (!ports_.devices.get()->turntable_is_ready) {
+    open_turntable();  // its GPIO lines may be free now
   }
   try {
-    look(stop.get_token());
+    show_next_frame(stop.get_token());
   } catch (...) {
     const Failure failure = current_failure();
     rig_.close_sensor();
     ports_.board.set_sensor_closed();
-    ports_.board.set_sensor_failed(failure);
+    set_sensor_failed(failure);
     ports_.slot.wait_for_command(retry_interval);
   }
 }
 
 /// Shows the sensor's next frame, or the camera's next picture with all lasers off.
-void Worker::look(const std::stop_token& stop) {
+void Worker::show_next_frame(const std::stop_token& stop) {
   if (rig_.laser() != nullptr) {
     if (const std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
       show_picture(timed->picture);
@@ -76,14 +76,14 @@ void Worker::look(const std::stop_token& stop) {
 void Worker::show_frame(const DepthFrame& frame) {
   DepthSensor& sensor = rig_.sensor();
   ports_.heartbeat.beat();
-  ports_.board.set_sensor_ready(sensor.name());
+  set_sensor_ready(sensor.name());
   introduce_sensor();
   ports_.board.set_camera_frame(frame, sensor.intrinsics());
 }
 
 void Worker::show_picture(const Picture& picture) {
   ports_.heartbeat.beat();
-  ports_.board.set_sensor_ready(rig_.camera().name());
+  set_sensor_ready(rig_.camera().name());
   introduce_sensor();
   ports_.board.set_camera_picture(picture);
 }
@@ -106,15 +106,41 @@ void Worker::carry_out(ResumeCommand& command, const std::stop_source& stop) {
   run(std::move(command.job), stop.get_token());
 }
 
-void Worker::look_for_turntable() {
+void Worker::open_turntable() {
   try {
     rig_.turntable();
-    turntable_is_ready_ = true;
-    ports_.board.set_turntable_ready();
+    set_turntable_ready();
   } catch (...) {
-    turntable_is_ready_ = false;
-    ports_.board.set_turntable_failed(current_failure());
+    set_turntable_failed(current_failure());
   }
+}
+
+// A state is set before it is shown: clients act on what they see.
+
+void Worker::set_sensor_ready(const std::string& name) {
+  ports_.devices.update([](DeviceStates& devices) { devices.sensor_is_ready = true; });
+  ports_.board.set_sensor_ready(name);
+}
+
+void Worker::set_sensor_failed(const Failure& failure) {
+  ports_.devices.update([](DeviceStates& devices) { devices.sensor_is_ready = false; });
+  ports_.board.set_sensor_failed(failure);
+}
+
+void Worker::set_turntable_ready() {
+  ports_.devices.update([](DeviceStates& devices) {
+    devices.turntable_is_ready = true;
+    devices.turntable_failure.reset();
+  });
+  ports_.board.set_turntable_ready();
+}
+
+void Worker::set_turntable_failed(const Failure& failure) {
+  ports_.devices.update([&](DeviceStates& devices) {
+    devices.turntable_is_ready = false;
+    devices.turntable_failure = failure;
+  });
+  ports_.board.set_turntable_failed(failure);
 }
 
 }  // namespace octurn

@@ -9,7 +9,10 @@
 #include "scan/calibration_store.hpp"
 #include "scan/calibration_turn.hpp"
 #include "scan/command_slot.hpp"
+#include "scan/device_states.hpp"
 #include "scan/heartbeat.hpp"
+#include "scan/latest.hpp"
+#include "scan/lens_files.hpp"
 #include "scan/run_scan.hpp"
 #include "scan/scan_store.hpp"
 #include "scan/status_board.hpp"
@@ -20,11 +23,13 @@ namespace octurn {
 /// References to the parts of a Scanner that the worker shares.
 struct WorkerPorts {
   ScanStore& store;
-  StatusBoard& board;
+  StatusBoard& board;  ///< only written to
+  Latest<DeviceStates>& devices;
   CommandSlot& slot;
   Heartbeat& heartbeat;
   CalibrationStore& calibration;
   std::mutex& scans;  ///< serialises changes of scans' states, with the Scanner
+  std::optional<SolvedLens>& solved_lens;  ///< guarded by `scans`
 };
 
 struct MergedTurns;
@@ -52,7 +57,7 @@ class Worker {
   void carry_out(WallCommand& command, const std::stop_source& stop);
   void carry_out(LensCommand& command, const std::stop_source& stop);
 
-  void look_for_turntable();
+  void open_turntable();
   void run(Job job, const std::stop_token& stop);
   void run_until_it_ends(const std::stop_token& stop);
   void attempt(const std::stop_token& stop);
@@ -61,7 +66,11 @@ class Worker {
   void show_join(Phase phase);
   bool keep_merged(const Job& first, const MergedTurns& merged, const std::stop_token& stop);
   ScanObserver observer(const std::stop_token& stop);
-  void look(const std::stop_token& stop);
+  void show_next_frame(const std::stop_token& stop);
+  void set_sensor_ready(const std::string& name);
+  void set_sensor_failed(const Failure& failure);
+  void set_turntable_ready();
+  void set_turntable_failed(const Failure& failure);
   void show_frame(const DepthFrame& frame);
   void show_picture(const Picture& picture);
   void show_progress(Phase phase, int snapshots_done);
@@ -73,9 +82,10 @@ class Worker {
   std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
                                          const ScanObserver& observer);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
-  void flatten(CalibrationRun& run, const std::stop_token& stop);
+  void measure_wall(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
-  void use_lens();
+  std::string first_scan() const;
+  void use_lens(const std::string& begun);
   void use_pose();
   void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
   void introduce_sensor();
@@ -95,7 +105,6 @@ class Worker {
   std::optional<Clock::time_point> gives_up_ = {};    // when retries of a failing stop end
   Clock::time_point rebuild_started_ = {};            // when its model was begun again
   std::optional<Clock::time_point> introduced_ = {};  // opening time of the published sensor
-  bool turntable_is_ready_ = false;
 };
 
 }  // namespace octurn

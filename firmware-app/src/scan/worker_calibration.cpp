@@ -8,7 +8,7 @@
 #include "octurn/sensor_map.hpp"
 #include "scan/measure_laser_turn.hpp"
 #include "scan/sensor_map_files.hpp"
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 #include "scan/worker.hpp"
 
 namespace octurn {
@@ -35,7 +35,7 @@ PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig
 /// @throws Error "scan-malformed"
 std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std::string_view serial,
                                          const Intrinsics& lens) {
-  const std::filesystem::path file = sensor_map_of(data, serial);
+  const std::filesystem::path file = sensor_map_path(data, serial);
   if (serial.empty() || !std::filesystem::exists(file)) {
     return std::nullopt;
   }
@@ -45,7 +45,7 @@ std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std:
 }
 
 /// Describes the outcome of a run, for the log.
-std::string outcome_of(const CalibrationRun& run) {
+std::string describe_outcome(const CalibrationRun& run) {
   const std::string reason = run.report ? run.report->calibration.reason
                              : run.wall ? run.wall->reason
                              : run.lens ? run.lens->reason
@@ -71,7 +71,7 @@ void Worker::carry_out(WallCommand& command, const std::stop_source& stop) {
   carry_out({.kind = CalibrationRun::Kind::wall,
              .phase = CalibrationRun::Phase::looking,
              .stops = command.frames},
-            [&](CalibrationRun& run) { flatten(run, stop.get_token()); });
+            [&](CalibrationRun& run) { measure_wall(run, stop.get_token()); });
 }
 
 /// Runs a measurement, and publishes its state.
@@ -84,7 +84,7 @@ void Worker::carry_out(CalibrationRun run,
   log::info("calibration", name + " started, of=" + std::to_string(run.stops));
   try {
     measurement(run);
-    log::info("calibration", name + " " + outcome_of(run));
+    log::info("calibration", name + " " + describe_outcome(run));
   } catch (...) {
     run.failure = current_failure();
     run.state = CalibrationRun::State::failed;
@@ -93,6 +93,9 @@ void Worker::carry_out(CalibrationRun run,
   }
   release_rig();
   const std::lock_guard lock(ports_.scans);
+  if (run.lens && run.lens->accepted) {
+    ports_.solved_lens = SolvedLens{.camera = run.camera, .report = *run.lens};
+  }
   ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_calibration_run(std::move(run));
 }
@@ -129,7 +132,7 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
                                                const std::stop_token& stop,
                                                const ScanObserver& observer) {
   if (rig_.laser() != nullptr) {
-    use_lens();
+    use_lens("");
     use_pose();
     return measure_laser_turn(settings, ports_.store.data(), limits_.threads, rig_, stop, observer);
   }
@@ -140,7 +143,7 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
 }
 
 /// Reads frames of a wall, and stores the sensor's map if it is accepted.
-void Worker::flatten(CalibrationRun& run, const std::stop_token& stop) {
+void Worker::measure_wall(CalibrationRun& run, const std::stop_token& stop) {
   ports_.heartbeat.suspend();  // this takes as long as its frames
   DepthSensor& sensor = rig_.sensor();
   const std::string serial = sensor.serial();
@@ -186,6 +189,7 @@ void Worker::introduce_sensor() {
   } catch (...) {
     log::warning("calibration", current_failure().detail);
   }
+  ports_.devices.update([&](DeviceStates& devices) { devices.serial = known.serial; });
   ports_.board.set_known_sensor(std::move(known));
 }
 

@@ -64,6 +64,9 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     watch.see(timed->picture);
     show_picture(timed->picture);
     ports_.heartbeat.suspend();
+    if (watch.look().taken > 0) {
+      ports_.slot.report_lens_view();
+    }
     run.look = watch.look();
     run.stop = watch.look().taken;
     run.stops = watch.look().wanted;
@@ -80,19 +83,21 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
-/// Sets the lens of the rig's camera. A resumed scan keeps the lens that it was begun with, and a
-/// scan of another pose uses that of the first scan, if the camera is the same.
-void Worker::use_lens() {
+/// Returns the id of the scan whose lens the running one uses: a resumed scan keeps the lens that
+/// it was begun with, and a scan of another pose uses that of the first scan. Empty for a first
+/// one.
+std::string Worker::first_scan() const {
+  return job_.snapshots_done > 0 ? job_.id : job_.pose_of ? job_.pose_of->scan : "";
+}
+
+/// Sets the lens of the rig's camera.
+/// @param begun  id of a scan whose lens is used if its camera is the same; empty: none
+void Worker::use_lens(const std::string& begun) {
   if (!told_laser_) {
     return;
   }
   const std::string serial = rig_.camera().serial();
   CameraLens lens = lens_in_force(ports_.store.data(), serial, told_lens(*told_laser_));
-  const bool is_scan = ports_.board.status().is_scanning();
-  const std::string begun = !is_scan                  ? ""
-                            : job_.snapshots_done > 0 ? job_.id
-                            : job_.pose_of            ? job_.pose_of->scan
-                                                      : "";
   if (!begun.empty()) {
     const Scan scan = read_scan(ports_.store.folder(begun));
     if (scan.laser && scan.sensor_serial == serial &&

@@ -123,8 +123,8 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 /// closed, so that the next use opens it again.
 void Worker::attempt(const std::stop_token& stop) {
   try {
-    rig_.lay_object(static_cast<int>(to_pose_index(ports_.store, job_)));
-    use_lens();
+    rig_.set_object_pose(static_cast<int>(to_pose_index(ports_.store, job_)));
+    use_lens(first_scan());
     use_pose();
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
@@ -202,8 +202,7 @@ void Worker::save_progress() {
 /// Updates heartbeat and turntable at the start of a phase of a scan or a turn.
 void Worker::begin(Phase phase) {
   if (phase == Phase::capturing) {  // the platform has turned
-    turntable_is_ready_ = true;
-    ports_.board.set_turntable_ready();
+    set_turntable_ready();
     ports_.heartbeat.beat();
   } else {
     ports_.heartbeat.suspend();  // a whole turn, or a model, may take minutes
@@ -244,12 +243,11 @@ void Worker::show_rebuilt(int snapshots) {
 
 void Worker::close_device(const Failure& failure) {
   if (failure.device() == Device::sensor) {
-    ports_.board.set_sensor_failed(failure);
+    set_sensor_failed(failure);
     rig_.close_sensor();
     ports_.board.set_sensor_closed();
   } else if (failure.device() == Device::turntable) {
-    turntable_is_ready_ = false;
-    ports_.board.set_turntable_failed(failure);
+    set_turntable_failed(failure);
     rig_.close_turntable();
   }
 }
@@ -258,8 +256,7 @@ void Worker::release_rig() {
   try {
     rig_.release_turntable();
   } catch (...) {
-    turntable_is_ready_ = false;
-    ports_.board.set_turntable_failed(current_failure());
+    set_turntable_failed(current_failure());
     rig_.close_turntable();  // without its lines the motor is off too
   }
   save_platform_angle(rig_.platform_angle_deg());

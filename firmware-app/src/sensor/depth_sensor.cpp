@@ -15,7 +15,7 @@ std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
 
 void DepthSensor::show_wall(std::optional<double> /*distance*/) {}
 
-void DepthSensor::lay_object(int /*pose*/) {}
+void DepthSensor::set_object_pose(int /*pose*/) {}
 
 bool is_simulated_sensor(const std::string& uri) { return uri.starts_with(simulator_scheme); }
 

@@ -58,7 +58,7 @@ class DepthSensor {
 
   /// Turns the object of a simulated sensor over. Other sensors ignore it: a person does it.
   /// @param pose  number of the pose; 0 is the initial one
-  virtual void lay_object(int pose);
+  virtual void set_object_pose(int pose);
 };
 
 /// Opens a sensor and starts its depth stream.

@@ -143,7 +143,7 @@ class OpenNiSensor final : public DepthSensor {
   void show_wall(std::optional<double> distance) override {
     simulate(wall_property, distance.value_or(0));
   }
-  void lay_object(int pose) override { simulate(object_pose_property, pose); }
+  void set_object_pose(int pose) override { simulate(object_pose_property, pose); }
 
  private:
   void simulate(int property, double value);

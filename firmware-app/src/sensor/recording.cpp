@@ -90,7 +90,7 @@ json to_json(const Recording& recording) {
 }
 
 /// @throws Error "recording-malformed"  if it is missing, no file, too large, or its disk fails
-std::string content_of(const fs::path& file) {
+std::string read_content(const fs::path& file) {
   constexpr std::size_t max_bytes = std::size_t{256} << 20U;
   try {
     if (std::optional<std::string> content = read_regular_file(file, max_bytes)) {
@@ -130,7 +130,7 @@ Recording parse_recording(std::string_view text) {
 
 Recording read_recording(const fs::path& folder) {
   const fs::path file = folder / "recording.json";
-  const std::string text = content_of(file);
+  const std::string text = read_content(file);
   try {
     return parse_recording(text);
   } catch (const Error& error) {
@@ -141,7 +141,7 @@ Recording read_recording(const fs::path& folder) {
 DepthFrame read_recorded_frame(const fs::path& folder, const Recording& recording,
                                std::size_t frame) {
   const fs::path file = folder / frame_file(frame);
-  const std::string png = content_of(file);
+  const std::string png = read_content(file);
   return decode_depth_png(file.string(), std::as_bytes(std::span(png)), recording.intrinsics.width,
                           recording.intrinsics.height);
 }

@@ -23,7 +23,7 @@ class SensorOnMechanism final : public DepthSensor {
   std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
 
   void show_wall(std::optional<double> distance) override { sensor_->show_wall(distance); }
-  void lay_object(int pose) override { sensor_->lay_object(pose); }
+  void set_object_pose(int pose) override { sensor_->set_object_pose(pose); }
 
   void show_angle(double angle) override {
     // `angle` may be wrapped. Successive angles differ by less than half a turn.

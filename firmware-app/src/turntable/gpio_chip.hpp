@@ -34,10 +34,10 @@ class GpioChip {
   std::string label() const;
 
   /// The offset of the line of that name; nothing if the chip has none.
-  std::optional<unsigned> offset_of(const std::string& name) const;
+  std::optional<unsigned> find_offset(const std::string& name) const;
 
   /// The consumer of a line as the kernel reports it; nothing if the line is free.
-  std::optional<std::string> user_of(unsigned offset) const;
+  std::optional<std::string> find_user(unsigned offset) const;
 
   /// Requests all lines at once as outputs, for the lifetime of this object. Called once.
   void drive(const std::vector<OutputLine>& lines, const std::string& user);

@@ -36,12 +36,12 @@ GpioChip::~GpioChip() = default;
 
 std::string GpioChip::label() const { return gpiod_chip_label(handles_->chip.get()); }
 
-std::optional<unsigned> GpioChip::offset_of(const std::string& name) const {
+std::optional<unsigned> GpioChip::find_offset(const std::string& name) const {
   gpiod_line* line = gpiod_chip_find_line(handles_->chip.get(), name.c_str());
   return line == nullptr ? std::nullopt : std::optional(gpiod_line_offset(line));
 }
 
-std::optional<std::string> GpioChip::user_of(unsigned offset) const {
+std::optional<std::string> GpioChip::find_user(unsigned offset) const {
   gpiod_line* line = gpiod_chip_get_line(handles_->chip.get(), offset);
   if (line == nullptr) {
     fail();

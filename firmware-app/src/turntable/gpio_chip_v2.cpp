@@ -27,7 +27,7 @@ Handle* made(Handle* handle) {
   return handle != nullptr ? handle : (fail(), handle);
 }
 
-gpiod_line_value value_of(bool high) {
+gpiod_line_value to_line_value(bool high) {
   return high ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
 }
 
@@ -55,12 +55,12 @@ std::string GpioChip::label() const {
   return gpiod_chip_info_get_label(info.get());
 }
 
-std::optional<unsigned> GpioChip::offset_of(const std::string& name) const {
+std::optional<unsigned> GpioChip::find_offset(const std::string& name) const {
   const int offset = gpiod_chip_get_line_offset_from_name(handles_->chip.get(), name.c_str());
   return offset < 0 ? std::nullopt : std::optional(static_cast<unsigned>(offset));
 }
 
-std::optional<std::string> GpioChip::user_of(unsigned offset) const {
+std::optional<std::string> GpioChip::find_user(unsigned offset) const {
   const Owned<gpiod_line_info, gpiod_line_info_free> info(
       made(gpiod_chip_get_line_info(handles_->chip.get(), offset)));
   if (!gpiod_line_info_is_used(info.get())) {
@@ -79,7 +79,7 @@ void GpioChip::drive(const std::vector<OutputLine>& lines, const std::string& us
   gpiod_request_config_set_consumer(request.get(), user.c_str());
   gpiod_line_settings_set_direction(settings.get(), GPIOD_LINE_DIRECTION_OUTPUT);
   for (const OutputLine& line : lines) {
-    gpiod_line_settings_set_output_value(settings.get(), value_of(line.high));
+    gpiod_line_settings_set_output_value(settings.get(), to_line_value(line.high));
     if (gpiod_line_config_add_line_settings(config.get(), &line.offset, 1, settings.get()) != 0) {
       fail();
     }
@@ -91,7 +91,7 @@ void GpioChip::drive(const std::vector<OutputLine>& lines, const std::string& us
 
 void GpioChip::set(std::size_t line, bool high) {
   if (gpiod_line_request_set_value(handles_->request.get(), handles_->driven[line],
-                                   value_of(high)) != 0) {
+                                   to_line_value(high)) != 0) {
     fail();
   }
 }

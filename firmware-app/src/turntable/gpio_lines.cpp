@@ -49,12 +49,12 @@ GpioChip header_chip() {
 }
 
 unsigned free_line(const GpioChip& chip, const std::string& name) {
-  const std::optional<unsigned> offset = chip.offset_of(name);
+  const std::optional<unsigned> offset = chip.find_offset(name);
   if (!offset) {
     throw Error(ErrorCode::turntable_failed, "the GPIO header has no line " + name,
                 "Correct the lines in octurn.json; they are called GPIO2 to GPIO27.");
   }
-  if (const std::optional<std::string> other = chip.user_of(*offset)) {
+  if (const std::optional<std::string> other = chip.find_user(*offset)) {
     throw Error(ErrorCode::turntable_failed, "line " + name + " is in use by " + *other,
                 *other == gpio_user ? "End the other Octurn first."
                                     : "End what uses it, or choose another line in octurn.json.");
@@ -69,10 +69,10 @@ HeaderUse read_header_use(const std::vector<NamedLine>& lines) {
   try {
     HeaderUse use{.label = chip.label()};
     for (const NamedLine& line : lines) {
-      const std::optional<unsigned> offset = chip.offset_of(line.name);
+      const std::optional<unsigned> offset = chip.find_offset(line.name);
       use.lines.push_back({.name = line.name,
                            .exists = offset.has_value(),
-                           .user = offset ? chip.user_of(*offset) : std::nullopt});
+                           .user = offset ? chip.find_user(*offset) : std::nullopt});
     }
     return use;
   } catch (const std::system_error& error) {

@@ -34,7 +34,7 @@ std::vector<std::int64_t> plan_moves(std::int64_t target, const BacklashState& f
 
 Stepper::Stepper(const StepperSettings& settings, SetLine set_line, std::int64_t position)
     : settings_(settings),
-      motion_(motion_of(settings)),
+      motion_(to_motion(settings)),
       set_line_(std::move(set_line)),
       position_(position),
       worker_([this](const std::stop_token& end) { work(end); }) {}
@@ -162,7 +162,7 @@ void Stepper::report(const LatePulses& late, std::int64_t pulses) {
 }
 
 Stepper::SetLine open_gpio_lines(const StepperSettings& settings) {
-  const std::vector<NamedLine> lines = lines_of(settings);
+  const std::vector<NamedLine> lines = to_gpio_lines(settings);
   // Shared, as a std::function has to be copyable.
   return [lines, chip = std::make_shared<GpioChip>(drive_header(lines))](Stepper::Line line,
                                                                          bool high) {

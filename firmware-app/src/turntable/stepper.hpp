@@ -36,7 +36,7 @@ std::vector<std::int64_t> plan_moves(std::int64_t target, const BacklashState& f
 /// after `idle_release` without a move, and at the end of this object.
 class Stepper final : public Turntable {
  public:
-  /// In the order of `lines_of`.
+  /// In the order of `to_gpio_lines`.
   enum class Line { step, direction, enable };
   using SetLine = std::function<void(Line line, bool high)>;
 

@@ -36,7 +36,7 @@ constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames
 constexpr int max_idle_s = 24 * 3600;
 
-/// The settings' keys of the lines that `lines_of` returns, in the same order.
+/// The settings' keys of the lines that `to_gpio_lines` returns, in the same order.
 constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_line",
                                                   "enable_line",     "microstep_lines",
                                                   "microstep_lines", "microstep_lines"};
@@ -46,7 +46,7 @@ void check_lines(const JsonObject& keys, const StepperSettings& settings) {
     keys.refuse("microstep_lines", settings.lines.microsteps,
                 "the names of three lines, or of none");
   }
-  const std::vector<NamedLine> lines = lines_of(settings);
+  const std::vector<NamedLine> lines = to_gpio_lines(settings);
   for (std::size_t line = 1; line < lines.size(); ++line) {
     const auto end = lines.begin() + static_cast<std::ptrdiff_t>(line);
     if (std::ranges::find(lines.begin(), end, lines[line].name, &NamedLine::name) != end) {
@@ -140,7 +140,7 @@ std::vector<Field> fields(StepperSettings& settings) {
 
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
   check_lines(keys, settings);
-  const int steps = motion_of(settings).steps_per_turn;
+  const int steps = to_motion(settings).steps_per_turn;
   if (steps < min_steps) {
     keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
   }
@@ -169,7 +169,7 @@ json to_json(const StepperSettings& settings) {
   return to_json(fields(copy));
 }
 
-Motion motion_of(const StepperSettings& settings) {
+Motion to_motion(const StepperSettings& settings) {
   const double steps = settings.full_steps * settings.microsteps * settings.gear_ratio;
   return {.steps_per_turn = static_cast<int>(std::lround(steps)),
           .start_steps_per_second = settings.start_speed_steps_per_second,
@@ -178,7 +178,7 @@ Motion motion_of(const StepperSettings& settings) {
           .settle_time = settings.settle_time};
 }
 
-std::vector<NamedLine> lines_of(const StepperSettings& settings) {
+std::vector<NamedLine> to_gpio_lines(const StepperSettings& settings) {
   std::vector<NamedLine> lines = {{.name = settings.lines.step, .high = false},
                                   {.name = settings.lines.direction, .high = false},
                                   {.name = settings.lines.enable, .high = true}};

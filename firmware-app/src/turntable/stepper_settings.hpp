@@ -50,9 +50,9 @@ std::vector<Field> fields(StepperSettings& settings);
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings);
 
 /// The motion in microsteps; the microsteps of a platform's turn are rounded to a whole number.
-Motion motion_of(const StepperSettings& settings);
+Motion to_motion(const StepperSettings& settings);
 
 /// The lines in the order of `Stepper::Line`, then MS1 to MS3, at levels that keep the motor off.
-std::vector<NamedLine> lines_of(const StepperSettings& settings);
+std::vector<NamedLine> to_gpio_lines(const StepperSettings& settings);
 
 }  // namespace octurn

@@ -246,7 +246,7 @@ TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
     EXPECT_LT(found.candidates[i].contradiction, 0.1);
   }
   // A person who knows the object chooses one; the other candidates must not refuse it.
-  turns[1].told_object_from_platform = found.candidates[2].object_from_platform;
+  turns[1].prior_object_from_platform = found.candidates[2].object_from_platform;
   const Registration told = register_turns(turns);
   ASSERT_TRUE(told.accepted) << told.reason;
   expect_near(told.poses[1].object_from_platform, found.candidates[2].object_from_platform, 1, 1);
@@ -259,7 +259,7 @@ TEST(RegisterTurns, RefinesAPoseThatIsToldRoughly) {
   const Eigen::Isometry3d truth = turned_over(figure_height);
   std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};
   const Eigen::Translation3d middle(0, 0, figure_height / 2);
-  turns[1].told_object_from_platform =
+  turns[1].prior_object_from_platform =
       truth * Eigen::Translation3d(0.004, -0.003, 0.005) * middle *
       Eigen::AngleAxisd(radians_from_degrees(10), Eigen::Vector3d(1, 2, 2) / 3) * middle.inverse();
 
@@ -272,7 +272,7 @@ TEST(RegisterTurns, RefinesAPoseThatIsToldRoughly) {
 TEST(RegisterTurns, RefusesAToldPoseThatContradictsWhatWasSeen) {
   const Eigen::Isometry3d truth = turned_over(figure_height);
   std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};
-  turns[1].told_object_from_platform =
+  turns[1].prior_object_from_platform =
       truth * Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
 
   const Registration found = register_turns(turns);

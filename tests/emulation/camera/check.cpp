@@ -73,7 +73,8 @@ void take_until_it_fails(Camera& camera) {
 }
 
 /// @param then  the fault after some pictures; empty: none
-void check(const CameraModule& module, const CameraWish& as, int block, const std::string& then) {
+void check(const CameraModule& module, const CameraSettings& as, int block,
+           const std::string& then) {
   try {
     const std::unique_ptr<Camera> camera = module.open(as);
     say("camera " + camera->name() + ", serial " + camera->serial());
@@ -106,9 +107,9 @@ int main(int count, char** arguments) {
     check(module, {.width = std::atoi(arguments[2]), .height = std::atoi(arguments[3])}, 8, "");
     return 0;
   }
-  const CameraWish plain{.width = 400, .height = 304};
-  const CameraWish compressed{.width = 800, .height = 600};
-  const CameraWish fast_if_compressed{.width = 512, .height = 384};
+  const CameraSettings plain{.width = 400, .height = 304};
+  const CameraSettings compressed{.width = 800, .height = 600};
+  const CameraSettings fast_if_compressed{.width = 512, .height = 384};
   check(module, {.width = 640, .height = 616}, 1, "");
   check(module, plain, 1, "be silent");
   check(module, plain, 1, "be damaged");

@@ -149,7 +149,7 @@ class Eye {
 
 void scan(int stops, const char* file) {
   const StepperSettings settings;
-  PulseTimes pulses(motion_of(settings).steps_per_turn / stops);
+  PulseTimes pulses(to_motion(settings).steps_per_turn / stops);
   Stepper stepper(settings, pulses.watching(open_gpio_lines(settings)));
   Eye eye;
   std::ofstream images(file, std::ios::binary);

@@ -91,7 +91,7 @@ Response send_update_state(App& app) {
 
 Response take_update(App& app, const Request& request) {
   const auto expect_no_scan = [&app] {
-    if (app.scanner.status().busy()) {
+    if (app.scanner.is_busy()) {
       throw Error(ErrorCode::busy, "a scan is running, or the sensor's pose is measured",
                   "Wait for its end, or cancel it.");
     }

@@ -15,7 +15,7 @@
 #include "scan/lens_files.hpp"
 #include "scan/pose_json.hpp"
 #include "scan/sensor_map_json.hpp"
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 #include "sensor/pixel_ray.hpp"
 
 namespace octurn {
@@ -33,13 +33,13 @@ json lens_json(const App& app, const std::optional<KeptLens>& kept) {
 }
 
 /// The serial number of the known camera with lasers; empty for another sensor.
-std::string camera_of(const App& app) {
-  return app.rig.laser ? app.scanner.known_sensor()->serial : "";
+std::string camera_serial(const App& app) {
+  return app.rig.laser ? app.scanner.sensor_serial() : "";
 }
 
 Response send_calibration(App& app, int status) {
   std::vector<PoseRecord> records =
-      app.scanner.calibration().records(app.settings.config().scan, camera_of(app));
+      app.scanner.calibration().records(app.settings.config().scan, camera_serial(app));
   json body = to_json(records.front());
   json history = json::array();
   for (std::size_t i = 1; i < records.size(); ++i) {
@@ -75,7 +75,7 @@ PoseChange to_change(JsonObject& keys) {
 
 void start_turn(App& app, JsonObject& keys) {
   ScanSettings settings =
-      app.scanner.calibration().in_force(app.settings.config().scan, camera_of(app));
+      app.scanner.calibration().in_force(app.settings.config().scan, camera_serial(app));
   settings.snapshots = keys.whole_number("stops", min_calibration_stops, max_calibration_stops)
                            .value_or(default_calibration_stops);
   keys.refuse_unread();
@@ -96,34 +96,34 @@ void start_wall(App& app, JsonObject& keys) {
 }
 
 /// The change of the lens that a body asks for.
-enum class LensWish { none, keep, discard, remove };
+enum class LensChange { none, keep, discard, remove };
 
-LensWish to_lens_wish(JsonObject& keys) {
+LensChange to_lens_change(JsonObject& keys) {
   const auto lens = keys.value("lens");
   if (!lens) {
-    return LensWish::none;
+    return LensChange::none;
   }
   if (lens->json() == "keep") {
-    return LensWish::keep;
+    return LensChange::keep;
   }
   if (lens->json() == "discard") {
-    return LensWish::discard;
+    return LensChange::discard;
   }
   if (!lens->json().is_null()) {
     lens->refuse("\"keep\" or \"discard\" for what was found, or null, which removes what is kept");
   }
-  return LensWish::remove;
+  return LensChange::remove;
 }
 
-void carry_out(App& app, LensWish wish) {
-  switch (wish) {
-    case LensWish::keep:
+void carry_out(App& app, LensChange change) {
+  switch (change) {
+    case LensChange::keep:
       return app.scanner.keep_lens();
-    case LensWish::discard:
+    case LensChange::discard:
       return app.scanner.discard_lens();
-    case LensWish::remove:
+    case LensChange::remove:
       return app.scanner.forget_lens();
-    case LensWish::none:
+    case LensChange::none:
       break;
   }
 }
@@ -154,13 +154,13 @@ Response change_calibration(App& app, const Request& request) {
   JsonObject keys(body, ErrorCode::bad_settings, "");
   const PoseChange change = to_change(keys);
   const bool forget_map = is_without_map(keys);
-  const LensWish lens = to_lens_wish(keys);
+  const LensChange lens = to_lens_change(keys);
   keys.refuse_unread();
   if (change.scale && app.rig.laser) {
     keys.at("scale").refuse("nothing of a rig with lasers: it measures no depth");
   }
   const bool is_change = change.scale || change.platform_from_sensor || change.is_settings_pose;
-  if (!is_change && !forget_map && lens == LensWish::none) {
+  if (!is_change && !forget_map && lens == LensChange::none) {
     throw Error(ErrorCode::bad_settings, "the body changes nothing",
                 "It takes platform_from_sensor, scale, sensor_map and lens.");
   }
@@ -169,7 +169,7 @@ Response change_calibration(App& app, const Request& request) {
     refuse_busy();
   }
   if (is_change) {
-    app.scanner.calibration().change(change, app.settings.config().scan, camera_of(app));
+    app.scanner.calibration().change(change, app.settings.config().scan, camera_serial(app));
   }
   return send_calibration(app);
 }
@@ -222,7 +222,7 @@ Response send_board(App& /*app*/, const Request& request) {
 }
 
 Response undo_calibration(App& app) {
-  app.scanner.calibration().undo(camera_of(app));
+  app.scanner.calibration().undo(camera_serial(app));
   return send_calibration(app);
 }
 

@@ -74,7 +74,7 @@ enum class Paint { clay, colours };
 /// scan's name or the colours.
 fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
                     const std::string& extension, Paint paint = Paint::clay) {
-  const MeshFormat format = mesh_format_of(extension).value();
+  const MeshFormat format = to_mesh_format(extension).value();
   const bool is_coloured = paint == Paint::colours;
   fs::path file = model.parent_path() / ((is_coloured ? "Scan-colour" : "Scan") + extension);
   auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
@@ -132,7 +132,7 @@ Response send_in_format(App& app, const Request& request, const Job& job, const 
     suffix += "-colour";
   }
   return file_response(request, fresh_mesh(app, job, model, extension, paint),
-                       std::string(media_type(mesh_format_of(extension).value())),
+                       std::string(media_type(to_mesh_format(extension).value())),
                        download_name(job, suffix + extension));
 }
 
@@ -140,7 +140,7 @@ Response send_in_format(App& app, const Request& request, const Job& job, const 
 
 fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
   fs::path model = find_model(app, job);
-  return mesh_format_of(extension) ? fresh_mesh(app, job, model, extension) : model;
+  return to_mesh_format(extension) ? fresh_mesh(app, job, model, extension) : model;
 }
 
 Response send_mesh(App& app, const Request& request, std::string_view id) {

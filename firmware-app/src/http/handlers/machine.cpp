@@ -37,7 +37,7 @@ bool is_clock_doubtful(const App& app) {
 Response end_machine(App& app, PowerEnd end) {
   Appliance& machine = expect_appliance(app);
   expect_no_update(app);
-  if (app.scanner.status().busy()) {
+  if (app.scanner.is_busy()) {
     throw Error(ErrorCode::busy, "a scan is running, a model is built, or the pose is measured",
                 "Pause the scan, or wait for the end.");
   }

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 json webhook_json(const App& app, const Webhook& webhook) {
   json body{{"id", webhook.id},
-            {"address", origin_of(webhook.url)},
+            {"address", to_origin(webhook.url)},
             {"events", webhook.events},
             {"last", nullptr}};
   if (const auto state = app.webhooks->state(webhook.id)) {
@@ -34,7 +34,7 @@ json to_json(const Printer& printer) {
   return {{"id", printer.id},
           {"name", printer.name},
           {"kind", to_string(printer.kind)},
-          {"address", origin_of(printer.url)},
+          {"address", to_origin(printer.url)},
           {"has_key", !printer.key.empty()}};
 }
 
@@ -100,7 +100,7 @@ Response test_webhook(App& app, std::string_view id) {
   if (!webhook) {
     throw_not_found("webhook " + std::string(id), "/api/v1/webhooks");
   }
-  app.webhooks->tell(webhook->id, test_happening());
+  app.webhooks->queue(webhook->id, make_test_event());
   return json_response(webhook_json(app, *webhook), 202);
 }
 

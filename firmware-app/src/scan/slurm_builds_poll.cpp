@@ -5,7 +5,7 @@
 
 #include "log.hpp"
 #include "octurn/file.hpp"
-#include "scan/built_elsewhere.hpp"
+#include "scan/external_build.hpp"
 #include "scan/slurm_builds.hpp"
 
 namespace octurn {
@@ -43,7 +43,7 @@ std::vector<SlurmBuilds::Entry> SlurmBuilds::entries() {
   return entries_;
 }
 
-void SlurmBuilds::look(const std::stop_token& stop) {
+void SlurmBuilds::poll(const std::stop_token& stop) {
   std::vector<Entry> now = entries();
   if (now.empty()) {
     return;
@@ -60,7 +60,7 @@ void SlurmBuilds::look(const std::stop_token& stop) {
   }
   for (Entry& entry : now) {
     if (jobs) {
-      look_at(entry, *jobs, stop);
+      update(entry, *jobs, stop);
     } else if (is_built(entry.folder)) {
       keep(entry);
     } else {
@@ -78,8 +78,8 @@ void SlurmBuilds::look(const std::stop_token& stop) {
   }
 }
 
-void SlurmBuilds::look_at(Entry& entry, const std::vector<SlurmJob>& jobs,
-                          const std::stop_token& stop) {
+void SlurmBuilds::update(Entry& entry, const std::vector<SlurmJob>& jobs,
+                         const std::stop_token& stop) {
   const SlurmJob* const job = find_job(jobs, entry.job, entry.folder);
   BuildRun& run = entry.run();
   const auto cancelled = [&] { end(entry, BuildRun::State::cancelled, {}); };

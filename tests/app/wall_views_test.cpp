@@ -1,4 +1,4 @@
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,15 +26,15 @@ WallView look_at(double distance) {
   return view;
 }
 
-class WallLooks : public ::testing::Test {
+class WallViews : public ::testing::Test {
  protected:
   SensorMapReport add(double distance) { return add_wall(data_.path(), "A1", look_at(distance)); }
-  SensorMap map() const { return read_sensor_map(sensor_map_of(data_.path(), "A1")); }
+  SensorMap map() const { return read_sensor_map(sensor_map_path(data_.path(), "A1")); }
 
   TemporaryFolder data_;
 };
 
-TEST_F(WallLooks, MakeAMapThatIsKept) {
+TEST_F(WallViews, MakeAMapThatIsKept) {
   const SensorMapReport report = add(0.65);
   ASSERT_TRUE(report.accepted) << report.reason;
   EXPECT_EQ(report.map.serial, "A1");
@@ -47,7 +47,7 @@ TEST_F(WallLooks, MakeAMapThatIsKept) {
 
 // The map equals one from the views themselves: means are stored with an error of up to 0.05 mm,
 // 0.04 steps of disparity.
-TEST_F(WallLooks, AreKeptAsTheirMean) {
+TEST_F(WallViews, AreKeptAsTheirMean) {
   add(0.65);
   const std::vector<WallView> views{look_at(0.9), look_at(0.65)};
   const SensorMapReport expected = fit_sensor_map(views);
@@ -62,7 +62,7 @@ TEST_F(WallLooks, AreKeptAsTheirMean) {
   }
 }
 
-TEST_F(WallLooks, GiveWayToOneAtTheirDistance) {
+TEST_F(WallViews, GiveWayToOneAtTheirDistance) {
   EXPECT_EQ(next_wall(data_.path(), "A1"), 0.65);
   add(0.65);
   EXPECT_EQ(next_wall(data_.path(), "A1"), 0.9);
@@ -74,24 +74,24 @@ TEST_F(WallLooks, GiveWayToOneAtTheirDistance) {
   EXPECT_NEAR(again.walls[1].distance, 0.9, 0.005);
 }
 
-TEST_F(WallLooks, ChangeNothingWhereTheWallIsRefused) {
+TEST_F(WallViews, ChangeNothingWhereTheWallIsRefused) {
   add(0.65);
-  const std::string before = content_of(sensor_map_of(data_.path(), "A1"));
+  const std::string before = content_of(sensor_map_path(data_.path(), "A1"));
   const SensorMapReport report = add(2.5);
   EXPECT_FALSE(report.accepted);
   EXPECT_NE(report.reason.find("2.5 m away"), std::string::npos) << report.reason;
-  EXPECT_TRUE(content_of(sensor_map_of(data_.path(), "A1")) == before);
+  EXPECT_TRUE(content_of(sensor_map_path(data_.path(), "A1")) == before);
   EXPECT_EQ(next_wall(data_.path(), "A1"), 0.9);
 }
 
-TEST_F(WallLooks, GoWithTheirMap) {
+TEST_F(WallViews, GoWithTheirMap) {
   add(0.65);
-  put(sensor_map_of(data_.path(), "A2"), "another sensor's");
+  put(sensor_map_path(data_.path(), "A2"), "another sensor's");
   ASSERT_TRUE(find_map_summary(data_.path(), "A1"));
   remove_sensor_map(data_.path(), "A1");
   EXPECT_FALSE(find_map_summary(data_.path(), "A1"));
   EXPECT_EQ(next_wall(data_.path(), "A1"), 0.65);
-  EXPECT_EQ(content_of(sensor_map_of(data_.path(), "A2")), "another sensor's");
+  EXPECT_EQ(content_of(sensor_map_path(data_.path(), "A2")), "another sensor's");
 }
 
 TEST(SensorMapSummary, HasTheMeansOfBlocks) {

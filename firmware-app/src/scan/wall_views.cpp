@@ -1,4 +1,4 @@
-#include "scan/wall_looks.hpp"
+#include "scan/wall_views.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -26,24 +26,24 @@ constexpr double same_distance = 0.1;  // metres: closer walls show no change wi
 constexpr double first_wall = 0.65;    // metres, of a simulated sensor: where an object stands
 constexpr double second_wall = 0.9;
 
-struct Look {
+struct StoredView {
   fs::path folder = {};
   double distance = 0;  // metres
 };
 
 /// Finds the stored wall views of a sensor, nearest first.
-std::vector<Look> find_looks(const fs::path& folder) {
-  std::vector<Look> looks;
+std::vector<StoredView> find_views(const fs::path& folder) {
+  std::vector<StoredView> stored;
   for (const std::string& name : names_in(folder)) {
     int mm = 0;
     const char* const end = name.data() + name.size();
     const auto read = std::from_chars(name.data(), end, mm);
     if (read.ec == std::errc() && read.ptr == end) {
-      looks.push_back({.folder = folder / name, .distance = metres_from_mm(mm)});
+      stored.push_back({.folder = folder / name, .distance = metres_from_mm(mm)});
     }
   }
-  std::ranges::sort(looks, {}, &Look::distance);
-  return looks;
+  std::ranges::sort(stored, {}, &StoredView::distance);
+  return stored;
 }
 
 /// Returns the mean of a view's frames, in `mean_unit`.
@@ -67,12 +67,12 @@ WallView to_view(const Intrinsics& lens, const DepthFrame& mean) {
   return view;
 }
 
-WallView read_look(const fs::path& folder) {
+WallView read_stored_view(const fs::path& folder) {
   const Wall wall = read_wall(folder);
   return to_view(wall.intrinsics, read_wall_frame(folder, wall, 0));
 }
 
-void keep_look(const fs::path& folder, std::string_view serial, const Intrinsics& lens,
+void keep_view(const fs::path& folder, std::string_view serial, const Intrinsics& lens,
                const DepthFrame& mean) {
   fs::remove_all(folder);
   NewFolder made(folder);
@@ -108,9 +108,10 @@ std::optional<WallView> look_at_wall(
 }
 
 double next_wall(const fs::path& data, std::string_view serial) {
-  const std::vector<Look> looks = find_looks(wall_looks_of(data, serial));
-  const bool has_first = std::ranges::any_of(
-      looks, [](const Look& look) { return std::abs(look.distance - first_wall) < same_distance; });
+  const std::vector<StoredView> stored = find_views(wall_views_path(data, serial));
+  const bool has_first = std::ranges::any_of(stored, [](const StoredView& one) {
+    return std::abs(one.distance - first_wall) < same_distance;
+  });
   return has_first ? second_wall : first_wall;
 }
 
@@ -124,23 +125,23 @@ SensorMapReport add_wall(const fs::path& data, std::string_view serial, const Wa
     return report;
   }
   const double distance = report.walls.front().distance;
-  const fs::path folder = wall_looks_of(data, serial);
+  const fs::path folder = wall_views_path(data, serial);
   std::vector<fs::path> outdated;
-  for (const Look& look : find_looks(folder)) {
-    WallView other = read_look(look.folder);
-    if (std::abs(look.distance - distance) < same_distance || other.intrinsics() != lens) {
-      outdated.push_back(look.folder);
+  for (const StoredView& stored : find_views(folder)) {
+    WallView other = read_stored_view(stored.folder);
+    if (std::abs(stored.distance - distance) < same_distance || other.intrinsics() != lens) {
+      outdated.push_back(stored.folder);
     } else {
       views.push_back(std::move(other));
     }
   }
   report = views.size() > 1 ? fit_sensor_map(views) : std::move(report);
   if (report.accepted) {
-    std::ranges::for_each(outdated, [](const fs::path& look) { fs::remove_all(look); });
-    keep_look(folder / std::to_string(std::lround(mm_from_metres(distance))), serial, lens, mean);
+    std::ranges::for_each(outdated, [](const fs::path& old) { fs::remove_all(old); });
+    keep_view(folder / std::to_string(std::lround(mm_from_metres(distance))), serial, lens, mean);
     report.map.serial = serial;
     report.map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
-    write_sensor_map(sensor_map_of(data, serial), report.map);
+    write_sensor_map(sensor_map_path(data, serial), report.map);
   }
   report.map.near = {};
   report.map.far = {};

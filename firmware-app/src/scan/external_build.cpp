@@ -1,4 +1,4 @@
-#include "scan/built_elsewhere.hpp"
+#include "scan/external_build.hpp"
 
 #include <chrono>
 #include <limits>

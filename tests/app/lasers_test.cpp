@@ -80,7 +80,7 @@ TEST(Lasers, ReleaseAllLinesWhereOneCannotBeSwitchedOn) {
   Header header;
   Lasers lasers(1, header.open());
   header.is_broken = true;
-  EXPECT_THROW(lasers.light(0), std::runtime_error);
+  EXPECT_THROW({ const Lasers::Light light = lasers.light(0); }, std::runtime_error);
   EXPECT_FALSE(header.is_in_use());
 }
 

@@ -21,18 +21,21 @@ json to_value(const std::string& text) {
   return value.is_discarded() || value.is_structured() ? json(text) : value;
 }
 
-/// Converts `turntable.gear_ratio=4` to `{"turntable": {"gear_ratio": 4}}`.
+/// Converts `turntable.gear_ratio=4` to `{"turntable": {"gear_ratio": 4}}`; a key may stand deeper,
+/// as `laser.left.line`.
 /// @throws Error "bad-settings"
 json to_change(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
     throw Error(ErrorCode::bad_settings, "\"" + assignment + "\" is no setting: must be KEY=VALUE");
   }
-  const std::string key = assignment.substr(0, equals);
-  const json value = to_value(assignment.substr(equals + 1));
-  const std::size_t dot = key.find('.');
-  return dot == std::string::npos ? json{{key, value}}
-                                  : json{{key.substr(0, dot), {{key.substr(dot + 1), value}}}};
+  std::string key = assignment.substr(0, equals);
+  json change = to_value(assignment.substr(equals + 1));
+  for (auto dot = key.rfind('.'); dot != key.npos; dot = key.rfind('.')) {
+    change = json{{key.substr(dot + 1), std::move(change)}};
+    key.resize(dot);
+  }
+  return {{key, std::move(change)}};
 }
 
 json read_object(const std::filesystem::path& file) {
@@ -47,10 +50,7 @@ void set(const SetArguments& arguments) {
   for (const std::string& assignment : arguments.assignments) {
     values = merged(std::move(values), to_change(assignment));
   }
-  json checked = values;
-  checked.erase("data");
-  checked.erase("password_file");
-  with_settings({}, checked);  // throws an error that names a wrong key
+  with_settings({}, values);  // throws an error that names a wrong key
   write_file(arguments.file, values.dump(2) + "\n", for_all_to_read);
 }
 

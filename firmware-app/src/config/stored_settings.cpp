@@ -68,7 +68,7 @@ FileContent read_object(const fs::path& file) {
 /// @return why the settings are refused; empty if they are accepted
 std::string refusal(const Config& base, const json& values) {
   try {
-    with_settings(base, values);
+    with_page_settings(base, values);
     return "";
   } catch (const Error& error) {
     return error.what();
@@ -113,7 +113,6 @@ void remove_empty_objects(json& values) {
 
 Config with_settings(const Config& base, const json& values) {
   JsonObject keys(values, ErrorCode::bad_settings, "");
-  refuse_fixed(values);
   Config config = base;
   read_fields(keys, fields(config));
   keys.refuse_unread();
@@ -122,6 +121,11 @@ Config with_settings(const Config& base, const json& values) {
     check_clip(JsonObject(*scan, ErrorCode::bad_settings, "scan"), config.scan);
   }
   return config;
+}
+
+Config with_page_settings(const Config& base, const json& values) {
+  refuse_fixed(values);
+  return with_settings(base, values);
 }
 
 StoredSettings read_stored_settings(const fs::path& data, const Config& base) {

@@ -16,10 +16,13 @@ struct StoredSettings {
 
 /// A configuration with some settings changed.
 ///
-/// @param values  in the form of octurn.json, without `fixed_keys`; of `laser` only
-///                `laser_keys_of_page`
+/// @param values  in the form of octurn.json
 /// @throws Error "bad-settings"  that names the key, its value and what is allowed
 Config with_settings(const Config& base, const nlohmann::json& values);
+
+/// The same with settings that the page has set.
+/// @param values  without `fixed_keys`; of `laser` only `laser_keys_of_page`
+Config with_page_settings(const Config& base, const nlohmann::json& values);
 
 /// Reads `data/settings.json`. Does not throw for a damaged or refused file: it then returns the
 /// settings that the daemon last served with, or else the accepted part of the file.

@@ -52,7 +52,7 @@ read_line() {
     ssh_key) ssh_keys="$ssh_keys${value:+$value
 }" ;;
     rig) rig=$value ;;
-    turntable.* | scan.* | memory_limit_mb | threads)
+    turntable.* | scan.* | laser.* | sensor | memory_limit_mb | threads)
       settings="$settings$trimmed=$value
 "
       ;;

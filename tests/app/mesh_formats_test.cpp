@@ -264,4 +264,19 @@ TEST_F(MeshFormats, MakeACoarseMeshOfABallThatIsSmallerByLittleAndFilledInBelowT
 }
 
 }  // namespace
+TEST_F(MeshFormats, MakeACoarseMeshOfFacetsWithoutArea) {
+  const auto coarse = [&](const std::vector<Facet>& facets, std::size_t max_facets) {
+    std::ofstream(file("Scan.stl"), std::ios::binary) << stl_text(facets);
+    return coarse_mesh(stl(), max_facets).size();
+  };
+  std::vector<Facet> collinear;
+  for (int i = 1; i <= 1000; ++i) {
+    const auto x = static_cast<float>(i);
+    collinear.push_back({.corners = {Vertex{0, 0, 0}, Vertex{x, 0, 0}, Vertex{2 * x, 0, 0}}});
+  }
+  EXPECT_LE(coarse(collinear, 100), 100U);
+  EXPECT_GT(coarse(collinear, 100), 50U) << "no coarser than asked for";
+  EXPECT_EQ(coarse({Facet{}, Facet{}}, 16), 0U) << "all corners are one point";
+}
+
 }  // namespace octurn

@@ -81,6 +81,16 @@ class Sender {
     return state.value_or(WebhookState{});
   }
 
+  /// Removes the webhook. @return whether the sender forgets its state
+  bool forgets() {
+    book_.remove_webhook(id_);
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (sender_.state(id_) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+    }
+    return !sender_.state(id_);
+  }
+
  protected:
   TemporaryFolder folder_ = {};
   AddressBook book_{folder_.path() / "addresses.json"};

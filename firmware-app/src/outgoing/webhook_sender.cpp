@@ -68,6 +68,7 @@ std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
 void WebhookSender::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
+      forget_removed();
       spread(poll_());
       if (auto due = take_due()) {
         attempt(std::move(*due), stop);
@@ -117,6 +118,18 @@ void WebhookSender::add(Delivery delivery) {
 }
 
 std::optional<WebhookSender::Delivery> WebhookSender::take_due() {
+/// Drops the states and deliveries of webhooks that the address book no longer has.
+void WebhookSender::forget_removed() {
+  // The book is read under the lock: what is queued for a webhook that is added later stays.
+  const std::lock_guard lock(mutex_);
+  const std::vector<Webhook> webhooks = book_.webhooks();
+  const auto is_removed = [&](const std::string& id) {
+    return std::ranges::find(webhooks, id, &Webhook::id) == webhooks.end();
+  };
+  std::erase_if(states_, [&](const auto& state) { return is_removed(state.first); });
+  std::erase_if(waiting_, [&](const Delivery& delivery) { return is_removed(delivery.webhook); });
+}
+
   const std::lock_guard lock(mutex_);
   const auto due = std::ranges::find_if(
       waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });

@@ -24,8 +24,9 @@ constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
 constexpr double seen_move_deg = 10;  // target of each later move, degrees of the platform
 constexpr int few_moves = 4;          // the median tolerates two wrong measurements
 constexpr int more_moves = 8;         // their median is accurate to some percent
-constexpr double widest_deg =
-    40;  // search range of first moves: the gear ratio may be six times off
+// Search range of the first moves. A platform that turns six times as far as commanded leaves it
+// with its first move of 8 degrees, but not with the next, whose size follows from what was seen.
+constexpr double widest_deg = 40;
 constexpr double expected_deg = 6;  // search range about an expected angle
 constexpr double still_deg = 1;     // a first move below it counts as standing still
 constexpr double closing_deg = 32;  // search range after a turn: 9 % of it

@@ -179,7 +179,16 @@ TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
   for (const char* event : {"scan-paused", "scan-failed", "warning"}) {
     sender.queue(event);
   }
-  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "too much waited to be sent");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble,
+            "dropped, because too many events were waiting");
+}
+
+TEST(WebhookSender, ForgetsAWebhookThatWasRemoved) {
+  const Receiver receiver({200});
+  Sender sender(receiver);
+  sender.tell("warning");
+  sender.wait_for(WebhookState::Outcome::delivered);
+  EXPECT_TRUE(sender.forgets());
 }
 
 /// A sender whose source of news returns something once.

@@ -112,7 +112,7 @@ void expect_whole(const std::filesystem::path& file, std::ifstream& stream, std:
   std::uint64_t stored = 0;
   read(std::as_writable_bytes(std::span(&stored, 1)));
   if (stored != checksum.value() || stream.peek() != std::ifstream::traits_type::eof()) {
-    refuse(file, "is damaged: its checksum is another one");
+    refuse(file, "is damaged: its checksum does not match");
   }
 }
 

@@ -114,9 +114,10 @@ DepthFrame TurnMeter::look() {
     if (timed->time > settled) {
       frames.push_back(std::move(timed->frame));
     } else if (taken > max_stale_frames) {
-      throw Error(ErrorCode::sensor_failed,
-                  sensor.name() + ": its frames are older than they may be",
-                  "Unplug the sensor, and plug it in again.");
+      throw Error(
+          ErrorCode::sensor_failed,
+          sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
+          "Unplug the sensor, and plug it in again.");
     }
   }
   on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));

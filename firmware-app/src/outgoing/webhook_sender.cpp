@@ -75,7 +75,7 @@ void WebhookSender::run(const std::stop_token& stop) {
         continue;
       }
     } catch (const std::exception& error) {
-      log::error("outgoing", std::string("webhooks are not told: ") + error.what());
+      log::error("outgoing", std::string("cannot send events to the webhooks: ") + error.what());
     }
     std::unique_lock lock(mutex_);
     added_.wait_for(lock, stop, limits_.poll_interval, [this] {
@@ -113,11 +113,11 @@ void WebhookSender::add(Delivery delivery) {
   }
   added_.notify_all();
   if (given_up) {
-    set_state(*given_up, WebhookState::Outcome::failed, "too much waited to be sent");
+    set_state(*given_up, WebhookState::Outcome::failed,
+              "dropped, because too many events were waiting");
   }
 }
 
-std::optional<WebhookSender::Delivery> WebhookSender::take_due() {
 /// Drops the states and deliveries of webhooks that the address book no longer has.
 void WebhookSender::forget_removed() {
   // The book is read under the lock: what is queued for a webhook that is added later stays.
@@ -130,6 +130,7 @@ void WebhookSender::forget_removed() {
   std::erase_if(waiting_, [&](const Delivery& delivery) { return is_removed(delivery.webhook); });
 }
 
+std::optional<WebhookSender::Delivery> WebhookSender::take_due() {
   const std::lock_guard lock(mutex_);
   const auto due = std::ranges::find_if(
       waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });

@@ -125,8 +125,8 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .access = number(s.target_error, 0, 1000, millimetres),
        .method = "solid"},
       {.key = "parts",
-       .help = "main: the object, one connected part; all: every part that stands on the platform, "
-               "unless the object was turned over",
+       .help = "main keeps the object, one connected part; all keeps every part that stands on the "
+               "platform, unless the object was turned over",
        .access = choice(s.parts, {Parts::main, Parts::all}),
        .method = "solid"},
       {.key = "threshold_m2",
@@ -135,8 +135,8 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .access = number(s.threshold, 1e-8, 1),
        .method = "intersection"},
       {.key = "calibrate",
-       .help = "pose of the sensor: auto solves it from the snapshots, told takes the one that the "
-               "rig was told",
+       .help =
+           "pose of the sensor: auto solves it from the snapshots, told takes the configured one",
        .access = choice(s.pose, {PoseSource::solved, PoseSource::told})},
       {.key = "root_size_mm",
        .unit = "mm",

@@ -147,8 +147,8 @@ std::string Slurm::submit(const SlurmRequest& request, const std::stop_token& st
   const std::string output = run(command, stop);
   std::string id = output.substr(0, output.find_first_of(";\n"));  // "12", or "12;cluster"
   if (id.empty() || !std::ranges::all_of(id, [](char c) { return c >= '0' && c <= '9'; })) {
-    throw Error(ErrorCode::interrupted, "Slurm: " + sbatch + " did not tell the job's number",
-                "Look whether squeue lists it.");
+    throw Error(ErrorCode::interrupted, "Slurm: " + sbatch + " did not print the job's number",
+                "Check whether squeue lists the job.");
   }
   return id;
 }

@@ -56,7 +56,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
                   {.code = "stops-disagree",
                    .detail = "two stops disagree about the object by " +
                              mm_text(scan.disagreement, text_digits),
-                   .hint = "Calibrate the rig; look that object and sensor stand firm.",
+                   .hint = "Calibrate the rig, and check that object and sensor stand firm.",
                    .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
                    .places = scan.disagreeing_places});
   }
@@ -66,8 +66,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
         Verdict::look,
         {.code = "moved",
          .detail = "at stop " + std::to_string(odd - scan.contradicted.begin()) + " " +
-                   percent_text(*odd) + " of what was seen is empty space as other stops saw it",
-         .hint = "Keep hands out of the picture, and look that nothing moves.",
+                   percent_text(*odd) + " of what was seen lies where other stops saw empty space",
+         .hint = "Keep hands out of the picture, and check that nothing moves.",
          .parameters = {{"stop", static_cast<double>(odd - scan.contradicted.begin())},
                         {"empty_share", *odd}},
          .places = scan.contradicted_places});

@@ -51,7 +51,7 @@ std::vector<Field> access_fields(Config& config) {
        .access = texts(config.host_names)},
       {.key = "password_file",
        .unit = "file",
-       .help = "who may open the page, below; empty: everybody",
+       .help = "file with the page's password, below; empty: everybody may open the page",
        .access = path(config.http.password_file, 0)},
   };
 }
@@ -78,7 +78,7 @@ void expect_own_lines(const JsonObject& keys, const Config& config) {
   const std::vector<NamedLine> turntable = to_gpio_lines(config.turntable);
   for (const std::string& line : to_gpio_names(config.laser)) {
     if (std::ranges::find(turntable, line, &NamedLine::name) != turntable.end()) {
-      keys.refuse("laser", line, "on lines that the turntable has not");
+      keys.refuse("laser", line, "on a GPIO line that the turntable does not use");
     }
   }
 }
@@ -106,8 +106,7 @@ std::vector<Field> data_fields(Config& config) {
 std::vector<Field> sensor_fields(Config& config) {
   return {
       {.key = "sensor",
-       .help = "what the rig looks with: depth is a depth sensor, laser-line a camera with line "
-               "lasers",
+       .help = "kind of sensor: depth is a depth sensor, laser-line a camera with line lasers",
        .access = choice(config.sensor, {SensorKind::depth, SensorKind::laser_line})},
       {.key = "laser",
        .help = "the camera and its lasers, below",

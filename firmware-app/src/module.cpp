@@ -13,7 +13,8 @@ const void* load_module(const char* library, const char* symbol, const std::stri
   if (found == nullptr) {
     const char* const trouble = ::dlerror();
     throw Error(ErrorCode::internal,
-                what + " cannot be loaded: " + (trouble == nullptr ? "it has no entry" : trouble),
+                what + " cannot be loaded: " +
+                    (trouble == nullptr ? std::string("it has no symbol ") + symbol : trouble),
                 hint);
   }
   return found;

@@ -52,7 +52,7 @@ std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max
   while ((got = unzReadCurrentFile(zip, part.data(), part.size())) > 0) {
     bytes += static_cast<std::uint64_t>(got);
     if (bytes > max_bytes) {
-      refuse("has more in it than a scan has");
+      refuse("holds more than a scan can have");
     }
     file.write(std::as_bytes(std::span(part).first(static_cast<std::size_t>(got))));
   }

@@ -11,6 +11,7 @@
 #include "app/simulated_laser_rig.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
+#include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
@@ -148,6 +149,14 @@ TEST_F(LaserCalibrationOfARig, EndsWithItsLasersOffWhenATurnIsCancelled) {
   EXPECT_EQ(run.state, CalibrationRun::State::cancelled);
   EXPECT_FALSE(rig_.is_lit());
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "calibration-turn"));
+}
+
+TEST(LaserRig, SaysWhatNeedsADepthSensorInstead) {
+  SimulatedLaserRig simulated;
+  Rig rig(simulated.options(speed));
+  const Error error = error_thrown_by([&] { rig.sensor(); });
+  EXPECT_EQ(error.code(), ErrorCode::sensor_other);
+  EXPECT_NE(error.hint().find("be calibrated"), std::string::npos) << error.hint();
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ TEST(MeasureTurn, SeesAnotherGearAndAnotherDirection) {
   EXPECT_NEAR(measured({.rate = -0.25}).turn_deg, -90, turn_error_deg);
 }
 
+TEST(MeasureTurn, SeesAGearThatIsManyTimesOff) {
+  EXPECT_NEAR(measured({.rate = 6}).turn_deg, 6 * 360, 2 * 6 * turn_error_deg);
+  EXPECT_NEAR(measured({.rate = 1.0 / 12}).turn_deg, 30, turn_error_deg);
+}
+
 TEST(MeasureTurn, SeesPlayThatIsNotTakenUp) {
   const double play = radians_from_degrees(2);
   EXPECT_NEAR(measured({.play = play}).play_deg, 2, look_error_deg);

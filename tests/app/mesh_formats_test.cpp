@@ -235,9 +235,13 @@ TEST_F(MeshFormats, DrawABallAsADiscThatIsBrighterWhereTheLightIs) {
   EXPECT_GT(red(110, 60), red(150, 220)) << "the light comes from above";
 }
 
+Eigen::Vector3d to_point(const Vertex& corner) {
+  return Eigen::Vector3f(corner.data()).cast<double>();
+}
+
 /// Distance from the centre of the ball, which stands on the platform; millimetres.
 double distance_to_middle(const Vertex& corner) {
-  return std::hypot(corner[0], corner[1], corner[2] - 10);
+  return (to_point(corner) - Eigen::Vector3d(0, 0, 10)).norm();
 }
 
 TEST_F(MeshFormats, MakeACoarseMeshOfABallThatIsSmallerByLittleAndFilledInBelowTheMiddleOnly) {
@@ -251,16 +255,28 @@ TEST_F(MeshFormats, MakeACoarseMeshOfABallThatIsSmallerByLittleAndFilledInBelowT
     for (const Vertex& corner : corners) {
       EXPECT_LE(distance_to_middle(corner), 10.001) << "a mean of points on the ball";
       EXPECT_GT(distance_to_middle(corner), 10 - cell);
-      EXPECT_TRUE(facet.attributes != filled_in || double{corner[2]} < 10 + cell);
+      EXPECT_TRUE(facet.attributes != filled_in || to_point(corner).z() < 10 + cell);
     }
-    const auto point = [&](std::size_t i) {
-      return Eigen::Vector3d(corners[i][0], corners[i][1], corners[i][2]);
-    };
-    six_volumes += point(0).dot(point(1).cross(point(2)));
+    six_volumes += to_point(corners[0]).dot(to_point(corners[1]).cross(to_point(corners[2])));
   }
   const double volume = 4.0 / 3 * M_PI * 1000;
   EXPECT_GT(six_volumes / 6, 0.85 * volume) << "closed, and turned outwards";
   EXPECT_LT(six_volumes / 6, volume);
+}
+
+TEST_F(MeshFormats, MakeACoarseMeshOfFacetsWithoutArea) {
+  const auto coarse = [&](const std::vector<Facet>& facets, std::size_t max_facets) {
+    std::ofstream(file("Scan.stl"), std::ios::binary) << stl_text(facets);
+    return coarse_mesh(stl(), max_facets).size();
+  };
+  std::vector<Facet> collinear;
+  for (int i = 1; i <= 1000; ++i) {
+    const auto x = static_cast<float>(i);
+    collinear.push_back({.corners = {Vertex{0, 0, 0}, Vertex{x, 0, 0}, Vertex{2 * x, 0, 0}}});
+  }
+  EXPECT_LE(coarse(collinear, 100), 100U);
+  EXPECT_GT(coarse(collinear, 100), 50U) << "no coarser than asked for";
+  EXPECT_EQ(coarse({Facet{}, Facet{}}, 16), 0U) << "all corners are one point";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
+#include "voxel/checked_levels.hpp"
 
 namespace octurn {
 namespace {
@@ -82,6 +83,18 @@ TEST(ScanSettings, RefuseWhatIsOutOfRangeAndNameIt) {
 TEST(ScanSettings, RefuseALeafLargerThanTheRoot) {
   EXPECT_EQ(code_thrown_by([] { parsed(R"({"root_size_mm": 100, "leaf_size_mm": 101})"); }),
             "bad-settings");
+}
+
+TEST(ScanSettings, RefuseALeafTooSmallForTheRootAndNameTheSmallestThatFits) {
+  const char* const text = R"({"root_size_mm": 7000, "leaf_size_mm": 0.1})";
+  const Error error = error_thrown_by([&] { parsed(text); });
+  EXPECT_EQ(error.code(), ErrorCode::bad_settings);
+  EXPECT_NE(std::string(error.what()).find("\"leaf_size_mm\" is 0.1: must be at least 0.107"),
+            std::string::npos)
+      << error.what();
+  const ScanSettings fitting = parsed(R"({"root_size_mm": 7000, "leaf_size_mm": 0.107})");
+  EXPECT_EQ(checked_levels(reconstruct_options(fitting, {})), max_levels);
+  EXPECT_NO_THROW(parsed(R"({"root_size_mm": 6553.6, "leaf_size_mm": 0.1})"));
 }
 
 TEST(ScanSettings, RefuseAClipBoxThinnerThanALeaf) {

@@ -68,7 +68,7 @@ class SlurmBuildsTest : public ::testing::Test {
   /// Sets squeue's answer about the job.
   void say(const std::string& state, const std::string& reason, const BuildRun& run,
            const std::string& job = "12") const {
-    put(at("queue.new"), job + "|" + state + "|" + reason + "|" + folder_of(run).string() + "\n");
+    put(at("queue.new"), job + "|" + state + "|" + reason + "|" + folder_of(run).string() + "//\n");
     fs::rename(at("queue.new"), at("queue"));
   }
 
@@ -137,6 +137,16 @@ TEST_F(SlurmBuildsTest, ABuildIsAJobThatMakesTheModelOfTheScan) {
   const std::vector<std::string> left = names_in(folder_of(run));
   EXPECT_EQ(left.size(), 2U);
   EXPECT_EQ(std::ranges::count(left, "Scan.stl") + std::ranges::count(left, "build.json"), 2);
+}
+
+TEST_F(SlurmBuildsTest, AFolderMayHaveANewlineInItsName) {
+  program("squeue", R"(printf '12|RUNNING|None|/data/a\n13|b//\n14|PENDING|Priority|/data/c//\n')");
+  const std::vector<SlurmJob> jobs = options().slurm.list({});
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0].folder, "/data/a\n13|b");
+  EXPECT_EQ(jobs[1].id, "14");
+  EXPECT_EQ(jobs[1].reason, "Priority");
+  EXPECT_EQ(jobs[1].folder, "/data/c");
 }
 
 TEST_F(SlurmBuildsTest, WhatSlurmRefusesFailsInItsWords) {

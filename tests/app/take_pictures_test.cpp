@@ -87,16 +87,16 @@ struct Bench {
     explicit BenchCamera(Bench& bench) : bench_(bench) {}
     const std::string& name() const override { return name_; }
     std::string serial() const override { return "7"; }
-    std::optional<TimedPicture> read_in_colour(const std::stop_token& stop) override {
-      std::optional<TimedPicture> timed = read(stop);
+    std::optional<TimedPicture> read_in_colour(const std::stop_token& token) override {
+      std::optional<TimedPicture> timed = read(token);
       if (timed && bench_.has_colours) {
         timed->colours.assign(timed->picture.samples.size(), paint);
         bench_.log.back() = bench_.log.back() == 'p' ? 'c' : bench_.log.back();
       }
       return timed;
     }
-    std::optional<TimedPicture> read(const std::stop_token& stop) override {
-      if (stop.stop_requested()) {
+    std::optional<TimedPicture> read(const std::stop_token& token) override {
+      if (token.stop_requested()) {
         return std::nullopt;
       }
       if (bench_.lost_after-- == 0) {

@@ -185,8 +185,9 @@ TEST_F(VerdictTest, NamesTheStopWithAHandInThePicture) {
   ASSERT_EQ(moved.size(), 1U) << scan;
   const auto detail = moved[0]["detail"].get<std::string>();
   EXPECT_TRUE(detail.starts_with("at stop 3 ")) << detail;
-  EXPECT_TRUE(detail.ends_with("of what was seen is empty space as other stops saw it")) << detail;
-  EXPECT_EQ(moved[0]["hint"], "Keep hands out of the picture, and look that nothing moves.");
+  EXPECT_TRUE(detail.ends_with("of what was seen lies where other stops saw empty space"))
+      << detail;
+  EXPECT_EQ(moved[0]["hint"], "Keep hands out of the picture, and check that nothing moves.");
 }
 
 }  // namespace

@@ -81,6 +81,16 @@ class Sender {
     return state.value_or(WebhookState{});
   }
 
+  /// Removes the webhook. @return whether the sender forgets its state
+  bool forgets() {
+    book_.remove_webhook(id_);
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (sender_.state(id_) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+    }
+    return !sender_.state(id_);
+  }
+
  protected:
   TemporaryFolder folder_ = {};
   AddressBook book_{folder_.path() / "addresses.json"};
@@ -169,7 +179,16 @@ TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
   for (const char* event : {"scan-paused", "scan-failed", "warning"}) {
     sender.queue(event);
   }
-  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble, "too much waited to be sent");
+  EXPECT_EQ(sender.wait_for(WebhookState::Outcome::failed).trouble,
+            "dropped, because too many events were waiting");
+}
+
+TEST(WebhookSender, ForgetsAWebhookThatWasRemoved) {
+  const Receiver receiver({200});
+  Sender sender(receiver);
+  sender.tell("warning");
+  sender.wait_for(WebhookState::Outcome::delivered);
+  EXPECT_TRUE(sender.forgets());
 }
 
 /// A sender whose source of news returns something once.

@@ -74,7 +74,7 @@ test('a look at the board is cancelled, or solved too early and refused in words
   await page.getByRole('button', {name: 'Show the board'}).click();
   await page.getByRole('button', {name: 'That is enough'}).click();
   await page.getByText('The lens is not known').waitFor();
-  await page.getByText(/% of the picture only: a lens distorts most at the edges|only a tilted one tells the focal length/).waitFor();
+  await page.getByText(/% of the picture only: a lens distorts most at the edges|only a tilted board shows the focal length/).waitFor();
   await picture(page, 'lens-refused');
   assert.ok(await overflow(page) <= 0);
   assert.deepEqual(await complaints(page), []);

@@ -43,7 +43,7 @@ test('a reason with its values is worded by the page, one without them as the sc
   const detailOf = (reason) => verdictOf(judged('look', [{detail: 'as it is said', hint: '', ...reason}])).reasons[0].detail;
   assert.equal(detailOf({code: 'floats', parameters: {platform_above_mm: 3.14}}), 'The platform is seen 3.1 mm above where it should be, and becomes a part of the model.');
   assert.equal(detailOf({code: 'floats', parameters: {bottom_mm: 9}}), 'The model begins 9.0 mm above the platform.');
-  assert.equal(detailOf({code: 'moved', parameters: {stop: 5, empty_share: 0.123}}), 'At stop 5 12% of what was seen is empty space as other stops saw it.');
+  assert.equal(detailOf({code: 'moved', parameters: {stop: 5, empty_share: 0.123}}), 'At stop 5 12% of what was seen lies where other stops saw empty space.');
   assert.equal(detailOf({code: 'cut-by-box', parameters: {side: 'top', object_side: 2}}), 'Side 2: The object reaches through the top of the scanned space.');
   assert.equal(detailOf({code: 'parts-dropped', parameters: {parts: 3, volume_cm3: 1.26}}), '3 parts, 1.3 cm³ in all, were not joined to the model, and were dropped.');
   assert.equal(detailOf({code: 'floats'}), 'As it is said.');
@@ -60,6 +60,6 @@ test('what a calibration found is worded with its values, also where the verdict
   assert.equal(detailOf('stops-disagree', {stops: 8}), 'Each of 8 stops shows what the first one shows: the platform did not turn.');
   assert.equal(detailOf('stops-disagree', {turn_deg: 270, object_side: 2}), 'Side 2: A whole turn came out as 270.0°.');
   assert.equal(detailOf('focal-length', {shorter_share: 0.021, seen_px: 562.4, told_px: 574}),
-      'The sensor’s focal length is 2.1% shorter than told: 562 pixels instead of 574.');
+      'The sensor’s focal length is 2.1% shorter than configured: 562 pixels instead of 574.');
   assert.equal(detailOf('no-map', {unevenness_disparity: 0.456}), 'The flat platform looks uneven by 0.46 units of the sensor’s disparity.');
 });

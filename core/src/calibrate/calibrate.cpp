@@ -229,11 +229,11 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   }
   // If told and solved pose agree within sigma, a difference of their medians means nothing.
   if (report.after > may_worsen * report.before && !agrees_with_told(report)) {
-    return "the stops agree better as told";
+    return "the stops agree better with the configured pose";
   }
   if (moved > max_shift || report.tilt > radians_from_degrees(max_tilt_deg)) {
     return "the sensor stands " + mm_text(moved, text_digits) + " and " +
-           degrees_text(report.tilt, text_digits) + " from where it was told: calibrate the rig";
+           degrees_text(report.tilt, text_digits) + " from the configured place: calibrate the rig";
   }
   return {};
 }

@@ -131,9 +131,10 @@ std::optional<CalibrationFinding> find_wrong_focal_length(const FocalLength& sol
     return std::nullopt;
   }
   std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(),
-                "the sensor's focal length is %.1f %% %s than told: %.0f pixels instead of %.0f",
-                100 * error, solved.ratio > 1 ? "longer" : "shorter", told * solved.ratio, told);
+  std::snprintf(
+      text.data(), text.size(),
+      "the sensor's focal length is %.1f %% %s than configured: %.0f pixels instead of %.0f",
+      100 * error, solved.ratio > 1 ? "longer" : "shorter", told * solved.ratio, told);
   return CalibrationFinding{
       .code = "focal-length",
       .detail = text.data(),

@@ -27,16 +27,16 @@ struct PlatformSamples {
 
 /// Fits the platform's plane: RANSAC among planes that are nearly level in the told pose, then
 /// least squares with Cauchy weights. If several planes have much support, the lowest is the
-/// platform: the lid of a flat box may be larger. Least squares use only pixels that, with their
-/// neighbours, see the platform at every stop: the object's foot and the rim would tilt the plane.
+/// platform: the lid of a flat box may be larger. Least squares use only the pixels of
+/// `find_plane_pixels`: the object's foot and the rim would tilt the plane.
 ///
 /// @param platform_from_sensor as told
 /// @return nothing if no nearly level plane has any support
 std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
                                                 const Eigen::Isometry3d& platform_from_sensor);
 
-/// For each pixel of the grid, whether it and its eight neighbours see the plane, and never
-/// anything above it.
+/// For each pixel of the grid, whether it and its eight neighbours see the plane: at more than half
+/// of the stops, on average at its height, and at no stop anything above it.
 std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane);
 
 /// Only the least squares of `fit_platform_plane`, from a plane that is nearly right.

@@ -111,10 +111,10 @@ void AtomicFile::put(std::uint64_t offset, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t done =
         ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (done >= 0) {
+    if (done > 0) {
       offset += static_cast<std::size_t>(done);
       bytes = bytes.subspan(static_cast<std::size_t>(done));
-    } else if (const int number = errno;
+    } else if (const int number = done < 0 ? errno : ENOSPC;
                number != EINTR && !(number == EINVAL && set_direct(false))) {
       fail(target_, "write", number);
     }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 namespace octurn {
 
 /// Brown's radial distortion of a lens, on normalised coordinates: a point at radius r from the

@@ -137,14 +137,14 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
            ": the object or a laser moved";
   }
   if (report.after > report.before) {
-    return "what was told fits better than what was solved";
+    return "the configured pose and planes fit better than the solved ones";
   }
   const bool far_turned = std::ranges::any_of(solution.rig.lasers, [&](const Laser& laser) {
     const auto was = std::ranges::find(told, laser.name, &Laser::name);
     return angle_between(was->normal, laser.normal) > radians_from_degrees(max_turn_deg);
   });
   if (report.shift > max_shift || report.tilt > radians_from_degrees(max_turn_deg) || far_turned) {
-    return "the rig is too far from where it was told";
+    return "the solved rig is too far from the configured one";
   }
   return "";
 }

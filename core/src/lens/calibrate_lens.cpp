@@ -71,7 +71,7 @@ std::string find_fault(const LensReport& report) {
   const double tilt_deg = degrees_from_radians(report.tilt);
   if (tilt_deg < min_tilt_deg) {
     return "the board was held nearly parallel in all pictures, within " + number(tilt_deg, 0) +
-           " degrees: only a tilted one tells the focal length";
+           " degrees: only a tilted board shows the focal length";
   }
   if (const double share = covered_share(report.coverage); share < min_coverage) {
     return "the board was shown in " + number(100 * share, 0) +
@@ -82,10 +82,12 @@ std::string find_fault(const LensReport& report) {
            " pixels from where a lens would show them: the board was not flat, or it moved";
   }
   if (!(focal_sigma < max_focal_sigma)) {
-    return "the pictures tell the focal length to " + number(100 * focal_sigma, 1) +
+    return "the pictures determine the focal length to " + number(100 * focal_sigma, 1) +
            " % only: tilt the board more";
   }
-  return is_one_to_one(report.lens) ? "" : "the distortion that was found folds the picture over";
+  return is_one_to_one(report.lens)
+             ? ""
+             : "the distortion that was found is impossible: it folds the picture over";
 }
 
 /// Whether a view's corners determine a homography well: at least 12, over three rows and columns.

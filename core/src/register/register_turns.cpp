@@ -53,7 +53,7 @@ struct Answer {
 std::string refuse(const PoseCandidate& best) {
   if (best.contradiction > max_contradiction) {
     return "in the best fit, " + percent(best.contradiction / 2) +
-           " of what one turn saw is where the other saw that nothing is: the turns are of two "
+           " of what one turn saw lies where the other saw empty space: the turns are of two "
            "objects, or share too little of one";
   }
   if (best.overlap < min_overlap || best.residual > max_residual) {

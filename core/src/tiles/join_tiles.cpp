@@ -50,9 +50,10 @@ std::vector<StoredTile> read_tiles(std::span<const std::filesystem::path> files)
       file_of.resize(first->tiles);
     }
     if (const std::string what = difference(*first, tile.header()); !what.empty()) {
-      throw Error(ErrorCode::scan_malformed,
-                  file.string() + ": is of another " + what + " than " + files.front().string(),
-                  "Join the tiles of one plan.");
+      throw Error(
+          ErrorCode::scan_malformed,
+          file.string() + ": its " + what + " differs from that of " + files.front().string(),
+          "Join the tiles of one plan.");
     }
     const std::size_t number = tile.header().number;
     if (by_number[number]) {

@@ -3,12 +3,10 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "bennett/marching_tetrahedra.hpp"
-#include "octurn/error.hpp"
 #include "tiles/tile_lattice.hpp"
 #include "tiles/tile_surface.hpp"
 #include "voxel/octree.hpp"
@@ -67,11 +65,6 @@ class LayerReader {
     const std::size_t first = open.next;
     while (open.next < open.positions.size() && open.positions[open.next].z == layer) {
       const TileBrick& at = open.positions[open.next++];
-      if (at.x >= bricks_per_side_ || at.y >= bricks_per_side_) {
-        throw Error(
-            ErrorCode::scan_malformed,
-            "tile " + std::to_string(open.tile->header().number) + ": has a brick outside itself");
-      }
       const int half = bricks_per_side_ / 2;  // the middle of tile (0, 0, 0) is x = y = 0
       to.positions.push_back({index.x * bricks_per_side_ + at.x - half,
                               index.y * bricks_per_side_ + at.y - half,

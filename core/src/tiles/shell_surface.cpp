@@ -3,11 +3,9 @@
 #include <cstring>
 #include <map>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "mesh/stream_simplifier.hpp"
-#include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "tiles/tile_lattice.hpp"
 #include "tiles/tile_surface.hpp"
@@ -67,14 +65,9 @@ class TileField {
                std::size_t end) {
     const std::vector<std::byte> bytes = from.bricks(first, end - first);
     for (std::size_t i = first; i < end; ++i) {
-      const TileBrick& at = positions[i];
-      if (at.x >= bricks_per_side_ || at.y >= bricks_per_side_ || at.z >= bricks_per_side_) {
-        throw Error(ErrorCode::scan_malformed, "tile " + std::to_string(from.header().number) +
-                                                   ": has a brick outside itself");
-      }
       ShellBrick brick;
       std::memcpy(&brick, &bytes[(i - first) * sizeof brick], sizeof brick);
-      field_.add(placed(at, from.header().index), brick);
+      field_.add(placed(positions[i], from.header().index), brick);
     }
   }
 

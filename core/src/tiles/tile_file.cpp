@@ -14,6 +14,7 @@
 #include "octurn/error.hpp"
 #include "octurn/json_object.hpp"
 #include "tiles/plan_file.hpp"
+#include "tiles/tile_lattice.hpp"
 #include "tsdf/shell.hpp"
 #include "voxel/octree.hpp"
 
@@ -111,7 +112,7 @@ void expect_whole(const std::filesystem::path& file, std::ifstream& stream, std:
   std::uint64_t stored = 0;
   read(std::as_writable_bytes(std::span(&stored, 1)));
   if (stored != checksum.value() || stream.peek() != std::ifstream::traits_type::eof()) {
-    refuse(file, "is damaged: its checksum is another one");
+    refuse(file, "is damaged: its checksum does not match");
   }
 }
 
@@ -180,6 +181,14 @@ std::vector<TileBrick> StoredTile::positions() const {
   if (!std::ranges::is_sorted(positions, ordered)) {
     throw Error(ErrorCode::scan_malformed,
                 "tile " + std::to_string(header_.number) + ": its bricks are not in order");
+  }
+  const int side = TileLattice(header_.options).bricks_per_side();
+  const auto is_outside = [side](const TileBrick& at) {
+    return at.x >= side || at.y >= side || at.z >= side;
+  };
+  if (std::ranges::any_of(positions, is_outside)) {
+    throw Error(ErrorCode::scan_malformed,
+                "tile " + std::to_string(header_.number) + ": has a brick outside the tile");
   }
   return positions;
 }

@@ -59,6 +59,8 @@ class StoredTile {
 
   const TileHeader& header() const { return header_; }
 
+  /// The positions of all bricks.
+  /// @throws Error "scan-malformed"  if they are not sorted, or one lies outside the tile
   std::vector<TileBrick> positions() const;
 
   /// Bricks `first` to `first + count`, in the order of the positions.

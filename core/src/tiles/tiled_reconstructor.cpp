@@ -151,7 +151,9 @@ void write_tile(const ReconstructOptions& options, const TilePlan& plan, std::si
   }
   if (plan.snapshots.size() != snapshots.count) {
     throw Error(ErrorCode::scan_malformed,
-                "the plan is of another scan: it has another number of snapshots",
+                "the plan was made for another scan: it has " +
+                    std::to_string(plan.snapshots.size()) + " snapshots, and this scan has " +
+                    std::to_string(snapshots.count),
                 "Make the plan again.");
   }
   AtomicFile output(file);

@@ -36,16 +36,16 @@ std::string to_text(const CalibrationReport& report) {
   text.setf(std::ios::fixed);
   text.precision(2);
   if (!report.accepted) {
-    text << "The told pose stays: " << report.reason << ".\n";
+    text << "The configured pose stays in use: " << report.reason << ".\n";
   } else {
     text << "The axis is " << mm_from_metres(report.shift) << " mm and "
-         << degrees_from_radians(report.tilt) << " degrees from where it was told, the platform "
+         << degrees_from_radians(report.tilt) << " degrees from the configured place, the platform "
          << mm_from_metres(report.lift) << " mm.\n"
          << "Known to " << mm_from_metres(report.position_sigma) << " mm and "
          << degrees_from_radians(report.direction_sigma) << " degrees"
-         << (report.confirms_told() ? ": the told pose is right" : "") << ".\n"
+         << (report.confirms_told() ? ": the configured pose is right" : "") << ".\n"
          << "Two stops disagree about the object by " << mm_from_metres(report.after)
-         << " mm; as told, by " << mm_from_metres(report.before) << " mm.\n";
+         << " mm; with the configured pose, by " << mm_from_metres(report.before) << " mm.\n";
   }
   for (const CalibrationFinding& finding : report.findings) {
     text << finding.code << ": " << finding.detail << ". " << finding.hint << '\n';
@@ -61,7 +61,7 @@ std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& so
   for (std::size_t i = 0; i < solved.size(); ++i) {
     const double turn = std::acos(std::clamp(told[i].normal.dot(solved[i].normal), -1.0, 1.0));
     text << "The plane of laser " << solved[i].name << " is " << degrees_from_radians(turn)
-         << " degrees from where it was told.\n";
+         << " degrees from the configured one.\n";
   }
   return text.str();
 }

@@ -145,7 +145,8 @@ LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
 bool calibrate_board(const CalibrateBoardArguments& arguments) {
   if (arguments.folder.empty()) {
     if (arguments.keep) {
-      throw Error(ErrorCode::bad_settings, "--keep: what the rig's own camera tells is kept anyway",
+      throw Error(ErrorCode::bad_settings,
+                  "--keep: the lens of the rig's own camera is kept in any case",
                   "Name the folder of pictures, or leave --keep out.");
     }
     const LensReport report = report_of_rig(arguments);

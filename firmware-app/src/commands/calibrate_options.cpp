@@ -41,10 +41,10 @@ BoardOptions add_board_options(CLI::App& command, CalibrateBoardArguments& argum
 }  // namespace
 
 void add_calibrate(CLI::App& program, CalibrateOptions& options, int& status) {
-  CLI::App& command = *program.add_subcommand("calibrate",
-                                              "where the sensor stands, as a turn or a stored scan "
-                                              "tells; its own error, as walls tell; or a "
-                                              "camera's lens, as a printed board tells");
+  CLI::App& command =
+      *program.add_subcommand("calibrate",
+                              "finds the sensor's pose from a turn or a stored scan, its own error "
+                              "from walls, or a camera's lens from a printed board");
   CLI::Option* folder =
       command.add_option("SCAN_DIR", options.pose.folder,
                          "folder with a scan.json; without it the platform is turned");

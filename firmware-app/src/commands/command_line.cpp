@@ -22,8 +22,8 @@ void add_serve(CLI::App& program, ServeArguments& arguments) {
       ->type_name("DIR");
   command
       .add_option("--appliance", arguments.appliance,
-                  "this machine is Octurn's image: folder through which the page has updates and "
-                  "WiFi done")
+                  "this machine runs Octurn's image: folder through which the page asks the system "
+                  "for updates and WiFi")
       ->type_name("DIR");
   command
       .add_option("--builds-by", arguments.builds_by,
@@ -61,7 +61,7 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
 
 void add_record(CLI::App& program, RecordArguments& arguments) {
   CLI::App& command = *program.add_subcommand(
-      "record", "what the sensor sees in a turn, to be replayed by --sensor");
+      "record", "records the sensor's frames of a turn, to be replayed by --sensor");
   add_rig_options(command, arguments.rig, arguments.config);
   add_config_option(command, arguments.config);
   CLI::Option* output = command
@@ -101,7 +101,7 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   command
       .add_option("--zip", arguments.zip,
                   "also write versions, settings, findings and the system's state to this file, to "
-                  "be sent to who helps")
+                  "be sent to somebody who helps")
       ->type_name("FILE");
   command.footer(
       "Without --turn it never moves the motor. It ends with 0 if there is no fault, with 1 if one "
@@ -117,7 +117,7 @@ void add_set(CLI::App& program, SetArguments& arguments) {
       .add_option("SETTING", arguments.assignments,
                   "KEY=VALUE, such as port=80 or turntable.gear_ratio=4")
       ->required();
-  command.footer("All are set, or none: what is wrong is named.");
+  command.footer("If a setting is wrong, it is named and none is set.");
   command.callback([&arguments] { set(arguments); });
 }
 

@@ -72,7 +72,7 @@ std::string table_text(const std::vector<Finding>& findings) {
 SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_token& stop) {
   if (input.lines == LineOwner::this_program && input.rig.stepper) {
     return Failure{.code = ErrorCode::busy,
-                   .detail = "not looked at: the Octurn that is running here uses it",
+                   .detail = "not checked: the Octurn that is running here is using it",
                    .hint = "Open its page and choose Check the scanner."};
   }
   Rig rig(input.rig);

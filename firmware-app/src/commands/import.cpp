@@ -94,7 +94,8 @@ void import_tum(const ImportArguments& arguments) try {
   folder.commit();
   std::cerr << recording.images.size() << " depth images imported";
   if (recording.without_pose > 0) {
-    std::cerr << "; " << recording.without_pose << " left out, which no poses are near";
+    std::cerr << "; " << recording.without_pose
+              << " left out, as the recording has no pose near their time";
   }
   std::cerr << ".\n";
 } catch (const fs::filesystem_error& error) {

@@ -123,7 +123,7 @@ std::vector<Finding> run_checks(DoctorInput input, Scanner& scanner) {
     input.lines = LineOwner::this_program;
   }
   SensorReading reading = Failure{.code = ErrorCode::busy,
-                                  .detail = "not looked at: a scan is running",
+                                  .detail = "not checked: a scan is running",
                                   .hint = "Check again when the scan has ended."};
   scanner.check_devices(
       [&](Rig& rig, const std::stop_token& stop) { reading = read_sensor(rig, stop); });

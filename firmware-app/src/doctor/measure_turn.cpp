@@ -24,8 +24,9 @@ constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
 constexpr double seen_move_deg = 10;  // target of each later move, degrees of the platform
 constexpr int few_moves = 4;          // the median tolerates two wrong measurements
 constexpr int more_moves = 8;         // their median is accurate to some percent
-constexpr double widest_deg =
-    40;  // search range of first moves: the gear ratio may be six times off
+// Search range of the first moves. A platform that turns six times as far as commanded leaves it
+// with its first move of 8 degrees, but not with the next, whose size follows from what was seen.
+constexpr double widest_deg = 40;
 constexpr double expected_deg = 6;  // search range about an expected angle
 constexpr double still_deg = 1;     // a first move below it counts as standing still
 constexpr double closing_deg = 32;  // search range after a turn: 9 % of it
@@ -113,9 +114,10 @@ DepthFrame TurnMeter::look() {
     if (timed->time > settled) {
       frames.push_back(std::move(timed->frame));
     } else if (taken > max_stale_frames) {
-      throw Error(ErrorCode::sensor_failed,
-                  sensor.name() + ": its frames are older than they may be",
-                  "Unplug the sensor, and plug it in again.");
+      throw Error(
+          ErrorCode::sensor_failed,
+          sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
+          "Unplug the sensor, and plug it in again.");
     }
   }
   on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));

@@ -72,7 +72,7 @@ Finding check_lost_frames(const SensorSample& sample) {
 
 Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& platform_from_sensor) {
   if (!tilt) {
-    return tilt_check.unknown("this sensor does not tell it");
+    return tilt_check.unknown("this sensor does not report its tilt");
   }
   const Eigen::Matrix3d& axes = platform_from_sensor.linear();
   const Eigen::Vector3d right = axes.col(0);

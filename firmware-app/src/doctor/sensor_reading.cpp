@@ -64,7 +64,7 @@ SensorReading read_sensor(Rig& rig, const std::stop_token& stop) {
       return *std::move(seen);
     }
     return Failure{.code = ErrorCode::busy,
-                   .detail = "not looked at: something else began to use the sensor",
+                   .detail = "not checked: something else began to use the sensor",
                    .hint = "Check again later."};
   } catch (const Error& error) {
     rig.close_sensor();

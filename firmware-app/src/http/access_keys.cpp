@@ -77,7 +77,7 @@ std::vector<AccessKey> read_keys(const std::filesystem::path& file) try {
   }
   return keys;
 } catch (const Error& error) {
-  log::warning("http", file.string() + ": " + error.what() + "; no key counts");
+  log::warning("http", file.string() + ": " + error.what() + "; all access keys are refused");
   return {};
 }
 

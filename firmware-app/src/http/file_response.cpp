@@ -110,7 +110,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
   const std::string tag = to_entity_tag(info);
   Headers headers{{"ETag", tag}, {"Accept-Ranges", "bytes"}, {"Cache-Control", "no-cache"}};
   if (const auto wanted = request.header("If-Match"); wanted && !matches_strongly(*wanted, tag)) {
-    throw Error(ErrorCode::changed, "the model is not the one that was asked for",
+    throw Error(ErrorCode::changed, "the model was replaced since it was first read",
                 "Download it again.");
   }
   if (client_has(request, tag)) {

@@ -44,10 +44,10 @@ std::optional<Response> refuse_key(const AccessKeys& keys, const Request& reques
   const auto access = keys.access(key);
   if (!access) {
     return refuse({.status = 401,
-                   .title = "The key is none",
+                   .title = "The access key is not valid",
                    .code = "wrong-key",
                    .detail = "there is no such key, or it was revoked",
-                   .hint = "Make one in the page's settings."},
+                   .hint = "Make a new key in the page's settings."},
                   "invalid_token");
   }
   if (is_about_access(request.path)) {

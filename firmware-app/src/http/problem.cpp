@@ -41,7 +41,7 @@ constexpr std::array problem_types{
     ProblemType{ErrorCode::not_running, 409, "The scan is not running"},
     ProblemType{ErrorCode::not_paused, 409, "The scan cannot be resumed"},
     ProblemType{ErrorCode::length_required, 411, "The length is missing"},
-    ProblemType{ErrorCode::changed, 412, "It is no longer what was asked for"},
+    ProblemType{ErrorCode::changed, 412, "The file has changed in the meantime"},
     ProblemType{ErrorCode::too_large, 413, "The request is too large"},
     ProblemType{ErrorCode::wrong_content_type, 415, "The body is of the wrong type"},
     ProblemType{ErrorCode::bad_range, 416, "The file has no such part"},

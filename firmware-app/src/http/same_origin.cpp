@@ -73,7 +73,7 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
       !is_of_type(request.header("Content-Type").value_or(""), body_type)) {
     return Failure{.code = ErrorCode::wrong_content_type,
                    .detail = request.method + " needs Content-Type: " + std::string(body_type),
-                   .hint = "Send that, and say so."};
+                   .hint = "Send the body in that format, and name it in the header Content-Type."};
   }
   return std::nullopt;
 }

@@ -14,7 +14,8 @@ namespace {
 
 // A surface of area A crosses some 1.5 A / side^2 cells, and a mesh has two facets for each vertex.
 constexpr double facets_in_square = 3;
-constexpr double coarser = 1.15;  // growth of the side while there are too many facets
+constexpr double coarser = 1.15;     // growth of the side while there are too many facets
+constexpr unsigned index_bits = 21;  // of a cell's index on each axis: three fit into 64 bits
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
@@ -32,14 +33,32 @@ Eigen::Vector3d area_vector(const Corners& corners) {
   return (corners[1] - corners[0]).cross(corners[2] - corners[0]);
 }
 
-double area(const FacetFile& facets) {
-  double doubled = 0;
+struct MeshSize {
+  double area = 0;   // square millimetres
+  double reach = 0;  // largest absolute coordinate, millimetres
+};
+
+MeshSize measure_size(const FacetFile& facets) {
+  MeshSize size;
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
-      doubled += area_vector(to_corners(facet)).norm();
+      const Corners corners = to_corners(facet);
+      size.area += area_vector(corners).norm() / 2;
+      for (const Eigen::Vector3d& corner : corners) {
+        size.reach = std::max(size.reach, corner.cwiseAbs().maxCoeff());
+      }
     }
   });
-  return doubled / 2;
+  return size;
+}
+
+/// The side of the cells to begin with, millimetres: that which leaves about `max_facets`, but no
+/// smaller than cell indices of `index_bits` bits allow. Facets without area ask for a side of 0.
+double first_side(const MeshSize& size, std::size_t max_facets) {
+  constexpr double max_index = (1U << (index_bits - 1)) - 1;
+  constexpr double least_reach = 1;  // for a mesh that is a point at the origin
+  return std::max(std::sqrt(facets_in_square * size.area / static_cast<double>(max_facets)),
+                  std::max(size.reach, least_reach) / max_index);
 }
 
 /// The occupied cells of a grid, in order of their first use, and the facets between them.
@@ -98,9 +117,10 @@ class Clusters {
   /// Adds a corner to the mean of its cell. @return the cell's index
   std::uint32_t add(const Eigen::Vector3d& corner) {
     std::uint64_t place = 0;
-    for (const double coordinate : corner) {  // 21 bits each: a root cube has 2^16 leaves per side
+    for (const double coordinate : corner) {
       const auto cell = static_cast<std::int64_t>(std::floor(coordinate / side_));
-      place = place << 21U | (static_cast<std::uint64_t>(cell) & 0x1fffffU);
+      constexpr std::uint64_t mask = (1U << index_bits) - 1;
+      place = place << index_bits | (static_cast<std::uint64_t>(cell) & mask);
     }
     const auto [found, is_new] = numbers_.emplace(place, static_cast<std::uint32_t>(cells_.size()));
     if (is_new) {
@@ -123,7 +143,7 @@ class Clusters {
 }  // namespace
 
 std::vector<Facet> coarse_mesh(const FacetFile& facets, std::size_t max_facets) {
-  double side = std::sqrt(facets_in_square * area(facets) / static_cast<double>(max_facets));
+  double side = first_side(measure_size(facets), max_facets);
   for (;;) {
     Clusters clusters(side);
     facets.read([&](std::span<const Facet> block) {

@@ -153,7 +153,7 @@ AddressBook::Entries AddressBook::read(const std::filesystem::path& file) try {
   }
   return entries;
 } catch (const Error& error) {
-  log::warning("outgoing", file.string() + " is malformed; no webhook and no printer counts");
+  log::warning("outgoing", file.string() + " is malformed; its webhooks and printers are ignored");
   return {};
 }
 

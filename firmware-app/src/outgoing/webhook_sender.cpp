@@ -68,13 +68,14 @@ std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
 void WebhookSender::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
+      forget_removed();
       spread(poll_());
       if (auto due = take_due()) {
         attempt(std::move(*due), stop);
         continue;
       }
     } catch (const std::exception& error) {
-      log::error("outgoing", std::string("webhooks are not told: ") + error.what());
+      log::error("outgoing", std::string("cannot send events to the webhooks: ") + error.what());
     }
     std::unique_lock lock(mutex_);
     added_.wait_for(lock, stop, limits_.poll_interval, [this] {
@@ -112,8 +113,21 @@ void WebhookSender::add(Delivery delivery) {
   }
   added_.notify_all();
   if (given_up) {
-    set_state(*given_up, WebhookState::Outcome::failed, "too much waited to be sent");
+    set_state(*given_up, WebhookState::Outcome::failed,
+              "dropped, because too many events were waiting");
   }
+}
+
+/// Drops the states and deliveries of webhooks that the address book no longer has.
+void WebhookSender::forget_removed() {
+  // The book is read under the lock: what is queued for a webhook that is added later stays.
+  const std::lock_guard lock(mutex_);
+  const std::vector<Webhook> webhooks = book_.webhooks();
+  const auto is_removed = [&](const std::string& id) {
+    return std::ranges::find(webhooks, id, &Webhook::id) == webhooks.end();
+  };
+  std::erase_if(states_, [&](const auto& state) { return is_removed(state.first); });
+  std::erase_if(waiting_, [&](const Delivery& delivery) { return is_removed(delivery.webhook); });
 }
 
 std::optional<WebhookSender::Delivery> WebhookSender::take_due() {

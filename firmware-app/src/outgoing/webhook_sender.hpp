@@ -73,6 +73,7 @@ class WebhookSender {
   void run(const std::stop_token& stop);
   void spread(const std::vector<WebhookEvent>& events);
   void add(Delivery delivery);
+  void forget_removed();
   std::optional<Delivery> take_due();
   void attempt(Delivery delivery, const std::stop_token& stop);
   void set_state(const Delivery& delivery, WebhookState::Outcome outcome, std::string trouble);

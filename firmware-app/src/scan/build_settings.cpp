@@ -28,11 +28,12 @@ std::vector<Field> fields(BuildSettings& settings) {
                  .access = whole(settings.level, 0, max_levels),
                  .method = "intersection",
                  .default_text = "the leaves'"});
-  all.push_back({.key = "platform_from_sensor",
-                 .unit = "m",
-                 .help = "pose of the sensor, four rows of four numbers, in place of the told one",
-                 .access = optional_pose(settings.platform_from_sensor),
-                 .default_text = "the scan's"});
+  all.push_back(
+      {.key = "platform_from_sensor",
+       .unit = "m",
+       .help = "pose of the sensor, four rows of four numbers, in place of the configured one",
+       .access = optional_pose(settings.platform_from_sensor),
+       .default_text = "the scan's"});
   return all;
 }
 

@@ -54,7 +54,8 @@ void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
     return;
   }
   if (scan.poses.empty()) {
-    refuse("is no turn: its snapshots tell their own poses", "Merge scans of the turntable.");
+    refuse("is no turn of the platform: its snapshots have poses of their own",
+           "Merge scans of the turntable.");
   }
   const bool is_first = turns.empty();
   for (std::size_t i = 0; i < scan.poses.size(); ++i) {

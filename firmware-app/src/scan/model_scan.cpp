@@ -10,8 +10,10 @@ Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& set
   Scan scan = read_scan(folder);
   if (!scan.poses.empty()) {  // these keep their own sensor poses and clip boxes
     if (settings.platform_from_sensor) {
-      throw Error(ErrorCode::bad_settings, "a model of several poses has the pose that they solved",
-                  "Leave platform_from_sensor out.");
+      throw Error(
+          ErrorCode::bad_settings,
+          "platform_from_sensor: a model of several poses keeps the sensor poses of its turns",
+          "Leave platform_from_sensor out.");
     }
     return scan;
   }
@@ -33,7 +35,7 @@ ModelScan scan_of_model(const ScanStore& store, const Job& job, int build) {
   const Build* const built = find_build(job, build);
   if (built == nullptr) {
     throw Error(ErrorCode::no_model, "this scan has no build " + std::to_string(build),
-                "GET its builds lists them.");
+                "GET /api/v1/scans/ID/builds lists its builds.");
   }
   const std::filesystem::path folder = store.merged_scan(job.id, built->poses);
   ModelScan of{.folder = folder, .scan = scan_to_build(folder, built->settings)};

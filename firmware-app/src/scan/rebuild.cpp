@@ -37,7 +37,7 @@ void rebuild(const RebuildCommand& command) {
     command.pipe->stop().request_stop();
   } catch (...) {
     Failure failure = current_failure();
-    log::error("scanner", "what a request asked for: " + failure.detail);
+    log::error("scanner", "cannot make the model that a request asked for: " + failure.detail);
     command.pipe->fail(std::move(failure));
   }
 }

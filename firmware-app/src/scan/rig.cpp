@@ -18,7 +18,8 @@ Rig::~Rig() = default;
 DepthSensor& Rig::sensor() {
   if (options_.laser) {
     throw Error(ErrorCode::sensor_other, "this rig has a camera with lasers, and no depth sensor",
-                "Scan with it; nothing else can be done with such a rig yet.");
+                "Such a rig can scan and be calibrated. Recordings, maps of a sensor's error and "
+                "tests of a turn need a depth sensor.");
   }
   if (!sensor_) {
     sensor_ = options_.open_sensor(options_.sensor_uri);

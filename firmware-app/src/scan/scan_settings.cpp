@@ -23,7 +23,7 @@ constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not 
 constexpr int max_threads = 256;
 constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther
 constexpr double max_root_mm = 10000;
-constexpr double min_leaf_mm = 0.1;   // roots above 6.5 m need more: octrees have 16 levels
+constexpr double min_leaf_mm = 0.1;   // larger roots need more: see `check_leaf`
 constexpr double min_memory_mb = 17;  // of the intersection method with one thread
 
 // Memory of program and libraries without a reconstruction, measured on x86-64.
@@ -125,8 +125,8 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .access = number(s.target_error, 0, 1000, millimetres),
        .method = "solid"},
       {.key = "parts",
-       .help = "main: the object, one connected part; all: every part that stands on the platform, "
-               "unless the object was turned over",
+       .help = "main keeps the object, one connected part; all keeps every part that stands on the "
+               "platform, unless the object was turned over",
        .access = choice(s.parts, {Parts::main, Parts::all}),
        .method = "solid"},
       {.key = "threshold_m2",
@@ -135,8 +135,8 @@ std::vector<Field> model_fields(ScanSettings& s) {
        .access = number(s.threshold, 1e-8, 1),
        .method = "intersection"},
       {.key = "calibrate",
-       .help = "pose of the sensor: auto solves it from the snapshots, told takes the one that the "
-               "rig was told",
+       .help =
+           "pose of the sensor: auto solves it from the snapshots, told takes the configured one",
        .access = choice(s.pose, {PoseSource::solved, PoseSource::told})},
       {.key = "root_size_mm",
        .unit = "mm",
@@ -238,6 +238,15 @@ ScanSettings stored_settings_from(const JsonValue& object) {
 void check_leaf(const JsonObject& keys, const ScanSettings& settings) {
   if (settings.leaf_size > settings.root_size) {
     keys.refuse("leaf_size_mm", rounded_mm(settings.leaf_size), "at most root_size_mm");
+  }
+  const double smallest = settings.root_size / (1 << max_levels);
+  if (settings.leaf_size < smallest) {
+    // Rounded up to a micrometre, so that what the message names is accepted.
+    const double smallest_mm = std::ceil(mm_from_metres(smallest) * 1000) / 1000;
+    keys.refuse("leaf_size_mm", rounded_mm(settings.leaf_size),
+                "at least " + json(smallest_mm).dump() +
+                    " with that root_size_mm, which is halved " + std::to_string(max_levels) +
+                    " times at most");
   }
 }
 

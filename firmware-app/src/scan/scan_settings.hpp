@@ -97,7 +97,8 @@ ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& def
 /// @throws Error  as above, with the code of `object`
 ScanSettings stored_settings_from(const JsonValue& object);
 
-/// Refuses a leaf larger than the root. @param keys  the JSON of the settings, for messages
+/// Refuses a leaf larger than the root, or smaller than an octree's leaves in it can be.
+/// @param keys  the JSON of the settings, for messages
 void check_leaf(const JsonObject& keys, const ScanSettings& settings);
 
 /// Refuses a clip box thinner than a leaf. @param keys  as above

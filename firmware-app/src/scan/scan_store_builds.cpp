@@ -25,7 +25,7 @@ fs::path leaving_in(const fs::path& builds, int number) {
 
 [[noreturn]] void throw_no_such_build(int number) {
   throw Error(ErrorCode::no_model, "this scan has no build " + std::to_string(number),
-              "GET its builds lists them.");
+              "GET /api/v1/scans/ID/builds lists its builds.");
 }
 
 }  // namespace

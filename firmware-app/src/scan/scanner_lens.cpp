@@ -53,7 +53,8 @@ void Scanner::forget_lens() {
   const std::string serial = sensor_serial();
   std::error_code unreadable;
   if (serial.empty() || !std::filesystem::exists(lens_path(store_.data(), serial), unreadable)) {
-    throw Error(ErrorCode::not_found, "no lens of this camera is kept", "The settings' holds.");
+    throw Error(ErrorCode::not_found, "no measured lens of this camera is kept",
+                "The lens of the settings is in use.");
   }
   remove_lens(store_.data(), serial);
   board_.set_lens(std::nullopt);

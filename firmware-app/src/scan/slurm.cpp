@@ -13,8 +13,10 @@
 namespace octurn {
 namespace {
 
-// Output format of `squeue`. The folder is the last field, as it may contain the separator.
-constexpr const char* listed = "%i|%T|%r|%Z";
+// Output format of `squeue`. The folder is the last field, as it may contain the separator and even
+// newlines. Two slashes end a job, as no canonical path contains them.
+constexpr const char* listed = "%i|%T|%r|%Z//";
+constexpr std::string_view end_of_job = "//\n";
 constexpr std::size_t listed_fields = 4;
 
 constexpr std::array<std::string_view, 10> ended{
@@ -96,12 +98,12 @@ std::string run(const std::vector<std::string>& command, const std::stop_token& 
   }
 }
 
-SlurmJob to_job(std::string_view line) {
+SlurmJob to_job(std::string_view text) {
   std::array<std::string, listed_fields> parts;
   for (std::size_t i = 0; i < listed_fields; ++i) {
-    const std::size_t end = i + 1 < listed_fields ? line.find('|') : line.size();
-    parts[i] = line.substr(0, end);
-    line.remove_prefix(std::min(line.size(), parts[i].size() + 1));
+    const std::size_t end = i + 1 < listed_fields ? text.find('|') : text.size();
+    parts[i] = text.substr(0, end);
+    text.remove_prefix(std::min(text.size(), parts[i].size() + 1));
   }
   return {.id = std::move(parts[0]),
           .state = std::move(parts[1]),
@@ -145,20 +147,22 @@ std::string Slurm::submit(const SlurmRequest& request, const std::stop_token& st
   const std::string output = run(command, stop);
   std::string id = output.substr(0, output.find_first_of(";\n"));  // "12", or "12;cluster"
   if (id.empty() || !std::ranges::all_of(id, [](char c) { return c >= '0' && c <= '9'; })) {
-    throw Error(ErrorCode::interrupted, "Slurm: " + sbatch + " did not tell the job's number",
-                "Look whether squeue lists it.");
+    throw Error(ErrorCode::interrupted, "Slurm: " + sbatch + " did not print the job's number",
+                "Check whether squeue lists the job.");
   }
   return id;
 }
 
 std::vector<SlurmJob> Slurm::list(const std::stop_token& stop) const {
-  std::istringstream lines(
+  const std::string output =
       run({squeue, "--me", "--noheader", "--states=all", "--name=" + std::string(build_job_name),
            "--format=" + std::string(listed)},
-          stop));
+          stop);
   std::vector<SlurmJob> jobs;
-  for (std::string line; std::getline(lines, line);) {
-    jobs.push_back(to_job(line));
+  std::string_view left = output;
+  for (auto end = left.find(end_of_job); end != left.npos; end = left.find(end_of_job)) {
+    jobs.push_back(to_job(left.substr(0, end)));
+    left.remove_prefix(end + end_of_job.size());
   }
   return jobs;
 }

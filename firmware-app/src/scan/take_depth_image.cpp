@@ -29,9 +29,10 @@ std::vector<DepthFrame> read_frames(DepthSensor& sensor, int count, Clock::time_
       observer.on_frame(timed->frame);
       frames.push_back(std::move(timed->frame));
     } else if (++stale > max_stale_frames) {
-      throw Error(ErrorCode::sensor_failed,
-                  sensor.name() + ": its frames are older than they may be",
-                  "Unplug the sensor, and plug it in again.");
+      throw Error(
+          ErrorCode::sensor_failed,
+          sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
+          "Unplug the sensor, and plug it in again.");
     }
   }
   return frames;

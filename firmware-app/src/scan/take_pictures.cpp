@@ -43,7 +43,10 @@ std::optional<TimedPicture> read_picture(Camera& camera, Read read, Clock::time_
       return timed;
     }
   }
-  throw Error(ErrorCode::sensor_failed, camera.name() + ": its pictures are older than they may be",
+  throw Error(ErrorCode::sensor_failed,
+              camera.name() +
+                  ": its pictures arrive too late; they are from before the platform stopped or a "
+                  "laser was switched",
               "Unplug the camera, and plug it in again.");
 }
 

@@ -149,7 +149,7 @@ void Worker::measure_wall(CalibrationRun& run, const std::stop_token& stop) {
   const std::string serial = sensor.serial();
   if (serial.empty()) {
     throw Error(
-        ErrorCode::bad_settings, sensor.name() + ": tells no serial number",
+        ErrorCode::bad_settings, sensor.name() + ": reports no serial number",
         "A map belongs to one sensor. Make it of a recording with octurn calibrate --wall.");
   }
   const auto show = [&](const DepthFrame& frame, int frames) {

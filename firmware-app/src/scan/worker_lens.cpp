@@ -48,7 +48,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   Camera& camera = rig_.camera();
   if (camera.serial().empty()) {
     throw Error(ErrorCode::sensor_other,
-                camera.name() + ": tells nothing that it is known again by",
+                camera.name() + ": reports no serial number, under which its lens could be kept",
                 "Take pictures of a board, and use octurn calibrate --board.");
   }
   const Intrinsics lens = told_laser_->lens;

@@ -29,8 +29,8 @@ constexpr std::uint64_t max_preview_facets = 60'000;
 
 std::string to_text(const ScanSolution& solution) {
   return solution.replaces_told     ? "its pose is solved, the model is built again"
-         : solution.report.accepted ? "the told pose is right"
-                                    : "the told pose stays: " + solution.report.reason;
+         : solution.report.accepted ? "the configured pose is right"
+                                    : "the configured pose stays in use: " + solution.report.reason;
 }
 
 /// Returns the index of the object's pose in a scan: 0 in a first scan, 1, 2, ... in those of other

@@ -94,7 +94,7 @@ void prepare_kinect(openni::Device& device) {
   }
   if (std::string_view(device.getDeviceInfo().getUri()).starts_with(kinect_scheme) &&
       !device.isPropertySupported(tilt_property)) {
-    log::info("sensor", "this Kinect tells no tilt: its model needs firmware for that");
+    log::info("sensor", "this Kinect reports no tilt: its model needs firmware for that");
   }
 }
 
@@ -172,7 +172,7 @@ void OpenNiSensor::open_stream() {
     prepare_file();
   } else {
     expect_ok(stream_.setVideoMode(best_mode(stream_)), "set its depth mode");
-    expect_ok(stream_.setMirroringEnabled(false), "have it not mirror its frames");
+    expect_ok(stream_.setMirroringEnabled(false), "switch off its mirroring");
     prepare_kinect(device_);
   }
   expect_ok(stream_.start(), "start its depth stream");

@@ -79,7 +79,7 @@ std::vector<Field> gear_fields(StepperSettings& s) {
   return {
       {.key = "microsteps",
        .unit = "in a full step",
-       .help = "has to be what MS1 to MS3 say",
+       .help = "must match MS1 to MS3 where these are wired to fixed levels",
        .access = one_of(s.microsteps, {1, 2, 4, 8, 16})},
       {.key = "full_steps",
        .unit = "in a turn of the motor",
@@ -117,7 +117,8 @@ std::vector<Field> motion_fields(StepperSettings& s) {
        .default_text = "`300`, with lasers `150`"},
       {.key = "idle_release_s",
        .unit = "s",
-       .help = "without a move, after which the motor is switched off. It always is after a scan",
+       .help = "time without a move after which the motor is switched off; a scan switches it off "
+               "at its end",
        .access = seconds(s.idle_release, min_idle_s, max_idle_s)},
       {.key = "take_up_steps",
        .unit = "steps",

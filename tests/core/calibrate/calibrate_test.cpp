@@ -241,7 +241,7 @@ TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
     ASSERT_TRUE(wrong->detail.starts_with(before)) << wrong->detail;
     // Three sigma: the ratio's sigma is 0.3 %.
     EXPECT_NEAR(std::stod(wrong->detail.substr(before.size())), 2, 0.9) << wrong->detail;
-    EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than told" : "shorter than told"),
+    EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than configured" : "shorter than configured"),
               std::string::npos);
     const Parameters& values = wrong->parameters;
     ASSERT_EQ(values.size(), 3U);

@@ -1,13 +1,19 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "io/checksum.hpp"
 #include "octurn/tiles.hpp"
 #include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
+#include "tiles/tile_file.hpp"
 
 namespace octurn {
 namespace {
@@ -108,6 +114,40 @@ TEST_F(TileFiles, CutShortOrDamagedAreRefused) {
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
     put(files_[0], damaged);
     ASSERT_EQ(refusal().code(), ErrorCode::scan_malformed) << at;
+  }
+}
+
+/// Changes a tile's last brick, and the file's checksum with it.
+void change_last_brick(const fs::path& file, const std::function<void(TileBrick&)>& change) {
+  std::string content = content_of(file);
+  const std::size_t first = content.find('\n', content.find('\n') + 1) + 1;
+  const std::size_t last = first + (StoredTile(file).header().bricks - 1) * sizeof(TileBrick);
+  TileBrick brick;
+  std::memcpy(&brick, &content[last], sizeof brick);
+  change(brick);
+  std::memcpy(&content[last], &brick, sizeof brick);
+  std::uint64_t value = 0;
+  content.resize(content.size() - sizeof value);
+  Checksum checksum;
+  checksum.add(std::as_bytes(std::span(content)));
+  value = checksum.value();
+  content.append(reinterpret_cast<const char*>(&value), sizeof value);
+  put(file, content);
+}
+
+TEST_F(TileFiles, WithABrickOutsideTheTileAreRefused) {
+  constexpr std::uint16_t outside = 4;  // a tile of 32 leaves has 4 bricks a side
+  for (const Method method : {Method::intersection, Method::solid}) {
+    files_.clear();
+    make(room_options(method));
+    const std::string whole = content_of(files_[0]);
+    for (std::uint16_t TileBrick::*const axis : {&TileBrick::x, &TileBrick::y, &TileBrick::z}) {
+      put(files_[0], whole);
+      change_last_brick(files_[0], [&](TileBrick& brick) { brick.*axis = outside; });
+
+      EXPECT_EQ(refusal().code(), ErrorCode::scan_malformed) << to_string(method);
+      EXPECT_NE(std::string(refusal().what()).find("outside"), std::string::npos);
+    }
   }
 }
 

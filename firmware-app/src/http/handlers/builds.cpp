@@ -29,7 +29,7 @@ json find_build(const App& app, std::string_view id, std::string_view number) {
     }
   }
   throw Error(ErrorCode::no_model, "this scan has no build " + std::string(number),
-              "GET its builds lists them.");
+              "GET /api/v1/scans/ID/builds lists its builds.");
 }
 
 int parse_build_number(const json& build) { return build["build"].get<int>(); }

@@ -192,7 +192,7 @@ Response start_calibration(App& app, const Request& request) {
 
 Response cancel_calibration(App& app) {
   if (!app.scanner.cancel_calibration()) {
-    throw Error(ErrorCode::not_running, "no measurement of the pose goes on",
+    throw Error(ErrorCode::not_running, "no calibration is running",
                 "POST /api/v1/calibration begins one.");
   }
   return send_calibration(app, 202);
@@ -200,8 +200,8 @@ Response cancel_calibration(App& app) {
 
 Response solve_lens(App& app) {
   if (!app.scanner.solve_lens()) {
-    throw Error(ErrorCode::not_running, "no board is looked at, or it was not seen yet",
-                "POST /api/v1/calibration with the kind \"lens\" looks at one.");
+    throw Error(ErrorCode::not_running, "no lens is being calibrated, or no board was seen yet",
+                "POST /api/v1/calibration with the kind \"lens\" looks for a board.");
   }
   return send_calibration(app, 202);
 }
@@ -212,8 +212,8 @@ Response send_board(App& /*app*/, const Request& request) {
     paper = name == "paper" ? paper_named(value) : std::nullopt;
   }
   if (!paper) {
-    throw Error(ErrorCode::bad_settings, "the query asks for a board that there is not",
-                "It takes paper=a4 or paper=letter.");
+    throw Error(ErrorCode::bad_settings, "there is no board for that paper",
+                "Ask for paper=a4 or paper=letter.");
   }
   return {.headers = {{"Content-Type", "application/pdf"},
                       {"Content-Disposition", "inline; filename=\"octurn-board.pdf\""},

@@ -167,7 +167,7 @@ Response send_upload(App& app, std::string_view id) {
 Response cancel_upload(App& app, std::string_view id) {
   if (!app.uploads.cancel(id)) {
     throw Error(ErrorCode::not_running, "this scan is not being sent to a printer",
-                "Only what is on its way can be cancelled.");
+                "Only an upload that is still running can be cancelled.");
   }
   return {.status = 204};
 }

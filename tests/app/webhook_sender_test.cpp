@@ -186,7 +186,7 @@ TEST(WebhookSender, GivesUpWhatIsOldestWhereTooMuchWaits) {
 TEST(WebhookSender, ForgetsAWebhookThatWasRemoved) {
   const Receiver receiver({200});
   Sender sender(receiver);
-  sender.tell("warning");
+  sender.queue("warning");
   sender.wait_for(WebhookState::Outcome::delivered);
   EXPECT_TRUE(sender.forgets());
 }

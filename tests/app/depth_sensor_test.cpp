@@ -105,8 +105,8 @@ TEST(DepthSensor, SaysThatItIsSilent) {
 
 // The limit is sixty frame periods, 20 ms at a hundred times the speed.
 TEST(DepthSensor, CountsSilenceByTheClockOfASimulatedSensor) {
+  // On a busy machine even the first frame may be later than 20 ms.
   const auto sensor = open_sensor("octurn-simulator://?silent-after=2&speed=100");
-  EXPECT_TRUE(sensor->read({}).has_value());
   const auto begin = steady_clock::now();
   EXPECT_EQ(code_thrown_by([&] {
               while (sensor->read({})) {

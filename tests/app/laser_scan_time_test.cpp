@@ -112,7 +112,7 @@ Timing time_400_stops(double readout, double disk, const Motion& motion) {
 }
 
 /// The default motion of a turntable with lasers.
-Motion laser_motion() { return motion_of(chosen_config({}, SensorKind::laser_line).turntable); }
+Motion laser_motion() { return to_motion(chosen_config({}, SensorKind::laser_line).turntable); }
 
 // A stop takes six picture periods: three for pictures, three for the platform to move and settle.
 TEST(LaserScanTime, IsLessThanThreeMinutesFor400StopsAt15PicturesASecond) {

@@ -75,8 +75,9 @@ int frames_in(const std::filesystem::path& file) {
   return frames;
 }
 
-/// Records at least `frames` frames of the simulated Kinect. The recorder writes them on a thread of
-/// its own, and drops those that wait for it when it is stopped: on a busy machine that may be all.
+/// Records at least `frames` frames of the simulated Kinect. The recorder writes them on a thread
+/// of its own, and drops those that wait for it when it is stopped: on a busy machine that may be
+/// all.
 void record_oni(const std::filesystem::path& file, int frames) {
   int sent = frames;
   do {

@@ -27,6 +27,12 @@ export const cameraTerminal = 1;
 export const processingUnit = 2;
 const outputTerminal = 3;
 
+/** Of a bus: its number in usbredir's protocol, and the bytes of a packet of the picture endpoint at most (USB 2.0, 5.8.3). */
+export const speeds = {full: {number: 1, packetBytes: 64}, high: {number: 2, packetBytes: 512}};
+
+/** That of a camera: of a full-speed bus if its lens says so. */
+export const speedOf = (lens) => speeds[lens.speed ?? 'high'];
+
 /** 100 ns from picture to picture. */
 const interval = ({picturesPerSecond}) => Math.round(1e7 / picturesPerSecond);
 
@@ -83,7 +89,7 @@ function streamingInterface(lens) {
     descriptor([classSpecific, 1], [1, 1], [all.length, 1], [13 + all.length + rest.length, 2], [pictureEndpoint, 1], [0, 1],
         [outputTerminal, 1], [0, 1], [0, 1], [0, 1], [1, 1], ...all.map(() => [0, 1])),
     rest,
-    descriptor([5, 1], [pictureEndpoint, 1], [2, 1], [512, 2], [0, 1]),
+    descriptor([5, 1], [pictureEndpoint, 1], [2, 1], [speedOf(lens).packetBytes, 2], [0, 1]),
   ]);
 }
 

@@ -1,5 +1,5 @@
-// The appliance's digital twin: the image on QEMU's Raspberry Pi 3, a Kinect that its kernel has on USB, and a turntable on its
-// chip's GPIO lines, whose pulses turn what the Kinect sees. Guest, Kinect and turntable go on beside each other, so that power
+// The appliance's digital twin: the image on QEMU's Raspberry Pi 3, a sensor that its kernel has on USB, and a turntable on its
+// chip's GPIO lines, whose pulses turn what the sensor sees. Guest, sensor and turntable go on beside each other, so that power
 // can be cut while the platform stays where it is.
 
 import {execFile} from 'node:child_process';
@@ -9,16 +9,22 @@ import {promisify} from 'node:util';
 import {measure} from '../web/mesh_file.js';
 import {require, until} from './checks.mjs';
 import {Guest, secondsSince} from './guest.mjs';
-import {TwinKinect} from '../emulation/twin/kinect.mjs';
 import {GpioWitness, Turntable} from '../emulation/twin/turntable.mjs';
 
 const patience = 3600;  // seconds: the guest's own clock is what it waits by
 
-// Of 30 frames a second. The guest renders them itself, and has more time for all else with few.
-const speed = 0.2;
+// Of a scan with a Kinect, which stays below by half.
+const depthLimits = {mean_mm: 1, median_mm: 1, p95_mm: 3, missing: 0.1};
 
-// A scan stays below by half.
-const limits = {mean_mm: 1, p95_mm: 3, missing: 0.1};
+/**
+ * What a twin looks with.
+ * @typedef {object} Sensor
+ * @property {string} [disk]  the image of a USB stick that the guest has for it
+ * @property {string[]} options  of QEMU, for it
+ * @property {(line: number, level: 0 | 1) => void} change  told of the chip's lines
+ * @property {(guest: Guest) => Promise<void>} bring  to a guest that has started
+ * @property {() => Promise<void>} close
+ */
 
 export class Twin {
   #card;
@@ -26,38 +32,31 @@ export class Twin {
   #gpio;
 
   turntable = new Turntable();
-  kinect;
+  /** @type {Sensor} */
+  sensor;
   guest;
 
-  /** @param {string} card  the folder of the card @param {string} made  what tests/emulation/twin/make has made */
-  static async make(card, made) {
+  /** @param {string} card  the folder of the card @param {string} made  with the programs of tests/emulation/twin
+   * @param {(turntable: Turntable) => Promise<Sensor>} makeSensor */
+  static async make(card, made, makeSensor) {
     const twin = new Twin();
     twin.#card = card;
     twin.#made = made;
-    twin.kinect = await TwinKinect.listen(() => twin.turntable.angle);
-    twin.#gpio = await GpioWitness.listen((line, level) => twin.turntable.change(line, level));
+    twin.sensor = await makeSensor(twin.turntable);
+    twin.#gpio = await GpioWitness.listen((line, level) => {
+      twin.turntable.change(line, level);
+      twin.sensor.change(line, level);
+    });
     return twin;
   }
 
-  /** Starts the image, and plugs a Kinect in. @returns {Promise<string>} when the page was there */
+  /** Starts the image, and plugs the sensor in. @returns {Promise<string>} when the page was there */
   async start() {
-    this.guest = await Guest.start('twin', this.#card, `${this.#made}/disk.img`, this.#gpio.options);
+    this.guest = await Guest.start('twin', this.#card, this.sensor.disk, [...this.#gpio.options, ...this.sensor.options]);
     const seconds = await this.guest.page(patience);
     const processor = await this.guest.processorSeconds();
-    await this.#bringKinect();
+    await this.sensor.bring(this.guest);
     return `the page after ${seconds.toFixed(1)} s, ${processor.toFixed(1)} s of processor time`;
-  }
-
-  /** Plugs a Kinect into the guest's USB, by what is on its second disk. Of the drivers, those that run already fail. */
-  async #bringKinect() {
-    await this.guest.run('while ! [ -b /dev/sda ]; do sleep 1; done', patience);
-    const there = await this.guest.run('mkdir -p /run/twin && tar -x -f /dev/sda -C /run/twin && cd /run/twin && ' +
-      'while read -r driver; do insmod "$driver" 2>/dev/null; done <order; [ -d /sys/devices/platform/vhci_hcd.0 ] && ' +
-      `systemd-run --quiet --unit=twin /run/twin/kinect 10.0.2.2 ${this.kinect.port} && echo there`, patience);
-    require(there.endsWith('there'), `the Kinect's program does not start: ${there}`);
-    await this.kinect.connected();
-    await this.kinect.tell(`speed ${speed}`);
-    await this.kinect.tell('plug');
   }
 
   /** Pulls the Pi's plug, at once, and the turntable's with it. */
@@ -66,9 +65,9 @@ export class Twin {
     this.turntable.losePower();
   }
 
-  /** Asks for something that needs the Kinect, as the page's Start does, once the daemon has found it. */
-  #askWithKinect(path, settings) {
-    return until('a Kinect', () => this.guest.ask(path, 'POST', settings).catch((error) => {
+  /** Asks for something that needs the sensor, as the page's Start does, once the daemon has found it. */
+  #askWithSensor(path, settings) {
+    return until('a sensor', () => this.guest.ask(path, 'POST', settings).catch((error) => {
       require(error.message.includes('sensor-'), error.message);
       return undefined;
     }), patience);
@@ -76,12 +75,12 @@ export class Twin {
 
   /** @returns {Promise<string>} the path of the scan that starts */
   async startScan(settings) {
-    const {id} = await this.#askWithKinect('scans', settings);
+    const {id} = await this.#askWithSensor('scans', settings);
     return `scans/${id}`;
   }
 
   resume(scan) {
-    return this.#askWithKinect(`${scan}/resume`);
+    return this.#askWithSensor(`${scan}/resume`);
   }
 
   /** Waits until a scan is as told. @param {(now: object) => boolean} isSo @returns {Promise<object>} the scan */
@@ -117,17 +116,19 @@ export class Twin {
     return {triangles, ...JSON.parse(stdout)};
   }
 
-  /** @throws {Error}  unless a scan's model is the object that was on the platform @returns {Promise<string>} how good it is */
-  async checkModel(scan) {
-    const {triangles, mean_mm: mean, p95_mm: p95, max_mm: max, missing} = await this.measureModel(scan);
-    const text = `${triangles} triangles, closed; off by ${mean.toFixed(2)} mm on average, 95 of 100 corners by at most ` +
-      `${p95.toFixed(2)} mm, all by ${max.toFixed(2)} mm; ${(100 * missing).toFixed(1)} % of the object missing`;
-    require(mean <= limits.mean_mm && p95 <= limits.p95_mm && missing <= limits.missing, `the model is not that object: ${text}`);
+  /** @throws {Error}  unless a scan's model is the object that was on the platform @returns {Promise<string>} how good it is
+   * @param {{mean_mm: number, median_mm: number, p95_mm: number, missing: number}} limits */
+  async checkModel(scan, limits = depthLimits) {
+    const {triangles, ...error} = await this.measureModel(scan);
+    const mm = (key) => `${error[`${key}_mm`].toFixed(2)} mm`;
+    const text = `${triangles} triangles, closed; off by ${mm('mean')} on average, half of the corners by at most ${mm('median')}, ` +
+      `95 of 100 by ${mm('p95')}, all by ${mm('max')}; ${(100 * error.missing).toFixed(1)} % of the object missing`;
+    require(Object.keys(limits).every((key) => error[key] <= limits[key]), `the model is not that object: ${text}`);
     return text;
   }
 
   async close() {
-    await this.kinect.close();
+    await this.sensor.close();
     await this.#gpio.close();
   }
 }

@@ -30,7 +30,7 @@ const hasTaken = (twin, scan, snapshots) => twin.reaches(scan, `${snapshots} sna
 /** Frames that are all torn are told of, and not taken; the scan goes on when there are whole ones again. */
 async function testTornFrames(twin, scan, say) {
   say(`all frames torn at stop 1: tried again, ${told(await triesAgain(twin, scan, 1, ['sensor-silent']))}`);
-  await twin.kinect.tell(tornAtTimes);
+  await twin.sensor.tell(tornAtTimes);
   await hasTaken(twin, scan, 2);
   say('two of three frames whole again: it goes on');
 }
@@ -39,7 +39,7 @@ async function testTornFrames(twin, scan, say) {
 async function testPlugPulled(twin, scan, say) {
   const gone = ['sensor-lost', 'sensor-missing', 'sensor-silent'];
   say(`the Kinect's plug pulled on the way to stop 2: tried again, ${told(await triesAgain(twin, scan, 2, gone))}`);
-  await twin.kinect.tell('plug');
+  await twin.sensor.tell('plug');
   await hasTaken(twin, scan, 3);
   say('the plug put back: it goes on');
 }
@@ -50,14 +50,14 @@ async function testPlugLeftOut(twin, scan, say) {
   require(paused.snapshots_done === 3 && paused.error.hint.includes('resume the scan'), JSON.stringify(paused.error));
   require(!twin.turntable.isOn, 'the scan is paused, and the motor is on');
   say(`the plug left out at stop 3: paused with 3 snapshots, the motor off, ${told(paused)}`);
-  await twin.kinect.tell('plug');
+  await twin.sensor.tell('plug');
   await twin.resume(scan);
   say('the plug put back: it is resumed');
 }
 
 /** The scan that all this happens to is the object in the end. */
 async function testInterruptedScan(twin, say) {
-  const {turntable, kinect} = twin;
+  const {turntable, sensor: kinect} = twin;
   const first = turntable.position;
   await kinect.tell(tornAtTimes);
   const faults = [

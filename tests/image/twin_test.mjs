@@ -5,6 +5,7 @@ import {require, runTest} from './checks.mjs';
 import {secondsSince} from './guest.mjs';
 import {teller, Twin} from './twin.mjs';
 import {testFaults} from './twin_faults.mjs';
+import {GuestKinect} from './twin_kinect.mjs';
 import {stepsPerTurn} from '../emulation/twin/turntable.mjs';
 
 const [card, made, faults] = process.argv.slice(2);
@@ -19,7 +20,7 @@ async function testScan(twin) {
   const begin = performance.now();
   const done = await twin.finishes(scan);
   const seconds = secondsSince(begin);
-  const {sent} = await twin.kinect.frames();
+  const {sent} = await twin.sensor.frames();
   const {pulses, position} = twin.turntable;
   say(`a scan of ${stops} snapshots in ${seconds.toFixed(1)} s, ${done.seconds_elapsed.toFixed(1)} s by the scanner's clock: ` +
     `${lateOf(done)}, ${sent} frames; the daemon's verdict: ${done.model.quality.verdict}`);
@@ -46,7 +47,7 @@ async function testBusyScan(twin, model) {
   require(downloads > 0 && twin.turntable.position === position + stepsPerTurn, `the platform is at ${twin.turntable.position}`);
 }
 
-const twin = await Twin.make(card, made);
+const twin = await Twin.make(card, made, (turntable) => GuestKinect.make(made, turntable));
 await runTest('twin', () => twin.guest, async () => {
   say(await twin.start());
   await testBusyScan(twin, await testScan(twin));

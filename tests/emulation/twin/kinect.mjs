@@ -11,7 +11,7 @@ export class TwinKinect {
 
   /** Waits for the guest's program at a port of this machine's loopback. @param {() => number} angle  of the platform */
   static async listen(angle) {
-    const kinect = new TwinKinect();
+    const kinect = new this();
     kinect.#server = createServer((socket) => kinect.#welcome(socket, angle)).listen(0, '127.0.0.1');
     await once(kinect.#server, 'listening');
     return kinect;

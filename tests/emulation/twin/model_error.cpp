@@ -1,7 +1,7 @@
 // model_error Scan.stl: compares a model with the object that stood before the twin's Kinect.
 // Prints one line of JSON: the distance of the model's corners from the object's surface (mean,
-// root mean square, 95th percentile, largest; mm), and the share of that surface, where it is more
-// than 5 mm above the platform, that is farther than 5 mm from every corner.
+// root mean square, median, 95th percentile, largest; mm), and the share of that surface, where it
+// is more than 5 mm above the platform, that is farther than 5 mm from every corner.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -118,8 +118,9 @@ void print_error(const std::vector<Vector3d>& corners) {
   std::ranges::sort(distances);
   const auto count = static_cast<double>(distances.size());
   std::cout << R"({"mean_mm": )" << sum / count << R"(, "rms_mm": )" << std::sqrt(squares / count)
-            << R"(, "p95_mm": )" << distances[distances.size() * 95 / 100] << R"(, "max_mm": )"
-            << distances.back() << R"(, "missing": )" << missing_share(corners) << "}" << std::endl;
+            << R"(, "median_mm": )" << distances[distances.size() / 2] << R"(, "p95_mm": )"
+            << distances[distances.size() * 95 / 100] << R"(, "max_mm": )" << distances.back()
+            << R"(, "missing": )" << missing_share(corners) << "}" << std::endl;
 }
 
 }  // namespace

@@ -596,7 +596,7 @@ export const texts = {
   'calibrate.after-about': 'The same slice with the pose that was found',
   'calibrate.slices': 'An upright slice through the platform’s middle, as all stops saw it. Where the pose is right, they draw the same line.',
   'calibrate.angles': 'Angle of each stop',
-  'calibrate.angles-about': 'How much farther than told the platform had turned. A step from one bar to the next is a slip.',
+  'calibrate.angles-about': 'How much farther than commanded the platform had turned. A step from one bar to the next is a slip.',
   'calibrate.angles-spoken': '{stops}, the largest {angle} off',
   'calibrate.wall': 'Flatten the sensor',
   'calibrate.wall-about': 'Each Kinect sees a flat wall a little uneven, by about a millimetre. One look at a wall takes that out of every scan.',

@@ -56,7 +56,7 @@ Job Scanner::find_pose(std::string_view id, int number) const {
   const std::vector<Job> poses = store_.poses(id);
   if (number < 1 || number > static_cast<int>(poses.size())) {
     throw Error(ErrorCode::not_found, "this scan has no other pose " + std::to_string(number),
-                "GET its poses lists them.");
+                "GET /api/v1/scans/ID/poses lists its poses.");
   }
   return poses[static_cast<std::size_t>(number) - 1];
 }

@@ -1,5 +1,5 @@
-// Builds by Slurm, whose programs are replaced by scripts with the output that a test wants. Tests
-// with a real Slurm are in tests/cluster.
+// Builds by Slurm, whose programs are replaced by scripts. Tests with a real Slurm are in
+// tests/cluster.
 
 #include "scan/slurm_builds.hpp"
 
@@ -10,6 +10,7 @@
 #include <functional>
 #include <string>
 
+#include "app/slurm_scripts.hpp"
 #include "scan/external_build.hpp"
 #include "scan/scanner.hpp"
 #include "support/patience.hpp"
@@ -23,29 +24,9 @@ namespace fs = std::filesystem;
 
 class SlurmBuildsTest : public ::testing::Test {
  protected:
-  SlurmBuildsTest() {
-    put(at("queue"), "");
-    program("sbatch", "echo \"$@\" >>'" + at("submitted") + "'; echo '12;cluster'");
-    program("squeue", "cat '" + at("queue") + "'");
-    program("scancel", "echo \"$@\" >>'" + at("cancelled") + "'");
+  SlurmBuilds start() {
+    return {slurm_.options(), store_, {.threads = 1, .memory_bytes = 64U << 20U}};
   }
-
-  std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
-
-  /// Writes a script in place of one of Slurm's programs.
-  void program(const std::string& name, const std::string& does) const {
-    put(at(name + ".new"), "#!/bin/sh\n" + does + "\n");
-    fs::permissions(at(name + ".new"), fs::perms::owner_all);
-    fs::rename(at(name + ".new"), at(name));
-  }
-
-  SlurmOptions options() const {
-    return {.slurm = {.sbatch = at("sbatch"), .squeue = at("squeue"), .scancel = at("scancel")},
-            .octurn = "/opt/octurn",
-            .interval = std::chrono::milliseconds(1)};
-  }
-
-  SlurmBuilds start() { return {options(), store_, {.threads = 1, .memory_bytes = 64U << 20U}}; }
 
   /// Stores a scan without a model.
   Job store_scan() {
@@ -65,11 +46,10 @@ class SlurmBuildsTest : public ::testing::Test {
     return fs::canonical(store_.folder(run.scan)) / "builds" / std::to_string(run.number);
   }
 
-  /// Sets squeue's answer about the job.
+  /// Sets squeue's answer about the build's job.
   void say(const std::string& state, const std::string& reason, const BuildRun& run,
            const std::string& job = "12") const {
-    put(at("queue.new"), job + "|" + state + "|" + reason + "|" + folder_of(run).string() + "//\n");
-    fs::rename(at("queue.new"), at("queue"));
+    slurm_.say(state, reason, folder_of(run), job);
   }
 
   /// Waits until a scan's run is as wanted; returns nothing if the run is gone.
@@ -92,10 +72,7 @@ class SlurmBuildsTest : public ::testing::Test {
     return run;
   }
 
-  std::string lines(const std::string& name) const {
-    return fs::exists(at(name)) ? content_of(at(name)) : "";
-  }
-
+  SlurmScripts slurm_ = {};
   TemporaryFolder folder_ = {};
   ScanStore store_{folder_.path() / "data"};
 };
@@ -114,7 +91,7 @@ TEST_F(SlurmBuildsTest, ABuildIsAJobThatMakesTheModelOfTheScan) {
   EXPECT_EQ(now->state, BuildRun::State::waiting);
   EXPECT_EQ(now->cluster_job->id, "12");
   EXPECT_EQ(now->cluster_job->detail, "it waits for processors or memory");
-  const std::string submitted = lines("submitted");
+  const std::string submitted = slurm_.lines("submitted");
   EXPECT_NE(submitted.find("--cpus-per-task=1 --mem=64M "), std::string::npos) << submitted;
   EXPECT_NE(submitted.find(" /opt/octurn " + folder_of(run).string() + "\n"), std::string::npos);
 
@@ -140,8 +117,9 @@ TEST_F(SlurmBuildsTest, ABuildIsAJobThatMakesTheModelOfTheScan) {
 }
 
 TEST_F(SlurmBuildsTest, AFolderMayHaveANewlineInItsName) {
-  program("squeue", R"(printf '12|RUNNING|None|/data/a\n13|b//\n14|PENDING|Priority|/data/c//\n')");
-  const std::vector<SlurmJob> jobs = options().slurm.list({});
+  slurm_.program("squeue",
+                 R"(printf '12|RUNNING|None|/data/a\n13|b//\n14|PENDING|Priority|/data/c//\n')");
+  const std::vector<SlurmJob> jobs = slurm_.options().slurm.list({});
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].folder, "/data/a\n13|b");
   EXPECT_EQ(jobs[1].id, "14");
@@ -151,7 +129,7 @@ TEST_F(SlurmBuildsTest, AFolderMayHaveANewlineInItsName) {
 
 TEST_F(SlurmBuildsTest, WhatSlurmRefusesFailsInItsWords) {
   const Job scan = store_scan();
-  program("sbatch", "echo 'sbatch: error: invalid partition specified: small' >&2; exit 1");
+  slurm_.program("sbatch", "echo 'sbatch: error: invalid partition specified: small' >&2; exit 1");
   SlurmBuilds builds = start();
   const BuildRun run = builds.add(run_of(scan), true);
 
@@ -165,8 +143,8 @@ TEST_F(SlurmBuildsTest, WhatSlurmRefusesFailsInItsWords) {
 }
 
 TEST_F(SlurmBuildsTest, WithoutSlurmsProgramsItSaysSo) {
-  SlurmOptions without = options();
-  without.slurm.sbatch = at("no-sbatch");
+  SlurmOptions without = slurm_.options();
+  without.slurm.sbatch = slurm_.at("no-sbatch");
   try {
     without.slurm.expect_programs();
     FAIL();
@@ -175,7 +153,7 @@ TEST_F(SlurmBuildsTest, WithoutSlurmsProgramsItSaysSo) {
     EXPECT_NE(std::string(error.what()).find("no-sbatch: cannot be run: No such file"),
               std::string::npos);
   }
-  options().slurm.expect_programs();
+  slurm_.options().slurm.expect_programs();
 
   SlurmBuilds builds(without, store_, {});
   builds.add(run_of(store_scan()), true);
@@ -193,15 +171,16 @@ TEST_F(SlurmBuildsTest, CancellingIsScancelAndTheFolderGoesWhenTheJobHas) {
   wait_until(builds, [](const BuildRun& seen) { return seen.state == BuildRun::State::running; });
 
   EXPECT_FALSE(builds.cancel(scan.id, run.number + 1));
-  program("scancel", "echo \"$@\" >>'" + at("cancelled") + "'; sed 's/RUNNING/CANCELLED/' '" +
-                         at("queue") + "' >'" + at("queue.next") + "'; mv '" + at("queue.next") +
-                         "' '" + at("queue") + "'");
+  slurm_.program("scancel", "echo \"$@\" >>'" + slurm_.at("cancelled") +
+                                "'; sed 's/RUNNING/CANCELLED/' '" + slurm_.at("queue") + "' >'" +
+                                slurm_.at("queue.next") + "'; mv '" + slurm_.at("queue.next") +
+                                "' '" + slurm_.at("queue") + "'");
   EXPECT_TRUE(builds.cancel(scan.id, run.number));
   const auto ended = wait_for_end(builds);
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->state, BuildRun::State::cancelled);
   EXPECT_FALSE(ended->failure);
-  EXPECT_EQ(lines("cancelled"), "12\n");
+  EXPECT_EQ(slurm_.lines("cancelled"), "12\n");
   EXPECT_FALSE(fs::exists(folder_of(run)));
   EXPECT_FALSE(builds.cancel(scan.id, run.number)) << "it has ended";
 }
@@ -215,7 +194,7 @@ TEST_F(SlurmBuildsTest, AJobThatFailsTellsWhy) {
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->failure->detail, "its job took longer than Slurm lets it (Slurm's job 12)");
 
-  program("sbatch", "echo 13");
+  slurm_.program("sbatch", "echo 13");
   run = builds.add(run_of(scan), true);  // replaces the failed run
   EXPECT_EQ(builds.runs().get()->size(), 1U);
   fs::remove(store_.folder(scan.id) / "scan.json");
@@ -228,7 +207,7 @@ TEST_F(SlurmBuildsTest, AJobThatFailsTellsWhy) {
 }
 
 TEST_F(SlurmBuildsTest, AJobThatSlurmHasForgottenHasFailed) {
-  SlurmOptions impatient = options();
+  SlurmOptions impatient = slurm_.options();
   impatient.patience = {};
   SlurmBuilds builds(impatient, store_, {.threads = 1});
   builds.add(run_of(store_scan()), true);
@@ -239,7 +218,8 @@ TEST_F(SlurmBuildsTest, AJobThatSlurmHasForgottenHasFailed) {
 }
 
 TEST_F(SlurmBuildsTest, WhileSlurmDoesNotAnswerBuildsGoOn) {
-  program("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1");
+  slurm_.program("squeue",
+                 "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1");
   const Job scan = store_scan();
   SlurmBuilds builds = start();
   const BuildRun run = builds.add(run_of(scan), true);
@@ -273,11 +253,11 @@ TEST_F(SlurmBuildsTest, AProcessThatStartsLaterFindsItsJobsAgain) {
     EXPECT_EQ(now->number, run.number);
     EXPECT_EQ(now->settings.scan.leaf_size, 0.004);
   }
-  const std::string submitted = lines("submitted");
+  const std::string submitted = slurm_.lines("submitted");
   EXPECT_EQ(std::ranges::count(submitted, '\n'), 1) << submitted;
 
   ASSERT_TRUE(build_task_in(folder_of(run), {}));  // while no daemon runs
-  put(at("queue"), "");
+  put(slurm_.at("queue"), "");
   SlurmBuilds builds = start();
   EXPECT_FALSE(wait_for_end(builds));
   const Job built = store_.get(scan.id);
@@ -286,7 +266,7 @@ TEST_F(SlurmBuildsTest, AProcessThatStartsLaterFindsItsJobsAgain) {
 }
 
 TEST_F(SlurmBuildsTest, AScannerHasUploadedScansBuiltSo) {
-  Scanner scanner({.sensor_uri = "octurn-simulator://"}, {.threads = 1}, store_, options());
+  Scanner scanner({.sensor_uri = "octurn-simulator://"}, {.threads = 1}, store_, slurm_.options());
   const Job scan = scanner.adopt([](const fs::path& folder) { write_small_scan(folder, 2); }, 1000);
   ASSERT_EQ(scanner.build_runs().size(), 1U);
   const BuildRun run = scanner.build_runs().front();

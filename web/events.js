@@ -5,7 +5,7 @@
 const address = '/api/v1/events';
 const maxSilence = 5000;  // milliseconds; there is a heartbeat every 3 s
 const retryPause = 30000;  // milliseconds, the Retry-After of a scanner with too many streams
-const overtaking = 1000;  // milliseconds in which an older status may still arrive after a response
+const longestDelay = 1000;  // milliseconds in which an older status may still arrive after a response
 
 /** The last status from the event stream. Pure: times are arguments, milliseconds. */
 export class HeardStatus {
@@ -28,7 +28,7 @@ export class HeardStatus {
   /** Invalidates statuses from before a request. @param {number} now */
   distrust(now) {
     this.#status = null;
-    this.#trusted = now + overtaking;
+    this.#trusted = now + longestDelay;
   }
 
   forget() {

@@ -11,7 +11,7 @@ import {text} from './texts.js';
 /** @typedef {import('./api.js').Settings} Settings */
 
 const memory = 'octurn-scan';  // storage key of the last choice
-const calm = 400;  // milliseconds from the last change until an estimate is requested
+const quietTime = 400;  // milliseconds from the last change until an estimate is requested
 
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...element('form').querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
@@ -150,7 +150,7 @@ export function prepareForm(defaults) {
     showPreset(defaults);
     localStorage.setItem(memory, toKept(chosenSettings()));
     clearTimeout(timer);
-    timer = setTimeout(tellEstimate, calm);
+    timer = setTimeout(tellEstimate, quietTime);
   };
   showPreset(defaults);
   watchForEstimates(defaults);

@@ -15,7 +15,7 @@ export const linesOf = ({log, errors}) => [...errors, ...log].map((line) => line
 export const needsClock = ({appliance, warnings}) => appliance && Boolean(warnings?.some(({check}) => check === 'clock'));
 
 /** Sets the clock of an appliance that has no time server. */
-export const lendClock = () => json('machine/clock', sending('PUT', {unix_s: Date.now() / 1000}));
+export const sendClock = () => json('machine/clock', sending('PUT', {unix_s: Date.now() / 1000}));
 
 /** @param {HTMLElement} button */
 async function end(button) {

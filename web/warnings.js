@@ -2,7 +2,7 @@
 
 import {element, list, part, setText, show} from './dom.js';
 import {sentence} from './format.js';
-import {lendClock, needsClock} from './power.js';
+import {needsClock, sendClock} from './power.js';
 import {translated} from './texts.js';
 
 /** @typedef {import('./api.js').Finding} Finding */
@@ -26,6 +26,6 @@ export function seeWarnings(status) {
   });
   if (!isClockLent && needsClock(status)) {
     isClockLent = true;  // once per visit: if the clock cannot be set, only the warning stays
-    lendClock().catch(() => {});
+    sendClock().catch(() => {});
   }
 }

@@ -68,7 +68,7 @@ async function lookInForcedColours(page, name) {
 }
 
 /** The screens on which the page is tested, each with its colour scheme. */
-export const looks = /** @type {const} */ ([['phone', 'dark'], ['desktop', 'light']]);
+export const testedScreens = /** @type {const} */ ([['phone', 'dark'], ['desktop', 'light']]);
 
 /**
  * Goes through states of the page on one screen and checks the accessibility of each in both colour schemes.

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {looks, walk} from './access.js';
+import {testedScreens, walk} from './access.js';
 import {goTo, openBrowser, openPage} from './browser.js';
 import {ask, lifelike, scan, startScanner} from './scanner.js';
 
@@ -97,7 +97,7 @@ test('the page is for everyone', async (t) => {
   const scanner = await startScanner(t, lifelike);
   const browser = await openBrowser(t);
   const finished = await scan(scanner, draft);
-  for (const [screen, colorScheme] of looks) {
+  for (const [screen, colorScheme] of testedScreens) {
     await t.test(`no state of it overflows a ${screen} or shuts anyone out, ${colorScheme}`,
         () => walk(browser, scanner.url, statesOf(scanner, finished), screen, colorScheme));
   }

@@ -4,7 +4,7 @@ import {mkdir} from 'node:fs/promises';
 import {join} from 'node:path';
 import {chromium} from 'playwright-core';
 
-const calm = ['--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
+const noBackgroundTraffic = ['--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
 const softwareWebGl = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 const noWebGl = ['--disable-gpu', '--disable-software-rasterizer', '--disable-3d-apis'];
 
@@ -20,7 +20,7 @@ const screens = {
 export async function openBrowser(t, {hasWebGl = true} = {}) {
   const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: [...calm, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
+    args: [...noBackgroundTraffic, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
   });
   t.after(() => browser.close());
   return browser;

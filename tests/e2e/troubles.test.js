@@ -6,7 +6,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 import {promisify} from 'node:util';
 
-import {looks, walk} from './access.js';
+import {testedScreens, walk} from './access.js';
 import {goTo, openBrowser} from './browser.js';
 import {ask, lifelike, startScanner} from './scanner.js';
 
@@ -76,7 +76,7 @@ test('a page that tells of trouble is for everyone', async (t) => {
   await promisify(execFile)(process.env.OCTURN_PROGRAM,
       ['record', '--simulate', '--simulate-speed', '20', '-o', onePicture, '--snapshots', '1', '--frames', '1']);
   const blind = await startScanner(t, {rig: ['--simulate', '--sensor', '/nowhere.oni']});
-  for (const [screen, colorScheme] of looks) {
+  for (const [screen, colorScheme] of testedScreens) {
     await t.test(`stopped scans, ${screen}, ${colorScheme}`, () => walk(browser, scanner.url, stopped(scanner), screen, colorScheme));
     const failed = await startScanner(t, {rig: [...lifelike.rig, '--sensor', onePicture]});
     await t.test(`a sensor that fails, ${screen}, ${colorScheme}`, () => walk(browser, failed.url, failing(failed), screen, colorScheme));

@@ -9,7 +9,7 @@ import {promisify} from 'node:util';
 import {measure} from '../web/mesh_file.js';
 import {require, until} from './checks.mjs';
 import {Guest, secondsSince} from './guest.mjs';
-import {GpioWitness, Turntable} from '../emulation/twin/turntable.mjs';
+import {GpioObserver, Turntable} from '../emulation/twin/turntable.mjs';
 
 const patience = 3600;  // seconds: the guest's own clock is what it waits by
 
@@ -43,7 +43,7 @@ export class Twin {
     twin.#card = card;
     twin.#made = made;
     twin.sensor = await makeSensor(twin.turntable);
-    twin.#gpio = await GpioWitness.listen((line, level) => {
+    twin.#gpio = await GpioObserver.listen((line, level) => {
       twin.turntable.change(line, level);
       twin.sensor.change(line, level);
     });

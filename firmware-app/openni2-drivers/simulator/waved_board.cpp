@@ -90,7 +90,7 @@ Eigen::Isometry3d camera_from_board(const LaserSimulation& simulation, const Hol
   return pose;
 }
 
-Vector2d met_by(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray) {
+Vector2d intersect_board(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray) {
   const Vector3d from = board_from_camera.translation();
   const Vector3d way = board_from_camera.linear() * ray.homogeneous();
   return (from - way * (from.z() / way.z())).head<2>();
@@ -139,9 +139,11 @@ Picture WavedBoard::picture(int number) const {
     const std::uint32_t sequence = mixed(of_picture, static_cast<std::uint32_t>(v));
     for (int u = 0; u < lens.width; ++u) {
       const Vector2d& ray = rays_[picture.samples.size()];
-      const Vector2d met = met_by(board_from_camera, ray);
-      const Vector2d right = met_by(board_from_camera, ray + Vector2d(1 / lens.fx, 0)) - met;
-      const Vector2d below = met_by(board_from_camera, ray + Vector2d(0, 1 / lens.fy)) - met;
+      const Vector2d met = intersect_board(board_from_camera, ray);
+      const Vector2d right =
+          intersect_board(board_from_camera, ray + Vector2d(1 / lens.fx, 0)) - met;
+      const Vector2d below =
+          intersect_board(board_from_camera, ray + Vector2d(0, 1 / lens.fy)) - met;
       const Vector2d width = soft_edge * (right.cwiseAbs() + below.cwiseAbs());
       const double shade = 1 - fall_off * (1 - static_cast<double>(u) / lens.width);
       const auto grain =

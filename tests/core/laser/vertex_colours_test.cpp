@@ -21,10 +21,10 @@ constexpr Rgb platform = {90, 90, 90};
 
 /// A ball of two colours, and a small ball that hides a part of it at some stops.
 const LitScene::Ball ball{.centre = {0, 0, 0.03}, .radius = 0.025};
-const LitScene::Ball before{.centre = {0.04, 0, 0.055}, .radius = 0.01};
+const LitScene::Ball occluder{.centre = {0.04, 0, 0.055}, .radius = 0.01};
 
 Rgb colour_of(const Vector3d& point) {
-  if (std::abs((point - before.centre).norm() - before.radius) < 1e-5) {
+  if (std::abs((point - occluder.centre).norm() - occluder.radius) < 1e-5) {
     return green;
   }
   if (std::abs((point - ball.centre).norm() - ball.radius) < 1e-5) {
@@ -37,7 +37,7 @@ Rgb colour_of(const Vector3d& point) {
 ColourPicture draw(const Scan& scan, double angle) {
   const Intrinsics& lens = scan.intrinsics;
   const Eigen::Isometry3d pose = object_from_sensor(scan.platform_from_sensor, angle);
-  const LitScene scene{.balls = {ball, before}};
+  const LitScene scene{.balls = {ball, occluder}};
   ColourPicture picture{.width = lens.width, .height = lens.height};
   for (int v = 0; v < lens.height; ++v) {
     for (int u = 0; u < lens.width; ++u) {
@@ -88,7 +88,7 @@ void add_ball(Ball& mesh, const LitScene::Ball& of) {
 Ball both_balls() {
   Ball mesh;
   add_ball(mesh, ball);
-  add_ball(mesh, before);
+  add_ball(mesh, occluder);
   return mesh;
 }
 

@@ -81,8 +81,9 @@ inline std::vector<Eigen::Vector2d> true_corners(const BoardScene& scene,
 }
 
 /// Where a ray meets the board's plane, in columns and rows of squares.
-inline Eigen::Vector2d met_by(const BoardScene& scene, const Eigen::Isometry3d& board_from_camera,
-                              const Eigen::Vector2d& ray) {
+inline Eigen::Vector2d intersect_board(const BoardScene& scene,
+                                       const Eigen::Isometry3d& board_from_camera,
+                                       const Eigen::Vector2d& ray) {
   const Eigen::Vector3d from = board_from_camera.translation();
   const Eigen::Vector3d way = board_from_camera.linear() * ray.homogeneous();
   return (from - way * (from.z() / way.z())).head<2>() / scene.side;
@@ -98,8 +99,8 @@ inline double parity(double place, double width) {
 
 /// Grey level of what a ray meets: a square, the paper's margin, or the background.
 /// @param width  extent of the ray's sample, in columns and rows of squares
-inline double light_of(const BoardScene& scene, const Eigen::Vector2d& met,
-                       const Eigen::Vector2d& width, const Eigen::Vector2d& ray) {
+inline double grey_level(const BoardScene& scene, const Eigen::Vector2d& met,
+                         const Eigen::Vector2d& width, const Eigen::Vector2d& ray) {
   const double margin = 0.7;
   if ((met.array() < -margin).any() || met.x() > scene.columns + margin ||
       met.y() > scene.rows + margin) {
@@ -161,17 +162,17 @@ inline Picture board_picture(const BoardScene& scene, const Eigen::Isometry3d& p
       const Eigen::Vector2d here = rays[first];
       const Eigen::Vector2d right = rays[first + 1] - here;
       const Eigen::Vector2d below = rays[first + static_cast<std::size_t>(width) + 1] - here;
-      const Eigen::Vector2d middle = met_by(scene, board_from_camera, here);
+      const Eigen::Vector2d middle = intersect_board(scene, board_from_camera, here);
       const auto change = [&](const Eigen::Vector2d& aside) {
-        return (met_by(scene, board_from_camera, here + aside) - middle).cwiseAbs().eval();
+        return (intersect_board(scene, board_from_camera, here + aside) - middle).cwiseAbs().eval();
       };
       const Eigen::Vector2d covered = (change(right) + change(below)) / 3;
       double sum = 0;
       for (int part = 0; part < 9; ++part) {
         const Eigen::Vector2d ray =
             here + right * ((part % 3 - 1) / 3.0) + below * ((part / 3 - 1) / 3.0);
-        const Eigen::Vector2d met = met_by(scene, board_from_camera, ray);
-        sum += light_of(scene, met, covered, ray);
+        const Eigen::Vector2d met = intersect_board(scene, board_from_camera, ray);
+        sum += grey_level(scene, met, covered, ray);
       }
       light.push_back(sum / 9);
     }

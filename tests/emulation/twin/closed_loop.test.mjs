@@ -12,7 +12,7 @@ import {before, test} from 'node:test';
 import {wakeUp} from '../wake_up.mjs';
 import {TwinKinect} from './kinect.mjs';
 import {writeScanFolder} from './scan_folder.mjs';
-import {GpioWitness, stepsPerTurn, Turntable} from './turntable.mjs';
+import {GpioObserver, stepsPerTurn, Turntable} from './turntable.mjs';
 
 const {OCTURN_TWIN: folder, OCTURN_DEBIAN: debian, OCTURN_PROGRAMS: programs} = process.env;
 const stops = 8;
@@ -26,7 +26,7 @@ const pulsesInTurn = (stops - 1) * stepsPerTurn / stops;
  */
 async function boot(turns, turntable, prepare) {
   const kinect = await TwinKinect.listen(() => turntable.angle);
-  const gpio = await GpioWitness.listen((line, level) => turntable.change(line, level));
+  const gpio = await GpioObserver.listen((line, level) => turntable.change(line, level));
   writeFileSync(`${folder}/disk.img`, Buffer.alloc(turns * stops * frameBytes));
   const list = Array(turns).fill(stops).join(',');
   const qemu = spawn('qemu-system-aarch64', [

@@ -103,16 +103,16 @@ const output = (line) => 1 << (3 * (line % 10));
  * Observes the chip's GPIO lines by QEMU's qtest protocol, which reports each change of an output. In QEMU a line that becomes an
  * input keeps its level, although a resistor would pull it.
  */
-export class GpioWitness {
+export class GpioObserver {
   #server;
   #socket;
 
   /** @param {(line: number, level: 0 | 1) => void} change */
   static async listen(change) {
-    const witness = new GpioWitness();
-    witness.#server = createServer((socket) => witness.#watch(socket, change)).listen(0, '127.0.0.1');
-    await once(witness.#server, 'listening');
-    return witness;
+    const observer = new GpioObserver();
+    observer.#server = createServer((socket) => observer.#watch(socket, change)).listen(0, '127.0.0.1');
+    await once(observer.#server, 'listening');
+    return observer;
   }
 
   /** Options for QEMU. */

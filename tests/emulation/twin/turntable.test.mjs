@@ -5,7 +5,7 @@ import {spawn} from 'node:child_process';
 import {once} from 'node:events';
 import {test} from 'node:test';
 
-import {GpioWitness, Turntable} from './turntable.mjs';
+import {GpioObserver, Turntable} from './turntable.mjs';
 
 const step = 17;
 const direction = 27;
@@ -113,9 +113,9 @@ test('something happens with a pulse, after the platform has made its step', () 
 
 test('QEMU tells each change of the lines that are outputs', async () => {
   const changes = [];
-  const witness = await GpioWitness.listen((line, level) => changes.push([line, level]));
+  const observer = await GpioObserver.listen((line, level) => changes.push([line, level]));
   // -S stops the processor, so that nothing else writes to the registers.
-  const qemu = spawn('qemu-system-aarch64', ['-M', 'raspi3b', '-S', '-display', 'none', '-monitor', 'none', ...witness.options],
+  const qemu = spawn('qemu-system-aarch64', ['-M', 'raspi3b', '-S', '-display', 'none', '-monitor', 'none', ...observer.options],
     {stdio: 'ignore'});
   const until = async (count) => {
     while (changes.length < count) {
@@ -126,17 +126,17 @@ test('QEMU tells each change of the lines that are outputs', async () => {
   try {
     await until(1);  // ENABLE goes high
     const [functions1, functions2, set, clear] = [0x3f200004, 0x3f200008, 0x3f20001c, 0x3f200028];
-    witness.write(functions1, 1 << 21);  // GPIO17 is an output
-    witness.write(set, 1 << step | 1 << direction);
-    witness.write(clear, 1 << step | 1 << direction);
-    witness.write(functions2, 1 << 21);  // and GPIO27
-    witness.write(set, 1 << direction);
-    witness.write(set, 1 << step);
+    observer.write(functions1, 1 << 21);  // GPIO17 is an output
+    observer.write(set, 1 << step | 1 << direction);
+    observer.write(clear, 1 << step | 1 << direction);
+    observer.write(functions2, 1 << 21);  // and GPIO27
+    observer.write(set, 1 << direction);
+    observer.write(set, 1 << step);
     await until(5);
     assert.deepEqual(changes, [[enable, 1], [step, 1], [step, 0], [direction, 1], [step, 1]]);
   } finally {
     qemu.kill('SIGKILL');
     await once(qemu, 'exit');
-    await witness.close();
+    await observer.close();
   }
 });

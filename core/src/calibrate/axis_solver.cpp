@@ -1,7 +1,7 @@
 #include "calibrate/axis_solver.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,6 +39,11 @@ double step_length(const Vector4d& motion) {
   return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
 }
 
+double largest_eigenvalue(const Eigen::Matrix2d& symmetric) {
+  return symmetric.trace() / 2 +
+         std::hypot((symmetric(0, 0) - symmetric(1, 1)) / 2, symmetric(0, 1));
+}
+
 }  // namespace
 
 Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformPlane& plane,
@@ -61,12 +66,12 @@ double AxisSolution::position_sigma() const {
   Eigen::Matrix<double, 2, 4> at_lever = Eigen::Matrix<double, 2, 4>::Zero();
   at_lever << 0, lever, 1, 0, -lever, 0, 0, 1;
   const Eigen::Matrix2d spread = at_lever * covariance * at_lever.transpose();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().maxCoeff());
+  return std::sqrt(largest_eigenvalue(spread));
 }
 
 double AxisSolution::direction_sigma() const {
   const Eigen::Matrix2d spread = covariance.topLeftCorner<2, 2>();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues().maxCoeff());
+  return std::sqrt(largest_eigenvalue(spread));
 }
 
 std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlane& plane,

@@ -149,10 +149,24 @@ std::optional<Candidate> find_plane(const std::vector<Vector3d>& points,
   return *lowest;
 }
 
+/// The smallest rotation that takes a vector to the z axis. Eigen's FromTwoVectors is the same, but
+/// takes ten seconds to compile.
+Eigen::Quaterniond rotation_to_z(const Vector3d& vector) {
+  const Vector3d from = vector.normalized();
+  const double cosine = from.z();
+  if (cosine < -1 + 1e-12) {
+    return {0, 1, 0, 0};  // half a turn about x, as any axis would do
+  }
+  const double norm = std::sqrt((1 + cosine) * 2);  // of (1 + cosine, from x z)
+  Eigen::Quaterniond rotation;
+  rotation.vec() = from.cross(Vector3d::UnitZ()) * (1 / norm);
+  rotation.w() = norm * 0.5;
+  return rotation;
+}
+
 /// One weighted least-squares fit of z = a x + b y + c in a frame in which the plane is level.
 void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {
-  const Eigen::Quaterniond level =
-      Eigen::Quaterniond::FromTwoVectors(plane.normal, Vector3d::UnitZ());
+  const Eigen::Quaterniond level = rotation_to_z(plane.normal);
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Vector3d right = Vector3d::Zero();
   for (const Vector3d& point : points) {
@@ -243,8 +257,7 @@ PlatformPlane refine_platform_plane(const PlatformSamples& samples,
 
 Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane) {
   const Vector3d normal = platform_from_sensor.linear() * plane.normal;
-  Eigen::Isometry3d levelled =
-      Eigen::Quaterniond::FromTwoVectors(normal, Vector3d::UnitZ()) * platform_from_sensor;
+  Eigen::Isometry3d levelled = rotation_to_z(normal) * platform_from_sensor;
   // The plane's height in the levelled frame, at any of its points.
   levelled.translation().z() -= (levelled * (plane.normal * plane.offset)).z();
   return levelled;

@@ -3,13 +3,9 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 
@@ -23,13 +19,6 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t server_stack = std::size_t{100} * 1024;  // bytes per thread
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t max_touched = server_stack;  // sanitizers make frames larger
-#else
-constexpr std::size_t max_touched = server_stack * 3 / 4;
-#endif
 
 TEST(ServeRequests, ChangesNothingForASettingThatIsWrong) {
   const TemporaryFolder folder;
@@ -110,26 +99,6 @@ TEST(ServeRequests, UsesItsConfiguration) {
   EXPECT_EQ(reply_to(daemon.port(), named).status, 200);
 }
 
-/// The most bytes ever touched in the stack of a server thread. The stacks are the mappings whose
-/// size is civetweb's stack size, 100 KiB in Debian's build.
-std::size_t max_touched_stack(int process) {
-  std::istringstream maps(content_of("/proc/" + std::to_string(process) + "/smaps"));
-  std::size_t mapped = 0;
-  std::size_t touched = 0;
-  for (std::string line; std::getline(maps, line);) {
-    unsigned long begin = 0;
-    unsigned long end = 0;
-    std::array<char, 5> rights{};
-    unsigned long resident = 0;  // KiB
-    if (std::sscanf(line.c_str(), "%lx-%lx %4s", &begin, &end, rights.data()) == 3) {
-      mapped = std::string_view(rights.data()) == "rw-p" ? end - begin : 0;
-    } else if (mapped == server_stack && std::sscanf(line.c_str(), "Rss: %lu", &resident) == 1) {
-      touched = std::max(touched, resident * 1024);
-    }
-  }
-  return touched;
-}
-
 TEST(ServeRequests, StartsNothingForARequestThatIsCutOff) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path());
@@ -191,31 +160,6 @@ TEST(ServeRequests, LeadsNobodyFromTheInterfaceToThePage) {
   const Reply reply = daemon.get("/api/v1/nothing");
   EXPECT_EQ(reply.status, 404);
   EXPECT_NE(parsed(reply)["hint"].get<std::string>().find("/api/v1/"), std::string::npos);
-}
-
-TEST(ServeRequests, UsesNoMoreThanThreeQuartersOfAStack) {
-  const TemporaryFolder folder;
-  Daemon daemon(folder.path());
-  const std::string scan = daemon.start(quick);
-  ASSERT_EQ(daemon.wait_until_done(scan)["state"], "finished");
-  const std::string nested = std::string(30'000, '[') + std::string(30'000, ']');
-  for (int i = 0; i < 40; ++i) {  // so that each thread handles some of the requests
-    for (const std::string& path :
-         {scan, scan + "/Scan.stl", scan + "/Scan.stl?leaf_size_mm=8", scan + "/preview.stl",
-          std::string("/api/v1/scans"), std::string("/api/v1/status"), std::string("/nothing"),
-          std::string("/")}) {
-      daemon.get(path);
-    }
-    daemon.post("/api/v1/scans", nested);
-    request(daemon.port(), "PATCH", scan, R"({"name": "Hase"})");
-  }
-  for (const char* const path :
-       {"/api/v1/doctor", "/api/v1/diagnostics.zip", "/api/v1/preview/depth.png"}) {
-    EXPECT_EQ(daemon.get(path).status, 200);
-  }
-  const std::size_t touched = max_touched_stack(daemon.program().process());
-  EXPECT_GT(touched, 0U);
-  EXPECT_LE(touched, max_touched);
 }
 
 }  // namespace

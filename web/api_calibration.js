@@ -64,22 +64,35 @@ import {json, sending} from './api.js';
 /** @returns {Promise<Points>} every eighth reading of the last frame, in rows and columns */
 export const points = () => json('preview/points');
 
-/** @returns {Promise<Calibration>} */
-export const calibration = () => json('calibration');
+/** @type {Promise<Calibration> | null} */
+let asked = null;
+
+/** Those who ask at the same time share a response: on the first visit picture and first steps do. @returns {Promise<Calibration>} */
+export function calibration() {
+  asked ??= json('calibration').finally(() => {
+    asked = null;
+  });
+  return asked;
+}
+
+/** A change of the calibration: who asks after it gets no response from before. @template T @param {Promise<T>} request */
+const changing = (request) => request.finally(() => {
+  asked = null;
+});
 
 /** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number} | {kind: 'lens'}} what */
-export const measure = (what) => json('calibration', sending('POST', what));
+export const measure = (what) => changing(json('calibration', sending('POST', what)));
 
 /** @returns {Promise<import('./map_picture.js').MapPicture>} */
 export const sensorMap = () => json('calibration/sensor-map');
 
-export const cancel = () => json('calibration/cancel', sending('POST'));
+export const cancel = () => changing(json('calibration/cancel', sending('POST')));
 
 /** Restores the pose before the one in force. */
-export const undo = () => json('calibration/undo', sending('POST'));
+export const undo = () => changing(json('calibration/undo', sending('POST')));
 
 /** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null, lens?: 'keep' | 'discard' | null}} wanted */
-export const change = (wanted) => json('calibration', sending('PATCH', wanted));
+export const change = (wanted) => changing(json('calibration', sending('PATCH', wanted)));
 
 /** Whether a pose was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */
 export const isCalibrated = ({source}) => source === 'turn' || source === 'scan' || source === 'page';

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {isCalibrated} from '../../web/api_calibration.js';
+import * as requests from '../../web/api_calibration.js';
 import * as texts from '../../web/calibration.js';
 import {distanceOf, distanceText} from '../../web/depth.js';
 import {errorColour} from '../../web/map_picture.js';
@@ -126,7 +126,7 @@ test('brightness tells the distance, within what the picture can show', () => {
 });
 
 test('only what was found with this rig counts as calibrated', () => {
-  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => isCalibrated({...calibration, source})),
+  assert.deepEqual(['default', 'settings', 'page', 'turn', 'scan'].filter((source) => requests.isCalibrated({...calibration, source})),
       ['page', 'turn', 'scan']);
 });
 
@@ -177,4 +177,20 @@ test('an error of the sensor is blue where too far, amber where too near, and pa
   const [far, none, near] = [-2, 0, 5].map(errorColour);
   assert.ok(far[2] > far[0] && near[0] > near[2]);
   assert.ok(Math.min(...none) > 230);
+});
+
+test('who asks for the calibration at the same time shares a response, but not one from before a change', async (t) => {
+  const answers = [];
+  t.mock.method(globalThis, 'fetch', () => new Promise((answer) => {
+    answers.push((body) => answer(Response.json(body)));
+  }));
+  const [picture, steps] = [requests.calibration(), requests.calibration()];
+  const change = requests.change({scale: 1.01});
+  assert.equal(answers.length, 2);
+  answers[1]({});
+  await change;
+  const after = requests.calibration();
+  answers[0]({scale: 1});
+  answers[2]({scale: 1.01});
+  assert.deepEqual(await Promise.all([picture, steps, after]), [{scale: 1}, {scale: 1}, {scale: 1.01}]);
 });

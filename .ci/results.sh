@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Sourced by ./test: reads CTest's JUnit files.
+# Sourced by ./test: reads CTest's JUnit files, and tells what they say.
 
 # attribute NAME FILE: the value of an attribute of the first testsuite.
 attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
@@ -20,4 +20,11 @@ skips() {
     /: Skipped$/ { stated = 1 }
     /<\/testcase>/ { if (skipped) print "  " stage ": " name ": " reason }
   ' "$2"
+}
+
+# tell FILE HEADING: prints a list unless it is empty.
+tell() {
+  [ -s "$1" ] || return 0
+  say "$2"
+  cat "$1"
 }

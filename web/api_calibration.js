@@ -64,20 +64,29 @@ import {json, sending} from './api.js';
 /** @returns {Promise<Points>} every eighth reading of the last frame, in rows and columns */
 export const points = () => json('preview/points');
 
-/** @type {Promise<Calibration> | null} */
-let asked = null;
+/** @returns {Promise<Calibration>} */
+export const calibration = () => json('calibration');
 
-/** Those who ask at the same time share a response: on the first visit picture and first steps do. @returns {Promise<Calibration>} */
-export function calibration() {
-  asked ??= json('calibration').finally(() => {
-    asked = null;
-  });
-  return asked;
+const maxAge = 3000;  // milliseconds
+
+/** @type {{response: Promise<Calibration>, at: number} | null} */
+let recent = null;
+
+/** For those who look from time to time: they share a response that is a few seconds old. */
+export function recentCalibration() {
+  if (!recent || performance.now() - recent.at > maxAge) {
+    const response = calibration();
+    recent = {response, at: performance.now()};
+    response.catch(() => {
+      recent = null;
+    });
+  }
+  return recent.response;
 }
 
-/** A change of the calibration: who asks after it gets no response from before. @template T @param {Promise<T>} request */
+/** A change, after which no response from before it is shared. @template T @param {Promise<T>} request */
 const changing = (request) => request.finally(() => {
-  asked = null;
+  recent = null;
 });
 
 /** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number} | {kind: 'lens'}} what */

@@ -1,8 +1,8 @@
-// The live depth picture while it is in view: readings in the scanned space in colour, and hints on problems of a scan.
+// The live picture while it is in view. Of a depth sensor: readings in the scanned space in colour, and hints on problems of a scan.
 
 import * as api from './api.js';
 import * as requests from './api_calibration.js';
-import {drawDepth, drawScale} from './depth.js';
+import {drawDepth, drawLight, drawScale} from './depth.js';
 import {element, part, setText, show} from './dom.js';
 import {spaceChosen} from './form.js';
 import {sentence} from './format.js';
@@ -30,9 +30,10 @@ async function askForRig() {
   }
   toldAt = performance.now();
   try {
-    const {platform_from_sensor: pose, lens} = await requests.calibration();
-    if (lens) {
-      toldAt = Infinity;  // a camera with lasers measures no depth
+    const {platform_from_sensor: pose, lens} = await requests.recentCalibration();
+    if (lens) {  // a camera with lasers measures no depth
+      toldAt = Infinity;
+      element('stage').dataset.sees = 'light';
       return;
     }
     told = {pose, sensor: told?.sensor ?? (await requests.points()).sensor};
@@ -76,6 +77,11 @@ async function showPicture() {
   try {
     await askForRig();
     const canvas = element('depth');
+    if (element('stage').dataset.sees === 'light') {
+      await drawLight(canvas, await api.preview());
+      show(element('no-picture'), false);
+      return betweenPictures;
+    }
     const rig = rigNow();
     /** @type {Seen | null} */
     let seen = null;

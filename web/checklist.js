@@ -94,7 +94,7 @@ export async function watchSteps() {
   listen();
   while (!known.isDismissed && !(known.isCalibrated && known.hasModel)) {
     if (here() === 'scan' && !document.hidden) {
-      await requests.calibration().then((calibration) => {
+      await requests.recentCalibration().then((calibration) => {
         known.isCalibrated = requests.isCalibrated(calibration);
         render();
       }, () => {});

@@ -50,22 +50,48 @@ export const distanceText = (distance) => distance === null ? text('stage.no-rea
   distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
 /**
- * @param {HTMLCanvasElement} canvas @param {Blob} png
- * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  selects the pixels to colour; null: all
- * @returns {Promise<Uint8Array>} brightness of each pixel
+ * Brightens a camera's grey picture in place: it is exposed for lasers, and dark. One pixel in a hundred becomes white, but not by
+ * more than a factor of 24, as there would be nothing but noise.
+ * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
  */
-export async function drawDepth(canvas, png, choose = () => null) {
+export function brighten(pixels) {
+  const levels = Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]).sort();
+  const factor = Math.min(255 / Math.max(levels[Math.floor(0.99 * levels.length)], 1), 24);
+  for (let i = 0; i < pixels.length; i += 4) {
+    pixels[i] = pixels[i + 1] = pixels[i + 2] = factor * pixels[i];
+  }
+}
+
+/**
+ * Draws a picture as `change` makes it.
+ * @template T
+ * @param {HTMLCanvasElement} canvas @param {Blob} png @param {(pixels: Uint8ClampedArray) => T} change @returns {Promise<T>}
+ */
+async function draw(canvas, png, change) {
   const bitmap = await createImageBitmap(png);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d', {willReadFrequently: true}));
   context.clearRect(0, 0, canvas.width, canvas.height);
   context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
   bitmap.close();
   const picture = context.getImageData(0, 0, canvas.width, canvas.height);
-  const brightness = Uint8Array.from({length: canvas.width * canvas.height}, (_, index) => picture.data[4 * index]);
-  colour(picture.data, choose(brightness));
+  const result = change(picture.data);
   context.putImageData(picture, 0, 0);
-  return brightness;
+  return result;
 }
+
+/** Draws the picture of a camera with lasers. @param {HTMLCanvasElement} canvas @param {Blob} png */
+export const drawLight = (canvas, png) => draw(canvas, png, brighten);
+
+/**
+ * @param {HTMLCanvasElement} canvas @param {Blob} png
+ * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  selects the pixels to colour; null: all
+ * @returns {Promise<Uint8Array>} brightness of each pixel
+ */
+export const drawDepth = (canvas, png, choose = () => null) => draw(canvas, png, (pixels) => {
+  const brightness = Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]);
+  colour(pixels, choose(brightness));
+  return brightness;
+});
 
 /** Draws the colour scale. @param {HTMLCanvasElement} canvas  one column for each shade */
 export function drawScale(canvas) {

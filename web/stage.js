@@ -216,8 +216,9 @@ export function renderStage(stage) {
   pressed('show-camera', stage.shows === 'camera');
   show(element('camera'), stage.shows === 'camera');
   show(element('model'), stage.shows === 'model');
+  const live = element('stage').dataset.sees === 'light' ? 'stage.light' : 'stage.live';
   setText(element('live-text'), stage.shows === 'model' ? stage.name :
-      [text(stage.isScanning ? 'stage.scanning' : stage.isLive ? 'stage.live' : 'stage.none'), stage.sensor].filter(Boolean).join(' · '));
+      [text(stage.isScanning ? 'stage.scanning' : stage.isLive ? live : 'stage.none'), stage.sensor].filter(Boolean).join(' · '));
   setGrowing(stage);
   setModel(stage);
   markPlaces();

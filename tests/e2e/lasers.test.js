@@ -45,6 +45,24 @@ test('a scale of depths is refused', async (t) => {
   await assert.rejects(ask(scanner, 'calibration', 'PATCH', {scale: 1.01}), /400 .*measures no depth/);
 });
 
+test('the live picture is the camera\'s, with no distances in it', async (t) => {
+  const scanner = await startScanner(t, {rig});
+  const {page} = await openPage(await openBrowser(t), scanner.url);
+  await page.getByText(/^Live picture · /).waitFor();
+  assert.equal(await page.locator('.scale').isVisible(), false);
+  const colours = () => page.locator('#depth').evaluate((canvas) => {
+    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    const pixels = Array.from({length: data.length / 4}, (_, index) => data.slice(4 * index, 4 * index + 3));
+    return {coloured: pixels.filter(([red, green, blue]) => red !== green || green !== blue).length, brightest: Math.max(...pixels.map(([red]) => red))};
+  });
+  let seen = await colours();
+  while (seen.coloured > 0 || seen.brightest === 0) {
+    seen = await colours();
+  }
+  assert.ok(seen.brightest > 24, `nothing brighter than ${seen.brightest}`);
+  await picture(page, 'lasers-live');
+});
+
 test('a scan shows a coarse surface while the platform turns', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate-laser', '--simulate-speed', '4']});
   const {page} = await openPage(await openBrowser(t), scanner.url);

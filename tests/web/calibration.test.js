@@ -179,18 +179,19 @@ test('an error of the sensor is blue where too far, amber where too near, and pa
   assert.ok(Math.min(...none) > 230);
 });
 
-test('who asks for the calibration at the same time shares a response, but not one from before a change', async (t) => {
-  const answers = [];
-  t.mock.method(globalThis, 'fetch', () => new Promise((answer) => {
-    answers.push((body) => answer(Response.json(body)));
-  }));
-  const [picture, steps] = [requests.calibration(), requests.calibration()];
-  const change = requests.change({scale: 1.01});
-  assert.equal(answers.length, 2);
-  answers[1]({});
-  await change;
-  const after = requests.calibration();
-  answers[0]({scale: 1});
-  answers[2]({scale: 1.01});
-  assert.deepEqual(await Promise.all([picture, steps, after]), [{scale: 1}, {scale: 1}, {scale: 1.01}]);
+test('those who look from time to time share a response, but not one from before a change', async (t) => {
+  let scale = 1;
+  const asked = t.mock.method(globalThis, 'fetch', () => Promise.resolve(Response.json({scale})));
+  const looked = () => requests.recentCalibration();
+  assert.deepEqual([await looked(), await looked()], [{scale: 1}, {scale: 1}]);
+  assert.equal(asked.mock.callCount(), 1);
+  scale = 1.01;
+  await requests.change({scale});
+  assert.deepEqual(await looked(), {scale: 1.01});
+
+  await requests.change({scale});
+  asked.mock.mockImplementation(() => Promise.reject(new TypeError('away')));
+  await assert.rejects(looked());
+  asked.mock.mockImplementation(() => Promise.resolve(Response.json({scale})));
+  assert.deepEqual(await looked(), {scale: 1.01});
 });

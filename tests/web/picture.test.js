@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {colour, colourOf} from '../../web/depth.js';
+import {brighten, colour, colourOf} from '../../web/depth.js';
 import {ticks} from '../../web/dial.js';
 
 /** Relative luminance of sRGB (IEC 61966-2-1). */
@@ -30,4 +30,18 @@ test('ticks go around the dial once, clockwise from the top', () => {
 
 test('taken and missing ticks make the whole dial', () => {
   assert.equal(ticks(0, 3, 36) + ticks(3, 36, 36), ticks(0, 36, 36));
+});
+
+test('a picture that is exposed for lasers is brightened, until one pixel in a hundred is white', () => {
+  const grey = (levels) => Uint8ClampedArray.from(levels.flatMap((level) => [level, level, level, 255]));
+  const brightened = (levels) => {
+    const pixels = grey(levels);
+    brighten(pixels);
+    return pixels;
+  };
+  assert.deepEqual(brightened([0, 20, 40, 51]), grey([0, 100, 200, 255]));
+  const spot = [...Array(199).fill(51), 255];
+  assert.deepEqual(brightened(spot), grey(Array(200).fill(255)));
+  assert.deepEqual(brightened([0, 1, 2, 3]), grey([0, 24, 48, 72]), 'noise stays dark');
+  assert.deepEqual(brightened([0, 0]), grey([0, 0]));
 });

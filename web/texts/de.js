@@ -80,6 +80,7 @@ export const texts = {
   'stage.model': 'Modell',
   'stage.camera': 'Kamera',
   'stage.live': 'Tiefenbild',
+  'stage.light': 'Kamerabild',
   'stage.none': 'Kein Bild',
   'stage.scanning': 'Scan läuft',
   'stage.seen': 'Bisher gesehen',

@@ -87,6 +87,7 @@ export const texts = {
   'stage.model': 'Model',
   'stage.camera': 'Camera',
   'stage.live': 'Live depth',
+  'stage.light': 'Live picture',
   'stage.none': 'No picture',
   'stage.scanning': 'Scanning',
   'stage.seen': 'Seen so far',

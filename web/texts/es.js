@@ -80,6 +80,7 @@ export const texts = {
   'stage.model': 'Modelo',
   'stage.camera': 'Cámara',
   'stage.live': 'Profundidad en vivo',
+  'stage.light': 'Imagen en vivo',
   'stage.none': 'Sin imagen',
   'stage.scanning': 'Escaneando',
   'stage.seen': 'Visto hasta ahora',

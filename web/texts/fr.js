@@ -80,6 +80,7 @@ export const texts = {
   'stage.model': 'Modèle',
   'stage.camera': 'Caméra',
   'stage.live': 'Profondeur en direct',
+  'stage.light': 'Image en direct',
   'stage.none': 'Pas d’image',
   'stage.scanning': 'Numérisation',
   'stage.seen': 'Vu jusqu’ici',

@@ -49,13 +49,16 @@ export function distanceOf(brightness) {
 export const distanceText = (distance) => distance === null ? text('stage.no-reading') :
   distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
+/** @param {Uint8ClampedArray} pixels  of a grey picture: red, green, blue, alpha */
+const brightnessOf = (pixels) => Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]);
+
 /**
  * Brightens a camera's grey picture in place: it is exposed for lasers, and dark. One pixel in a hundred becomes white, but not by
  * more than a factor of 24, as there would be nothing but noise.
  * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
  */
 export function brighten(pixels) {
-  const levels = Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]).sort();
+  const levels = brightnessOf(pixels).sort();
   const factor = Math.min(255 / Math.max(levels[Math.floor(0.99 * levels.length)], 1), 24);
   for (let i = 0; i < pixels.length; i += 4) {
     pixels[i] = pixels[i + 1] = pixels[i + 2] = factor * pixels[i];
@@ -88,7 +91,7 @@ export const drawLight = (canvas, png) => draw(canvas, png, brighten);
  * @returns {Promise<Uint8Array>} brightness of each pixel
  */
 export const drawDepth = (canvas, png, choose = () => null) => draw(canvas, png, (pixels) => {
-  const brightness = Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]);
+  const brightness = brightnessOf(pixels);
   colour(pixels, choose(brightness));
   return brightness;
 });

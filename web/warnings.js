@@ -12,7 +12,7 @@ const tones = /** @type {Record<string, string>} */ ({fault: 'bad', warning: 'wa
 /** The text of a warning. Pure. @param {Finding} finding */
 export const textOf = ({name, measured, advice}) => ({title: `${translated(name)}: ${translated(measured)}.`, text: sentence(advice)});
 
-let isClockLent = false;
+let isClockSent = false;
 
 /** @param {import('./api.js').Status} status */
 export function seeWarnings(status) {
@@ -24,8 +24,8 @@ export function seeWarnings(status) {
     setText(part(item, 'strong'), title);
     setText(part(item, 'span'), text);
   });
-  if (!isClockLent && needsClock(status)) {
-    isClockLent = true;  // once per visit: if the clock cannot be set, only the warning stays
+  if (!isClockSent && needsClock(status)) {
+    isClockSent = true;  // once per visit: if the clock cannot be set, only the warning stays
     sendClock().catch(() => {});
   }
 }

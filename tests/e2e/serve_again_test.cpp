@@ -22,6 +22,18 @@ using nlohmann::json;
 
 bool has_two_snapshots(const json& scan) { return scan["snapshots_done"] >= 2; }
 
+/// Ends a daemon by a signal while it scans.
+/// @param status  that it ends with
+/// @return the scan's address
+std::string end_while_it_scans(const fs::path& folder, int signal, int status) {
+  Daemon daemon(folder);
+  const std::string scan = daemon.start(endless);
+  daemon.wait_until(scan, has_two_snapshots);
+  daemon.program().send_signal(signal);
+  EXPECT_EQ(daemon.program().wait(), status);
+  return scan;
+}
+
 /// A command without the simulated rig, whose sensor comes from an OpenNI2 driver like a device's.
 std::vector<std::string> command_with_devices(const fs::path& folder) {
   std::vector<std::string> command = Daemon::command(folder);
@@ -57,14 +69,7 @@ TEST(Serve, KeepsItsDevicesClosedAfterItWasKilledThreeTimesSoonAfterItsStart) {
 
 TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
   const TemporaryFolder folder;
-  std::string scan;
-  {
-    Daemon daemon(folder.path());
-    scan = daemon.start(endless);
-    daemon.wait_until(scan, has_two_snapshots);
-    daemon.program().send_signal(SIGKILL);
-    EXPECT_EQ(daemon.program().wait(), -SIGKILL);
-  }
+  const std::string scan = end_while_it_scans(folder.path(), SIGKILL, -SIGKILL);
   const Daemon daemon(folder.path());
   const json left = parsed(daemon.get(scan));
   EXPECT_EQ(left["state"], "interrupted");
@@ -79,14 +84,7 @@ TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
 
 TEST(Serve, EndsBeforeItsScanAndKeepsTheSnapshots) {
   const TemporaryFolder folder;
-  std::string scan;
-  {
-    Daemon daemon(folder.path());
-    scan = daemon.start(endless);
-    daemon.wait_until(scan, has_two_snapshots);
-    daemon.program().send_signal(SIGTERM);
-    EXPECT_EQ(daemon.program().wait(), 0);
-  }
+  const std::string scan = end_while_it_scans(folder.path(), SIGTERM, 0);
   const json kept = parsed(Daemon(folder.path()).get(scan));
   EXPECT_EQ(kept["state"], "interrupted");
   EXPECT_GE(kept["snapshots_done"], 2);

@@ -9,8 +9,11 @@ namespace octurn {
 
 std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
   std::error_code unreadable;  // OpenNI2 then says that there is no such device
-  return std::filesystem::is_directory(uri, unreadable) ? open_recording(uri)
-                                                        : open_openni_sensor(uri);
+  if (std::filesystem::is_directory(uri, unreadable)) {
+    return open_recording(uri);
+  }
+  return std::filesystem::is_regular_file(uri, unreadable) ? open_oni_file(uri)
+                                                           : open_openni_sensor(uri);
 }
 
 void DepthSensor::show_wall(std::optional<double> /*distance*/) {}

@@ -68,8 +68,11 @@ class DepthSensor {
 ///               "recording-malformed"
 std::unique_ptr<DepthSensor> open_sensor(const std::string& uri);
 
-/// The same for a device or an .oni file that OpenNI2 opens.
+/// The same for a device of OpenNI2.
 std::unique_ptr<DepthSensor> open_openni_sensor(const std::string& uri);
+
+/// The same for a recording of OpenNI2's recorder. @param path  of the .oni file
+std::unique_ptr<DepthSensor> open_oni_file(const std::string& path);
 
 /// The same for a recording of `octurn record`. @param folder  of the recording
 std::unique_ptr<DepthSensor> open_recording(const std::string& folder);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <OpenNI.h>
+
+#include <chrono>
+#include <optional>
+
+#include "octurn/error.hpp"
+#include "octurn/snapshot.hpp"
+
+namespace octurn {
+
+/// The unit of a mode's depths in metres; nothing for a format that Octurn does not read.
+std::optional<double> depth_unit(const openni::VideoMode& mode);
+
+/// The intrinsics of a depth stream's mode, in pixels, from its fields of view.
+/// @throws Error "sensor-failed" unless its depth is in millimetres
+Intrinsics to_intrinsics(const openni::VideoStream& stream);
+
+/// Waits until a stream has a frame to read. @return false after the timeout
+bool wait_for_frame(openni::VideoStream& stream, std::chrono::milliseconds timeout);
+
+/// Reads a frame, and waits for it. @throws Error "sensor-failed"
+openni::VideoFrameRef read_frame(openni::VideoStream& stream);
+
+DepthFrame to_depth_frame(const openni::VideoFrameRef& frame);
+
+/// The error "sensor-silent" of a sensor that has sent no frame for so long.
+Error silence_error(std::chrono::milliseconds silence);
+
+}  // namespace octurn

@@ -50,15 +50,15 @@ test('the live picture is the camera\'s, with no distances in it', async (t) => 
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await page.getByText(/^Live picture · /).waitFor();
   assert.equal(await page.locator('.scale').isVisible(), false);
-  const colours = () => page.locator('#depth').evaluate((canvas) => {
+  const drawn = await page.waitForFunction(() => {
+    const canvas = /** @type {HTMLCanvasElement} */ (document.getElementById('depth'));
     const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
     const pixels = Array.from({length: data.length / 4}, (_, index) => data.slice(4 * index, 4 * index + 3));
-    return {coloured: pixels.filter(([red, green, blue]) => red !== green || green !== blue).length, brightest: Math.max(...pixels.map(([red]) => red))};
-  });
-  let seen = await colours();
-  while (seen.coloured > 0 || seen.brightest === 0) {
-    seen = await colours();
-  }
+    const isGrey = pixels.every(([red, green, blue]) => red === green && green === blue);
+    const brightest = Math.max(...pixels.map(([red]) => red));
+    return isGrey && brightest > 0 && {brightest};
+  }, null, {polling: 500});
+  const seen = await drawn.jsonValue();
   assert.ok(seen.brightest > 24, `nothing brighter than ${seen.brightest}`);
   await picture(page, 'lasers-live');
 });

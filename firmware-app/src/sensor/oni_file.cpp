@@ -1,7 +1,7 @@
 #include <OpenNI.h>
 
 #include <chrono>
-#include <utility>
+#include <string>
 
 #include "octurn/error.hpp"
 #include "sensor/depth_sensor.hpp"
@@ -18,9 +18,9 @@ constexpr std::chrono::milliseconds longest_read = std::chrono::seconds(30);
 /// Plays a recording of OpenNI2's recorder frame by frame, in a loop.
 class OniFile final : public DepthSensor {
  public:
-  explicit OniFile(std::string path) : path_(std::move(path)) {
+  explicit OniFile(const std::string& path) {
     load_sensor_drivers();
-    open();
+    open(path);
     intrinsics_ = to_intrinsics(stream_);
     name_ = device_.getDeviceInfo().getName();
   }
@@ -34,9 +34,8 @@ class OniFile final : public DepthSensor {
   void show_angle(double /*angle*/) override {}
 
  private:
-  void open();
+  void open(const std::string& path);
 
-  std::string path_;
   openni::Device device_ = {};
   openni::VideoStream stream_ = {};
   Intrinsics intrinsics_ = {};
@@ -47,25 +46,26 @@ class OniFile final : public DepthSensor {
 /// Makes OpenNI2 read each frame on demand and skip none, and begin again after the last one.
 ///
 /// The thread of OpenNI2 2.2.0.33's player iterates over its streams without a lock while another
-/// thread may destroy one. A player that repeats its file waits between two frames; at the end of a
-/// file that it does not repeat, it would do nothing but iterate.
-void OniFile::open() {
-  open_device(device_, path_);
+/// thread may destroy one. A player that repeats its file waits between two frames. At the end of a
+/// file that is not repeated it only iterates, and destroying the stream then crashes.
+void OniFile::open(const std::string& path) {
+  open_device(device_, path);
   expect_ok(stream_.create(device_, openni::SENSOR_DEPTH), "find its depth stream");
   openni::PlaybackControl* playback = device_.getPlaybackControl();
   expect_ok(playback->setSpeed(-1), "read it frame by frame");
   expect_ok(playback->setRepeatEnabled(true), "begin it again");
   if (playback->getNumberOfFrames(stream_) <= 0) {
-    throw Error(ErrorCode::sensor_failed, path_ + ": has no depth frame");
+    throw Error(ErrorCode::sensor_failed, path + ": has no depth frame");
   }
   if (stream_.getMirroringEnabled()) {
-    throw Error(ErrorCode::sensor_failed, path_ + ": its frames are mirrored",
+    throw Error(ErrorCode::sensor_failed, path + ": its frames are mirrored",
                 "Record it again without mirroring.");
   }
   expect_ok(stream_.start(), "start its depth stream");
 }
 
-/// A frame is read when it is waited for. A second wait for the same frame would skip one.
+/// Each wait makes the player read the next frame, so a frame is waited for once: a second wait
+/// would skip it.
 std::optional<TimedFrame> OniFile::read(const std::stop_token& stop) {
   if (!limiter_.wait(stop)) {
     return std::nullopt;

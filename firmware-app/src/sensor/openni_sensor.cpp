@@ -1,10 +1,11 @@
 #include <OpenNI.h>
 
 #include <array>
+#include <cstring>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -70,9 +71,9 @@ std::optional<Value> property_of(const openni::Device& device, int property) {
 
 class OpenNiSensor final : public DepthSensor {
  public:
-  explicit OpenNiSensor(std::string uri) : uri_(std::move(uri)) {
+  explicit OpenNiSensor(const std::string& uri) {
     load_sensor_drivers();
-    open_stream();
+    open_stream(uri);
     intrinsics_ = to_intrinsics(stream_);
     name_ = device_.getDeviceInfo().getName();
     has_steady_stamps_ = has_octurns_driver(device_.getDeviceInfo().getUri());
@@ -93,12 +94,11 @@ class OpenNiSensor final : public DepthSensor {
 
  private:
   void simulate(int property, double value);
-  void open_stream();
+  void open_stream(const std::string& uri);
   bool is_lost() const;
   TimedFrame take_frame();
   std::chrono::duration<double> sensor_time() const;
 
-  std::string uri_;
   openni::Device device_ = {};
   openni::VideoStream stream_ = {};
   std::string name_ = {};
@@ -107,8 +107,8 @@ class OpenNiSensor final : public DepthSensor {
   bool is_simulated_ = false;
 };
 
-void OpenNiSensor::open_stream() {
-  open_device(device_, uri_);
+void OpenNiSensor::open_stream(const std::string& uri) {
+  open_device(device_, uri);
   expect_ok(stream_.create(device_, openni::SENSOR_DEPTH), "find its depth stream");
   expect_ok(stream_.setVideoMode(best_mode(stream_)), "set its depth mode");
   expect_ok(stream_.setMirroringEnabled(false), "switch off its mirroring");

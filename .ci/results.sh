@@ -7,6 +7,22 @@ attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
 # failures STAGE FILE: the name of each test that failed.
 failures() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"fail\".*/  $1: \1/p" "$2"; }
 
+# reasons STAGE FILE: the end of what each of the first five failed tests printed.
+reasons() {
+  awk -v stage="$1" '
+    /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
+                   lines = 0; isFailed = / status="fail"/ }
+    isFailed && /<system-out>/ { isOutput = 1 }
+    isOutput { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&lt;/, "<", line)
+               gsub(/&gt;/, ">", line); gsub(/&amp;/, "\\&", line); output[++lines] = line }
+    /<\/system-out>/ { isOutput = 0 }
+    /<\/testcase>/ && isFailed && ++told <= 5 {
+      print "  " stage ": " name
+      for (i = lines > 40 ? lines - 39 : 1; i <= lines; ++i) print "    " output[i]
+    }
+  ' "$2"
+}
+
 # skips STAGE FILE: each skipped test with its reason: GoogleTest's message, or the last line of output.
 skips() {
   awk -v stage="$1" '

@@ -42,7 +42,7 @@ async function openViewer() {
   return new Viewer(element('view'), {
     onTurning: (isTurning) => pressed('turn', isTurning),
     onLost: () => note(text('view.lost'), {button: text('view.again')}),
-    onSpot: useTool,
+    onPlace: useTool,
   });
 }
 

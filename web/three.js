@@ -27,4 +27,5 @@ export {
   WebGLRenderTarget,
   WebGLRenderer,
 } from 'three';
+export {ConvexHull} from 'three/addons/math/ConvexHull.js';
 export {OrbitControls} from 'three/addons/controls/OrbitControls.js';

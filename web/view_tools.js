@@ -38,12 +38,12 @@ function setMeasure(points_mm) {
   render();
 }
 
-/** @param {typeof lying} next @param {import('./pick.js').Spot} [spot]  facet on which the model is laid */
-function setLying(next, spot) {
+/** @param {typeof lying} next @param {number[]} [place_mm]  of the side on which the model is laid */
+function setLying(next, place_mm) {
   const isMoved = next === 'laid' || lying === 'laid';
   lying = next;
   if (isMoved) {
-    viewer()?.lay(spot ?? null);
+    viewer()?.lay(place_mm ?? null);
     setCut(false);
   }
   measuring = null;
@@ -73,12 +73,12 @@ export function offerColours(url) {
   show(element('colours'), url !== null);
 }
 
-/** Handles a click on the model. @param {import('./pick.js').Spot} spot */
-export function useTool(spot) {
+/** Handles a click on the model. @param {number[]} place_mm */
+export function useTool(place_mm) {
   if (measuring) {
-    setMeasure(withPoint(measuring, spot.place));
+    setMeasure(withPoint(measuring, place_mm));
   } else if (lying === 'waiting') {
-    setLying('laid', spot);
+    setLying('laid', place_mm);
   }
 }
 

@@ -7,11 +7,11 @@ import {
 import {fitToCanvas, onClick} from './canvas.js';
 import {clayMaterial, lightsBeside, platform, ringStep} from './clay.js';
 import {measureMark} from './measure_mark.js';
-import {spotAt} from './pick.js';
+import {placeAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
+import {restingSide} from './resting_pose.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
-/** @typedef {import('./pick.js').Spot} Spot */
 
 const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
@@ -47,11 +47,11 @@ export class Viewer {
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onSpot: (spot: Spot) => void}} events  onSpot: called for a
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (place_mm: number[]) => void}} events  onPlace: called for a
    *     click on the model
    * @throws {Error} where there is no WebGL
    */
-  constructor(canvas, {onTurning, onLost, onSpot}) {
+  constructor(canvas, {onTurning, onLost, onPlace}) {
     this.#canvas = canvas;
     this.#onTurning = onTurning;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
@@ -71,8 +71,8 @@ export class Viewer {
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
     onClick(canvas, (x, y) => {
-      const spot = this.#model && spotAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
-      spot && onSpot(spot);
+      const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
+      place && onPlace(place);
     });
   }
 
@@ -134,11 +134,11 @@ export class Viewer {
     }
   }
 
-  /** Rotates the model so that it lies on a spot's facet. @param {Spot | null} spot  null: as scanned */
-  lay(spot) {
+  /** Rotates the model so that it rests on the side that has a place. @param {number[] | null} place_mm  null: as scanned */
+  lay(place_mm) {
     const {quaternion, position} = this.#model;
-    if (spot) {
-      quaternion.premultiply(quaternion.clone().setFromUnitVectors(new Vector3(...spot.normal), down));
+    if (place_mm) {
+      quaternion.setFromUnitVectors(restingSide(this.#samples, this.#model.worldToLocal(new Vector3(...place_mm))), down);
       const {x, y} = this.#model.geometry.boundingSphere.center.clone().applyQuaternion(quaternion);
       const heights = this.#samples.map((sample) => sample.clone().applyQuaternion(quaternion).z);
       this.#heights = [0, Math.max(...heights) - Math.min(...heights)];

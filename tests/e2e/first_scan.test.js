@@ -138,7 +138,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
   const upright = await halfHeight();
   assert.equal(upright.toFixed(1), ((mesh.min[2] + mesh.max[2]) / 2).toFixed(1), 'as it was scanned');
-  assert.ok(laid < 0.9 * upright, `on its front it is lower than on its feet: ${2 * laid} mm, not ${2 * upright}`);
+  assert.ok(laid < 0.5 * upright, `on its front it is lower than on its feet: ${2 * laid} mm, not ${2 * upright}`);
   assert.deepEqual(faults, []);
 });
 

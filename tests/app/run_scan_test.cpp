@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <stdexcept>
 #include <vector>
 
 #include "app/few_snapshots.hpp"
@@ -94,8 +95,10 @@ TEST(RunScan, GoesThroughItsPhasesInOrder) {
                {.on_progress = [&](Phase phase, int done) { seen.emplace_back(phase, done); }}));
   EXPECT_EQ(seen, (std::vector<std::pair<Phase, int>>{{Phase::turning, 0},
                                                       {Phase::capturing, 0},
+                                                      {Phase::capturing, 1},
                                                       {Phase::turning, 1},
                                                       {Phase::capturing, 1},
+                                                      {Phase::capturing, 2},
                                                       {Phase::turning, 2},
                                                       {Phase::capturing, 2},
                                                       {Phase::calibrating, 2},
@@ -113,6 +116,17 @@ TEST(RunScan, HasASnapshotOnTheDiskBeforeThePlatformMovesOn) {
     }
   };
   ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {.on_progress = check}));
+}
+
+TEST(RunScan, CountsASnapshotThatIsOnTheDiskAlthoughTheOneBeforeItCannotBeAdded) {
+  const TemporaryFolder folder;
+  Rig rig(rig_of());
+  int counted = 0;
+  const ScanObserver observer{
+      .on_progress = [&](Phase, int done) { counted = done; },
+      .on_added = [](const Reconstructor&, int) { throw std::runtime_error("cannot be added"); }};
+  EXPECT_THROW(run_scan(few_snapshots(), {}, folder.path(), rig, {}, observer), std::runtime_error);
+  EXPECT_EQ(counted, snapshots_in(folder.path()));
 }
 
 TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {

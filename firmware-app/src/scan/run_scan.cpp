@@ -115,6 +115,7 @@ bool Run::take_depth(const Stop& at, double angle) {
   first_readings_ = done() == 0 ? readings : first_readings_;
   expect_coverage(readings, first_readings_, scan_.sensor_name);
   store_snapshot(folder_, scan_, {.file = shot_file(done()), .angle = angle}, *frame);
+  observer_.on_progress(Phase::capturing, done());
   add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
                         .intrinsics = scan_.intrinsics,
                         .object_from_sensor =
@@ -131,6 +132,7 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
   if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
     return false;
   }
+  observer_.on_progress(Phase::capturing, done());
   preview.add(scan_);
   return true;
 }

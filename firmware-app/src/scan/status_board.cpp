@@ -121,12 +121,12 @@ void StatusBoard::set_turntable_failed(const Failure& failure) {
   status_.update([&](Status& status) { set_failed(status.turntable, failure); });
 }
 
-void StatusBoard::set_camera_frame(const DepthFrame& frame, const Intrinsics& lens) {
-  camera_frame_.set({.time = Clock::now(), .frame = frame, .lens = lens});
+void StatusBoard::set_camera_frame(DepthFrame frame, const Intrinsics& lens) {
+  camera_frame_.set({.time = Clock::now(), .frame = std::move(frame), .lens = lens});
 }
 
-void StatusBoard::set_camera_picture(const Picture& picture) {
-  camera_frame_.set({.time = Clock::now(), .picture = picture});
+void StatusBoard::set_camera_picture(Picture picture) {
+  camera_frame_.set({.time = Clock::now(), .picture = std::move(picture)});
 }
 
 void StatusBoard::set_sensor_closed() {

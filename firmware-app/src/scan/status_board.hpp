@@ -113,8 +113,8 @@ class StatusBoard {
   void set_sensor_failed(const Failure& failure);
   void set_turntable_failed(const Failure& failure);
 
-  void set_camera_frame(const DepthFrame& frame, const Intrinsics& lens);
-  void set_camera_picture(const Picture& picture);
+  void set_camera_frame(DepthFrame frame, const Intrinsics& lens);
+  void set_camera_picture(Picture picture);
   void set_calibration_run(CalibrationRun run);
   void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
   void set_sensor_closed();

@@ -65,27 +65,27 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
 /// Shows the sensor's next frame, or the camera's next picture with all lasers off.
 void Worker::show_next_frame(const std::stop_token& stop) {
   if (rig_.laser() != nullptr) {
-    if (const std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
-      show_picture(timed->picture);
+    if (std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
+      show_picture(std::move(timed->picture));
     }
-  } else if (const std::optional<TimedFrame> timed = rig_.sensor().read(stop)) {
-    show_frame(timed->frame);
+  } else if (std::optional<TimedFrame> timed = rig_.sensor().read(stop)) {
+    show_frame(std::move(timed->frame));
   }
 }
 
-void Worker::show_frame(const DepthFrame& frame) {
+void Worker::show_frame(DepthFrame frame) {
   DepthSensor& sensor = rig_.sensor();
   ports_.heartbeat.beat();
   set_sensor_ready(sensor.name());
   introduce_sensor();
-  ports_.board.set_camera_frame(frame, sensor.intrinsics());
+  ports_.board.set_camera_frame(std::move(frame), sensor.intrinsics());
 }
 
-void Worker::show_picture(const Picture& picture) {
+void Worker::show_picture(Picture picture) {
   ports_.heartbeat.beat();
   set_sensor_ready(rig_.camera().name());
   introduce_sensor();
-  ports_.board.set_camera_picture(picture);
+  ports_.board.set_camera_picture(std::move(picture));
 }
 
 void Worker::carry_out(DeviceCheckCommand& command, const std::stop_source& stop) {

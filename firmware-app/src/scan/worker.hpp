@@ -71,8 +71,8 @@ class Worker {
   void set_sensor_failed(const Failure& failure);
   void set_turntable_ready();
   void set_turntable_failed(const Failure& failure);
-  void show_frame(const DepthFrame& frame);
-  void show_picture(const Picture& picture);
+  void show_frame(DepthFrame frame);
+  void show_picture(Picture picture);
   void show_progress(Phase phase, int snapshots_done);
   void begin(Phase phase);
   void show_job();

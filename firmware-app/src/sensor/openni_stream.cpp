@@ -1,7 +1,7 @@
 #include "sensor/openni_stream.hpp"
 
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <string>
 
 #include "octurn/units.hpp"
@@ -56,12 +56,12 @@ openni::VideoFrameRef read_frame(openni::VideoStream& stream) {
 
 DepthFrame to_depth_frame(const openni::VideoFrameRef& frame) {
   DepthFrame copy = {.width = frame.getWidth(), .height = frame.getHeight()};
-  const auto row = static_cast<std::size_t>(copy.width);
-  copy.depth.resize(row * static_cast<std::size_t>(copy.height));
-  const auto* from = static_cast<const std::byte*>(frame.getData());
-  for (std::size_t at = 0; at < copy.depth.size(); at += row) {
-    std::memcpy(&copy.depth[at], from, row * sizeof copy.depth[at]);
-    from += frame.getStrideInBytes();
+  copy.depth.reserve(static_cast<std::size_t>(copy.width) * static_cast<std::size_t>(copy.height));
+  const auto* row = static_cast<const std::byte*>(frame.getData());
+  for (int v = 0; v < copy.height; ++v) {
+    const auto* const pixels = reinterpret_cast<const openni::DepthPixel*>(row);
+    copy.depth.insert(copy.depth.end(), pixels, pixels + copy.width);
+    row += frame.getStrideInBytes();
   }
   return copy;
 }

@@ -4,17 +4,23 @@
 # attribute NAME FILE: the value of an attribute of the first testsuite.
 attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
 
+# For awk: a line of XML as text.
+as_text='function as_text(line) {
+  sub(/.*<system-out>/, "", line); gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line)
+  gsub(/&lt;/, "<", line); gsub(/&gt;/, ">", line); gsub(/&amp;/, "\\&", line)
+  return line
+}'
+
 # failures STAGE FILE: the name of each test that failed.
 failures() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"fail\".*/  $1: \1/p" "$2"; }
 
 # reasons STAGE FILE: the end of what each of the first five failed tests printed.
 reasons() {
-  awk -v stage="$1" '
+  awk -v stage="$1" "$as_text"'
     /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
                    lines = 0; isFailed = / status="fail"/ }
     isFailed && /<system-out>/ { isOutput = 1 }
-    isOutput { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&lt;/, "<", line)
-               gsub(/&gt;/, ">", line); gsub(/&amp;/, "\\&", line); output[++lines] = line }
+    isOutput { output[++lines] = as_text($0) }
     /<\/system-out>/ { isOutput = 0 }
     /<\/testcase>/ && isFailed && ++told <= 5 {
       print "  " stage ": " name
@@ -25,12 +31,11 @@ reasons() {
 
 # skips STAGE FILE: each skipped test with its reason: GoogleTest's message, or the last line of output.
 skips() {
-  awk -v stage="$1" '
+  awk -v stage="$1" "$as_text"'
     /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
                    skipped = 0; stated = 0; reason = "" }
     /<skipped/ { skipped = 1 }
-    { line = $0; gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line); gsub(/&amp;/, "\\&", line)
-      sub(/^[[:space:]]+/, "", line) }
+    { line = as_text($0); sub(/^[[:space:]]+/, "", line) }
     stated == 1 { reason = line; stated = 2 }
     stated == 0 && line ~ /[^[:space:]]/ { reason = line }
     /: Skipped$/ { stated = 1 }

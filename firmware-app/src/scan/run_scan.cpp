@@ -87,16 +87,15 @@ class Run {
 };
 
 bool Run::take_snapshots() {
-  Turntable& turntable = rig_.turntable();
+  const int steps = rig_.turntable().steps_per_turn();
   if (done() == 0) {
     begin_scan(scan_, settings_, folder_, rig_);
   } else {
     resume();
   }
-  const int steps = turntable.steps_per_turn();
   LinePreview preview(folder_, reconstruction_.options(), settings_.snapshots, stop_, observer_);
   for (const std::int64_t position :
-       stop_positions(turntable.position(), steps, settings_.snapshots, done())) {
+       stop_positions(rig_.turntable().position(), steps, settings_.snapshots, done())) {
     const Stop at{.index = done(), .position = position};
     const double angle = radians_from_degrees(angle_deg_at(position, steps));
     if (!(scan_.laser ? take_lines(at, angle, preview) : take_depth(at, angle))) {
@@ -132,7 +131,6 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
   if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
     return false;
   }
-  observer_.on_progress(Phase::capturing, done());
   preview.add(scan_);
   return true;
 }

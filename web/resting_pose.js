@@ -15,6 +15,6 @@ export function restingSide(points, place) {
   const middle = points.reduce((sum, point) => sum.add(point), place.clone().setScalar(0)).divideScalar(points.length);
   const ray = place.clone().sub(middle);
   // The ray leaves the hull through the face whose plane it meets first.
-  const nearness = (/** @type {any} */ {normal, constant}) => normal.dot(ray) / (constant - normal.dot(middle));
-  return faces.reduce((best, face) => nearness(face) > nearness(best) ? face : best).normal;
+  const inverseDistance = (/** @type {any} */ {normal, constant}) => normal.dot(ray) / (constant - normal.dot(middle));
+  return faces.reduce((best, face) => inverseDistance(face) > inverseDistance(best) ? face : best).normal;
 }

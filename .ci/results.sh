@@ -4,8 +4,9 @@
 # attribute NAME FILE: the value of an attribute of the first testsuite.
 attribute() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p;T;q" "$2"; }
 
-# For awk: a line of XML as text.
-as_text='function as_text(line) {
+# Functions for awk: a test's name, and the text of a line of XML.
+xml='function test_name(line) { match(line, / name="[^"]*"/); return substr(line, RSTART + 7, RLENGTH - 8) }
+function as_text(line) {
   sub(/.*<system-out>/, "", line); gsub(/<[^>]*>/, "", line); gsub(/&quot;/, "\"", line)
   gsub(/&lt;/, "<", line); gsub(/&gt;/, ">", line); gsub(/&amp;/, "\\&", line)
   return line
@@ -16,9 +17,8 @@ failures() { sed -n "s/.*<testcase name=\"\([^\"]*\)\".* status=\"fail\".*/  $1:
 
 # reasons STAGE FILE: the end of what each of the first five failed tests printed.
 reasons() {
-  awk -v stage="$1" "$as_text"'
-    /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
-                   lines = 0; isFailed = / status="fail"/ }
+  awk -v stage="$1" "$xml"'
+    /<testcase / { name = test_name($0); lines = 0; isFailed = / status="fail"/ }
     isFailed && /<system-out>/ { isOutput = 1 }
     isOutput { output[++lines] = as_text($0) }
     /<\/system-out>/ { isOutput = 0 }
@@ -31,9 +31,8 @@ reasons() {
 
 # skips STAGE FILE: each skipped test with its reason: GoogleTest's message, or the last line of output.
 skips() {
-  awk -v stage="$1" "$as_text"'
-    /<testcase / { match($0, / name="[^"]*"/); name = substr($0, RSTART + 7, RLENGTH - 8)
-                   skipped = 0; stated = 0; reason = "" }
+  awk -v stage="$1" "$xml"'
+    /<testcase / { name = test_name($0); skipped = 0; stated = 0; reason = "" }
     /<skipped/ { skipped = 1 }
     { line = as_text($0); sub(/^[[:space:]]+/, "", line) }
     stated == 1 { reason = line; stated = 2 }

@@ -16,7 +16,7 @@ import {restingSide} from './resting_pose.js';
 const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
 const down = new Vector3(0, 0, -1);
-const samplesKept = 5000;  // sampled vertices, from which the height range is computed when the model is laid on another side
+const samplesKept = 5000;  // sampled vertices, from which the pose and the height range of a model on another side are computed
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // initial direction from the model to the camera
 
 export class Viewer {

@@ -12,7 +12,7 @@ namespace octurn {
 /// Callbacks of a scan, on its thread; `on_added` is called on the thread that adds snapshots while
 /// the platform turns.
 struct ScanObserver {
-  /// When a phase begins, and when a snapshot is on the disk: what follows may fail.
+  /// When a phase begins, and as soon as a snapshot is stored, since adding it may fail.
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
   /// Before each move, with the angle of its end, degrees.
   std::function<void(double angle_deg)> on_turn = [](double) {};

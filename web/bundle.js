@@ -15,6 +15,7 @@ const include = /^ *<!--#include file="([^"]+)" -->\n/gm;
 const stylesheet = /^ *<link rel="stylesheet" href="([^"]+)">\n/gm;
 const script = /<script type="module" src="([^"]+)"><\/script>/;
 const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
+const indentation = /^ +/gm;  // dropped from documents with a script, none of which has preformatted text
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
 const {isLater} = await import(pathToFileURL(join(source, 'text_parts.js')));
 
@@ -111,7 +112,8 @@ for (const [file, text] of documents) {
   const bare = text.replace(preload, '');
   const first = Math.max(bare.search(stylesheet), 0);
   const rest = bare.replace(stylesheet, '').replace(script, `<script type="module" src="${main}"></script>`);
-  await writeFile(join(target, file), rest.slice(0, first) + head + rest.slice(first));
+  const whole = rest.slice(0, first) + head + rest.slice(first);
+  await writeFile(join(target, file), entry ? whole.replace(indentation, '') : whole);
 }
 
 for (const file of await filesBelow(target)) {

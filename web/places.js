@@ -40,6 +40,7 @@ async function arrive(place) {
   begun.add(place);
   const {load, piece} = others[place];
   const parent = piece ? element(piece) : mainOf(place);
+  parent.setAttribute('aria-busy', 'true');
   try {
     const [module] = await Promise.all([load(), fetchFragment(parent, `${piece ?? place}.html`)]);
     module.prepare();
@@ -47,6 +48,8 @@ async function arrive(place) {
     begun.delete(place);
     setText(parent, text('places.late'));
     setTimeout(() => here() === place && arrive(place), betweenAttempts);
+  } finally {
+    parent.removeAttribute('aria-busy');
   }
 }
 

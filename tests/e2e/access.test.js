@@ -18,7 +18,6 @@ const statesOf = (scanner, finished) => ({
   },
   calibrate: async (page) => {
     await goTo(page, 'Calibrate');
-    await page.locator('main:not([hidden]) h1').waitFor();
     await page.locator('#pose-no-picture').waitFor({state: 'hidden'});
   },
   settings: async (page) => {

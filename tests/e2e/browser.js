@@ -56,13 +56,14 @@ export async function openPage(browser, url, {screen = 'desktop', colorScheme = 
   return {page, faults};
 }
 
-/** Goes to a place of the page by its links. @param {'Scan' | 'Library' | 'Scanner' | 'Calibrate' | 'Settings'} place */
+/** Goes to a place of the page by its links, and waits until it is loaded. @param {'Scan' | 'Library' | 'Scanner' | 'Calibrate' | 'Settings'} place */
 export async function goTo(page, place) {
   const link = (name) => page.getByRole('navigation').getByRole('link', {name, exact: true});
   if (place === 'Calibrate' || place === 'Settings') {
     await link('Scanner').click();
   }
   await link(place).click();
+  await page.locator(`main[data-place=${place.toLowerCase()}]:not([hidden], [aria-busy], :has([aria-busy]))`).waitFor();
 }
 
 /** Opens the settings behind the presets. */

@@ -25,14 +25,19 @@ const awaitStyles = (piece) => Promise.all([...piece.querySelectorAll('link')].m
   return styles.get(address);
 }));
 
-/** Replaces an element's children by a fragment. @param {Element} parent @param {string} file */
-export async function fetchFragment(parent, file) {
+/**
+ * Replaces an element's children by a fragment.
+ * @param {Element} parent @param {string} file
+ * @param {Promise<unknown>} [handlers]  the module that attaches the fragment's handlers; nothing is shown before it is loaded,
+ *     or a click could be lost
+ */
+export async function fetchFragment(parent, file, handlers) {
   const response = await fetch(file, {cache: 'no-cache'});
   if (!response.ok) {
     throw new Error(`${response.status}`);
   }
   const parsed = new DOMParser().parseFromString(await response.text(), 'text/html');
-  await Promise.all([awaitStyles(parsed), awaitTexts()]);
+  await Promise.all([awaitStyles(parsed), awaitTexts(), handlers]);
   fillTexts(parsed);
   parent.replaceChildren(...parsed.head.childNodes, ...parsed.body.childNodes);
 }

@@ -42,7 +42,8 @@ async function arrive(place) {
   const parent = piece ? element(piece) : mainOf(place);
   parent.setAttribute('aria-busy', 'true');
   try {
-    const [module] = await Promise.all([load(), fetchFragment(parent, `${piece ?? place}.html`)]);
+    const loading = load();
+    const [module] = await Promise.all([loading, fetchFragment(parent, `${piece ?? place}.html`, loading)]);
     module.prepare();
   } catch {
     begun.delete(place);

@@ -56,6 +56,12 @@ export async function openPage(browser, url, {screen = 'desktop', colorScheme = 
   return {page, faults};
 }
 
+const laterPlaces = ['library', 'scanner', 'calibrate', 'settings'];
+
+/** Waits until a place of the page is loaded. @param {string} hash  of its address, without '#'; any other hash names a scan */
+export const awaitPlace = (page, hash) =>
+  page.locator(`main[data-place=${laterPlaces.includes(hash) ? hash : 'scan'}]:not([hidden], [aria-busy], :has([aria-busy]))`).waitFor();
+
 /** Goes to a place of the page by its links, and waits until it is loaded. @param {'Scan' | 'Library' | 'Scanner' | 'Calibrate' | 'Settings'} place */
 export async function goTo(page, place) {
   const link = (name) => page.getByRole('navigation').getByRole('link', {name, exact: true});
@@ -63,7 +69,7 @@ export async function goTo(page, place) {
     await link('Scanner').click();
   }
   await link(place).click();
-  await page.locator(`main[data-place=${place.toLowerCase()}]:not([hidden], [aria-busy], :has([aria-busy]))`).waitFor();
+  await awaitPlace(page, place.toLowerCase());
 }
 
 /** Opens the settings behind the presets. */

@@ -5,7 +5,7 @@ import {test} from 'node:test';
 
 import {texts} from '../../web/texts/en.js';
 import {badWords, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {awaitPlace, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
@@ -66,6 +66,7 @@ async function readStrangely(scanner, browser, finished) {
   for (const [place, reach] of Object.entries(places)) {
     await page.goto(`${scanner.url}#${place === 'scan' ? '' : place}`);
     await page.locator('#devices li').first().waitFor();
+    await awaitPlace(page, place);
     await reach();
     const english = (await lettersLeft(page)).filter((text) => /[a-z]{2}/i.test(text.replace(known, '')));
     assert.deepEqual(english, [], place);
@@ -104,6 +105,7 @@ async function readOnPhone(scanner, browser, finished, locale) {
   assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
   for (const place of ['', 'library', 'scanner', 'calibrate', 'settings', finished.id]) {
     await page.goto(`${scanner.url}#${place}`);
+    await awaitPlace(page, place);
     await page.locator(place === 'settings' ? '#cards' : place === finished.id ? '#download' : `main:not([hidden]) :is(h1, h2)`).first().waitFor();
     await page.evaluate(() => document.querySelectorAll('main:not([hidden]) details').forEach((details) => { details.open = true; }));
     assert.ok(await overflow(page) <= 0, `${place} is ${await overflow(page)} pixels too wide in ${locale}`);

@@ -1,4 +1,5 @@
 import assert from 'node:assert/strict';
+import {EventEmitter, once} from 'node:events';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
@@ -51,6 +52,26 @@ async function measurePlatform(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
+/** Nothing to click is shown before the module that would answer the click: the place is said to be loading. */
+async function arriveSlowly(scanner, browser) {
+  const {page, faults} = await openPage(browser, scanner.url);
+  const style = page.waitForResponse('**/assets/doctor-*.css').then((response) => response.finished());
+  const released = new EventEmitter();
+  await page.route('**/assets/scanner_page-*.js', async (route) => {
+    await once(released, 'now');
+    await route.continue();
+  });
+  await page.getByRole('navigation').getByRole('link', {name: 'Scanner', exact: true}).click();
+  await style;
+  await page.waitForTimeout(300);  // what is about to be shown too early, has the time for it
+  assert.ok(await page.locator('#doctor[aria-busy=true]').isVisible());
+  assert.ok(await button(page).isHidden());
+  released.emit('now');
+  await button(page).click();
+  await line(page, 'Sensor').waitFor();
+  assert.deepEqual(faults, []);
+}
+
 /** During a scan, checks that would disturb it are skipped. */
 async function checkDuringScan(scanner, browser) {
   const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 30, leaf_size_mm: 8});
@@ -81,6 +102,7 @@ test('the scanner is checked on the page', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t);
   await t.test('by the keyboard alone, with progress and focus kept', () => checkByKeyboard(scanner, browser));
+  await t.test('not before it can answer a click', () => arriveSlowly(scanner, browser));
   await t.test('diagnostics are a file to download', () => downloadDiagnostics(scanner, browser));
   await t.test('a scan is not disturbed', () => checkDuringScan(scanner, browser));
 });

@@ -1,5 +1,4 @@
 import assert from 'node:assert/strict';
-import {EventEmitter, once} from 'node:events';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
@@ -56,9 +55,10 @@ async function measurePlatform(scanner, browser) {
 async function arriveSlowly(scanner, browser) {
   const {page, faults} = await openPage(browser, scanner.url);
   const style = page.waitForResponse('**/assets/doctor-*.css').then((response) => response.finished());
-  const released = new EventEmitter();
+  let release = () => {};
+  const released = new Promise((done) => { release = () => done(null); });
   await page.route('**/assets/scanner_page-*.js', async (route) => {
-    await once(released, 'now');
+    await released;
     await route.continue();
   });
   await page.getByRole('navigation').getByRole('link', {name: 'Scanner', exact: true}).click();
@@ -66,7 +66,7 @@ async function arriveSlowly(scanner, browser) {
   await page.waitForTimeout(300);  // what is about to be shown too early, has the time for it
   assert.ok(await page.locator('#doctor[aria-busy=true]').isVisible());
   assert.ok(await button(page).isHidden());
-  released.emit('now');
+  release();
   await button(page).click();
   await line(page, 'Sensor').waitFor();
   assert.deepEqual(faults, []);

@@ -51,7 +51,7 @@ async function measurePlatform(scanner, browser) {
   assert.deepEqual(faults, []);
 }
 
-/** Nothing to click is shown before the module that would answer the click: the place is said to be loading. */
+/** A place says that it is being loaded, and shows no button, until the module with the handlers has come. */
 async function arriveSlowly(scanner, browser) {
   const {page, faults} = await openPage(browser, scanner.url);
   const style = page.waitForResponse('**/assets/doctor-*.css').then((response) => response.finished());
@@ -63,7 +63,7 @@ async function arriveSlowly(scanner, browser) {
   });
   await page.getByRole('navigation').getByRole('link', {name: 'Scanner', exact: true}).click();
   await style;
-  await page.waitForTimeout(300);  // what is about to be shown too early, has the time for it
+  await page.waitForTimeout(300);  // a button that is shown too early appears within this time
   assert.ok(await page.locator('#doctor[aria-busy=true]').isVisible());
   assert.ok(await button(page).isHidden());
   release();

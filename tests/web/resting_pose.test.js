@@ -50,11 +50,23 @@ test('an object rests over a dent, not in it', () => {
   assert.ok(degreesBetween(restingSide(box, new Vector3(11, 2, 3)), new Vector3(1, 0, 0)) < 2);
 });
 
-test('every point is on the inner side of what it rests on', () => {
+test('a box tips over from a bevel to the side beside it that is lower', () => {
+  const outline = [[-20, -30], [20, -30], [20, 26], [16, 30], [-20, 30]];
+  const box = outline.flatMap(([x, y]) => [-50, 50].map((z) => new Vector3(x, y, z)));
+  assert.ok(degreesBetween(restingSide(box, new Vector3(18, 28, 5)), new Vector3(1, 0, 0)) < 0.1);
+});
+
+test('it rests on three points that all others and its center of mass are above', () => {
   const box = roughBox({amplitude: 3});
+  const center = box.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(box.length);
   for (let i = 0; i < 50; ++i) {
     const normal = restingSide(box, new Vector3(20 * noise(3 * i), 30 * noise(3 * i + 1), 50 * noise(3 * i + 2)));
-    const heights = box.map((point) => point.dot(normal)).sort((a, b) => b - a);
-    assert.ok(heights[0] - heights[2] < 1e-3, `it rests on three points, not on ${heights.slice(0, 3)}`);
+    const byDepth = [...box].sort((a, b) => b.dot(normal) - a.dot(normal));
+    const depths = byDepth.map((point) => point.dot(normal));
+    assert.ok(depths[0] - depths[2] < 1e-3, `it rests on three points, not on ${depths.slice(0, 3)}`);
+    const corners = byDepth.slice(0, 3);
+    const isLeft = corners.map((corner, k) =>
+      corners[(k + 1) % 3].clone().sub(corner).cross(center.clone().sub(corner)).dot(normal) > 0);
+    assert.equal(new Set(isLeft).size, 1, `the center is beside ${corners.map((corner) => corner.toArray())}`);
   }
 });

@@ -100,15 +100,11 @@ async function followRestart() {
   }
   isFollowing = true;
   while (told.restart_needed.length > 0) {
-    try {
-      await showRestart();
-      await new Promise((done) => {
-        setTimeout(done, pauseUntilRestarted);
-      });
-      told = await api.configuration();
-    } catch {
-      // The scanner is restarting.
-    }
+    await showRestart().catch(() => {});  // it does not answer while it restarts
+    await new Promise((done) => {
+      setTimeout(done, pauseUntilRestarted);
+    });
+    told = await api.configuration().catch(() => told);
   }
   isFollowing = false;
   show(element('settings-restart'), false);

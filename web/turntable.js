@@ -34,6 +34,16 @@ export function cureText(set) {
 }
 
 let isFollowing = false;
+/** @type {TurntableState | null} */
+let known = null;
+let commands = 0;  // number sent plus number answered: a state requested before the latest of these events is out of date
+
+/** @param {boolean} isMoving  or is about to move */
+function disableMoves(isMoving) {
+  for (const button of element('turn-moves').querySelectorAll('button')) {
+    button.setAttribute('aria-disabled', String(isMoving));
+  }
+}
 
 /** @param {TurnFinding} finding @param {(set: Object) => Promise<boolean>} onSet */
 function itemOf(finding, onSet) {
@@ -60,9 +70,7 @@ function render(now, onSet) {
   const {isMoving, progress, summary, trouble, findings} = shownOf(now);
   setText(element('turn-summary'), summary);
   setText(element('turn-trouble'), trouble);
-  for (const button of element('turn-moves').querySelectorAll('button')) {
-    button.setAttribute('aria-disabled', String(isMoving));
-  }
+  disableMoves(isMoving);
   show(element('turn-stop'), isMoving);
   show(element('turn-done'), progress !== null);
   element('turn-done').value = progress ?? 0;
@@ -75,23 +83,34 @@ function showError(error) {
   setText(element('turn-trouble'), [detail || title, hint].map(sentence).join(' '));
 }
 
-/** Polls until it stands still. @param {TurntableState} now @param {(set: Object) => Promise<boolean>} onSet */
-async function follow(now, onSet) {
-  render(now, onSet);
+/**
+ * Shows the turntable's state, unless a command may have changed it since it was requested.
+ * @param {(set: Object) => Promise<boolean>} onSet
+ */
+async function poll(onSet) {
+  const before = commands;
+  try {
+    const now = await api.turntable();
+    if (commands === before) {
+      known = now;
+      render(now, onSet);
+    }
+  } catch (error) {
+    showError(error);
+  }
+}
+
+/** Polls until it stands still. @param {(set: Object) => Promise<boolean>} onSet */
+async function follow(onSet) {
   if (isFollowing) {
     return;
   }
   isFollowing = true;
-  while (now.state !== 'idle') {
+  while (known && known.state !== 'idle') {
     await new Promise((done) => {
       setTimeout(done, pause);
     });
-    try {
-      now = await api.turntable();
-      render(now, onSet);
-    } catch (error) {
-      showError(error);
-    }
+    await poll(onSet);
   }
   isFollowing = false;
 }
@@ -99,10 +118,16 @@ async function follow(now, onSet) {
 /** @param {(set: Object) => Promise<boolean>} onSet  called to store these turntable settings */
 export async function prepareTurntable(onSet) {
   const ask = async (/** @type {Object} */ what) => {
+    ++commands;
+    disableMoves(true);
     try {
-      follow(await api.moveTurntable(what), onSet);
+      known = await api.moveTurntable(what);
+      ++commands;
+      render(known, onSet);
+      follow(onSet);
     } catch (error) {
       showError(error);
+      disableMoves(known !== null && known.state !== 'idle');
     }
   };
   element('turn-moves').addEventListener('click', (/** @type {any} */ {target}) => {
@@ -112,9 +137,6 @@ export async function prepareTurntable(onSet) {
     }
   });
   element('turn-stop').addEventListener('click', () => ask({stop: true}));
-  try {
-    follow(await api.turntable(), onSet);
-  } catch (error) {
-    showError(error);
-  }
+  await poll(onSet);
+  follow(onSet);
 }

@@ -129,6 +129,47 @@ async function fits(scanner, browser, screen, colorScheme) {
   assert.deepEqual(faults, []);
 }
 
+/** Holds the answers of the turntable's interface with this method. @returns the release, after which all of them pass */
+async function holdAnswers(page, method) {
+  let release;
+  const released = new Promise((done) => {
+    release = done;
+  });
+  await page.route('**/api/v1/turntable', async (route) => {
+    if (route.request().method() !== method) {
+      return route.fallback();
+    }
+    const response = await route.fetch();
+    await released;
+    return route.fulfill({response});
+  });
+  return release;
+}
+
+test('the turntable gets one command at a time, however late the answers come', async (t) => {
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '20']});
+  const {page} = await openPage(await openBrowser(t, {hasWebGl: false}), scanner.url);
+  const answered = (method) => page.waitForResponse((response) => response.url().endsWith('/turntable') && response.request().method() === method);
+  const testButton = page.getByRole('button', {name: 'Test a turn'});
+  const isDisabled = async () => await testButton.getAttribute('aria-disabled') === 'true';
+
+  // The state before the first command is answered after it.
+  const answerState = await holdAnswers(page, 'GET');
+  await goTo(page, 'Settings');
+  await Promise.all([answered('POST'), testButton.click()]);
+  await page.getByText('Turning and looking').waitFor();
+  const [state] = await Promise.all([answered('GET'), answerState()]);
+  await state.finished();
+  assert.ok(await isDisabled(), 'its state of before the test is not shown');
+  await page.getByText('The turntable does what it is told.').waitFor();
+
+  const answerCommand = await holdAnswers(page, 'POST');
+  await page.getByRole('button', {name: '10 degrees counter-clockwise'}).click();
+  assert.ok(await isDisabled(), 'no other command while one is sent');
+  await Promise.all([answered('POST'), answerCommand()]);
+  await testButton.and(page.locator('[aria-disabled=false]')).waitFor();
+});
+
 test('a test of the turntable tells what is set wrongly, and sets it', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '20', '--simulate-gear', '1.5', '--simulate-reversed']});
   const browser = await openBrowser(t, {hasWebGl: false});

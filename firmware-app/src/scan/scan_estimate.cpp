@@ -30,7 +30,7 @@ double growth(double leaf, double measured_leaf) {
 }
 
 /// Returns the scans with the minimum `dissimilarity`, newest first, at most `max_looked_at`.
-/// @param unlikeness  of a scan to the one to estimate; 0 if they are alike
+/// @param dissimilarity  of a scan to the one to estimate; 0 if they are alike
 template <typename Dissimilarity>
 std::vector<const EarlierScan*> most_similar(const std::vector<const EarlierScan*>& scans,
                                              Dissimilarity dissimilarity) {

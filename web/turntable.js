@@ -36,7 +36,7 @@ export function cureText(set) {
 let isFollowing = false;
 /** @type {TurntableState | null} */
 let known = null;
-let commands = 0;  // number sent plus number answered: a state requested before the latest of these events is out of date
+let commands = 0;  // number sent: a state that was requested before the last of them is out of date
 
 /** @param {boolean} isMoving  or is about to move */
 function disableMoves(isMoving) {
@@ -84,7 +84,7 @@ function showError(error) {
 }
 
 /**
- * Shows the turntable's state, unless a command may have changed it since it was requested.
+ * Shows the turntable's state, unless a command was sent since it was requested.
  * @param {(set: Object) => Promise<boolean>} onSet
  */
 async function poll(onSet) {
@@ -122,7 +122,6 @@ export async function prepareTurntable(onSet) {
     disableMoves(true);
     try {
       known = await api.moveTurntable(what);
-      ++commands;
       render(known, onSet);
       follow(onSet);
     } catch (error) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "kinect/freenect_log.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
@@ -20,10 +21,6 @@ constexpr int packets = (frame_bytes + packet_bytes - 1) / packet_bytes;
 
 constexpr auto tilt_interval = std::chrono::seconds(1);
 constexpr timeval patience = {.tv_sec = 0, .tv_usec = 20'000};  // a stop request waits no longer
-
-/// Silences libfreenect, which writes its log to standard error. This driver reports faults as
-/// errors.
-void pass_over(freenect_context* /*context*/, freenect_loglevel /*level*/, const char* /*text*/) {}
 
 int bytes_of_packet(int number) {
   return number + 1 < packets ? packet_bytes : frame_bytes - number * packet_bytes;
@@ -55,7 +52,7 @@ Kinect::Context Kinect::make_context(int subdevices) {
   if (freenect_init(&context, nullptr) < 0) {
     throw Error(ErrorCode::sensor_missing, "kinect: this machine's USB cannot be used");
   }
-  freenect_set_log_callback(context, pass_over);
+  freenect_set_log_callback(context, discard_log);
   freenect_select_subdevices(context, static_cast<freenect_device_flags>(subdevices));
   return Context(context);
 }

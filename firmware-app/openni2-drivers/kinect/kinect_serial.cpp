@@ -4,14 +4,14 @@
 
 #include <memory>
 
+#include "kinect/freenect_log.hpp"
+
 namespace octurn {
 namespace {
 
 struct End {
   void operator()(freenect_context* context) const { freenect_shutdown(context); }
 };
-
-void pass_over(freenect_context* /*context*/, freenect_loglevel /*level*/, const char* /*text*/) {}
 
 /// The serial number from libfreenect; empty if it has only zeros, as on some models.
 std::string told_serial(int index) {
@@ -20,7 +20,7 @@ std::string told_serial(int index) {
     return {};
   }
   const std::unique_ptr<freenect_context, End> context(opened);
-  freenect_set_log_callback(context.get(), pass_over);
+  freenect_set_log_callback(context.get(), discard_log);
   freenect_device_attributes* first = nullptr;
   if (freenect_list_device_attributes(context.get(), &first) <= index) {
     freenect_free_device_attributes(first);

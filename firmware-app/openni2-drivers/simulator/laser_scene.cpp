@@ -15,25 +15,25 @@ namespace {
 constexpr float read_noise = 0.4F;
 constexpr float shot_noise = 0.03F;  // variance for each level of light
 constexpr float black_level = 1;     // subtracted by the camera
-constexpr double room = 4;           // of a white surface that faces the camera
+constexpr double room_light = 4;     // of a white surface that faces the camera
 constexpr double line = 210;         // peak of a laser's line on a white surface, head on
 
-constexpr double half_width = 0.0004;  // of a line, metres, to 1/e^2
-constexpr double farthest = 2.6;       // half widths at which the line's profile is cut off
-constexpr double bright_at = 0.33;     // metres from the laser at which the peak is `line`
+constexpr double line_half_width = 0.0004;  // of a line, metres, to 1/e^2
+constexpr double farthest = 2.6;            // half widths at which the line's profile is cut off
+constexpr double bright_at = 0.33;          // metres from the laser at which the peak is `line`
 // Variance of a pixel's area and of the lens's blur, square pixels.
 constexpr double blur = 1.0 / 12 + 0.6 * 0.6;
 constexpr float speckle = 0.25F;  // contrast
 constexpr float flicker = 0.02F;
 
-constexpr double check = 0.008;  // side of the object's checks, metres
+constexpr double check_side = 0.008;  // side of the object's checks, metres
 constexpr double light_check = 0.95;
 constexpr double dark_check = 0.61;
 constexpr double surroundings_albedo = 0.35;
 constexpr double saturation = 0.4;
 
 double check_albedo(const Eigen::Vector3d& point) {
-  const Eigen::Vector3d cells = (point / check).array().floor();
+  const Eigen::Vector3d cells = (point / check_side).array().floor();
   const auto sum = static_cast<long>(cells.sum());
   return sum % 2 == 0 ? light_check : dark_check;
 }
@@ -97,7 +97,7 @@ void LaserScene::render(double angle) {
     const auto at = static_cast<int>(pixel);
     if (const Patch seen = patch(at % width, at / width); seen.is_seen) {
       const double facing = -seen.normal.dot(seen.point.normalized());
-      room_light_[pixel] = static_cast<float>(room * seen.albedo * (0.65 + 0.35 * facing));
+      room_light_[pixel] = static_cast<float>(room_light * seen.albedo * (0.65 + 0.35 * facing));
       tints_[pixel] = seen.tint;
     }
   }
@@ -158,7 +158,7 @@ double LaserScene::line_light(std::size_t laser, const Patch& patch) const {
   };
   const double across = std::hypot(step(Eigen::Vector3d::UnitX() / lens.fx),
                                    step(Eigen::Vector3d::UnitY() / lens.fy));
-  const double variance = half_width * half_width / 4;
+  const double variance = line_half_width * line_half_width / 4;
   const double blurred = variance + blur * across * across;
   if (off * off > farthest * farthest * 4 * blurred || !fans_[laser].reaches(patch.point)) {
     return 0;
@@ -174,7 +174,8 @@ void LaserScene::add_line(std::size_t laser, std::vector<float>& light) const {
   const std::uint32_t place =
       mixed(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(angle_) >> 20U),
             static_cast<std::uint32_t>(laser));
-  const double reach = farthest * 2 * half_width;  // metres; twice the cut-off, to include blur
+  // In metres: twice the cut-off, to include blur.
+  const double reach = farthest * 2 * line_half_width;
   std::size_t pixel = 0;
   for (int v = 0; v < lens.height; ++v) {
     const std::uint32_t sequence = mixed(place, static_cast<std::uint32_t>(v));

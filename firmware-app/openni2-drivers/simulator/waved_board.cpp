@@ -23,7 +23,7 @@ constexpr double margin = 0.6;  // width of the white border, squares
 // Grey levels.
 constexpr double black = 28;
 constexpr double white = 205;
-constexpr double room = 92;
+constexpr double background = 92;
 constexpr double fall_off = 0.35;  // of the light, from the right to the left
 constexpr float noise_level = 1.2F;
 
@@ -109,7 +109,7 @@ double light_at(const Vector2d& met, const Vector2d& width) {
                         met.y() < rows + margin;
   const bool is_board = met.x() > 0 && met.y() > 0 && met.x() < columns && met.y() < rows;
   if (!is_board) {
-    return is_paper ? white : room;
+    return is_paper ? white : background;
   }
   const double dark = (1 + parity(met.x(), width.x()) * parity(met.y(), width.y())) / 2;
   return white + dark * (black - white);

@@ -7,11 +7,11 @@
 namespace octurn {
 namespace {
 
-using namespace std::chrono;
+using std::chrono::sys_seconds;
 
 // A client whose time is outside this range has no valid clock either.
-constexpr sys_seconds earliest = sys_days(year(2026) / January / 1);
-constexpr sys_seconds latest = sys_days(year(2100) / January / 1);
+constexpr sys_seconds earliest = std::chrono::sys_days(std::chrono::year(2026) / 1 / 1);
+constexpr sys_seconds latest = std::chrono::sys_days(std::chrono::year(2100) / 1 / 1);
 
 double to_number(sys_seconds time) { return static_cast<double>(time.time_since_epoch().count()); }
 
@@ -22,7 +22,8 @@ sys_seconds clock_from(const nlohmann::json& body) {
   const double seconds_since_1970 =
       keys.at("unix_s").number(to_number(earliest), to_number(latest));
   keys.refuse_unread();
-  return sys_seconds(seconds(static_cast<seconds::rep>(seconds_since_1970)));
+  return sys_seconds(
+      std::chrono::seconds(static_cast<std::chrono::seconds::rep>(seconds_since_1970)));
 }
 
 std::string to_text(const ControlRequest& request) {

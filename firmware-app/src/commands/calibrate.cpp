@@ -67,9 +67,9 @@ std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& so
 }
 
 /// @param told, solved  lasers before and after solving; empty for a depth sensor
-void write_report(const CalibrationReport& report, const std::vector<double>& angles,
-                  const std::vector<Laser>& told, const std::vector<Laser>& solved,
-                  const CalibrateArguments& arguments) {
+void write_calibration_report(const CalibrationReport& report, const std::vector<double>& angles,
+                              const std::vector<Laser>& told, const std::vector<Laser>& solved,
+                              const CalibrateArguments& arguments) {
   if (arguments.json) {
     const nlohmann::json object =
         solved.empty() ? to_json(report, angles) : to_json(report, angles, solved);
@@ -92,9 +92,9 @@ bool calibrate_from(const std::filesystem::path& folder, const CalibrateArgument
   if (arguments.apply && accepted) {
     write_solved_pose(folder, solution.solved);
   }
-  write_report(solution.report, stop_angles(scan),
-               scan.laser ? scan.laser->lasers : std::vector<Laser>(), solution.solved.lasers,
-               arguments);
+  write_calibration_report(solution.report, stop_angles(scan),
+                           scan.laser ? scan.laser->lasers : std::vector<Laser>(),
+                           solution.solved.lasers, arguments);
   return accepted;
 }
 
@@ -122,7 +122,8 @@ bool calibrate_rig(const CalibrateArguments& arguments) {
     throw Stopped{};
   }
   const TurnReport& report = *run.report;
-  write_report(report.calibration, report.angles, report.told, report.lasers, arguments);
+  write_calibration_report(report.calibration, report.angles, report.told, report.lasers,
+                           arguments);
   return report.calibration.accepted;
 }
 

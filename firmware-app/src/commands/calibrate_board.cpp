@@ -48,7 +48,7 @@ std::string to_text(const LensReport& report) {
   return text.str();
 }
 
-void write_report(const LensReport& report, const CalibrateBoardArguments& arguments) {
+void write_lens_report(const LensReport& report, const CalibrateBoardArguments& arguments) {
   write_standard_output(arguments.json ? to_json(report).dump() + "\n" : to_text(report));
 }
 
@@ -150,14 +150,14 @@ bool calibrate_board(const CalibrateBoardArguments& arguments) {
                   "Name the folder of pictures, or leave --keep out.");
     }
     const LensReport report = report_of_rig(arguments);
-    write_report(report, arguments);
+    write_lens_report(report, arguments);
     return report.accepted;
   }
   const LensReport report = report_from(arguments.folder);
   if (report.accepted && arguments.keep && !arguments.keep->empty()) {
     keep_lens(make_config(arguments.config).data, *arguments.keep, report);
   }
-  write_report(report, arguments);
+  write_lens_report(report, arguments);
   return report.accepted;
 }
 

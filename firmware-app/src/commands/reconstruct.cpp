@@ -35,7 +35,7 @@ struct Times {
   Clock::duration surface = {};    ///< extracting and writing it
 };
 
-double seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
+double to_seconds(Clock::duration time) { return std::chrono::duration<double>(time).count(); }
 
 /// Peak resident memory of this process, bytes. VmHWM, because ru_maxrss includes the parent's
 /// memory from before exec.
@@ -55,16 +55,16 @@ std::uint64_t peak_memory_bytes() {
 Json to_json(ModelSettings settings) {
   const Box& clip = settings.scan.clip;
   const bool is_clipped = clip.min != everywhere.min || clip.max != everywhere.max;
-  Json json;
+  Json object;
   for (const Field& field : fields(settings)) {
     if (field.method.empty() || field.method == to_string(settings.scan.method)) {
-      json[std::string(field.key)] = field.access.write();
+      object[std::string(field.key)] = field.access.write();
     }
   }
   if (!is_clipped) {
-    json["clip_mm"] = nullptr;
+    object["clip_mm"] = nullptr;
   }
-  return json;
+  return object;
 }
 
 /// One line for people, if the model is not good.
@@ -83,31 +83,31 @@ Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
   };
-  Json json{{"leaves", report.leaves},
-            {"triangles", report.triangles},
-            {"bytes", report.bytes},
-            {"watertight", report.watertight},
-            {"volume_cm3", cm3_from_m3(report.volume)},
-            {"size_mm", mm(report.size)}};
+  Json object{{"leaves", report.leaves},
+              {"triangles", report.triangles},
+              {"bytes", report.bytes},
+              {"watertight", report.watertight},
+              {"volume_cm3", cm3_from_m3(report.volume)},
+              {"size_mm", mm(report.size)}};
   if (settings.scan.method == Method::solid && !quality) {
-    json["shell_thickness_mm"] =
+    object["shell_thickness_mm"] =
         mm_from_metres(shell_thickness(reconstruct_options(settings.scan, settings.limits)));
   } else if (settings.scan.method == Method::solid) {
-    json["parts"] = report.parts;
-    json["dropped_parts"] = report.dropped.count;
-    json["dropped_volume_cm3"] = cm3_from_m3(report.dropped.volume);
-    json["seen_share"] = 1 - report.filled_share;
-    json["filled_share"] = report.filled_share;
+    object["parts"] = report.parts;
+    object["dropped_parts"] = report.dropped.count;
+    object["dropped_volume_cm3"] = cm3_from_m3(report.dropped.volume);
+    object["seen_share"] = 1 - report.filled_share;
+    object["filled_share"] = report.filled_share;
   }
   if (quality) {
-    json["quality"] = to_json(*quality);
+    object["quality"] = to_json(*quality);
   }
-  json["peak_memory_bytes"] = peak_memory_bytes();
-  json["seconds"] = {{"snapshots", seconds(times.snapshots)},
-                     {"surface", seconds(times.surface)},
-                     {"total", seconds(times.snapshots + times.surface)}};
-  json["settings"] = to_json(settings);
-  return json;
+  object["peak_memory_bytes"] = peak_memory_bytes();
+  object["seconds"] = {{"snapshots", to_seconds(times.snapshots)},
+                       {"surface", to_seconds(times.surface)},
+                       {"total", to_seconds(times.snapshots + times.surface)}};
+  object["settings"] = to_json(settings);
+  return object;
 }
 
 /// Destination of the model: standard output, or a file that appears whole or not at all.

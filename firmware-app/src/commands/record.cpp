@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int usual_frames = 10;  // at a stop
+constexpr int usual_stop_frames = 10;
 
 /// The next frame whose exposure ended after the platform had settled.
 TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
@@ -46,7 +46,7 @@ void record(const RecordArguments& arguments) {
   Turntable& turntable = rig.turntable();
   const int steps = turntable.steps_per_turn();
   RecordingWriter writer(arguments.output, sensor.name(), sensor.serial(), sensor.intrinsics());
-  const int frames = arguments.frames.value_or(usual_frames);
+  const int frames = arguments.frames.value_or(usual_stop_frames);
   ProgressBar bar;
   std::optional<Clock::time_point> begin;
   int done = 0;

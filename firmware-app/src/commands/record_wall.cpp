@@ -8,7 +8,7 @@
 namespace octurn {
 namespace {
 
-constexpr int usual_frames = 25;  // more frames do not lower the noise of the map
+constexpr int usual_wall_frames = 25;  // more frames do not lower the noise of the map
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void record_wall(const RecordArguments& arguments) {
             .sensor_serial = sensor.serial(),
             .intrinsics = sensor.intrinsics(),
             .frames = {}};
-  const int frames = arguments.frames.value_or(usual_frames);
+  const int frames = arguments.frames.value_or(usual_wall_frames);
   ProgressBar bar;
   for (int frame = 0; frame < frames; ++frame) {
     bar.show(frame, frames, "recording");

@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{16} << 10U;  // of each system file
-constexpr std::size_t max_scans_bytes = std::size_t{1} << 20U;  // of scans.json
+constexpr std::size_t max_system_file_bytes = std::size_t{16} << 10U;  // of each system file
+constexpr std::size_t max_scans_bytes = std::size_t{1} << 20U;         // of scans.json
 
 // None of these identifies a machine: no serial number, address or host name.
 constexpr std::array system_files{
@@ -85,8 +85,8 @@ json versions(const fs::path& root) {
 }
 
 /// Appends the beginning of a file under a headline, as `head` does for several files.
-void append(std::string& text, const fs::path& root, const fs::path& file) {
-  std::string content(max_file_bytes, '\0');
+void append_file(std::string& text, const fs::path& root, const fs::path& file) {
+  std::string content(max_system_file_bytes, '\0');
   std::ifstream stream(root / file, std::ios::binary);
   stream.read(content.data(), static_cast<std::streamsize>(content.size()));
   content.resize(static_cast<std::size_t>(stream.gcount()));
@@ -100,11 +100,11 @@ void append(std::string& text, const fs::path& root, const fs::path& file) {
 std::string system_text(const fs::path& root) {
   std::string text;
   for (const char* const file : system_files) {
-    append(text, root, file);
+    append_file(text, root, file);
   }
   for (const auto& [folder, name] : device_files) {
     for (const fs::path& device : entries(root / folder)) {
-      append(text, root, fs::path(folder) / device.filename() / name);
+      append_file(text, root, fs::path(folder) / device.filename() / name);
     }
   }
   return text;

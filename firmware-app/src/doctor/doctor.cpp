@@ -16,7 +16,7 @@ namespace octurn {
 namespace {
 
 // Number and interval of the pulses in half a second at full speed.
-constexpr int wake_ups = 400;
+constexpr int wake_up_count = 400;
 constexpr std::chrono::microseconds wake_up_interval(1250);
 
 /// Whether the URI names a USB device, and neither a simulated sensor nor a file.
@@ -45,7 +45,7 @@ std::vector<NamedLine> lines_of_rig(const RigOptions& rig) {
 }
 
 std::vector<Finding> check_turntable(const DoctorInput& input) {
-  const Lateness lateness = measure_wake_ups(wake_ups, wake_up_interval);
+  const Lateness lateness = measure_wake_ups(wake_up_count, wake_up_interval);
   if (!input.rig.stepper) {
     return {check_simulated_turntable(), check_wake_ups(lateness, Lateness::value_type::max())};
   }

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Check settings{"settings", "Settings"};
+constexpr Check settings_check{"settings", "Settings"};
 constexpr Check disk{"disk", "Disk space"};
 constexpr Check memory{"memory", "Memory"};
 constexpr Check temperature{"temperature", "CPU temperature"};
@@ -90,10 +90,10 @@ std::optional<double> meminfo(const fs::path& root, const std::string& key) {
 
 Finding check_settings(const std::string& trouble) {
   return trouble.empty()
-             ? settings.ok("as they were stored")
-             : settings.warning(trouble + "; the last ones that can be used are in force",
-                                "Look through the page's settings and save them again.",
-                                Action::open_settings);
+             ? settings_check.ok("as they were stored")
+             : settings_check.warning(trouble + "; the last ones that can be used are in force",
+                                      "Look through the page's settings and save them again.",
+                                      Action::open_settings);
 }
 
 Finding check_disk(std::uint64_t free, const ScanBytes& scan) {

@@ -10,13 +10,13 @@
 namespace octurn {
 namespace {
 
-constexpr Check sensor{"sensor", "Sensor"};
+constexpr Check sensor_check{"sensor", "Sensor"};
 constexpr Check frame_rate{"frame-rate", "Frame rate"};
 constexpr Check lost_frames{"lost-frames", "Lost frames"};
 constexpr Check tilt_check{"tilt", "Tilt of the sensor"};
 
 constexpr const char* measure_it = "Measure where the sensor stands with a turn of any object.";
-constexpr const char* place_it =
+constexpr const char* turn_it_back =
     "Turn the sensor back to where it stood, or set its pose until the ring in the picture lies on "
     "the platform.";
 
@@ -84,7 +84,7 @@ Finding check_tilt(const std::optional<Tilt>& tilt, const Eigen::Isometry3d& pla
   const auto degrees = [](double angle) { return rounded(degrees_from_radians(angle), 1) + "°"; };
   const std::string measured = "pitch " + degrees(tilt->pitch) + ", roll " + degrees(tilt->roll) +
                                "; calibrated at " + degrees(pitch) + ", " + degrees(roll);
-  return off > large_turn   ? tilt_check.fault(measured, place_it, Action::set_pose)
+  return off > large_turn   ? tilt_check.fault(measured, turn_it_back, Action::set_pose)
          : off > small_turn ? tilt_check.warning(measured, measure_it, Action::measure_turn)
                             : tilt_check.ok(measured);
 }
@@ -93,8 +93,8 @@ std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
                                   const Eigen::Isometry3d& platform_from_sensor) {
   if (const auto* failure = std::get_if<Failure>(&reading)) {
     const bool busy = failure->code == ErrorCode::busy;
-    std::vector<Finding> findings{busy ? sensor.unknown(failure->detail, failure->hint)
-                                       : sensor.fault(failure->detail, failure->hint)};
+    std::vector<Finding> findings{busy ? sensor_check.unknown(failure->detail, failure->hint)
+                                       : sensor_check.fault(failure->detail, failure->hint)};
     for (const Check& check :
          {frame_rate, lost_frames, platform_check, depth_noise_check, tilt_check}) {
       findings.push_back(check.unknown(busy ? "not measured" : "no sensor to measure"));
@@ -107,12 +107,12 @@ std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
     for (const std::string& laser : camera->lasers) {
       seen += (laser == camera->lasers.front() ? " " : " and ") + laser;
     }
-    return {sensor.ok(seen)};
+    return {sensor_check.ok(seen)};
   }
   const auto& sample = std::get<SensorSample>(reading);
   const PlatformView view = measure_platform(sample, clip, platform_from_sensor);
-  return {sensor.ok(sample.name + ", " + std::to_string(sample.intrinsics.width) + " x " +
-                    std::to_string(sample.intrinsics.height)),
+  return {sensor_check.ok(sample.name + ", " + std::to_string(sample.intrinsics.width) + " x " +
+                          std::to_string(sample.intrinsics.height)),
           check_frame_rate(sample),
           check_lost_frames(sample),
           check_platform(view),

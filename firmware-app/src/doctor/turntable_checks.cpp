@@ -10,7 +10,7 @@ constexpr Check gpio_lines{"gpio-lines", "GPIO lines"};
 constexpr Check wake_ups{"wake-ups", "Pulses in time"};
 constexpr Check turntable{"turntable", "Turntable"};
 
-void append(std::string& list, const std::string& item) {
+void append_item(std::string& list, const std::string& item) {
   list += (list.empty() ? "" : ", ") + item;
 }
 
@@ -42,13 +42,13 @@ Finding check_gpio_lines(const HeaderState& header, LineOwner owner) {
   std::string missing;
   for (const LineUse& line : use->lines) {
     if (!line.exists) {
-      append(missing, line.name);
+      append_item(missing, line.name);
     } else if (!line.user) {
-      append(free, line.name);
+      append_item(free, line.name);
     } else if (*line.user == gpio_user && owner == LineOwner::this_program) {
-      append(held, line.name);
+      append_item(held, line.name);
     } else {
-      append(used, line.name + " in use by " + *line.user);
+      append_item(used, line.name + " in use by " + *line.user);
     }
   }
   if (!missing.empty()) {

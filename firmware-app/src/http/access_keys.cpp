@@ -20,11 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{64} * 1024;
+constexpr std::size_t max_keys_bytes = std::size_t{64} * 1024;
 constexpr std::size_t id_bytes = 4;
-
-// 128 bits: beyond any number of guesses.
-constexpr std::size_t secret_bytes = 16;
 
 // A key is "octurn", its id and its secret, with dashes between them.
 constexpr std::string_view key_begin = "octurn-";
@@ -68,7 +65,7 @@ AccessKey to_key(const JsonValue& value) {
 
 std::vector<AccessKey> read_keys(const std::filesystem::path& file) try {
   std::vector<AccessKey> keys;
-  if (const auto text = read_regular_file(file, max_file_bytes)) {
+  if (const auto text = read_regular_file(file, max_keys_bytes)) {
     const json document = parse_json(*text, ErrorCode::bad_settings, "the keys");
     JsonObject object(document, ErrorCode::bad_settings, "");
     for (const JsonValue& value : object.at("keys").elements()) {

@@ -61,7 +61,7 @@ RangeRequest parse_range(std::string_view header, std::uint64_t size) {
 
 /// An entity tag of inode, size and time. It differs between versions of a file, as each version is
 /// a new file that is renamed over the old one.
-std::string to_entity_tag(const struct ::stat& info) {
+std::string to_file_tag(const struct ::stat& info) {
   std::array<char, 80> text{};
   const int length = std::snprintf(
       text.data(), text.size(), "\"%jx-%jx-%jx.%lx\"", static_cast<std::uintmax_t>(info.st_ino),
@@ -107,7 +107,7 @@ Response file_response(const Request& request, const std::filesystem::path& file
                 "Start a new scan, or rebuild it with octurn reconstruct.");
   }
   const auto size = static_cast<std::uint64_t>(info.st_size);
-  const std::string tag = to_entity_tag(info);
+  const std::string tag = to_file_tag(info);
   Headers headers{{"ETag", tag}, {"Accept-Ranges", "bytes"}, {"Cache-Control", "no-cache"}};
   if (const auto wanted = request.header("If-Match"); wanted && !matches_strongly(*wanted, tag)) {
     throw Error(ErrorCode::changed, "the model was replaced since it was first read",

@@ -21,6 +21,23 @@
 #include "octurn/error.hpp"
 
 namespace octurn {
+
+/// State that civetweb's callbacks use. A class has it as a member, so it is not in the anonymous
+/// namespace.
+struct HttpService {
+  HttpServer::Answer answer = {};
+  std::optional<Login> login = {};  // if the page has a password
+  const AccessKeys* keys = nullptr;
+  HttpServer::Gate gate = {};
+  std::latch started{1};  // released once `guard` exists
+  std::optional<ConnectionGuard> guard = {};
+
+  ConnectionGuard& wait_for_guard() {
+    started.wait();
+    return *guard;
+  }
+};
+
 namespace {
 
 /// civetweb occupies a thread for each open connection, with a stack of 100 KiB in Debian's build
@@ -38,29 +55,14 @@ constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
     {"access_control_allow_methods", ""},
 }};
 
-/// State that civetweb's callbacks use.
-struct Service {
-  HttpServer::Answer answer = {};
-  std::optional<Login> login = {};  // if the page has a password
-  const AccessKeys* keys = nullptr;
-  HttpServer::Gate gate = {};
-  std::latch started{1};  // released once `guard` exists
-  std::optional<ConnectionGuard> guard = {};
-
-  ConnectionGuard& wait_for_guard() {
-    started.wait();
-    return *guard;
-  }
-};
-
-Service& to_service(const mg_connection* connection) {
-  return *static_cast<Service*>(mg_get_user_data(mg_get_context(connection)));
+HttpService& to_service(const mg_connection* connection) {
+  return *static_cast<HttpService*>(mg_get_user_data(mg_get_context(connection)));
 }
 
 /// The gate's answer, or the refusal of missing or wrong credentials; nothing if the request is
 /// admitted.
 std::optional<Response> refusal(mg_connection& connection, const Request& request,
-                                Service& service) {
+                                HttpService& service) {
   if (auto answer = service.gate ? service.gate(request) : std::nullopt) {
     return answer;
   }
@@ -102,7 +104,7 @@ int take_up(const mg_connection* connection, void** /*data*/) noexcept {
 }
 
 int answer_request(mg_connection* connection) noexcept try {
-  Service& service = to_service(connection);
+  HttpService& service = to_service(connection);
   Exchange exchange(*connection, service.wait_for_guard());
   Request request = exchange.head();
   std::optional<Response> refused = refusal(*connection, request, service);
@@ -141,7 +143,7 @@ std::string reaching(const std::string& address) {
 }
 
 mg_context* start_civetweb(const std::string& listening, const HttpOptions& options,
-                           Service& service) {
+                           HttpService& service) {
   const std::string request_timeout = std::to_string(options.request_timeout.count());
   const std::string num_threads = std::to_string(threads);
   const std::string idle = std::to_string(idle_seconds * 1000);
@@ -177,7 +179,7 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
 }  // namespace
 
 struct HttpServer::Server {
-  Service service = {};
+  HttpService service = {};
   std::string address = {};  // at which this machine reaches the server
   mg_context* context = nullptr;
 };
@@ -190,7 +192,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
   }
   const bool v6 = options.address.find(':') != std::string::npos;
   const std::string address = v6 ? "[" + options.address + "]" : options.address;
-  Service& service = server_->service;
+  HttpService& service = server_->service;
   service.answer = std::move(answer);
   service.keys = keys;
   service.gate = std::move(gate);

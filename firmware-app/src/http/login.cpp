@@ -18,7 +18,6 @@ namespace {
 // A nonce is its period and its number, 16 hexadecimal digits each, and their signature.
 constexpr std::size_t number_digits = 16;
 constexpr std::size_t signature_digits = 32;
-constexpr std::size_t secret_bytes = 16;
 
 // Maximum number of proofs remembered for the nonces of one period. The page sends about one a
 // second, so that only an attacker reaches it.

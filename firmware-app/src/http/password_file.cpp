@@ -11,7 +11,7 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t hash_digits = 32;
-constexpr std::size_t max_file_bytes = 4096;  // this program writes a single line
+constexpr std::size_t max_password_bytes = 4096;  // this program writes a single line
 
 std::string line_begin() { return std::string(page_user) + ":" + page_realm + ":"; }
 
@@ -34,7 +34,7 @@ void write_password_file(const std::filesystem::path& file, const std::string& p
 
 std::optional<std::string> read_password_hash(const std::filesystem::path& file) try {
   const std::string begin = line_begin();
-  std::istringstream lines(read_regular_file(file, max_file_bytes).value_or(""));
+  std::istringstream lines(read_regular_file(file, max_password_bytes).value_or(""));
   for (std::string line; std::getline(lines, line);) {
     if (line.ends_with('\r')) {
       line.pop_back();

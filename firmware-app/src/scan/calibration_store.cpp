@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{1} << 20U;  // 100 times the usual size
+constexpr std::size_t max_records_bytes = std::size_t{1} << 20U;  // 100 times the usual size
 
 fs::path file_in(const fs::path& data, SensorKind kind) {
   return data / (kind == SensorKind::depth ? "calibration.json" : "laser-calibration.json");
@@ -44,7 +44,7 @@ std::vector<PoseRecord> records_from(const json& document) {
 
 /// Returns no records if the file does not exist. @throws Error "platform-malformed", "read-failed"
 std::vector<PoseRecord> read_records(const fs::path& file) {
-  const auto text = read_regular_file(file, max_file_bytes);
+  const auto text = read_regular_file(file, max_records_bytes);
   try {
     return text ? records_from(parse_json(*text, ErrorCode::platform_malformed, "it"))
                 : std::vector<PoseRecord>{};

@@ -38,7 +38,7 @@ void add_frame(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
   }
 }
 
-Slice make_slice(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor) {
+Slice slice_of_frames(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor) {
   Slice slice;
   for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
     add_frame(slice, turn.read(stop), turn.intrinsics,
@@ -120,9 +120,9 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings, const Senso
   try {
     TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
     report.replaces_told = report.calibration.accepted && !report.calibration.confirms_told();
-    report.before = make_slice(turn, turn.platform_from_sensor);
+    report.before = slice_of_frames(turn, turn.platform_from_sensor);
     if (report.calibration.accepted) {
-      report.after = make_slice(turn, report.calibration.platform_from_sensor);
+      report.after = slice_of_frames(turn, report.calibration.platform_from_sensor);
     }
     return report;
   } catch (const Stopped&) {

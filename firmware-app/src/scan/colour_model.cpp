@@ -17,9 +17,9 @@ namespace {
 constexpr std::uint64_t bytes_per_triangle = 60;
 // A depth image, a decoded picture, and the bytes of its file.
 constexpr std::uint64_t bytes_per_pixel = 12;
-constexpr std::uint64_t max_file_bytes = std::uint64_t{128} << 20U;
+constexpr std::uint64_t max_colours_bytes = std::uint64_t{128} << 20U;
 
-void expect_room(const FacetFile& facets, const Intrinsics& lens, std::size_t memory_limit) {
+void expect_memory(const FacetFile& facets, const Intrinsics& lens, std::size_t memory_limit) {
   const auto pixels = static_cast<std::uint64_t>(lens.width) * static_cast<unsigned>(lens.height);
   const std::uint64_t needed = bytes_per_triangle * facets.count() + bytes_per_pixel * pixels;
   if (memory_limit > 0 && needed > memory_limit) {
@@ -50,14 +50,14 @@ void colour_model(const std::filesystem::path& model, const ModelScan& of, std::
                   const std::stop_token& stop) {
   expect_pictures(of.scan);
   const FacetFile facets(model);
-  expect_room(facets, of.scan.intrinsics, memory_limit);
+  expect_memory(facets, of.scan.intrinsics, memory_limit);
   const std::vector<Rgb> colours = model_colours(facets, of.folder, of.scan, stop);
   const auto bytes = std::as_bytes(std::span(colours));
   write_file(colours_file(model), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::vector<Rgb> read_colours(const std::filesystem::path& model) {
-  const auto text = read_regular_file(colours_file(model), max_file_bytes);
+  const auto text = read_regular_file(colours_file(model), max_colours_bytes);
   if (!text || text->size() % sizeof(Rgb) != 0) {
     throw Error(ErrorCode::read_failed, "the colours of this model are missing, or not whole",
                 "Download it again.");

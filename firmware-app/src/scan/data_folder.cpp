@@ -9,6 +9,7 @@
 
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
+#include "settings/field.hpp"
 
 namespace octurn {
 namespace {
@@ -35,8 +36,6 @@ bool is_unfinished_json(std::string_view name) {
          name.substr(numbers + ending.size()).find_first_not_of("0123456789-") == name.npos;
 }
 
-std::string mb_text(double mb) { return std::to_string(static_cast<std::uint64_t>(mb)) + " MB"; }
-
 }  // namespace
 
 void throw_data_error(const fs::path& path, const std::string& doing, std::error_code reason) {
@@ -62,8 +61,8 @@ void expect_room(const fs::path& data, std::uint64_t available, std::uint64_t ne
       return std::floor(mb_from_bytes(static_cast<double>(bytes)));
     };
     throw Error(ErrorCode::disk_full,
-                mb_text(mb(available)) + " free in " + data.string() + ", " + what + " needs " +
-                    mb_text(mb(needed)),
+                whole_mb_text(available) + " free in " + data.string() + ", " + what + " needs " +
+                    whole_mb_text(needed),
                 "Delete scans that are no longer needed.",
                 {{"free_mb", mb(available)}, {"needed_mb", mb(needed)}, {"path", data.string()}});
   }

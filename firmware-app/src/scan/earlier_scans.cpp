@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_looked_at = 20;
+constexpr std::size_t max_earlier_scans = 20;
 
 std::uint64_t bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -29,7 +29,7 @@ std::uint64_t bytes_in(const fs::path& folder) {
 std::vector<EarlierScan> earlier_scans(const ScanStore& store) {
   std::vector<EarlierScan> scans;
   for (Job& job : store.list()) {
-    if (job.state == JobState::finished && scans.size() < max_looked_at) {
+    if (job.state == JobState::finished && scans.size() < max_earlier_scans) {
       const std::uint64_t bytes = bytes_in(store.folder(job.id) / "snapshots");
       scans.push_back({.job = std::move(job), .snapshot_bytes = bytes});
     }

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* build_file = "build.json";
 constexpr const char* failure_file = "failure.json";
 constexpr const char* progress_file = "progress.json";
-constexpr std::size_t max_file_bytes = std::size_t{64} << 10U;
+constexpr std::size_t max_exchanged_file_bytes = std::size_t{64} << 10U;
 constexpr auto progress_interval = std::chrono::seconds(1);  // minimum time between two writes
 
 /// Writes a build's progress for the process that waits for it. Thread-safe.
@@ -54,7 +54,7 @@ class ProgressFile {
 /// Reads a JSON file; nullopt if it is missing or unreadable.
 std::optional<json> read_json(const fs::path& file) {
   try {
-    if (const auto text = read_regular_file(file, max_file_bytes)) {
+    if (const auto text = read_regular_file(file, max_exchanged_file_bytes)) {
       return parse_json(*text, ErrorCode::job_malformed, file.filename().string());
     }
   } catch (const Error& error) {

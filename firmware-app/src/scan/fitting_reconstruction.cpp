@@ -13,10 +13,6 @@ namespace {
 
 std::string mm_text(double metres) { return plain_text(rounded_mm(metres)) + " mm"; }
 
-std::string mb_text(std::size_t bytes) {
-  return std::to_string(static_cast<long>(mb_from_bytes(static_cast<double>(bytes)))) + " MB";
-}
-
 }  // namespace
 
 FittingReconstruction::FittingReconstruction(const ReconstructOptions& options)
@@ -29,9 +25,9 @@ FittingReconstruction::FittingReconstruction(const ReconstructOptions& options)
   const MemoryNeed need = expected_memory(options);
   if (need.fitting_leaf_size > options.leaf_size) {
     log::warning("scan", "leaves of " + mm_text(options.leaf_size) + " take about " +
-                             mb_text(need.bytes) + ", of " + mb_text(options.memory_limit) +
-                             " that are allowed: those of " + mm_text(need.fitting_leaf_size) +
-                             " would fit");
+                             whole_mb_text(need.bytes) + ", of " +
+                             whole_mb_text(options.memory_limit) + " that are allowed: those of " +
+                             mm_text(need.fitting_leaf_size) + " would fit");
   }
 }
 
@@ -63,7 +59,7 @@ void FittingReconstruction::add_coarser_reason(Quality& quality) const {
 
 std::string FittingReconstruction::detail() const {
   return "leaves of " + mm_text(asked_leaf_size_) + " did not fit into " +
-         mb_text(options_.memory_limit) + ": the model has leaves of " +
+         whole_mb_text(options_.memory_limit) + ": the model has leaves of " +
          mm_text(options_.leaf_size);
 }
 

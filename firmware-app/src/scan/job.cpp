@@ -66,6 +66,10 @@ Failure interruption() {
           .hint = "Resume it if neither the object nor the platform was moved since."};
 }
 
+bool has_pose(const Build& build, const std::string& pose) {
+  return std::ranges::find(build.poses, pose) != build.poses.end();
+}
+
 const Build* find_build(const Job& job, int number) {
   const auto found = std::ranges::find(job.builds.all, number, &Build::number);
   return found == job.builds.all.end() ? nullptr : &*found;

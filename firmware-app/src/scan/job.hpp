@@ -18,6 +18,8 @@
 
 namespace octurn {
 
+using Seconds = std::chrono::duration<double>;
+
 enum class JobState {
   running,
   paused,  ///< by a person, or because a device failed for too long
@@ -55,7 +57,7 @@ Failure interruption();
 /// A finished model. `build_time` counts from the last stored snapshot.
 struct Model {
   ModelReport report = {};
-  std::chrono::duration<double> build_time = {};
+  Seconds build_time = {};
   std::optional<Quality> quality = {};  ///< nullopt: made by an earlier version
 };
 
@@ -82,6 +84,9 @@ struct Build {
   int replaced = 0;  ///< if it merges poses: number of the build chosen before it
 };
 
+/// Whether a build merges the scan of another pose. @param pose  id of that scan
+bool has_pose(const Build& build, const std::string& pose);
+
 /// Result of registering a turn to the earlier ones.
 struct PoseRegistration {
   bool accepted = false;
@@ -101,10 +106,10 @@ struct PoseOf {
 /// When a scan was begun, and how long it takes.
 struct JobTimes {
   std::string created = {};  ///< UTC, as in ISO 8601
-  std::chrono::duration<double> elapsed = {};
-  std::optional<std::chrono::duration<double>> left = {};  ///< estimated remaining time
+  Seconds elapsed = {};
+  std::optional<Seconds> left = {};  ///< estimated remaining time
   /// While a device fails at a stop of a running scan: time until the scan pauses.
-  std::optional<std::chrono::duration<double>> until_pause = {};
+  std::optional<Seconds> until_pause = {};
   int late_pulses = 0;  ///< motor pulses that came late, and slowed the turn
 };
 

@@ -16,9 +16,6 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
-using Seconds = std::chrono::duration<double>;
-
-constexpr double most = std::numeric_limits<double>::max();
 
 /// @param named  maps a name to its value
 template <typename Value>
@@ -90,7 +87,7 @@ Job to_job(const json& object) {
           .phase = parse_name(keys.at("phase"), phase_named),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, max_int)),
           .times = {.created = keys.at("created").text(),
-                    .elapsed = Seconds(keys.at("seconds_elapsed").number(0, most)),
+                    .elapsed = Seconds(keys.at("seconds_elapsed").number(0, unlimited)),
                     .late_pulses = static_cast<int>(number_or_zero(keys, "late_pulses", max_int))},
           .settings = stored_settings_from(keys.at("settings")),
           .failure = failure_from(keys.value("error")),

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <string_view>
 
 #include "octurn/json_object.hpp"
 
 namespace octurn {
+
+/// The limit of numbers that have none.
+inline constexpr double unlimited = std::numeric_limits<double>::max();
 
 /// Rounds to three decimals, the precision of seconds, millimetres and fractions in JSON.
 double to_thousandths(double value);

@@ -5,11 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "scan/laser_settings.hpp"
+
 namespace octurn {
 namespace {
 
-constexpr double max_place = 10;           // metres, as in settings
-constexpr double normal_tolerance = 1e-4;  // rounding of decimals in a file
+constexpr double stored_normal_tolerance = 1e-4;  // rounding of decimals in a file
 
 }  // namespace
 
@@ -28,10 +29,12 @@ std::vector<Laser> to_planes(const JsonValue& list) {
     JsonObject keys(value);
     const JsonValue plane = keys.at("plane_m");
     const std::vector<JsonValue> numbers = plane.elements(4);
-    const auto number = [&](std::size_t i) { return numbers[i].number(-max_place, max_place); };
+    const auto number = [&](std::size_t i) {
+      return numbers[i].number(-max_laser_coordinate, max_laser_coordinate);
+    };
     Laser laser{.name = keys.at("name").text(), .normal = {number(0), number(1), number(2)}};
     laser.distance = number(3);
-    if (std::abs(laser.normal.norm() - 1) > normal_tolerance) {
+    if (std::abs(laser.normal.norm() - 1) > stored_normal_tolerance) {
       plane.refuse("a plane nx, ny, nz, d with a normal of length 1");
     }
     lasers.push_back(std::move(laser));

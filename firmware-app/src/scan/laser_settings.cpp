@@ -14,29 +14,27 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_side = 8192;        // pixels, as in scan folders
-constexpr double max_focal = 100000;  // pixels
-constexpr double max_distortion = 100;
-constexpr double max_place = 10;              // metres
-constexpr double normal_tolerance = 1e-3;     // rounding of typed decimals
-constexpr double max_source_distance = 0.05;  // metres from a laser's source to its plane
+constexpr double typed_normal_tolerance = 1e-3;  // rounding of typed decimals
+constexpr double max_source_distance = 0.05;     // metres from a laser's source to its plane
 
 /// Lines that a Raspberry Pi pulls up while it boots.
 constexpr std::array<std::string_view, 9> pulled_up = {"GPIO0", "GPIO1", "GPIO2", "GPIO3", "GPIO4",
                                                        "GPIO5", "GPIO6", "GPIO7", "GPIO8"};
 
 json numbers_schema(int count) {
-  return {{"type", "array"},
-          {"items", {{"type", "number"}, {"minimum", -max_place}, {"maximum", max_place}}},
-          {"minItems", count},
-          {"maxItems", count}};
+  return {
+      {"type", "array"},
+      {"items",
+       {{"type", "number"}, {"minimum", -max_laser_coordinate}, {"maximum", max_laser_coordinate}}},
+      {"minItems", count},
+      {"maxItems", count}};
 }
 
 template <std::size_t count>
 std::array<double, count> numbers_from(const JsonValue& given) {
   std::array<double, count> numbers{};
   std::ranges::transform(given.elements(count), numbers.begin(), [](const JsonValue& number) {
-    return number.number(-max_place, max_place);
+    return number.number(-max_laser_coordinate, max_laser_coordinate);
   });
   return numbers;
 }
@@ -47,7 +45,7 @@ Access plane(Laser& laser) {
                 const auto [x, y, z, distance] = numbers_from<4>(given);
                 const Eigen::Vector3d normal(x, y, z);
                 const double length = normal.norm();
-                if (std::abs(length - 1) > normal_tolerance) {
+                if (std::abs(length - 1) > typed_normal_tolerance) {
                   given.refuse("a plane nx, ny, nz, d with a normal of length 1");
                 }
                 laser.normal = normal / length;
@@ -80,33 +78,33 @@ std::vector<Field> lens_fields(LaserSettings& s) {
       {.key = "width",
        .unit = "pixels",
        .help = "width of the camera's pictures",
-       .access = whole(s.lens.width, 2, max_side)},
+       .access = whole(s.lens.width, 2, max_picture_side)},
       {.key = "height",
        .unit = "pixels",
        .help = "height of the camera's pictures",
-       .access = whole(s.lens.height, 2, max_side)},
+       .access = whole(s.lens.height, 2, max_picture_side)},
       {.key = "fx",
        .unit = "pixels",
        .help = "focal length, across",
-       .access = number(s.lens.fx, 1, max_focal)},
+       .access = number(s.lens.fx, 1, max_focal_length)},
       {.key = "fy",
        .unit = "pixels",
        .help = "focal length, down",
-       .access = number(s.lens.fy, 1, max_focal)},
+       .access = number(s.lens.fy, 1, max_focal_length)},
       {.key = "cx",
        .unit = "pixels",
        .help = "column of the optical axis; 0 is the middle of the first",
-       .access = number(s.lens.cx, -max_side, max_side)},
+       .access = number(s.lens.cx, -max_picture_side, max_picture_side)},
       {.key = "cy",
        .unit = "pixels",
        .help = "row of the optical axis",
-       .access = number(s.lens.cy, -max_side, max_side)},
+       .access = number(s.lens.cy, -max_picture_side, max_picture_side)},
       {.key = "k1",
        .help = "radial distortion of the lens, x (1 + k1 r^2 + k2 r^4)",
-       .access = number(s.k1, -max_distortion, max_distortion)},
+       .access = number(s.k1, -max_lens_distortion, max_lens_distortion)},
       {.key = "k2",
        .help = "radial distortion of the lens: the factor of r^4",
-       .access = number(s.k2, -max_distortion, max_distortion)},
+       .access = number(s.k2, -max_lens_distortion, max_lens_distortion)},
       {.key = "exposure_ms",
        .unit = "ms",
        .help = "of each picture: longer where a dark object shows no line, shorter where a bright "

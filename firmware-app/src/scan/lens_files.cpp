@@ -18,10 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t max_file_bytes = std::size_t{1} << 16U;
-constexpr int max_side = 8192;        // pixels, as in settings
-constexpr double max_focal = 100000;  // pixels
-constexpr double max_distortion = 100;
+constexpr std::size_t max_lens_bytes = std::size_t{1} << 16U;
 constexpr int max_views = 100000;
 
 json to_numbers(const CameraLens& lens) {
@@ -31,12 +28,12 @@ json to_numbers(const CameraLens& lens) {
 }
 
 CameraLens to_numbers(JsonObject& keys, double least_focal) {
-  CameraLens lens{.intrinsics = {.fx = keys.at("fx").number(least_focal, max_focal),
-                                 .fy = keys.at("fy").number(least_focal, max_focal),
-                                 .cx = keys.at("cx").number(-max_side, max_side),
-                                 .cy = keys.at("cy").number(-max_side, max_side)}};
-  lens.k1 = keys.at("k1").number(-max_distortion, max_distortion);
-  lens.k2 = keys.at("k2").number(-max_distortion, max_distortion);
+  CameraLens lens{.intrinsics = {.fx = keys.at("fx").number(least_focal, max_focal_length),
+                                 .fy = keys.at("fy").number(least_focal, max_focal_length),
+                                 .cx = keys.at("cx").number(-max_picture_side, max_picture_side),
+                                 .cy = keys.at("cy").number(-max_picture_side, max_picture_side)}};
+  lens.k1 = keys.at("k1").number(-max_lens_distortion, max_lens_distortion);
+  lens.k2 = keys.at("k2").number(-max_lens_distortion, max_lens_distortion);
   return lens;
 }
 
@@ -53,10 +50,10 @@ KeptLens to_kept_lens(const json& document) {
                 .made = keys.at("at").text(),
                 .lens = to_numbers(keys, 1),
                 .sigma = to_numbers(sigma, 0),
-                .rms = keys.at("rms_px").number(0, max_side),
+                .rms = keys.at("rms_px").number(0, max_picture_side),
                 .views = keys.at("views").whole_number(0, max_views)};
-  kept.lens.intrinsics.width = keys.at("width").whole_number(2, max_side);
-  kept.lens.intrinsics.height = keys.at("height").whole_number(2, max_side);
+  kept.lens.intrinsics.width = keys.at("width").whole_number(2, max_picture_side);
+  kept.lens.intrinsics.height = keys.at("height").whole_number(2, max_picture_side);
   return kept;
 }
 
@@ -90,7 +87,7 @@ std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial)
     return std::nullopt;
   }
   const fs::path file = lens_path(data, serial);
-  const auto text = read_regular_file(file, max_file_bytes);
+  const auto text = read_regular_file(file, max_lens_bytes);
   try {
     return text ? std::optional(to_kept_lens(parse_json(*text, ErrorCode::scan_malformed, "it")))
                 : std::nullopt;

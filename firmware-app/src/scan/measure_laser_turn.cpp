@@ -36,7 +36,7 @@ class FolderOfTurn {
   fs::path path_;
 };
 
-Slice make_slice(const fs::path& folder, const Scan& scan, const std::stop_token& stop) {
+Slice slice_of_strips(const fs::path& folder, const Scan& scan, const std::stop_token& stop) {
   Slice slice;
   const SnapshotSource snapshots = readable_snapshots(folder, scan, stop);
   for (std::size_t i = 0; i < snapshots.count; ++i) {
@@ -60,10 +60,10 @@ TurnReport solve_turn(const fs::path& folder, Scan& scan, int threads,
   for (const Shot& shot : scan.shots) {
     report.angles.push_back(shot.angle);
   }
-  report.before = make_slice(folder, scan, stop);
+  report.before = slice_of_strips(folder, scan, stop);
   if (report.calibration.accepted) {
     scan.solved = std::move(solution.solved);
-    report.after = make_slice(folder, scan, stop);
+    report.after = slice_of_strips(folder, scan, stop);
   }
   return report;
 }

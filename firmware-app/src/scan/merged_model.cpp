@@ -9,10 +9,6 @@
 namespace octurn {
 namespace {
 
-bool has_pose(const Build& build, const std::string& pose) {
-  return std::ranges::find(build.poses, pose) != build.poses.end();
-}
-
 /// Stores and chooses a build of all poses, and removes the builds with the last pose's earlier
 /// registration.
 void replace_builds(ScanStore& store, const Job& first, Build build, const std::string& pose) {

@@ -1,6 +1,5 @@
 #include "scan/model_json.hpp"
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -12,9 +11,7 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
-using Seconds = std::chrono::duration<double>;
 
-constexpr double unlimited = std::numeric_limits<double>::max();
 constexpr double max_whole = 1e15;  // a double holds every whole number up to there
 
 std::uint64_t count(const JsonValue& value) {

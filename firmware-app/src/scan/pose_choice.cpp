@@ -10,13 +10,13 @@
 namespace octurn {
 namespace {
 
-constexpr double max_coordinate_mm = 1000;
+constexpr double max_point_mm = 1000;
 
 Eigen::Vector3d point_from(const JsonValue& value) {
   Eigen::Vector3d point;
   Eigen::Index axis = 0;
   for (const JsonValue& coordinate : value.elements(3)) {
-    point[axis++] = metres_from_mm(coordinate.number(-max_coordinate_mm, max_coordinate_mm));
+    point[axis++] = metres_from_mm(coordinate.number(-max_point_mm, max_point_mm));
   }
   return point;
 }

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> single_files{"scan.json", "job.json", "name.txt",
                                                        "notes.txt", "sensor-map.png"};
-constexpr std::string_view snapshots = "snapshots/";
-constexpr std::size_t max_file_bytes = std::size_t{32} << 20U;
+constexpr std::string_view snapshots_prefix = "snapshots/";
+constexpr std::size_t max_archived_file_bytes = std::size_t{32} << 20U;
 
 bool is_plain(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
@@ -31,8 +31,8 @@ bool is_plain(char c) {
 /// Lists the files of a scan, sorted, so that its archive is reproducible.
 std::vector<std::string> list_files(const fs::path& scan) {
   std::vector<std::string> files(single_files.begin(), single_files.end());
-  for (const std::string& name : names_in(scan / snapshots)) {
-    files.push_back(std::string(snapshots) + name);
+  for (const std::string& name : names_in(scan / snapshots_prefix)) {
+    files.push_back(std::string(snapshots_prefix) + name);
   }
   std::ranges::sort(files);
   std::erase_if(files, [](const std::string& name) { return !is_scan_file(name); });
@@ -46,11 +46,11 @@ bool is_scan_file(std::string_view name) {
     return true;
   }
   constexpr std::string_view ending = ".png";
-  if (!name.starts_with(snapshots) || !name.ends_with(ending) ||
-      name.size() <= snapshots.size() + ending.size()) {
+  if (!name.starts_with(snapshots_prefix) || !name.ends_with(ending) ||
+      name.size() <= snapshots_prefix.size() + ending.size()) {
     return false;
   }
-  name.remove_prefix(snapshots.size());
+  name.remove_prefix(snapshots_prefix.size());
   name.remove_suffix(ending.size());
   return std::ranges::all_of(name, is_plain);
 }
@@ -58,7 +58,7 @@ bool is_scan_file(std::string_view name) {
 void write_scan_archive(const fs::path& scan, const fs::path& archive) {
   ZipWriter zip(archive);
   for (const std::string& name : list_files(scan)) {
-    if (const auto content = read_regular_file(scan / name, max_file_bytes)) {
+    if (const auto content = read_regular_file(scan / name, max_archived_file_bytes)) {
       zip.begin(name, name.ends_with(".png") ? ZipMethod::stored : ZipMethod::deflated);
       zip.write(*content);
     }

@@ -7,9 +7,7 @@
 namespace octurn {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
-
-constexpr std::size_t max_looked_at = 5;  // number of most similar earlier scans
+constexpr std::size_t max_similar_scans = 5;  // number of most similar earlier scans
 
 // Defaults before the first scan: a Kinect's frame rate; the others are a simulated rig's.
 constexpr double rate_hz = 30;
@@ -29,7 +27,7 @@ double growth(double leaf, double measured_leaf) {
   return (measured_leaf / leaf) * (measured_leaf / leaf);
 }
 
-/// Returns the scans with the minimum `dissimilarity`, newest first, at most `max_looked_at`.
+/// Returns the scans with the minimum `dissimilarity`, newest first, at most `max_similar_scans`.
 /// @param dissimilarity  of a scan to the one to estimate; 0 if they are alike
 template <typename Dissimilarity>
 std::vector<const EarlierScan*> most_similar(const std::vector<const EarlierScan*>& scans,
@@ -41,7 +39,7 @@ std::vector<const EarlierScan*> most_similar(const std::vector<const EarlierScan
     if (difference < 0) {
       similar.clear();
     }
-    if (difference <= 0 && similar.size() < max_looked_at) {
+    if (difference <= 0 && similar.size() < max_similar_scans) {
       similar.push_back(scan);
     }
   }

@@ -10,15 +10,13 @@ namespace octurn {
 
 /// Expected time and disk space of a scan.
 struct ScanEstimate {
-  std::chrono::duration<double> stop = {};   ///< turning to a stop, and its snapshot
-  std::chrono::duration<double> build = {};  ///< from the last snapshot to the model
-  std::uint64_t bytes = 0;                   ///< on the disk
-  bool is_measured = false;                  ///< based on earlier scans of this machine
+  Seconds stop = {};         ///< turning to a stop, and its snapshot
+  Seconds build = {};        ///< from the last snapshot to the model
+  std::uint64_t bytes = 0;   ///< on the disk
+  bool is_measured = false;  ///< based on earlier scans of this machine
 
   /// Time of the whole scan, including the last look.
-  std::chrono::duration<double> total(int snapshots) const {
-    return stop * (snapshots + 1) + build;
-  }
+  Seconds total(int snapshots) const { return stop * (snapshots + 1) + build; }
 };
 
 /// A finished scan, from which another one is estimated.
@@ -37,6 +35,6 @@ struct EarlierScan {
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings);
 
 /// Returns the median; for an even count the higher of the two middle values; 0 if there are none.
-std::chrono::duration<double> median(std::vector<std::chrono::duration<double>> values);
+Seconds median(std::vector<Seconds> values);
 
 }  // namespace octurn

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr int max_snapshots = 400;  // a laser's lines are then 0.9 degrees apart
 constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not lower the noise
 constexpr int max_threads = 256;
-constexpr double max_coordinate_mm = 10000;  // no depth sensor of this kind sees farther
+constexpr double max_clip_mm = 10000;  // no depth sensor of this kind sees farther
 constexpr double max_root_mm = 10000;
 constexpr double min_leaf_mm = 0.1;   // larger roots need more: see `check_leaf`
 constexpr double min_memory_mb = 17;  // of the intersection method with one thread
@@ -33,7 +33,7 @@ const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(1
 /// @return nullopt unless these are six numbers in range that span a box of positive volume
 std::optional<Box> box_from(const json& mm) {
   const auto in_range = [](const json& value) {
-    return value.is_number() && std::abs(value.get<double>()) <= max_coordinate_mm;
+    return value.is_number() && std::abs(value.get<double>()) <= max_clip_mm;
   };
   if (!mm.is_array() || mm.size() != 6 || !std::ranges::all_of(mm, in_range)) {
     return std::nullopt;
@@ -57,8 +57,7 @@ json to_mm(const Box& box) {
 }
 
 Access box(Box& value) {
-  const json side{
-      {"type", "number"}, {"minimum", -max_coordinate_mm}, {"maximum", max_coordinate_mm}};
+  const json side{{"type", "number"}, {"minimum", -max_clip_mm}, {"maximum", max_clip_mm}};
   return {.read =
               [&value](const JsonValue& given) {
                 const auto box = box_from(given.json());

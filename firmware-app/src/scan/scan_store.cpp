@@ -26,7 +26,7 @@ using nlohmann::json;
 constexpr std::string_view unfinished = ".new-";
 constexpr std::string_view removed = ".removed-";
 
-int stored_snapshots(const fs::path& folder) {
+int count_snapshots(const fs::path& folder) {
   try {
     return static_cast<int>(read_scan(folder).shots.size());
   } catch (const std::exception&) {
@@ -170,7 +170,7 @@ void ScanStore::write_job(const Job& job) const {
 }
 
 Job ScanStore::interrupt(std::string_view id) {
-  const int snapshots = stored_snapshots(folder(id));
+  const int snapshots = count_snapshots(folder(id));
   const std::lock_guard writing(writing_);
   const std::lock_guard lock(mutex_);
   const auto found = jobs_.find(id);
@@ -266,7 +266,7 @@ void ScanStore::recover() {
     }
     clear_unfinished(folder(id));
     clear_unfinished(folder(id) / "snapshots");
-    job = to_interrupted(job, stored_snapshots(folder(id)));
+    job = to_interrupted(job, count_snapshots(folder(id)));
     log::info("store", "scan " + id + " was interrupted after " +
                            std::to_string(job.snapshots_done) + " snapshots");
     try {

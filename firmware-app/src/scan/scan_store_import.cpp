@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view unfinished = ".new-import-";
+constexpr std::string_view unfinished_import = ".new-import-";
 
 /// Reads the job of an imported scan; default settings if the folder has no `job.json`. Invalid
 /// labels are dropped.
@@ -61,7 +61,7 @@ Job to_waiting(Job job, const fs::path& folder, const Scan& scan) {
 
 fs::path ScanStore::begin_import() {
   for (int attempt = 0;; ++attempt) {
-    fs::path folder = scans_ / (std::string(unfinished) + std::to_string(attempt));
+    fs::path folder = scans_ / (std::string(unfinished_import) + std::to_string(attempt));
     std::error_code error;
     if (fs::create_directory(folder, error)) {
       return folder;

@@ -1,11 +1,11 @@
 // ScanStore: the platform's angle.
 
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "log.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "scan/json_numbers.hpp"
 #include "scan/scan_store.hpp"
 
 namespace octurn {
@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double most = std::numeric_limits<double>::max();
 constexpr std::size_t max_platform_bytes = 4096;
 
 }  // namespace
@@ -24,7 +23,7 @@ double ScanStore::platform_angle_deg() const {
         parse_json(read_regular_file(platform_, max_platform_bytes).value_or("{}"),
                    ErrorCode::platform_malformed, platform_.string());
     return JsonObject(document, ErrorCode::platform_malformed, "")
-        .number("angle_deg", -most, most)
+        .number("angle_deg", -unlimited, unlimited)
         .value_or(0);
   } catch (const Error& error) {
     log::warning("store", error.what());

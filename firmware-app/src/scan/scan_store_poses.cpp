@@ -9,10 +9,6 @@
 namespace octurn {
 namespace {
 
-bool has_pose(const Build& build, const std::string& pose) {
-  return std::ranges::find(build.poses, pose) != build.poses.end();
-}
-
 /// Returns the number of the build to choose without a pose: the one that was chosen before the
 /// first build with that pose; 0 if it was removed.
 int build_before(const Job& job, const std::string& pose) {

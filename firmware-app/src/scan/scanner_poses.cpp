@@ -11,10 +11,6 @@
 namespace octurn {
 namespace {
 
-bool has_pose(const Build& build, const std::string& pose) {
-  return std::ranges::find(build.poses, pose) != build.poses.end();
-}
-
 /// Whether a build merged a later pose with that one.
 bool is_built_on(const Job& first, const std::string& pose) {
   return std::ranges::any_of(first.builds.all, [&](const Build& build) {

@@ -98,7 +98,7 @@ std::string run(const std::vector<std::string>& command, const std::stop_token& 
   }
 }
 
-SlurmJob to_job(std::string_view text) {
+SlurmJob to_slurm_job(std::string_view text) {
   std::array<std::string, listed_fields> parts;
   for (std::size_t i = 0; i < listed_fields; ++i) {
     const std::size_t end = i + 1 < listed_fields ? text.find('|') : text.size();
@@ -161,7 +161,7 @@ std::vector<SlurmJob> Slurm::list(const std::stop_token& stop) const {
   std::vector<SlurmJob> jobs;
   std::string_view left = output;
   for (auto end = left.find(end_of_job); end != left.npos; end = left.find(end_of_job)) {
-    jobs.push_back(to_job(left.substr(0, end)));
+    jobs.push_back(to_slurm_job(left.substr(0, end)));
     left.remove_prefix(end + end_of_job.size());
   }
   return jobs;

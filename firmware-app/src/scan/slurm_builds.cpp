@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_job_file = 64;
 
-bool is_same(const BuildRun& a, const BuildRun& b) {
+bool is_same_build(const BuildRun& a, const BuildRun& b) {
   return a.scan == b.scan && a.number == b.number;
 }
 
@@ -78,7 +78,7 @@ BuildRun SlurmBuilds::add(BuildRun run, bool becomes_model) {
   }
   runs_.update([&](std::vector<BuildRun>& runs) {
     std::erase_if(runs, [&](const BuildRun& old) {
-      return is_same(old, run) || (old.scan == run.scan && old.has_ended());
+      return is_same_build(old, run) || (old.scan == run.scan && old.has_ended());
     });
   });
   publish(run);
@@ -142,13 +142,13 @@ void SlurmBuilds::work(const std::stop_token& stop) {
 void SlurmBuilds::publish(const BuildRun& run) {
   const auto now = runs_.get();
   const auto old =
-      std::ranges::find_if(*now, [&](const BuildRun& other) { return is_same(run, other); });
+      std::ranges::find_if(*now, [&](const BuildRun& other) { return is_same_build(run, other); });
   if (old != now->end() && looks_same(*old, run)) {
     return;  // does not wake watchers
   }
   runs_.update([&](std::vector<BuildRun>& runs) {
-    const auto held =
-        std::ranges::find_if(runs, [&](const BuildRun& other) { return is_same(run, other); });
+    const auto held = std::ranges::find_if(
+        runs, [&](const BuildRun& other) { return is_same_build(run, other); });
     if (held == runs.end()) {
       runs.push_back(run);
     } else if (run.state == BuildRun::State::finished) {

@@ -13,19 +13,19 @@ using Eigen::Vector3d;
 
 constexpr double max_sigmas = 3;  // maximum distance of a turn from the mean
 
-/// A small motion: its rotation vector and its shift.
-struct Motion {
+/// A rotation vector and a shift.
+struct SmallMotion {
   Vector3d rotation = Vector3d::Zero();  // radians
   Vector3d shift = Vector3d::Zero();     // metres
 };
 
-Motion motion_between(const Isometry3d& from, const Isometry3d& to) {
+SmallMotion motion_between(const Isometry3d& from, const Isometry3d& to) {
   const Isometry3d between = to * from.inverse();
   const Eigen::AngleAxisd turn(between.linear());
   return {.rotation = turn.angle() * turn.axis(), .shift = between.translation()};
 }
 
-Isometry3d moved(const Isometry3d& pose, const Motion& motion) {
+Isometry3d moved(const Isometry3d& pose, const SmallMotion& motion) {
   const double angle = motion.rotation.norm();
   Isometry3d by = Isometry3d::Identity();
   if (angle > 0) {
@@ -82,11 +82,11 @@ std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {
     return std::nullopt;
   }
   const Isometry3d& first = turns.front().platform_from_sensor;
-  Motion mean;
+  SmallMotion mean;
   double rotation_weight = 0;
   double shift_weight = 0;
   for (const SolvedPose& turn : turns) {
-    const Motion motion = motion_between(first, turn.platform_from_sensor);
+    const SmallMotion motion = motion_between(first, turn.platform_from_sensor);
     const double of_rotation = 1 / (turn.direction_sigma * turn.direction_sigma);
     const double of_shift = 1 / (turn.position_sigma * turn.position_sigma);
     mean.rotation += of_rotation * motion.rotation;
@@ -98,7 +98,7 @@ std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {
   mean.shift /= shift_weight;
   const Isometry3d pose = moved(first, mean);
   for (const SolvedPose& turn : turns) {
-    const Motion off = motion_between(pose, turn.platform_from_sensor);
+    const SmallMotion off = motion_between(pose, turn.platform_from_sensor);
     if (!(off.rotation.norm() <= max_sigmas * turn.direction_sigma &&
           off.shift.norm() <= max_sigmas * turn.position_sigma)) {
       return std::nullopt;

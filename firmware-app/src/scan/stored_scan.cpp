@@ -43,7 +43,7 @@ std::vector<std::byte> encode(const Picture& picture, const std::vector<Rgb>& co
                    {.width = picture.width, .height = picture.height, .pixels = colours});
 }
 
-bool is_same(const LaserCamera& one, const LaserCamera& other) {
+bool is_same_camera(const LaserCamera& one, const LaserCamera& other) {
   return one.k1 == other.k1 && one.k2 == other.k2 &&
          std::ranges::equal(one.lasers, other.lasers, {}, &Laser::name, &Laser::name);
 }
@@ -52,7 +52,7 @@ bool is_same(const LaserCamera& one, const LaserCamera& other) {
 
 bool have_same_sensor(const Scan& one, const Scan& other) {
   return one.intrinsics == other.intrinsics && one.laser.has_value() == other.laser.has_value() &&
-         (!one.laser || is_same(*one.laser, *other.laser));
+         (!one.laser || is_same_camera(*one.laser, *other.laser));
 }
 
 SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Scan& scan,

@@ -50,7 +50,8 @@ std::optional<TimedPicture> read_picture(Camera& camera, Read read, Clock::time_
               "Unplug the camera, and plug it in again.");
 }
 
-void expect_size(const Picture& picture, const Intrinsics& lens, const std::string& camera) {
+void expect_size_for_scan(const Picture& picture, const Intrinsics& lens,
+                          const std::string& camera) {
   if (picture.width != lens.width || picture.height != lens.height) {
     throw Error(ErrorCode::sensor_other,
                 camera + ": its pictures have " + std::to_string(picture.width) + " x " +
@@ -111,7 +112,7 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
   const auto take = [&](Read read) {
     std::optional<TimedPicture> timed = read_picture(camera, read, camera.now(), stop, observer);
     if (timed) {
-      expect_size(timed->picture, rig.laser()->lens, camera.name());
+      expect_size_for_scan(timed->picture, rig.laser()->lens, camera.name());
       pictures.push_back(std::move(timed->picture));
     }
     return timed;

@@ -6,8 +6,6 @@
 namespace octurn {
 namespace {
 
-using Seconds = std::chrono::duration<double>;
-
 constexpr std::size_t stops_of_pace = 5;
 constexpr std::size_t min_stops_of_pace = 2;
 constexpr double max_rise = 1.1;

@@ -13,11 +13,11 @@ struct ExpectedEnd {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point end = {};
-  std::chrono::duration<double> later = {};  ///< time of the steps after the current one
+  Seconds later = {};  ///< time of the steps after the current one
 
   /// Returns the remaining time at `now`: at least `later`, even if the current step takes longer
   /// than expected.
-  std::chrono::duration<double> left(Clock::time_point now) const;
+  Seconds left(Clock::time_point now) const;
 };
 
 /// Estimates the remaining time of a scan: the remaining stops times the median time of the last
@@ -49,14 +49,13 @@ class TimeLeft {
 
  private:
   void tell_turn(Clock::time_point now);
-  void tell(std::chrono::duration<double> left, std::chrono::duration<double> later,
-            Clock::time_point now);
+  void tell(Seconds left, Seconds later, Clock::time_point now);
 
   ScanEstimate before_;
   int stops_;
   int snapshots_;
   std::optional<Clock::time_point> last_ = {};  // of the last snapshot; nullopt: after a failure
-  std::vector<std::chrono::duration<double>> pace_ = {};  // times of the last stops
+  std::vector<Seconds> pace_ = {};              // times of the last stops
   std::optional<ExpectedEnd> expected_ = {};
 };
 

@@ -21,7 +21,8 @@ class ShownBoard {
   Camera& camera_;
 };
 
-void expect_size(const Picture& picture, const Intrinsics& lens, const std::string& camera) {
+void expect_size_for_lens(const Picture& picture, const Intrinsics& lens,
+                          const std::string& camera) {
   if (picture.width != lens.width || picture.height != lens.height) {
     throw Error(ErrorCode::sensor_other,
                 camera +
@@ -60,7 +61,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     if (!timed) {
       break;
     }
-    expect_size(timed->picture, lens, camera.name());
+    expect_size_for_lens(timed->picture, lens, camera.name());
     watch.see(timed->picture);
     show_picture(timed->picture);
     ports_.heartbeat.suspend();

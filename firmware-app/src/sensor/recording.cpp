@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr const char* format = "octurn-recording";
 constexpr ErrorCode malformed = ErrorCode::recording_malformed;
-constexpr int version = 1;
+constexpr int format_version = 1;
 constexpr int largest_side = 10000;  // pixels
 constexpr double max_number = std::numeric_limits<double>::max();
 
@@ -86,7 +86,7 @@ json to_json(const Recording& recording) {
   if (!recording.sensor_serial.empty()) {
     sensor["serial"] = recording.sensor_serial;
   }
-  return {{"format", format}, {"version", version}, {"sensor", sensor}, {"frames", frames}};
+  return {{"format", format}, {"version", format_version}, {"sensor", sensor}, {"frames", frames}};
 }
 
 /// @throws Error "recording-malformed"  if it is missing, no file, too large, or its disk fails
@@ -109,7 +109,7 @@ Recording parse_recording(std::string_view text) {
   const json object = parse_json(text, malformed, "it");
   JsonObject keys(object, malformed, "");
   if (keys.at("format").text() != format ||
-      keys.at("version").whole_number(0, 1'000'000) != version) {
+      keys.at("version").whole_number(0, 1'000'000) != format_version) {
     throw Error(malformed, "it is no recording of a version that this program knows");
   }
   JsonObject sensor(keys.at("sensor"));

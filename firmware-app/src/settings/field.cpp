@@ -222,6 +222,11 @@ std::string plain_text(const json& value) {
   return "[" + text + "]";
 }
 
+std::string whole_mb_text(std::uint64_t bytes) {
+  const double mb = mb_from_bytes(static_cast<double>(bytes));
+  return std::to_string(static_cast<std::uint64_t>(mb)) + " MB";
+}
+
 std::string to_markdown(const std::vector<Field>& fields) {
   std::string table = "| key | unit | default | allowed | |\n|---|---|---|---|---|\n";
   for (const Field& field : fields) {

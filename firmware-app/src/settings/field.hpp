@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -101,6 +102,9 @@ std::string allowed_text(const nlohmann::json& schema);
 
 /// A value for people: 1 and not 1.0.
 std::string plain_text(const nlohmann::json& value);
+
+/// A size for people, in megabytes rounded down: "512 MB".
+std::string whole_mb_text(std::uint64_t bytes);
 
 /// Markdown table for the documents, one row for each setting.
 std::string to_markdown(const std::vector<Field>& fields);

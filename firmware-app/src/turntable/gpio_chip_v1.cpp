@@ -10,15 +10,15 @@ namespace {
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
-struct CloseChip {
-  void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }  // and releases its lines
-};
-
 }  // namespace
 
 std::string gpiod_version() { return gpiod_version_string(); }
 
 struct GpioChip::Handles {
+  struct CloseChip {
+    void operator()(gpiod_chip* handle) const { gpiod_chip_close(handle); }  // frees its lines, too
+  };
+
   std::unique_ptr<gpiod_chip, CloseChip> chip;
   gpiod_line_bulk driven = GPIOD_LINE_BULK_INITIALIZER;
 };

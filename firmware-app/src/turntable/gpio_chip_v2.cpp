@@ -6,18 +6,20 @@
 #include "turntable/gpio_chip.hpp"
 
 namespace octurn {
-namespace {
 
-/// Deleter of a libgpiod object by the free function of its type.
+/// Deleter of a libgpiod object by the free function of its type. A class has such members, so it
+/// is not in the anonymous namespace.
 template <auto free>
-struct Free {
+struct FreeGpiod {
   template <typename Handle>
   void operator()(Handle* handle) const {
     free(handle);
   }
 };
 template <typename Handle, auto free>
-using Owned = std::unique_ptr<Handle, Free<free>>;
+using Owned = std::unique_ptr<Handle, FreeGpiod<free>>;
+
+namespace {
 
 [[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t part_bytes = std::size_t{64} << 10U;  // of an update, read at a time
+constexpr std::size_t update_part_bytes = std::size_t{64} << 10U;  // of an update, read at a time
 
 json to_json(const UpdateState& update) {
   return {{"version", version()},
@@ -39,7 +39,7 @@ json to_json(const WifiState& wifi) {
 /// Copies a body of known length into an upload.
 /// @throws Error "cut-short", and those of `Upload::write`
 void copy(const ByteSource& source, Appliance::Upload& upload) {
-  std::vector<std::byte> buffer(part_bytes);
+  std::vector<std::byte> buffer(update_part_bytes);
   std::uint64_t left = *source.length;
   while (left > 0) {
     const std::size_t most = std::min<std::uint64_t>(buffer.size(), left);

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t max_archive_bytes = std::uint64_t{1} << 30U;
-constexpr std::size_t part_bytes = std::size_t{16} << 10U;
+constexpr std::size_t archive_part_bytes = std::size_t{16} << 10U;
 
 std::mutex packing;  // one archive at a time
 
@@ -45,7 +45,7 @@ class Scratch {
 /// Writes the body of a request to a file.
 void receive(const ByteSource& body, const fs::path& target) {
   AtomicFile file(target);
-  std::vector<std::byte> part(part_bytes);
+  std::vector<std::byte> part(archive_part_bytes);
   std::uint64_t bytes = 0;
   for (std::size_t got = 0; (got = body.read(part)) > 0; bytes += got) {
     file.write(std::span(part).first(got));

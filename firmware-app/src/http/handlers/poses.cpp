@@ -17,7 +17,7 @@ namespace octurn {
 namespace {
 
 /// Parses a pose's number; 0, which no pose has, if the text is no number.
-int to_number(std::string_view text) {
+int to_pose_number(std::string_view text) {
   int number = 0;
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
@@ -51,20 +51,20 @@ Response start_pose(App& app, const Request& request, std::string_view id) {
 Response choose_pose(App& app, const Request& request, std::string_view id,
                      std::string_view number) {
   const PoseChoice choice =
-      pose_choice_from(parse_body(request), app.scanner.find_pose(id, to_number(number)));
+      pose_choice_from(parse_body(request), app.scanner.find_pose(id, to_pose_number(number)));
   expect_no_update(app);
-  return send_begun(app.scanner.choose_pose(id, to_number(number), choice));
+  return send_begun(app.scanner.choose_pose(id, to_pose_number(number), choice));
 }
 
 Response send_pose_points(App& app, const Request& request, std::string_view id,
                           std::string_view number) {
-  const Job pose = app.scanner.find_pose(id, to_number(number));
+  const Job pose = app.scanner.find_pose(id, to_pose_number(number));
   return file_response(request, app.store.folder(pose.id) / pose_points_file, "application/json",
                        "points.json");
 }
 
 Response remove_pose(App& app, std::string_view id, std::string_view number) {
-  app.scanner.remove_pose(id, to_number(number));
+  app.scanner.remove_pose(id, to_pose_number(number));
   return json_response(to_json(app, find_scan(app, id)));
 }
 

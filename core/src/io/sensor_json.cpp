@@ -11,8 +11,8 @@
 namespace octurn {
 namespace {
 
-constexpr int max_side = 8192;                       // pixels; no depth sensor's image is larger
-constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
+constexpr int max_image_side = 8192;                  // pixels; no depth sensor's image is larger
+constexpr std::size_t max_image_bytes = 256U << 20U;  // twice an uncompressed image of that size
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
@@ -34,8 +34,8 @@ SensorJson sensor_from(const JsonValue& object) {
   }
   SensorJson sensor{.name = keys.at("name").text(),
                     .serial = {},
-                    .intrinsics = {.width = keys.at("width").whole_number(2, max_side),
-                                   .height = keys.at("height").whole_number(2, max_side),
+                    .intrinsics = {.width = keys.at("width").whole_number(2, max_image_side),
+                                   .height = keys.at("height").whole_number(2, max_image_side),
                                    .fx = positive_in(keys, "fx"),
                                    .fy = positive_in(keys, "fy"),
                                    .cx = keys.at("cx").number(),
@@ -83,10 +83,10 @@ std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std
     throw Error(missing, file.string() + ": " + (error ? error.message() : "not a regular file"),
                 std::string(hint));
   }
-  if (std::filesystem::file_size(file, error) > max_file_bytes) {
+  if (std::filesystem::file_size(file, error) > max_image_bytes) {
     throw Error(malformed, file.string() + ": too large for a file of a scan");
   }
-  return read_regular_file(file, max_file_bytes).value_or("");
+  return read_regular_file(file, max_image_bytes).value_or("");
 }
 
 std::string read_scan_file(const std::filesystem::path& file) {

@@ -15,15 +15,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* keyword = "octurn-sensor-map";
-constexpr ErrorCode malformed = ErrorCode::scan_malformed;
+constexpr const char* map_keyword = "octurn-sensor-map";
 constexpr const char* hint = "Make it again with `octurn calibrate --wall`.";
 
-constexpr std::uint32_t max_side = 4096;             // pixels
-constexpr std::size_t max_file_bytes = 128U << 20U;  // twice two uncompressed images of that size
-constexpr double step = 1e-5;                        // 1/m, a unit of the samples
-constexpr int zero = 1 << 15;                        // the sample of error 0
-constexpr double max_inverse_depth = 100;            // 1/m
+constexpr std::uint32_t max_map_side = 4096;        // pixels
+constexpr std::size_t max_map_bytes = 128U << 20U;  // twice two uncompressed images of that size
+constexpr double step = 1e-5;                       // 1/m, a unit of the samples
+constexpr int zero = 1 << 15;                       // the sample of error 0
+constexpr double max_inverse_depth = 100;           // 1/m
 
 /// Appends the samples of a plane of the map.
 void append(std::vector<std::uint16_t>& samples, const std::vector<float>& plane) {
@@ -43,7 +42,7 @@ std::vector<float> to_plane(std::span<const std::uint16_t> samples) {
   return plane;
 }
 
-json to_json(const SensorMap& map) {
+json to_document(const SensorMap& map) {
   json inverse_depths{map.near_inverse_depth};
   if (!map.far.empty()) {
     inverse_depths.push_back(map.far_inverse_depth);
@@ -55,7 +54,7 @@ json to_json(const SensorMap& map) {
 
 /// Reads the text of a map. The planes stay empty; `far_inverse_depth` is 0 if there is only one.
 SensorMap from_json(const json& document) {
-  JsonObject keys(document, malformed, "");
+  JsonObject keys(document, ErrorCode::scan_malformed, "");
   if (const JsonValue version = keys.at("version"); version.number() != 1) {
     version.refuse("1, which this program reads");
   }
@@ -91,15 +90,16 @@ std::vector<std::byte> encode_sensor_map(const SensorMap& map) {
   return encode_grey_png(
       map.width, map.far.empty() ? map.height : 2 * map.height,
       std::span<const std::uint16_t>(samples),
-      {.keyword = keyword,
-       .text = to_json(map).dump(-1, ' ', true, json::error_handler_t::replace)});
+      {.keyword = map_keyword,
+       .text = to_document(map).dump(-1, ' ', true, json::error_handler_t::replace)});
 }
 
 SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> png) {
-  const PngSource source{.name = name, .bytes = png, .malformed = malformed, .hint = hint};
+  const PngSource source{
+      .name = name, .bytes = png, .malformed = ErrorCode::scan_malformed, .hint = hint};
   const GreyPng image =
-      decode_grey16_png(source, keyword, [&](std::uint32_t width, std::uint32_t height) {
-        if (width > max_side || height > 2 * max_side) {
+      decode_grey16_png(source, map_keyword, [&](std::uint32_t width, std::uint32_t height) {
+        if (width > max_map_side || height > 2 * max_map_side) {
           source.refuse(size_text(width, height) + ": larger than any sensor's");
         }
       });
@@ -108,7 +108,7 @@ SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> pn
   }
   SensorMap map;
   try {
-    map = from_json(parse_json(image.text, malformed, "its text"));
+    map = from_json(parse_json(image.text, ErrorCode::scan_malformed, "its text"));
   } catch (const Error& error) {
     source.refuse(error.what());
   }
@@ -128,12 +128,12 @@ SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> pn
 SensorMap read_sensor_map(const std::filesystem::path& file) {
   std::optional<std::string> bytes;
   try {
-    bytes = read_regular_file(file, max_file_bytes);
+    bytes = read_regular_file(file, max_map_bytes);
   } catch (const Error& error) {
-    throw Error(malformed, error.what(), error.hint());
+    throw Error(ErrorCode::scan_malformed, error.what(), error.hint());
   }
   if (!bytes) {
-    throw Error(malformed, file.string() + ": no such file",
+    throw Error(ErrorCode::scan_malformed, file.string() + ": no such file",
                 "Make one with `octurn calibrate --wall`.");
   }
   return decode_sensor_map(file.string(), std::as_bytes(std::span(*bytes)));

@@ -8,6 +8,7 @@
 #include "io/pose_json.hpp"
 #include "io/radial_distortion.hpp"
 #include "io/sensor_json.hpp"
+#include "octurn/intrinsics_json.hpp"
 
 namespace octurn {
 namespace {
@@ -16,7 +17,6 @@ using nlohmann::json;
 
 constexpr std::string_view dark = "dark";     // the picture without laser light
 constexpr std::size_t max_lasers = 8;         // more than any rig has
-constexpr double max_distortion = 100;        // of k1 and k2: wider than any lens
 constexpr double normal_tolerance = 1e-4;     // for rounded decimals in a file
 constexpr double max_source_distance = 0.05;  // metres of a laser from its plane
 constexpr double max_place = 100;             // metres

@@ -83,7 +83,8 @@ std::optional<Build> build_merged(ScanStore& store, const Job& first, const Merg
 }
 
 bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
-                const Limits& limits, const std::stop_token& stop, const BuildProgress& progress) {
+                const Limits& limits, const std::stop_token& stop,
+                const BuildProgress& progress) try {
   progress(Phase::registering, 0);
   const Job first = store.get(run.scan);
   const Job pose = store.get(choice.pose);
@@ -113,6 +114,8 @@ bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
         .candidate = choice.candidate};
   });
   return true;
+} catch (const Stopped&) {
+  return false;
 }
 
 }  // namespace octurn

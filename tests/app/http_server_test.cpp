@@ -2,10 +2,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "support/http_client.hpp"
@@ -235,6 +238,43 @@ TEST(HttpServer, SaysThatThePortIsTaken) {
   EXPECT_EQ(error.code(), ErrorCode::listen_failed);
   EXPECT_NE(std::string(error.what()).find(std::to_string(first.port())), std::string::npos);
   EXPECT_NE(error.hint().find("--port"), std::string::npos);
+}
+
+/// Lowers this process's limit of open files to a number of free ones, for its lifetime.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t free) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const FileDescriptor next(::dup(STDIN_FILENO));
+    const rlimit few{.rlim_cur = static_cast<rlim_t>(next.number()) + free,
+                     .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/// The code of the error that starting a server throws; empty if it starts.
+std::string code_at_start(const HttpOptions& options, rlim_t free_descriptors) try {
+  const FewDescriptors few(free_descriptors);
+  const HttpServer server(options, echo);
+  return "";
+} catch (const Error& error) {
+  return std::string(to_string(error.code()));
+}
+
+TEST(HttpServer, LeavesNothingBehindWhereverItsStartFails) {
+  const HttpOptions options{.address = "127.0.0.1", .port = echo_server().port()};
+  std::set<std::string> codes;
+  for (rlim_t free = 0; free < 12; ++free) {
+    codes.insert(code_at_start(options, free));
+    EXPECT_EQ(code_at_start(options, 100), "") << "the port is free after " << free;
+  }
+  EXPECT_EQ(codes, (std::set<std::string>{"", "listen-failed", "no-descriptors"}));
 }
 
 TEST(HttpServer, SaysThatAnAddressIsNone) {

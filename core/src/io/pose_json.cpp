@@ -1,5 +1,6 @@
 #include "io/pose_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/laser_json.hpp"
@@ -10,6 +11,18 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
+
+// Metres from a frame's origin. As far as the box `everywhere` reaches, so that products of places
+// and focal lengths stay finite as float.
+constexpr double max_pose_coordinate = 1e6;
+
+double place_from(const JsonValue& value) {
+  const double place = value.number();
+  if (!(std::abs(place) <= max_pose_coordinate)) {
+    value.refuse("a number from -1000000 to 1000000");
+  }
+  return place;
+}
 
 SolvedPose solved_from(const JsonValue& solved) {
   JsonObject keys(solved);
@@ -49,7 +62,7 @@ Eigen::Vector3d point_from(const JsonValue& array) {
   Eigen::Vector3d point;
   int axis = 0;
   for (const JsonValue& value : array.elements(3)) {
-    point[axis++] = value.number();
+    point[axis++] = place_from(value);
   }
   return point;
 }
@@ -60,7 +73,7 @@ Eigen::Isometry3d pose_from(const JsonValue& matrix) {
   for (const JsonValue& values : matrix.elements(4)) {
     int column = 0;
     for (const JsonValue& value : values.elements(4)) {
-      pose(row, column++) = value.number();
+      pose(row, column++) = place_from(value);
     }
     ++row;
   }

@@ -13,7 +13,6 @@
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/png.hpp"
-#include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -174,7 +174,7 @@ LineScale line_scale(double pixel) {
   constexpr double edge = 0.0004;       // half a line's width
   constexpr double jump = 0.0012;
   const auto rows = [&](double length, int max) {
-    return std::clamp(static_cast<int>(std::lround(length / pixel)), 1, max);
+    return static_cast<int>(std::lround(std::clamp(length / pixel, 1.0, static_cast<double>(max))));
   };
   return {.fit_rows = rows(fit_reach, 12),
           .edge_rows = rows(edge, 4),

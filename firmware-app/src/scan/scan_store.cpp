@@ -152,16 +152,29 @@ ScanTime ScanStore::next_time() const {
 
 void ScanStore::save(const Job& job) {
   const std::lock_guard writing(writing_);
-  get(job.id);  // throws if there is no such scan
-  write_job(job);
-  const std::lock_guard lock(mutex_);
-  Job& held = jobs_.find(job.id)->second;
-  ScanLabel label = held.label;  // may have changed since `job` was copied
-  if (job.state != JobState::running || held.state != job.state) {
+  const Job stored = get(job.id);
+  keep(with_stored_changes(job, stored));
+  if (job.state != JobState::running || stored.state != JobState::running) {
+    const std::lock_guard lock(mutex_);
     ++revision_;
   }
-  held = job;
-  held.label = std::move(label);
+}
+
+Job ScanStore::update(std::string_view id, const std::function<void(Job&)>& change) {
+  const std::lock_guard writing(writing_);
+  Job job = get(id);
+  change(job);
+  keep(job);
+  const std::lock_guard lock(mutex_);
+  ++revision_;
+  return job;
+}
+
+/// Writes `job.json`, then changes the scan in memory. `writing_` is held.
+void ScanStore::keep(const Job& job) {
+  write_job(job);
+  const std::lock_guard lock(mutex_);
+  jobs_.find(job.id)->second = job;
 }
 
 /// `writing_` is held.

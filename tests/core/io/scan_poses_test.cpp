@@ -6,7 +6,6 @@
 
 #include "core/io/scan_json.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/tiles.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

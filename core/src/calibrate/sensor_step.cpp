@@ -1,6 +1,6 @@
 #include "calibrate/sensor_step.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -31,9 +31,8 @@ struct Fit {
 };
 
 Fit fit(const MatrixXd& columns, const VectorXd& measured) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> factors(columns);
-  Fit solved{.values = factors.solve(measured),
-             .inverse = (columns.transpose() * columns).inverse()};
+  Fit solved{.values = {}, .inverse = (columns.transpose() * columns).inverse()};
+  solved.values = solved.inverse * (columns.transpose() * measured);
   solved.squares = (measured - columns * solved.values).squaredNorm();
   return solved;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "io/laser_json.hpp"
 #include "octurn/snapshot.hpp"
@@ -135,6 +136,9 @@ json to_json(const RigPose& calibration) {
 }
 
 std::vector<ScanPose> poses_from(const JsonValue& poses, const Scan& scan) {
+  if (poses.json().size() > max_poses) {
+    poses.refuse("an array of at most " + std::to_string(max_poses));
+  }
   std::vector<ScanPose> all;
   for (const JsonValue& pose : poses.elements()) {
     all.push_back(scan_pose_from(pose, scan));

@@ -20,8 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_poses = 1000;
-
 /// The default root cube of models: the clip box of a scan by laser line that has none.
 const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
 
@@ -37,7 +35,7 @@ Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCam
     shot.angle = radians_from_degrees(keys.at("angle_deg").number());
     return shot;
   }
-  shot.pose = keys.whole_number("pose", 0, max_poses).value_or(0);
+  shot.pose = keys.whole_number("pose", 0, max_poses - 1).value_or(0);
   const auto matrix = keys.value("object_from_sensor");
   const auto angle = keys.value("angle_deg");
   if (matrix && angle) {
@@ -186,13 +184,7 @@ Scan read_scan(const std::filesystem::path& folder) {
 }
 
 void use_sensor_map(Scan& scan, const std::filesystem::path& file) {
-  SensorMap map = read_sensor_map(file);
-  if (map.width != scan.intrinsics.width || map.height != scan.intrinsics.height) {
-    throw Error(ErrorCode::scan_malformed,
-                file.string() + ": is for another sensor than the scan's: it has another size",
-                "Take the map of the sensor that made the scan.");
-  }
-  scan.sensor_map = std::make_shared<const SensorMap>(std::move(map));
+  scan.sensor_map = std::make_shared<const SensorMap>(read_sensor_map(file, scan.intrinsics));
 }
 
 DepthFrame corrected(DepthFrame frame, const Scan& scan) {

@@ -92,9 +92,10 @@ class ScanStore {
   /// Removes the scans in the bin permanently.
   void empty_bin();
 
-  /// Removes scans from the bin, first deleted first, until `needed` bytes are free.
+  /// Removes scans from the bin, first deleted first, until `needed` bytes are free. Removes none
+  /// if the space of all of them would not suffice.
   /// @param what  what is to be written, such as "a model"
-  /// @throws Error "disk-full"  if the bin is empty and the space still does not suffice
+  /// @throws Error "disk-full"  if the space does not suffice
   void make_room(std::uint64_t needed, const std::string& what);
 
   /// Makes a temporary folder for a scan from another Octurn. The next start removes leftovers.

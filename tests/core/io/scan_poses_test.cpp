@@ -48,6 +48,18 @@ TEST(ScanOfPoses, HasTheSnapshotsOfEachInTheObjectsFrame) {
   EXPECT_LT((eye - Eigen::Vector3d(0.4 + 0.25, -0.75 + 0.5, 0.62 + 0.125)).norm(), 1e-12);
 }
 
+TEST(ScanOfPoses, HasAThousandAtMost) {
+  json scan = two_poses();
+  while (scan["poses"].size() < 1000) {
+    scan["poses"].push_back(scan["poses"][0]);
+  }
+  scan["snapshots"][0]["pose"] = 999;
+  EXPECT_EQ(parse_scan(scan.dump()).shots[0].pose, 999);
+
+  scan["poses"].push_back(scan["poses"][0]);
+  EXPECT_NE(refusal_of(scan).find("at most 1000"), std::string::npos) << refusal_of(scan);
+}
+
 TEST(ScanOfPoses, HasAClipBoxForEachAndOneAroundAll) {
   const Scan scan = parse_scan(two_poses().dump());
 

@@ -36,9 +36,9 @@ class FaultyRig {
 
   RigOptions options(double speed, const Retries& retries = {}) {
     return {.speed = speed,
-            .stepper = StepperSettings{.speed_steps_per_second = 5000,
-                                       .start_speed_steps_per_second = 5000,
-                                       .ramp_steps_per_second2 = 1e6,
+            .stepper = StepperSettings{.speed_deg_per_second = 2250,
+                                       .start_speed_deg_per_second = 2250,
+                                       .acceleration_deg_per_second2 = 1e6,
                                        .settle_time = std::chrono::milliseconds(0)},
             .retries = retries,
             .open_sensor =

@@ -30,9 +30,9 @@ TEST(StepperSettings, AreReadFromEveryKey) {
                              {"full_steps", 400},
                              {"gear_ratio", 2.5},
                              {"reversed", true},
-                             {"speed_steps_per_s", 1000},
-                             {"start_speed_steps_per_s", 100},
-                             {"ramp_steps_per_s2", 500},
+                             {"speed_deg_per_s", 45},
+                             {"start_speed_deg_per_s", 4.5},
+                             {"acceleration_deg_per_s2", 22.5},
                              {"settle_ms", 150},
                              {"idle_release_s", 10},
                              {"take_up_steps", 32}});
@@ -42,9 +42,9 @@ TEST(StepperSettings, AreReadFromEveryKey) {
   EXPECT_EQ(settings.take_up_steps, 32);
   const Motion motion = to_motion(settings);
   EXPECT_EQ(motion.steps_per_turn, 400 * 16 * 5 / 2);
-  EXPECT_EQ(motion.start_steps_per_second, 100);
-  EXPECT_EQ(motion.top_steps_per_second, 1000);
-  EXPECT_EQ(motion.ramp_steps_per_second2, 500);
+  EXPECT_NEAR(motion.start_steps_per_second, 200, 1e-9);
+  EXPECT_NEAR(motion.top_steps_per_second, 2000, 1e-9);
+  EXPECT_NEAR(motion.ramp_steps_per_second2, 1000, 1e-9);
   EXPECT_EQ(motion.settle_time, 150ms);
 }
 
@@ -72,9 +72,37 @@ TEST(StepperSettings, RoundATurnToWholeSteps) {
   EXPECT_EQ(to_motion({.gear_ratio = 60.0 / 17}).steps_per_turn, 2824);  // 2823.53
 }
 
+TEST(StepperSettings, AreAlsoReadInStepsAsVersion01WroteThem) {
+  const json in_steps = {{"gear_ratio", 2},
+                         {"speed_steps_per_s", 800},
+                         {"start_speed_steps_per_s", 100},
+                         {"ramp_steps_per_s2", 500}};
+  const Motion motion = to_motion(stepper_settings_from(in_steps));
+  EXPECT_NEAR(motion.start_steps_per_second, 100, 1e-9);
+  EXPECT_NEAR(motion.top_steps_per_second, 800, 1e-9);
+  EXPECT_NEAR(motion.ramp_steps_per_second2, 500, 1e-9);
+  json both = in_steps;
+  both["speed_deg_per_s"] = 100;
+  EXPECT_EQ(stepper_settings_from(both).speed_deg_per_second, 100);
+}
+
+TEST(StepperSettings, TurnThePlatformAlikeWithAnyGearAndDriver) {
+  const auto degrees_per_second = [](const json& object) {
+    const Motion motion = to_motion(stepper_settings_from(object));
+    return motion.top_steps_per_second * 360 / motion.steps_per_turn;
+  };
+  EXPECT_NEAR(degrees_per_second(json::object()), 90, 1e-9);
+  EXPECT_NEAR(degrees_per_second({{"microsteps", 16}}), 90, 1e-9);
+  EXPECT_NEAR(degrees_per_second({{"gear_ratio", 4}}), 90, 1e-9);
+  // 5,000 pulses a second are the most.
+  EXPECT_NEAR(degrees_per_second({{"microsteps", 16}, {"gear_ratio", 10}}), 56.25, 1e-9);
+}
+
 TEST(StepperSettings, StartNoFasterThanTheyGo) {
-  EXPECT_EQ(to_motion(stepper_settings_from({{"speed_steps_per_s", 60}})).start_steps_per_second,
-            60);
+  EXPECT_EQ(stepper_settings_from({{"speed_deg_per_s", 9}}).start_speed_deg_per_second, 9);
+  EXPECT_EQ(stepper_settings_from({{"speed_steps_per_s", 40}, {"microsteps", 8}})
+                .start_speed_deg_per_second,
+            9);
 }
 
 TEST(StepperSettings, NameTheKeyThatIsWrong) {
@@ -85,7 +113,8 @@ TEST(StepperSettings, NameTheKeyThatIsWrong) {
       {"microsteps", 3},         {"microsteps", 32},
       {"full_steps", 0},         {"gear_ratio", 0},
       {"gear_ratio", 0.001},     {"reversed", 1},
-      {"speed_steps_per_s", 0},  {"start_speed_steps_per_s", 801},
+      {"speed_deg_per_s", 0},    {"start_speed_deg_per_s", 91},
+      {"speed_steps_per_s", 0},  {"acceleration_deg_per_s2", 0},
       {"ramp_steps_per_s2", 0},  {"settle_ms", -1},
       {"idle_release_s", 9},     {"take_up_steps", 801},
       {"steps_line", "GPIO17"}};

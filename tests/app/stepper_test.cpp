@@ -49,9 +49,9 @@ class LineChanges {
   std::string changes_ = {};
 };
 
-const StepperSettings fast = {.speed_steps_per_second = 5000,
-                              .start_speed_steps_per_second = 5000,
-                              .ramp_steps_per_second2 = 1e6,
+const StepperSettings fast = {.speed_deg_per_second = 2250,
+                              .start_speed_deg_per_second = 2250,
+                              .acceleration_deg_per_second2 = 1e6,
                               .settle_time = 0ms};
 
 class StepperTest : public ::testing::Test {

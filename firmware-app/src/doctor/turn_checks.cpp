@@ -92,8 +92,9 @@ TurnFinding check_return(double return_deg) {
               std::abs(return_deg) <= far_off_deg
                   ? back.ok(measured)
                   : back.fault(measured,
-                               "The motor loses steps: lower speed_steps_per_s, give it more "
-                               "current, and see that nothing rubs.")};
+                               "The motor loses steps: lower start_speed_deg_per_s and "
+                               "acceleration_deg_per_s2, give it more current, and see that "
+                               "nothing rubs.")};
 }
 
 }  // namespace

@@ -24,6 +24,15 @@ double SpeedProfile::next_step() {
   return 1 / mean;
 }
 
+bool SpeedProfile::brake() {
+  if (steps_left_ == 0) {
+    return true;  // the last step is being made
+  }
+  const double distance = std::ceil((speed_ * speed_ - start_ * start_) / (2 * ramp_) - 1e-6);
+  steps_left_ = std::min(steps_left_, static_cast<std::int64_t>(distance));
+  return steps_left_ > 0;
+}
+
 void SpeedProfile::slowed_to(double step_time) {
   speed_ = std::clamp(1 / step_time, start_, speed_);
 }

@@ -8,10 +8,10 @@ namespace octurn {
 /// A turntable's motion: constant acceleration from the start speed, and the same deceleration
 /// before the end. A step is a microstep of the motor's driver.
 struct Motion {
-  int steps_per_turn = 800;             // quarter steps of a 1.8 degree motor
-  double start_steps_per_second = 200;  // below the pull-in rate: a stepper starts without a ramp
-  double top_steps_per_second = 800;
-  double ramp_steps_per_second2 = 2000;
+  int steps_per_turn = 800;  // quarter steps of a 1.8 degree motor
+  double start_steps_per_second = 40;
+  double top_steps_per_second = 200;
+  double ramp_steps_per_second2 = 150;
   std::chrono::milliseconds settle_time = std::chrono::milliseconds(300);
 };
 
@@ -25,6 +25,9 @@ class SpeedProfile {
 
   /// Advances by one step. @return the duration of that step, seconds
   double next_step();
+
+  /// Shortens the move to its braking distance. @return false if it may end at once
+  bool brake();
 
   /// Reports that the last step took longer than planned. The next steps accelerate from the speed
   /// that it had.

@@ -40,6 +40,9 @@ class PulseTrain {
   /// Reports that the next change was made. @param time  of the change
   void done(Time time);
 
+  /// Shortens the move to its braking distance. @return false if it may end at once
+  bool brake() { return profile_.brake(); }
+
   const LatePulses& late() const { return late_; }
 
  private:

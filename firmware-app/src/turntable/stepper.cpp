@@ -48,7 +48,7 @@ bool Stepper::move_to(std::int64_t position, std::stop_token stop) {
     std::unique_lock lock(mutex_);
     order_ = &order;
     wake_.notify_all();
-    wake_.wait(lock, [&] { return order.done; });  // returns within a step of a stop request
+    wake_.wait(lock, [&] { return order.done; });  // a stop request brakes first
   }
   if (order.failure) {
     throw to_error(*order.failure);
@@ -118,7 +118,8 @@ bool Stepper::turn_to(std::int64_t position, const std::stop_token& stop) {
   std::int64_t made = 0;
   while (const auto change = train.next()) {
     std::this_thread::sleep_until(change->due);
-    if (change->high && stop.stop_requested()) {
+    // Pulses that end at once would leave a heavy platform turning.
+    if (change->high && stop.stop_requested() && (made == 0 || !train.brake())) {
       break;
     }
     set_line_(Line::step, change->high);

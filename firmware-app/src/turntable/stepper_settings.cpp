@@ -25,12 +25,11 @@ constexpr std::array<Microstepping, 5> microsteppings = {{{1, {false, false, fal
 
 constexpr int max_full_steps = 1000;
 constexpr double max_ratio = 1000;
-// Steps a second. Below the minimum a stop request would wait for longer than a frame of the
-// sensor; above the maximum Linux does not wake up in time.
-constexpr double min_speed = 40;
-constexpr double max_speed = 5000;
-constexpr double max_ramp = 1e6;
-constexpr int min_steps = 4;  // in a turn: fewer are no turntable
+constexpr double min_speed = 2;  // degrees a second; slower, a full step takes a second
+constexpr double max_speed = 3600;
+constexpr double max_acceleration = 1e6;
+constexpr double max_pulse_rate = 5000;  // a second: beyond that Linux does not wake up in time
+constexpr int min_steps = 4;             // in a turn: fewer are no turntable
 constexpr int max_steps = 16'000'000;
 constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames
@@ -51,6 +50,28 @@ void check_lines(const JsonObject& keys, const StepperSettings& settings) {
     const auto end = lines.begin() + static_cast<std::ptrdiff_t>(line);
     if (std::ranges::find(lines.begin(), end, lines[line].name, &NamedLine::name) != end) {
       keys.refuse(line_keys.at(line), lines[line].name, "a line that no other signal has");
+    }
+  }
+}
+
+/// Reads the speeds and the ramp of version 0.1, in steps; the keys in degrees come first.
+void read_speeds_in_steps(JsonObject& keys, StepperSettings& settings, int steps_per_turn) {
+  struct Old {
+    const char* in_steps;
+    double min;
+    double max;
+    const char* in_degrees;
+    double& value;
+  };
+  for (const Old& old : {Old{"speed_steps_per_s", 40, max_pulse_rate, "speed_deg_per_s",
+                             settings.speed_deg_per_second},
+                         Old{"start_speed_steps_per_s", 40, max_pulse_rate, "start_speed_deg_per_s",
+                             settings.start_speed_deg_per_second},
+                         Old{"ramp_steps_per_s2", 1, 1e6, "acceleration_deg_per_s2",
+                             settings.acceleration_deg_per_second2}}) {
+    const auto in_steps = keys.number(old.in_steps, old.min, old.max);
+    if (in_steps && !keys.value(old.in_degrees)) {
+      old.value = *in_steps * 360 / steps_per_turn;
     }
   }
 }
@@ -98,18 +119,19 @@ std::vector<Field> gear_fields(StepperSettings& s) {
 
 std::vector<Field> motion_fields(StepperSettings& s) {
   return {
-      {.key = "speed_steps_per_s",
-       .unit = "steps a second",
-       .help = "on a Pi pulses come on time up to about 1000",
-       .access = number(s.speed_steps_per_second, min_speed, max_speed)},
-      {.key = "start_speed_steps_per_s",
-       .unit = "steps a second",
-       .help = "at which a move begins and ends; at most the speed",
-       .access = number(s.start_speed_steps_per_second, min_speed, max_speed)},
-      {.key = "ramp_steps_per_s2",
-       .unit = "steps a second, each second",
+      {.key = "speed_deg_per_s",
+       .unit = "degrees a second",
+       .help = "of the platform in a long move; the motor makes at most 5,000 microsteps a second",
+       .access = number(s.speed_deg_per_second, min_speed, max_speed)},
+      {.key = "start_speed_deg_per_s",
+       .unit = "degrees a second",
+       .help = "at which a move begins and ends; at most the speed. Lower it first where a heavy "
+               "platform loses steps",
+       .access = number(s.start_speed_deg_per_second, min_speed, max_speed)},
+      {.key = "acceleration_deg_per_s2",
+       .unit = "degrees a second, each second",
        .help = "how quickly speed is gained, and lost again",
-       .access = number(s.ramp_steps_per_second2, 1, max_ramp)},
+       .access = number(s.acceleration_deg_per_second2, 1, max_acceleration)},
       {.key = "settle_ms",
        .unit = "ms",
        .help = "how long the platform swings after a move; frames are taken after it",
@@ -142,6 +164,7 @@ std::vector<Field> fields(StepperSettings& settings) {
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
   check_lines(keys, settings);
   const int steps = to_motion(settings).steps_per_turn;
+  read_speeds_in_steps(keys, settings, steps);
   if (steps < min_steps) {
     keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
   }
@@ -149,11 +172,11 @@ void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
     keys.refuse("take_up_steps", settings.take_up_steps,
                 "a whole number from 0 to " + std::to_string(steps) + ", a turn");
   }
-  double& start = settings.start_speed_steps_per_second;
-  if (start > settings.speed_steps_per_second && keys.value("start_speed_steps_per_s")) {
-    keys.refuse("start_speed_steps_per_s", start, "at most speed_steps_per_s");
+  double& start = settings.start_speed_deg_per_second;
+  if (start > settings.speed_deg_per_second && keys.value("start_speed_deg_per_s")) {
+    keys.refuse("start_speed_deg_per_s", start, "at most speed_deg_per_s");
   }
-  start = std::min(start, settings.speed_steps_per_second);
+  start = std::min(start, settings.speed_deg_per_second);
 }
 
 StepperSettings stepper_settings_from(const json& object) {
@@ -172,10 +195,13 @@ json to_json(const StepperSettings& settings) {
 
 Motion to_motion(const StepperSettings& settings) {
   const double steps = settings.full_steps * settings.microsteps * settings.gear_ratio;
+  const double steps_per_deg = steps / 360;
   return {.steps_per_turn = static_cast<int>(std::lround(steps)),
-          .start_steps_per_second = settings.start_speed_steps_per_second,
-          .top_steps_per_second = settings.speed_steps_per_second,
-          .ramp_steps_per_second2 = settings.ramp_steps_per_second2,
+          .start_steps_per_second =
+              std::min(settings.start_speed_deg_per_second * steps_per_deg, max_pulse_rate),
+          .top_steps_per_second =
+              std::min(settings.speed_deg_per_second * steps_per_deg, max_pulse_rate),
+          .ramp_steps_per_second2 = settings.acceleration_deg_per_second2 * steps_per_deg,
           .settle_time = settings.settle_time};
 }
 

@@ -132,7 +132,9 @@ TEST(ScanSettings, AreReadBackAtTheEndsOfTheirStoredRanges) {
     for (const char* const end : {"minimum", "maximum"}) {
       if (field.access.schema.contains(end)) {
         settings = ScanSettings{};
-        const json value = field.access.schema[end];
+        const double number = field.access.schema[end].get<double>();
+        const bool is_whole = field.access.schema["type"] == "integer";
+        const json value = is_whole ? json(static_cast<int>(number)) : json(number);
         field.access.read(JsonValue(value, "value", ErrorCode::job_malformed));
         const json written = to_json(settings);
         EXPECT_EQ(to_json(stored(written)), written) << field.key << " " << end;

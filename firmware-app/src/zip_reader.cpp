@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <system_error>
 
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {
@@ -26,8 +28,23 @@ constexpr unsigned long encrypted = 1;  // bit of a file's flags
               "Send a file that an Octurn has made: scan.zip.");
 }
 
-/// The name of the archive's current entry.
-std::string name_here(unzFile zip) {
+using OpenZip = std::unique_ptr<void, decltype(&unzClose)>;
+
+OpenZip open_archive(const fs::path& file) {
+  OpenZip zip(unzOpen64(file.c_str()), &unzClose);
+  if (!zip) {
+    refuse("is no zip file");
+  }
+  return zip;
+}
+
+/// An entry of the archive's list of files.
+struct Entry {
+  std::string name = {};
+  std::uint64_t bytes = 0;  ///< unpacked, as declared
+};
+
+Entry read_entry(unzFile zip) {
   std::array<char, max_name + 1> name{};
   unz_file_info64 info{};
   if (unzGetCurrentFileInfo64(zip, &info, name.data(), name.size(), nullptr, 0, nullptr, 0) !=
@@ -37,11 +54,40 @@ std::string name_here(unzFile zip) {
   if (info.size_filename > max_name || (info.flag & encrypted) != 0) {
     refuse("has a name that is too long, or is encrypted");
   }
-  return {name.data(), info.size_filename};
+  return {.name = {name.data(), info.size_filename}, .bytes = info.uncompressed_size};
+}
+
+/// Calls `use` for each entry of the archive.
+void for_each_entry(unzFile zip, const std::function<void(const Entry& entry)>& use) {
+  int status = unzGoToFirstFile(zip);
+  for (; status == UNZ_OK; status = unzGoToNextFile(zip)) {
+    use(read_entry(zip));
+  }
+  if (status != UNZ_END_OF_LIST_OF_FILE) {
+    refuse("is damaged");
+  }
+}
+
+void check_entries(unzFile zip, const IsAllowedName& is_allowed, const ZipLimits& limits) {
+  std::set<std::string> names;
+  std::uint64_t left = limits.all_bytes;
+  for_each_entry(zip, [&](const Entry& entry) {
+    if (names.size() == limits.files) {
+      refuse("has more than " + std::to_string(limits.files) + " files");
+    }
+    if (!is_allowed(entry.name) || !names.insert(entry.name).second) {
+      refuse("has a file that belongs to no scan, or one twice");
+    }
+    if (entry.bytes > std::min(left, limits.file_bytes)) {
+      refuse("holds more than a scan can have");
+    }
+    left -= entry.bytes;
+  });
 }
 
 /// Unpacks the archive's current entry. @return its size, bytes
-std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max_bytes) {
+std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max_bytes,
+                          const std::stop_token& stop) {
   if (unzOpenCurrentFile(zip) != UNZ_OK) {
     refuse("is damaged");
   }
@@ -50,6 +96,7 @@ std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max
   std::uint64_t bytes = 0;
   int got = 0;
   while ((got = unzReadCurrentFile(zip, part.data(), part.size())) > 0) {
+    throw_if_stopped(stop);
     bytes += static_cast<std::uint64_t>(got);
     if (bytes > max_bytes) {
       refuse("holds more than a scan can have");
@@ -65,29 +112,25 @@ std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max
 
 }  // namespace
 
-void unpack_zip(const fs::path& archive, const fs::path& folder,
-                const std::function<bool(std::string_view name)>& is_allowed,
-                const ZipLimits& limits) {
-  const std::unique_ptr<void, decltype(&unzClose)> zip(unzOpen64(archive.c_str()), &unzClose);
-  if (!zip) {
-    refuse("is no zip file");
-  }
-  std::uint64_t files = 0;
+void check_zip(const fs::path& archive, const IsAllowedName& is_allowed, const ZipLimits& limits) {
+  check_entries(open_archive(archive).get(), is_allowed, limits);
+}
+
+void unpack_zip(const fs::path& archive, const fs::path& folder, const IsAllowedName& is_allowed,
+                const ZipLimits& limits, const std::stop_token& stop) {
+  const OpenZip zip = open_archive(archive);
+  check_entries(zip.get(), is_allowed, limits);
   std::uint64_t left = limits.all_bytes;
-  int status = unzGoToFirstFile(zip.get());
-  for (; status == UNZ_OK; status = unzGoToNextFile(zip.get())) {
-    const std::string name = name_here(zip.get());
-    const fs::path target = folder / name;
+  for_each_entry(zip.get(), [&](const Entry& entry) {
+    throw_if_stopped(stop);
+    const fs::path target = folder / entry.name;
     std::error_code error;
-    if (!is_allowed(name) || fs::exists(target, error) || ++files > limits.files) {
+    if (fs::exists(target, error)) {
       refuse("has a file that belongs to no scan, or one twice");
     }
     fs::create_directories(target.parent_path(), error);
-    left -= unpack_here(zip.get(), target, std::min(left, limits.file_bytes));
-  }
-  if (status != UNZ_END_OF_LIST_OF_FILE) {
-    refuse("is damaged");
-  }
+    left -= unpack_here(zip.get(), target, std::min(left, limits.file_bytes), stop);
+  });
 }
 
 }  // namespace octurn

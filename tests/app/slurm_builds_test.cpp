@@ -13,6 +13,7 @@
 #include "app/slurm_scripts.hpp"
 #include "scan/external_build.hpp"
 #include "scan/scanner.hpp"
+#include "support/archive.hpp"
 #include "support/patience.hpp"
 #include "support/small_scan.hpp"
 #include "support/temporary_folder.hpp"
@@ -267,7 +268,9 @@ TEST_F(SlurmBuildsTest, AProcessThatStartsLaterFindsItsJobsAgain) {
 
 TEST_F(SlurmBuildsTest, AScannerHasUploadedScansBuiltSo) {
   Scanner scanner({.sensor_uri = "octurn-simulator://"}, {.threads = 1}, store_, slurm_.options());
-  const Job scan = scanner.adopt([](const fs::path& folder) { write_small_scan(folder, 2); }, 1000);
+  const TemporaryFolder other;
+  write_small_scan(other.path(), 2);
+  const Job scan = scanner.adopt(source_of(archive_of(other.path())));
   ASSERT_EQ(scanner.build_runs().size(), 1U);
   const BuildRun run = scanner.build_runs().front();
   EXPECT_EQ(run.scan, scan.id);

@@ -4,10 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "support/archive.hpp"
 #include "support/daemon.hpp"
 #include "support/http_client.hpp"
+#include "support/patience.hpp"
 #include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "zip_archive.hpp"
@@ -81,6 +86,26 @@ TEST(ScanArchive, WithFreePosesIsRefusedAndSaysWhatToDo) {
   EXPECT_NE(problem["hint"].get<std::string>().find("octurn reconstruct"), std::string::npos);
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path() / "data" / "scans"));
+}
+
+TEST(ScanArchive, IsLeftWhenTheDaemonEnds) {
+  const TemporaryFolder folder;
+  Daemon daemon(folder.path());
+  // 100 images of 12 megapixels take 20 s or more to check.
+  const std::string archive = make_zip(scan_files_of(100, 4096, 3072), {});
+  const std::jthread client([&] { import(daemon, archive); });
+  const std::filesystem::path scans = folder.path() / "data" / "scans";
+  const auto is_unpacked = [&] {
+    return std::filesystem::exists(scans / ".new-import-0/snapshots/099.png");
+  };
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!is_unpacked() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_TRUE(is_unpacked());
+  daemon.program().send_signal(SIGTERM);
+  EXPECT_EQ(daemon.program().wait(), 0);
+  EXPECT_TRUE(std::filesystem::is_empty(scans));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::span<const Route> scan_routes() {
       Route{"POST", "/api/v1/scans/{id}/restore", restore_scan},
       Route{"POST", "/api/v1/scans/{id}/resume", resume_scan, WaitsFor::start},
       Route{"GET", "/api/v1/scans/{id}/Scan.stl", send_model},
-      Route{"POST", import_path, import_scan, WaitsFor::start},
+      Route{"POST", import_path, import_scan},
       Route{"GET", "/api/v1/scans/{id}/scan.zip", send_archive},
       Route{"GET", "/api/v1/scans/{id}/Scan.3mf", send_mesh},
       Route{"GET", "/api/v1/scans/{id}/Scan.ply", send_mesh},

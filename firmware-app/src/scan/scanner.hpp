@@ -18,6 +18,7 @@
 #include "scan/heartbeat.hpp"
 #include "scan/latest.hpp"
 #include "scan/lens_files.hpp"
+#include "scan/scan_archive.hpp"
 #include "scan/scan_store.hpp"
 #include "scan/slurm_builds.hpp"
 #include "scan/status_board.hpp"
@@ -111,12 +112,11 @@ class Scanner {
   /// @throws Error "no-such-scan", "busy"
   void remove(std::string_view id);
 
-  /// Imports a scan of another Octurn, and has its model built unless a scan runs.
-  /// @param fill   fills a folder with a whole scan folder; its exceptions are passed on
-  /// @param bytes  maximum size of that folder
-  /// @throws Error "disk-full", "data-failed"
-  Job adopt(const std::function<void(const std::filesystem::path& folder)>& fill,
-            std::uint64_t bytes);
+  /// Imports a scan of another Octurn, and has its model built unless a scan runs. The bin gives
+  /// its space only to bytes that have arrived. One archive is checked at a time.
+  /// @throws Error "bad-request", "cut-short", "disk-full", "data-failed"; "busy"  if the scanner
+  ///               ends meanwhile
+  Job adopt(const ArchiveSource& archive);
 
   /// Moves a scan out of the bin. @throws Error "no-such-scan"
   void restore(std::string_view id);

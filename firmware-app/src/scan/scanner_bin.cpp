@@ -1,12 +1,60 @@
 // Scanner: deleting, restoring and importing scans.
 
+#include <cstdint>
+#include <filesystem>
+#include <future>
 #include <mutex>
 #include <system_error>
 
 #include "log.hpp"
+#include "scan/data_folder.hpp"
+#include "scan/scan_archive.hpp"
 #include "scan/scanner.hpp"
 
 namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t import_factor = 3;  // the archive, its files, and their model
+constexpr const char* scan_from_file = "a scan from a file";
+
+std::mutex checking;  // one archive at a time: a check takes up to 100 MB of memory
+
+/// Checks that room can be made, without making it.
+/// @throws Error "disk-full"  if the free space and the bin's do not suffice
+void expect_possible_room(const ScanStore& store, std::uint64_t needed) {
+  const std::uint64_t free = store.free_bytes();
+  if (free < needed && store.bin().oldest(needed - free).empty()) {
+    expect_room(store.data(), free, needed, scan_from_file);
+  }
+}
+
+/// Receives an archive, checks it, and adds its scan to the store.
+Job take_archive(ScanStore& store, const ArchiveSource& archive, const fs::path& folder,
+                 const std::stop_token& stop) {
+  const fs::path file = folder / ".scan.zip";
+  receive_archive(
+      archive, file, [&](std::uint64_t bytes) { store.make_room(bytes, scan_from_file); }, stop);
+  const std::lock_guard lock(checking);
+  throw_if_stopped(stop);
+  const auto unpack = [&] {
+    check_archive_files(file);
+    store.make_room((import_factor - 1) * archive.bytes, scan_from_file);
+    read_scan_archive(file, folder, stop);
+  };
+  std::async(std::launch::async, unpack).get();  // on a larger stack than a server thread's
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return store.adopt(folder);
+}
+
+void remove_import(const fs::path& folder) {
+  std::error_code ignored;  // the next start removes leftovers
+  fs::remove_all(folder, ignored);
+}
+
+}  // namespace
 
 void Scanner::remove(std::string_view id) {
   const std::lock_guard lock(scans_);
@@ -38,17 +86,17 @@ void Scanner::expect_idle(std::string_view id) const {
   }
 }
 
-Job Scanner::adopt(const std::function<void(const std::filesystem::path& folder)>& fill,
-                   std::uint64_t bytes) {
-  store_.make_room(bytes, "a scan from a file");
+Job Scanner::adopt(const ArchiveSource& archive) {
+  expect_possible_room(store_, import_factor * archive.bytes);
   const std::filesystem::path folder = store_.begin_import();
   Job job;
   try {
-    fill(folder);
-    job = store_.adopt(folder);
+    job = take_archive(store_, archive, folder, ending_.get_token());
+  } catch (const Stopped&) {
+    remove_import(folder);
+    throw Error(ErrorCode::busy, "Octurn is ending", "Send the file again when it is back.");
   } catch (...) {
-    std::error_code ignored;  // the next start removes leftovers
-    std::filesystem::remove_all(folder, ignored);
+    remove_import(folder);
     throw;
   }
   if (!slurm_) {

@@ -60,7 +60,7 @@ TEST(ParseJson, RefusesMoreValuesThanAreAllowed) {
   const auto parse = [](const std::string& text, std::size_t values) {
     return parse_json(text, ErrorCode::bad_json, "the text", {.values = values});
   };
-  for (const std::string& text : {R"([[], [], {}])", R"({"a": 1, "b": ["x"]})"}) {
+  for (const char* const text : {R"([[], [], {}])", R"({"a": 1, "b": ["x"]})"}) {
     EXPECT_NO_THROW(parse(text, 4)) << text;
     const Error error = error_thrown_by([&] { parse(text, 3); });
     EXPECT_EQ(error.code(), ErrorCode::bad_json);

@@ -7,14 +7,13 @@
 #include <semaphore>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "http/file_response.hpp"
 #include "http/handlers/models.hpp"
 #include "http/json_body.hpp"
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
-#include "octurn/file.hpp"
+#include "octurn/error.hpp"
 #include "scan/scan_archive.hpp"
 
 namespace octurn {
@@ -23,12 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t max_archive_bytes = std::uint64_t{1} << 30U;
-constexpr std::size_t archive_part_bytes = std::size_t{16} << 10U;
 
 // One archive is packed at a time, and one request waits. Each takes a thread of the server, on a
 // Pi for minutes.
 std::mutex packing;
 std::counting_semaphore<> packing_places{2};
+
+std::counting_semaphore<> import_places{2};  // uploads may take hours
 
 /// A folder or file that is removed at the end of its scope.
 class Scratch {
@@ -46,21 +46,6 @@ class Scratch {
  private:
   fs::path path_;
 };
-
-/// Writes the body of a request to a file.
-void receive(const ByteSource& body, const fs::path& target) {
-  AtomicFile file(target);
-  std::vector<std::byte> part(archive_part_bytes);
-  std::uint64_t bytes = 0;
-  for (std::size_t got = 0; (got = body.read(part)) > 0; bytes += got) {
-    file.write(std::span(part).first(got));
-  }
-  if (bytes != body.length) {
-    throw Error(ErrorCode::cut_short, std::to_string(bytes) + " bytes came",
-                "Send the request again.");
-  }
-  file.commit();
-}
 
 }  // namespace
 
@@ -88,13 +73,8 @@ Response import_scan(App& app, const Request& request) {
   if (*request.upload.length > max_archive_bytes) {
     throw Error(ErrorCode::too_large, "a scan has at most 1 GiB", "Send a file scan.zip.");
   }
-  const Job job = app.scanner.adopt(
-      [&](const fs::path& folder) {
-        const Scratch archive(folder / ".scan.zip");
-        receive(request.upload, archive.path());
-        std::async(std::launch::async, read_scan_archive, archive.path(), folder).get();
-      },
-      3 * *request.upload.length);
+  const Place place(&import_places, "others are sending scans");
+  const Job job = app.scanner.adopt({.bytes = *request.upload.length, .read = request.upload.read});
   Response response = json_response(to_json(app, find_scan(app, job.id)), 201);
   response.headers.emplace_back("Location", "/api/v1/scans/" + job.id);
   return response;

@@ -22,6 +22,11 @@ constexpr int min_valley = 5 * gain;  // that separates two lines; bright ones n
 constexpr int valley_share = 5;       // of a peak, the same: a fifth
 constexpr int light_share = 20;       // of a peak: a line's light ends at a twentieth
 
+// Around a line is the halo of what it lights and of the lens, up to half of its peak and tens of
+// pixels wide. A line's own light ends at this multiple of its width at half of the peak, outside
+// of that width on each side; from there to there a straight baseline is the halo.
+constexpr double skirt = 0.6;
+
 constexpr int max_half_width = 40;  // pixels: no line is wider
 constexpr float min_light = 25;     // grey levels, summed over the line's width
 
@@ -101,23 +106,49 @@ int end_of_light(const Row& row, int peak, int step) {
   return lowest_at;
 }
 
-/// The centre of mass of the light from one pixel to another.
-Candidate make_candidate(const Row& row, int first, int last) {
+/// The pixels of a line.
+struct Extent {
+  int first = 0;
+  int last = 0;
+};
+
+/// Where the peak's light is a line's, and not its halo, within `light`.
+Extent without_halo(const Row& row, int peak, const Extent& light) {
+  const int half = row.at(peak) / 2;
+  Extent bright{.first = peak, .last = peak};
+  while (bright.first > light.first && row.at(bright.first - 1) >= half) {
+    --bright.first;
+  }
+  while (bright.last < light.last && row.at(bright.last + 1) >= half) {
+    ++bright.last;
+  }
+  const int more = static_cast<int>(std::lround(skirt * (bright.last - bright.first + 1)));
+  return {.first = std::max(light.first, bright.first - more),
+          .last = std::min(light.last, bright.last + more)};
+}
+
+/// The centre of mass of the light above a straight baseline between both ends.
+Candidate make_candidate(const Row& row, const Extent& line) {
+  const double base = static_cast<double>(row.at(line.first)) / gain;
+  const double slope =
+      (static_cast<double>(row.at(line.last)) / gain - base) / std::max(line.last - line.first, 1);
   double light = 0;
   double moment = 0;
   double second = 0;
-  for (int u = first; u <= last; ++u) {
-    const int value = std::max(row.difference(u), 0);
+  for (int u = line.first; u <= line.last; ++u) {
+    const double at = u - line.first;
+    const double value = std::max(row.difference(u) - (base + slope * at), 0.0);
     light += value;
-    moment += static_cast<double>(value) * (u - first);
-    second += static_cast<double>(value) * (u - first) * (u - first);
+    moment += value * at;
+    second += value * at * at;
   }
   if (light <= 0) {
     return {};
   }
   const double mean = moment / light;
-  return {.sample = {.u = static_cast<float>(first + mean), .light = static_cast<float>(light)},
-          .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
+  return {
+      .sample = {.u = static_cast<float>(line.first + mean), .light = static_cast<float>(light)},
+      .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
 }
 
 /// Whether most of a line's pixels are saturated, as in glare.
@@ -139,7 +170,7 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
     if (first < 0 || last < 0 || first == last || is_glare(row, first, last)) {
       continue;
     }
-    Candidate found = make_candidate(row, first, last);
+    Candidate found = make_candidate(row, without_halo(row, u, {.first = first, .last = last}));
     if (found.sample.light >= min_light) {
       found.sample.row = v;
       candidates.push_back(found);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -76,6 +77,14 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
       {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // later keys
   expected["sensor"] = "depth";
   expected["laser"] = to_json(Config())["laser"];
+  // Later keys, in degrees: a turn has 400 * 16 * 2.5 steps.
+  json& turntable = expected["turntable"];
+  for (const auto& [in_steps, in_degrees] : {std::pair("speed_steps_per_s", "speed_deg_per_s"),
+                                             {"start_speed_steps_per_s", "start_speed_deg_per_s"},
+                                             {"ramp_steps_per_s2", "acceleration_deg_per_s2"}}) {
+    turntable[in_degrees] = turntable[in_steps].get<double>() * 360 / 16'000;
+    turntable.erase(in_steps);
+  }
   EXPECT_EQ(to_json(read_config(golden / "octurn.json")), expected);
 }
 

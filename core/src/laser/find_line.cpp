@@ -23,8 +23,8 @@ constexpr int valley_share = 5;       // of a peak, the same: a fifth
 constexpr int light_share = 20;       // of a peak: a line's light ends at a twentieth
 
 // Around a line is the halo of what it lights and of the lens, up to half of its peak and tens of
-// pixels wide. A line's own light ends at this multiple of its width at half of the peak, outside
-// of that width on each side; from there to there a straight baseline is the halo.
+// pixels wide. A line's own light ends a pixel and this multiple of its width at half of the peak
+// outside of that width. A line that shines on there has a halo: it lies below a straight baseline.
 constexpr double skirt = 0.6;
 
 constexpr int max_half_width = 40;  // pixels: no line is wider
@@ -112,8 +112,14 @@ struct Extent {
   int last = 0;
 };
 
-/// Where the peak's light is a line's, and not its halo, within `light`.
-Extent without_halo(const Row& row, int peak, const Extent& light) {
+/// A straight baseline from a line's first pixel to its last, in smoothed grey levels times `gain`.
+struct Baseline {
+  int first = 0;
+  int last = 0;
+};
+
+/// Takes the halo off a peak's light: narrows it to the line, and returns the halo's baseline.
+Baseline take_off_halo(const Row& row, int peak, Extent& light) {
   const int half = row.at(peak) / 2;
   Extent bright{.first = peak, .last = peak};
   while (bright.first > light.first && row.at(bright.first - 1) >= half) {
@@ -122,16 +128,24 @@ Extent without_halo(const Row& row, int peak, const Extent& light) {
   while (bright.last < light.last && row.at(bright.last + 1) >= half) {
     ++bright.last;
   }
-  const int more = static_cast<int>(std::lround(skirt * (bright.last - bright.first + 1)));
-  return {.first = std::max(light.first, bright.first - more),
-          .last = std::min(light.last, bright.last + more)};
+  const int more = 1 + static_cast<int>(std::lround(skirt * (bright.last - bright.first + 1)));
+  Baseline halo;
+  if (bright.first - more > light.first) {
+    light.first = bright.first - more;
+    halo.first = row.at(light.first);
+  }
+  if (bright.last + more < light.last) {
+    light.last = bright.last + more;
+    halo.last = row.at(light.last);
+  }
+  return halo;
 }
 
-/// The centre of mass of the light above a straight baseline between both ends.
-Candidate make_candidate(const Row& row, const Extent& line) {
-  const double base = static_cast<double>(row.at(line.first)) / gain;
-  const double slope =
-      (static_cast<double>(row.at(line.last)) / gain - base) / std::max(line.last - line.first, 1);
+/// The centre of mass of the peak's light without its halo.
+Candidate make_candidate(const Row& row, int peak, Extent line) {
+  const Baseline halo = take_off_halo(row, peak, line);
+  const double base = static_cast<double>(halo.first) / gain;
+  const double slope = (static_cast<double>(halo.last) / gain - base) / (line.last - line.first);
   double light = 0;
   double moment = 0;
   double second = 0;
@@ -170,7 +184,7 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
     if (first < 0 || last < 0 || first == last || is_glare(row, first, last)) {
       continue;
     }
-    Candidate found = make_candidate(row, without_halo(row, u, {.first = first, .last = last}));
+    Candidate found = make_candidate(row, u, {.first = first, .last = last});
     if (found.sample.light >= min_light) {
       found.sample.row = v;
       candidates.push_back(found);

@@ -10,6 +10,7 @@ import {text} from './texts.js';
 /** @param {Screen} screen */
 function showDevices({devices, isSimulated}) {
   show(element('simulated'), isSimulated);
+  element('devices').dataset.well = devices.every(({tone}) => tone === 'good') ? 'yes' : 'no';
   list(element('devices'), devices, ({role}) => role, 'device', (item, device) => {
     item.dataset.tone = device.tone;
     item.title = device.message;

@@ -249,7 +249,7 @@ test('a first visit is led from the check to the calibration to the scan', async
   const state = (name) => steps.locator(`[data-step=${name}]`).getAttribute('data-state');
   await steps.waitFor();
   assert.equal(await state('check'), 'now');
-  await steps.getByRole('button', {name: 'Check it'}).click();
+  await steps.getByRole('button', {name: 'Check the scanner'}).click();
   await page.locator('.finding').first().waitFor();
   await goTo(page, 'Scan');
   await steps.locator('[data-step=calibrate][data-state=now]').waitFor();

@@ -1,13 +1,14 @@
-// What lies within the window before anybody scrolls, on screens of all sizes: Start at a first visit.
+// What lies within the window before anybody scrolls, on screens of all sizes: Start at a first visit, and the result of a scan.
 
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
-import {startScanner} from './scanner.js';
+import {scan, startScanner} from './scanner.js';
 
 const screens = {phone: [390, 844], small: [360, 640], tablet: [820, 1180], desktop: [1280, 860]};
+const shortScreens = {landscape: [844, 390], magnified: [640, 430]};
 
 const clock = {check: 'clock', name: 'Clock', state: 'warning', measured: '2020-01-25 06:22 UTC, not from a time server', action: '',
   advice: 'Connect the scanner to a network with internet, or its scans have wrong dates.'};
@@ -42,6 +43,14 @@ const hiddenPart = (page, id) => page.evaluate((name) => {
   const middle = (left + right) / 2;
   return isSeen(middle, top + 3) && isSeen(middle, bottom - 3) ? '' : `#${name} from ${top} to ${bottom} of ${innerHeight}`;
 }, id);
+
+/** The part of the model's picture within the window, pixels. */
+const pictureInSight = (page) => page.locator('#view').evaluate((view) => {
+  const {top, bottom} = view.getBoundingClientRect();
+  return Math.min(bottom, innerHeight) - Math.max(top, 0);
+});
+
+const sizeOf = (page) => page.locator('#view').evaluate((view) => view.clientHeight);
 
 async function firstVisit(page) {
   await page.locator('#first-steps').waitFor();
@@ -98,6 +107,26 @@ async function warnings(browser, url) {
   await page.context().close();
 }
 
+async function result(page) {
+  await page.locator('#tools').waitFor();
+  await page.locator('#verdict').waitFor();
+  for (const [name, size] of Object.entries({...screens, ...shortScreens})) {
+    await resize(page, size);
+    for (const id of ['verdict', 'download']) {
+      assert.equal(await hiddenPart(page, id), '', name);
+    }
+    const inSight = await pictureInSight(page);
+    assert.ok(inSight > await sizeOf(page) - 1 && inSight > 200, `the whole picture, not ${inSight} pixels of it: ${name}`);
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `result-${name}`);
+  }
+  assert.ok(await page.locator('#verdict').evaluate((verdict) => verdict.clientHeight) < 48, 'the verdict is one line');
+  await resize(page, screens.desktop);
+  await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
+  assert.ok(await pictureInSight(page) > 300, 'the picture stays beside what is scrolled');
+  assert.deepEqual(await complaints(page), []);
+}
+
 test('what matters is in sight on every screen', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t);
@@ -107,4 +136,8 @@ test('what matters is in sight on every screen', async (t) => {
   await page.unrouteAll({behavior: 'ignoreErrors'});
   await page.context().close();
   await t.test('warnings, until they are dismissed', () => warnings(browser, scanner.url));
+  const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
+  const opened = await openPage(browser, `${scanner.url}#${id}`);
+  await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));
+  assert.deepEqual(opened.faults, []);
 });

@@ -262,6 +262,7 @@ export const texts = {
   'fact.took': '{when}, in {duration}',
   'fact.motor': 'Motor',
   'fact.late': '{count} Impulse zu spät, daher drehte er langsamer',
+  'fact.more': 'Alle Angaben',
   'fact.triangles': 'Dreiecke',
   'fact.watertight': 'Wasserdicht',
   'fact.open': 'Nein, es hat offene Kanten',

@@ -273,6 +273,7 @@ export const texts = {
   'fact.took': '{when}, in {duration}',
   'fact.motor': 'Motor',
   'fact.late': '{count} pulses late, so it turned more slowly',
+  'fact.more': 'All details',
   'fact.triangles': 'Triangles',
   'fact.watertight': 'Watertight',
   'fact.open': 'No, it has open edges',

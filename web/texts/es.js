@@ -262,6 +262,7 @@ export const texts = {
   'fact.took': '{when}, en {duration}',
   'fact.motor': 'Motor',
   'fact.late': '{count} pulsos con retraso, así que giró más despacio',
+  'fact.more': 'Todos los detalles',
   'fact.triangles': 'Triángulos',
   'fact.watertight': 'Estanco',
   'fact.open': 'No, tiene bordes abiertos',

@@ -262,6 +262,7 @@ export const texts = {
   'fact.took': '{when}, en {duration}',
   'fact.motor': 'Moteur',
   'fact.late': '{count} impulsions en retard, il a donc tourné plus lentement',
+  'fact.more': 'Tous les détails',
   'fact.triangles': 'Triangles',
   'fact.watertight': 'Étanche',
   'fact.open': 'Non, il a des bords ouverts',

@@ -357,7 +357,7 @@ export const texts = {
   'failure.choose-build': 'The model was not changed',
   'failure.delete-build': 'The model was not deleted',
   'failure.fit': 'The side was not fitted again',
-  'failure.take-back': 'The side was not taken back',
+  'failure.remove-side': 'The side was not removed',
 
   // The other sides of an object
   'sides.title': 'The other side',
@@ -368,9 +368,10 @@ export const texts = {
   'sides.open': 'Open its scan',
   'sides.fit': 'See the fit',
   'sides.fit-of': 'See the fit: side {side}',
-  'sides.remove': 'Take back',
-  'sides.remove-of': 'Take back: side {side}',
+  'sides.remove': 'Remove this side',
+  'sides.remove-of': 'Remove this side: {side}',
   'side': 'Side {side}',
+  'side.name': 'Side {side}',
   'side.in': 'Side {side} is in the model',
   'side.misfit': 'Side {side} does not fit',
   'side.out': 'Side {side} is not in the model',

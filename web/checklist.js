@@ -3,6 +3,7 @@
 import * as requests from './api_calibration.js';
 import {element, part, show} from './dom.js';
 import {here} from './places.js';
+import {note, noted} from './storage.js';
 
 const betweenLooks = 2000;  // milliseconds
 const checkedKey = 'octurn-checked';
@@ -24,24 +25,6 @@ export function stepsOf({isChecked, isCalibrated: hasPose, hasModel, isDismissed
   const now = /** @type {const} */ (['check', 'calibrate', 'scan']).find((step) => !done[step]);
   const stateOf = (/** @type {keyof typeof done} */ step) => done[step] ? 'done' : step === now ? 'now' : 'next';
   return {check: stateOf('check'), calibrate: stateOf('calibrate'), scan: stateOf('scan')};
-}
-
-/** Reads a note from the browser's storage, if it is allowed. @param {string} key */
-function noted(key) {
-  try {
-    return localStorage.getItem(key);
-  } catch {
-    return null;
-  }
-}
-
-/** @param {string} key @param {string} [value] */
-function note(key, value = 'yes') {
-  try {
-    localStorage.setItem(key, value);
-  } catch {
-    // without storage the steps are shown again
-  }
 }
 
 /** @type {Known} */

@@ -56,20 +56,32 @@ const takesText = ({seconds, bytes}) => `${format.roughly(seconds)}, ${format.by
 const memoryText = ({memory_bytes = 0, fitting_leaf_size_mm = 0}, leaf_size_mm) => fitting_leaf_size_mm > leaf_size_mm ?
   text('form.memory', {bytes: format.bytes(memory_bytes), leaf: format.leaf(fitting_leaf_size_mm)}) : '';
 
+/** @type {Map<string, ReturnType<typeof estimate>>} since the form came into view, by settings */
+const estimates = new Map();
+
+/** @param {Partial<Settings>} settings */
+function estimateOf(settings) {
+  const key = JSON.stringify(settings);
+  const known = estimates.get(key) ?? estimate(settings);
+  estimates.set(key, known);
+  known.catch(() => estimates.delete(key));
+  return known;
+}
+
 /** Shows the scan's estimated time and space, if the scanner can estimate them. */
 async function tellEstimate() {
   if (!element('form').matches(':valid')) {
     return;
   }
   const chosen = chosenSettings();
-  const text = await estimate(chosen).then((taken) => takesText(taken) + memoryText(taken, chosen.leaf_size_mm), () => '');
+  const text = await estimateOf(chosen).then((taken) => takesText(taken) + memoryText(taken, chosen.leaf_size_mm), () => '');
   setText(element('estimate'), text);
 }
 
 /** Shows each preset's estimated time and space. @param {Settings} defaults */
 async function tellPresets(defaults) {
   for (const {name, settings} of presets(defaults)) {
-    const taken = await estimate(formSettings(settings)).catch(() => null);
+    const taken = await estimateOf(formSettings(settings)).catch(() => null);
     setText(part(element('presets'), `[value=${name}] ~ .choice-mm`), taken ? format.roughly(taken.seconds) : '');
   }
 }
@@ -130,6 +142,7 @@ export function spaceChosen() {
 function watchForEstimates(defaults) {
   new IntersectionObserver((entries) => {
     if (entries.some(({isIntersecting}) => isIntersecting)) {
+      estimates.clear();
       tellEstimate();
       tellPresets(defaults);
     }

@@ -1,7 +1,6 @@
 // Polls the scanner, and handles the page's controls.
 
 import * as api from './api.js';
-import * as requests from './api_builds.js';
 import {seeStatus, watchAppliance} from './appliance.js';
 import * as bin from './bin.js';
 import {watchCamera} from './camera.js';
@@ -22,7 +21,7 @@ async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  const [page] = await Promise.all([import('./scan_page.js'), awaitTexts()]);  // including the reasons of verdicts
+  const [page, requests] = await Promise.all([import('./scan_page.js'), import('./api_builds.js'), awaitTexts()]);  // including the reasons of verdicts
   page.prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};

@@ -1,10 +1,14 @@
 // Actions on the models of the scan in view: build again, choose one, join another side.
 
+import * as api from './api.js';
+import * as binRequests from './api_bin.js';
 import * as requests from './api_builds.js';
 import * as poseRequests from './api_poses.js';
+import {offerUndo} from './bin.js';
 import {openFit} from './fit_view.js';
 import {act, change, state} from './page.js';
 import * as states from './state.js';
+import {text} from './texts.js';
 import {askDeleteBuild} from './view.js';
 
 /** @param {Object} settings  that differ from those of the scan in view */
@@ -46,6 +50,14 @@ export const buildActions = {
   remove: removeBuild,
 };
 
+/** Returns a removed pose from the bin. @param {string} first  the scan that it joins again @param {string} pose */
+const restorePose = (first, pose) => act('failure.restore', async () => {
+  await binRequests.restore(pose);
+  const scans = await api.scans();
+  const builds = await requests.builds(first);
+  return (now) => states.withShownBuild(states.withBuilds(states.withScans(now, scans), first, builds), null);
+});
+
 let lookedAt = 0;  // pose whose fit is in view
 
 export const poseActions = {
@@ -64,9 +76,14 @@ export const poseActions = {
     const begun = await poseRequests.choosePose(/** @type {string} */ (state.selected), lookedAt, choice);
     return (now) => states.withBuild(now, begun);
   }),
-  remove: (/** @type {number} */ number) => act('failure.take-back', async () => {
-    const scan = await poseRequests.removePose(/** @type {string} */ (state.selected), number);
-    const builds = await requests.builds(scan.id);
-    return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), scan.id, builds), null);
+  remove: (/** @type {number} */ number) => act('failure.remove-side', async () => {
+    const first = /** @type {string} */ (state.selected);
+    const pose = states.scanOf(state, first)?.poses?.find((other) => other.pose === number);
+    const scan = await poseRequests.removePose(first, number);
+    const builds = await requests.builds(first);
+    if (pose) {
+      offerUndo(text('side.name', {side: number + 1}), () => restorePose(first, pose.scan));
+    }
+    return (now) => states.withShownBuild(states.withBuilds(states.withScan(now, scan), first, builds), null);
   }),
 };

@@ -1,5 +1,4 @@
-// "The scanner itself" in the settings: restart, shutdown, and the program's log. Also the clock of an appliance without internet,
-// which is set from the browser's clock.
+// "The scanner itself" in the settings: restart, shutdown, and the program's log.
 
 import {Problem, json, sending, status} from './api.js';
 import {element, setText, show} from './dom.js';
@@ -10,12 +9,6 @@ import {text} from './texts.js';
 
 /** The lines of the log to show, without their priority prefix. Pure. @param {{log: string[], errors: string[]}} messages */
 export const linesOf = ({log, errors}) => [...errors, ...log].map((line) => line.replace(/<\d>/, '')).join('\n');
-
-/** Whether an appliance's clock may be wrong. Pure. @param {import('./api.js').Status} status */
-export const needsClock = ({appliance, warnings}) => appliance && Boolean(warnings?.some(({check}) => check === 'clock'));
-
-/** Sets the clock of an appliance that has no time server. */
-export const sendClock = () => json('machine/clock', sending('PUT', {unix_s: Date.now() / 1000}));
 
 /** @param {HTMLElement} button */
 async function end(button) {

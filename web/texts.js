@@ -2,6 +2,8 @@
 // translations of the scanner's sentences by their English originals. HTML gives keys in data-text, and in data-text-label, -title and
 // -placeholder for the attributes of these names.
 
+import {noted} from './storage.js';
+
 /** @typedef {Record<string, string | Partial<Record<Intl.LDMLPluralRule, string>>>} Texts */
 
 const files = {
@@ -28,13 +30,7 @@ export const languageOf = (chosen, preferred) => /** @type {keyof typeof files} 
 export const localeOf = (language, preferred) => preferred.find((tag) => tag.toLowerCase().split('-')[0] === language) ?? language;
 
 /** The language chosen on this page; null: the browser's preference. @returns {string | null} */
-export function chosenLanguage() {
-  try {
-    return localStorage.getItem(memory);
-  } catch {
-    return null;  // storage is not available
-  }
-}
+export const chosenLanguage = () => noted(memory);
 
 /** @param {string | null} language  null: the browser's preference */
 export function chooseLanguage(language) {

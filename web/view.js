@@ -10,6 +10,7 @@ import {text} from './texts.js';
 /** @param {Screen} screen */
 function showDevices({devices, isSimulated}) {
   show(element('simulated'), isSimulated);
+  element('devices').dataset.well = devices.every(({tone}) => tone === 'good') ? 'yes' : 'no';
   list(element('devices'), devices, ({role}) => role, 'device', (item, device) => {
     item.dataset.tone = device.tone;
     item.title = device.message;
@@ -71,8 +72,10 @@ function setAction(link, action) {
 /** @param {NonNullable<Screen['details']>['verdict']} verdict */
 function showVerdict(verdict) {
   show(element('verdict'), verdict !== null);
+  show(element('verdict-more'), verdict !== null);
   if (verdict) {
     element('verdict').dataset.tone = verdict.tone;
+    element('verdict-more').dataset.tone = verdict.tone;
     part(element('verdict'), 'use').setAttribute('href', `icons/symbols.svg#${verdict.icon}`);
     setText(element('verdict-title'), verdict.title);
     setText(element('verdict-text'), verdict.text);
@@ -87,6 +90,14 @@ function showVerdict(verdict) {
     });
   }
 }
+
+const factsInView = 4;  // the others are folded
+
+/** @param {string} id @param {NonNullable<Screen['details']>['facts']} facts */
+const showFacts = (id, facts) => list(element(id), facts, ({label}) => label, 'fact', (item, {label, ...value}) => {
+  setText(part(item, 'dt'), label);
+  setBadge(part(item, 'dd'), value);
+});
 
 /** @param {NonNullable<Screen['details']>} details */
 function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, download, formats, unbuilt}) {
@@ -104,10 +115,9 @@ function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, do
   show(element('end'), canEnd);
   show(element('size'), size !== '');
   setText(element('size'), size);
-  list(element('facts'), facts, ({label}) => label, 'fact', (item, {label, ...value}) => {
-    setText(part(item, 'dt'), label);
-    setBadge(part(item, 'dd'), value);
-  });
+  showFacts('facts', facts.slice(0, factsInView));
+  showFacts('further-facts', facts.slice(factsInView));
+  show(element('more-facts'), facts.length > factsInView);
   show(element('build-first'), unbuilt !== null && !unbuilt.isGoing);
   setText(element('build-first-about'), unbuilt?.about ?? '');
   element('build-first').className = canResume ? 'secondary' : 'primary';

@@ -1,31 +1,23 @@
-// Warnings about the computer, shown without a check: power supply, temperature, disk, clock.
+// Warnings about the computer, shown without a check: power supply, temperature, disk, clock. The module that shows them is fetched with
+// the first one.
 
-import {element, list, part, setText, show} from './dom.js';
-import {sentence} from './format.js';
-import {needsClock, sendClock} from './power.js';
-import {translated} from './texts.js';
+import {isRightClock, needsClock, sendClock} from './clock.js';
 
-/** @typedef {import('./api.js').Finding} Finding */
-
-const tones = /** @type {Record<string, string>} */ ({fault: 'bad', warning: 'warn'});
-
-/** The text of a warning. Pure. @param {Finding} finding */
-export const textOf = ({name, measured, advice}) => ({title: `${translated(name)}: ${translated(measured)}.`, text: sentence(advice)});
-
+/** @type {Promise<{showWarnings: (told: import('./api.js').Finding[]) => void}> | null} */
+let lines = null;
 let isClockSent = false;
 
 /** @param {import('./api.js').Status} status */
-export function seeWarnings(status) {
-  const warnings = status.warnings ?? [];
-  show(element('warnings'), warnings.length > 0);
-  list(element('warnings'), warnings, ({check}) => check, 'machine-warning', (item, finding) => {
-    const {title, text} = textOf(finding);
-    item.dataset.tone = tones[finding.state] ?? '';
-    setText(part(item, 'strong'), title);
-    setText(part(item, 'span'), text);
-  });
+export async function seeWarnings(status) {
+  const warnings = (status.warnings ?? []).filter((finding) => !isRightClock(finding, new Date()));
   if (!isClockSent && needsClock(status)) {
     isClockSent = true;  // once per visit: if the clock cannot be set, only the warning stays
     sendClock().catch(() => {});
+  }
+  if (warnings.length > 0 || lines) {
+    lines ??= import('./warning_lines.js');
+    await lines.then(({showWarnings}) => showWarnings(warnings), () => {
+      lines = null;  // retried at the next poll
+    });
   }
 }

@@ -134,9 +134,16 @@ TEST_F(ScanPosesTest, GoOnAfterTheProgramEndedAndAreMergedAndTakenBack) {
   EXPECT_EQ(job.pose_of->registration->candidate, 0U);
   EXPECT_TRUE(fs::exists(store_.folder(pose) / pose_points_file));
   choose_again(scanner, job);
+  const std::string merged = model_of(first);
   scanner.remove_pose(first, 1);
   EXPECT_TRUE(model_of(first) == model);
   EXPECT_TRUE(store_.get(first).builds.all.empty());
+  EXPECT_EQ(store_.bin().list().size(), 1U);
+  scanner.restore(pose);
+  EXPECT_TRUE(model_of(first) == merged);
+  EXPECT_EQ(scanner.poses(first).size(), 1U);
+  EXPECT_TRUE(store_.get(pose).pose_of->registration->accepted);
+  EXPECT_EQ(read_scan(store_.merged_scan(first, {pose})).shots.size(), 12U);
 }
 
 TEST_F(ScanPosesTest, AreJoinedWithThoseBeforeThem) {

@@ -144,7 +144,7 @@ TEST(ScanStore, ListsAScanWhoseRecordCannotBeReadAsFailedAndRemovesIt) {
     EXPECT_EQ(jobs[1].id, good);
     EXPECT_EQ(jobs[1].state, JobState::interrupted);
     EXPECT_FALSE(store.newest_finished());
-    store.remove(bad);
+    store.discard(bad);
     EXPECT_EQ(store.list().size(), 1U);
   }
 }

@@ -121,10 +121,12 @@ TEST(ScanStore, RemovesAScanWithEverythingInIt) {
   ScanStore store(folder.path());
   const Job job = store.create({});
   put(store.folder(job.id) / "snapshots" / "000.png", "x");
-  store.remove(job.id);
+  store.discard(job.id);
+  store.empty_bin();
   EXPECT_FALSE(store.find(job.id));
   EXPECT_TRUE(fs::is_empty(folder.path() / "scans"));
-  EXPECT_EQ(code_thrown_by([&] { store.remove(job.id); }), "no-such-scan");
+  EXPECT_TRUE(fs::is_empty(folder.path() / "bin"));
+  EXPECT_EQ(code_thrown_by([&] { store.discard(job.id); }), "no-such-scan");
 }
 
 TEST(ScanStore, KeepsTheNameAndTheNotesThatAPersonWroteOnAScan) {
@@ -179,7 +181,7 @@ TEST(ScanStore, HasAnotherRevisionAfterEveryChangeThatAListShows) {
   expect_change("named");
   store.label(job.id, {.notes = "of clay"});
   expect_change("noted");
-  store.remove(job.id);
+  store.discard(job.id);
   expect_change("removed");
 }
 
@@ -189,7 +191,7 @@ TEST(ScanStore, TouchesNothingThatIsNoScan) {
   ScanStore store(folder.path());
   for (const char* const id : {"../secret", "..", "", "."}) {
     EXPECT_FALSE(store.find(id));
-    EXPECT_EQ(code_thrown_by([&] { store.remove(id); }), "no-such-scan");
+    EXPECT_EQ(code_thrown_by([&] { store.discard(id); }), "no-such-scan");
     EXPECT_EQ(code_thrown_by([&] { store.label(id, {.name = "x"}); }), "no-such-scan");
   }
   EXPECT_TRUE(fs::exists(folder.path() / "secret" / "job.json"));
@@ -259,7 +261,7 @@ TEST(ScanStore, RemovesAScanWhoseFolderIsGone) {
   const Job job = store.create({});
   fs::remove_all(store.folder(job.id));
   EXPECT_EQ(code_thrown_by([&] { store.save(job); }), "write-failed");
-  store.remove(job.id);
+  store.discard(job.id);
   EXPECT_TRUE(store.list().empty());
 }
 

@@ -49,7 +49,7 @@ test('a crooked rig is calibrated on the page, and its models have flag and aeri
   assert.notEqual(told.model.quality.verdict, 'good');
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${told.id}`);
   await picture(page, 'crooked-model');
-  await page.locator('#verdict').getByRole('link', {name: 'Calibrate'}).first().click();
+  await page.locator('#verdict-more').getByRole('link', {name: 'Calibrate'}).first().click();
 
   await page.getByRole('button', {name: 'Measure with a turn'}).click();
   await page.getByRole('progressbar', {name: 'Measuring with a turn'}).waitFor();
@@ -172,7 +172,7 @@ test('the sensor is flattened on the page, and the next scan sees evenly', async
   const first = await scan(scanner, {...draft, snapshots: 12});
   assert.ok(hasFinding(first));
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${first.id}`);
-  await page.locator('#verdict').getByRole('link', {name: 'Flatten the sensor'}).click();
+  await page.locator('#verdict-more').getByRole('link', {name: 'Flatten the sensor'}).click();
 
   const look = page.getByRole('button', {name: 'Look at the wall'});
   await page.getByText('Not done for this sensor.').waitFor();
@@ -249,7 +249,7 @@ test('a first visit is led from the check to the calibration to the scan', async
   const state = (name) => steps.locator(`[data-step=${name}]`).getAttribute('data-state');
   await steps.waitFor();
   assert.equal(await state('check'), 'now');
-  await steps.getByRole('button', {name: 'Check it'}).click();
+  await steps.getByRole('button', {name: 'Check the scanner'}).click();
   await page.locator('.finding').first().waitFor();
   await goTo(page, 'Scan');
   await steps.locator('[data-step=calibrate][data-state=now]').waitFor();

@@ -89,7 +89,7 @@ function degreesBetween(one, other) {
   return Math.acos(Math.min((trace - 1) / 2, 1)) * 180 / Math.PI;
 }
 
-test('an object is scanned, turned over, scanned again, and downloaded as one model; the other side is taken back', async (t) => {
+test('an object is scanned, turned over, scanned again, and downloaded as one model; the other side is removed, and restored', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '20']});
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 8);
@@ -176,10 +176,20 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   const {poses, model} = await ask(scanner, `scans/${first.id}`);
   assert.deepEqual([poses.length, model.watertight], [2, true]);
   await picture(page, 'three-sides');
-  await page.getByRole('button', {name: 'Take back: side 3'}).click();
+  await page.getByRole('button', {name: 'Remove this side: 3'}).click();
   await page.getByText('Side 3 is in the model').waitFor({state: 'detached'});
 
-  await page.getByRole('button', {name: 'Take back: side 2'}).click();
+  const remove = page.getByRole('button', {name: 'Remove this side: 2'});
+  const {model: merged} = await ask(scanner, `scans/${first.id}`);
+  await remove.click();
+  await add.waitFor();
+  assert.deepEqual((await ask(scanner, 'bin')).scans.map(({id}) => id).sort(), poses.map(({scan}) => scan).sort(), 'no scan is lost');
+  await picture(page, 'side-removed');
+  const undo = page.getByRole('status').filter({hasText: 'In the bin: Side 2.'}).getByRole('button', {name: 'Undo'});
+  await undo.click();
+  await page.getByText('Side 2 is in the model').waitFor();
+  assert.equal((await ask(scanner, `scans/${first.id}`)).model.triangles, merged.triangles, 'the model is what it was');
+  await remove.click();
   await add.waitFor();
   const {scans} = await ask(scanner, 'scans');
   assert.deepEqual([scans.length, scans[0].build, scans[0].poses], [1, 0, []]);

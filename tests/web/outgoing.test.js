@@ -1,10 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
+import {isRightClock, needsClock} from '../../web/clock.js';
 import {aboutPrinter, aboutWebhook} from '../../web/outgoing.js';
-import {linesOf, needsClock} from '../../web/power.js';
+import {linesOf} from '../../web/power.js';
 import {aboutUpload, scanIn} from '../../web/send.js';
-import {textOf} from '../../web/warnings.js';
+import {kindOf, textOf} from '../../web/warning_lines.js';
 
 test('a printer, and how a model gets there, are told in words', () => {
   assert.equal(aboutPrinter({id: '1', name: 'Voron', kind: 'moonraker', address: 'http://voron.local:7125', has_key: true}), 'Moonraker · http://voron.local:7125');
@@ -34,6 +35,22 @@ test('a clock is lent to an appliance that warns of its own', () => {
   assert.equal(needsClock({appliance: true, warnings: [clock]}), true);
   assert.equal(needsClock({appliance: false, warnings: [clock]}), false);
   assert.equal(needsClock({appliance: true, warnings: []}), false);
+});
+
+test('a clock that tells the browser\'s time is right, whoever set it', () => {
+  const clock = {check: 'clock', name: 'Clock', state: 'warning', measured: '2026-11-25 06:22 UTC, not from a time server', advice: '', action: ''};
+  assert.equal(isRightClock(clock, new Date('2026-11-25T06:23:50Z')), true);
+  assert.equal(isRightClock(clock, new Date('2026-11-25T06:29:00Z')), false);
+  assert.equal(isRightClock(clock, new Date('2027-11-25T06:22:00Z')), false);
+  assert.equal(isRightClock({...clock, check: 'supply'}, new Date('2026-11-25T06:22:00Z')), false);
+  assert.equal(isRightClock({...clock, measured: 'unknown'}, new Date('2026-11-25T06:22:00Z')), false);
+});
+
+test('a dismissed warning stays dismissed whatever its numbers, until it becomes another one', () => {
+  const disk = {check: 'disk', name: 'Disk', state: 'warning', measured: '1.2 GB free', advice: '', action: ''};
+  assert.equal(kindOf(disk), kindOf({...disk, measured: '980 GB free'}));
+  assert.notEqual(kindOf(disk), kindOf({...disk, state: 'fault'}));
+  assert.notEqual(kindOf(disk), kindOf({...disk, measured: 'not known'}));
 });
 
 test('warnings and messages are for people', () => {

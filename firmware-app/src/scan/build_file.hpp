@@ -11,6 +11,10 @@ namespace octurn {
 /// `Scan.stl` and `build.json`.
 inline constexpr const char* builds_folder = "builds";
 
+/// The folder of a removed pose for the builds of its earlier scan that merge it. They return with
+/// the pose from the bin.
+inline constexpr const char* removed_builds_folder = "removed_builds";
+
 /// Subfolder of a build that merges several poses: a scan folder with the snapshots of all of them.
 inline constexpr const char* merged_folder = "scan";
 

@@ -101,6 +101,9 @@ struct PoseRegistration {
 struct PoseOf {
   std::string scan = {};                              ///< id of the earlier scan
   std::optional<PoseRegistration> registration = {};  ///< once all snapshots are taken
+  /// Of a pose that was removed from the earlier scan: number of the build with it that was chosen;
+  /// 0 if none was.
+  std::optional<int> removed_build = {};
 };
 
 /// When a scan was begun, and how long it takes.

@@ -1,5 +1,6 @@
 #include "scan/pose_of_json.hpp"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -83,13 +84,19 @@ json to_json(const PoseRegistration& registration) {
 }
 
 json to_json(const PoseOf& pose_of) {
-  return {{"scan", pose_of.scan},
-          {"registration", pose_of.registration ? to_json(*pose_of.registration) : json()}};
+  json object{{"scan", pose_of.scan},
+              {"registration", pose_of.registration ? to_json(*pose_of.registration) : json()}};
+  if (pose_of.removed_build) {
+    object["removed_build"] = *pose_of.removed_build;
+  }
+  return object;
 }
 
 PoseOf to_pose_of(const JsonValue& object) {
   JsonObject keys(object);
-  PoseOf pose_of{.scan = keys.at("scan").text()};
+  PoseOf pose_of{
+      .scan = keys.at("scan").text(),
+      .removed_build = keys.whole_number("removed_build", 0, std::numeric_limits<int>::max())};
   if (const JsonValue registration = keys.at("registration"); !registration.json().is_null()) {
     pose_of.registration = to_registration(registration);
   }

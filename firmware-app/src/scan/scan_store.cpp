@@ -18,10 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names of unfinished folders, and of folders being removed, begin with a dot: they are not listed,
-// and the next start removes them.
+// Names of unfinished folders begin with a dot: they are not listed, and the next start removes
+// them.
 constexpr std::string_view unfinished = ".new-";
-constexpr std::string_view removed = ".removed-";
 
 int count_snapshots(const fs::path& folder) {
   try {
@@ -226,27 +225,6 @@ void ScanStore::label(std::string_view id, const LabelChange& change) {
   ScanLabel& label = jobs_.find(id)->second.label;
   label = changed(std::move(label), change);
   ++revision_;
-}
-
-void ScanStore::remove(std::string_view id) {
-  const fs::path leaving = scans_ / (std::string(removed) + std::string(id));
-  std::error_code error;
-  {
-    const std::lock_guard writing(writing_);
-    get(id);  // throws if there is no such scan
-    // Renamed first, so that a partly removed scan is never listed.
-    fs::rename(folder(id), leaving, error);
-    if (error && error != std::errc::no_such_file_or_directory) {
-      throw_data_error(folder(id), "remove", error);
-    }
-    const std::lock_guard lock(mutex_);
-    jobs_.erase(jobs_.find(id));
-    ++revision_;
-  }
-  fs::remove_all(leaving, error);
-  if (error) {
-    log::warning("store", leaving.string() + ": cannot remove: " + error.message());
-  }
 }
 
 fs::path ScanStore::folder(std::string_view id) const { return scans_ / id; }

@@ -75,9 +75,6 @@ class ScanStore {
   /// @throws Error "no-such-scan"
   void label(std::string_view id, const LabelChange& change);
 
-  /// Removes a scan permanently.
-  void remove(std::string_view id);
-
   /// The deleted scans, which can be restored for some days, unless their space is needed.
   const ScanBin& bin() const { return bin_; }
 
@@ -85,8 +82,16 @@ class ScanStore {
   /// @throws Error "no-such-scan", "data-failed", "disk-full"
   void discard(std::string_view id);
 
-  /// Moves a scan out of the bin, with its scans of other poses.
-  /// @throws Error "no-such-scan", "data-failed"
+  /// Moves a scan of another pose into the bin, with the builds that merge it. If one of them is
+  /// chosen, the model chosen before it is restored.
+  /// @param id  of a scan whose first scan exists
+  /// @throws Error "no-such-scan", "data-failed", "disk-full", "write-failed"
+  void discard_pose(const std::string& id);
+
+  /// Moves a scan out of the bin, with the scans of other poses that were deleted with it. A pose
+  /// that was removed from its scan joins it again, with their model, which is chosen unless
+  /// another pose was merged meanwhile; if its scan is in the bin, both return.
+  /// @throws Error "no-such-scan", "data-failed", "disk-full", "write-failed"
   void restore(std::string_view id);
 
   /// Removes the scans in the bin permanently.
@@ -177,6 +182,10 @@ class ScanStore {
   void recover();
   void finish_discards();
   void move_from_bin(const BinnedScan& scan);
+  void restore_with_poses(const BinnedScan& first);
+  void move_builds_out(const Job& first, const std::string& pose);
+  int move_builds_back(const Job& pose);
+  void rejoin(const Job& pose);
   void move_to_bin(const Job& job);
   void write_job(const Job& job) const;
   void keep(const Job& job);

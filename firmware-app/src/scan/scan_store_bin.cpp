@@ -48,9 +48,25 @@ void ScanStore::restore(std::string_view id) {
     throw Error(ErrorCode::no_such_scan, "there is no scan " + std::string(id) + " in the bin",
                 "GET /api/v1/bin lists them.");
   }
-  move_from_bin(*scan);
+  if (!scan->job.pose_of) {
+    restore_with_poses(*scan);
+    return;
+  }
+  if (const auto first = bin_.find(scan->job.pose_of->scan)) {
+    restore_with_poses(*first);
+  }
+  if (bin_.find(id)) {
+    move_from_bin(*scan);
+    rejoin(scan->job);
+  }
+}
+
+/// Moves a scan out of the bin, with the poses that were deleted with it. `writing_` is held.
+void ScanStore::restore_with_poses(const BinnedScan& first) {
+  move_from_bin(first);
   for (const BinnedScan& other : bin_.list()) {
-    if (other.job.pose_of && other.job.pose_of->scan == id) {
+    if (other.job.pose_of && other.job.pose_of->scan == first.job.id &&
+        !other.job.pose_of->removed_build) {
       move_from_bin(other);
     }
   }
@@ -79,16 +95,19 @@ void ScanStore::make_room(std::uint64_t needed, const std::string& what) {
 }
 
 /// Completes moves that a power cut interrupted: poses follow their scan into the bin, or out of
-/// it. Removes expired scans.
+/// it. A pose that was being removed from its scan, or was returning to it, joins it again. Removes
+/// expired scans.
 void ScanStore::finish_discards() {
   try {
     for (const Job& job : list()) {
       if (job.pose_of && !find(job.pose_of->scan) && bin_.find(job.pose_of->scan)) {
         move_to_bin(job);
+      } else if (job.pose_of) {
+        rejoin(job);
       }
     }
     for (const BinnedScan& scan : bin_.list()) {
-      if (scan.job.pose_of && find(scan.job.pose_of->scan)) {
+      if (scan.job.pose_of && !scan.job.pose_of->removed_build && find(scan.job.pose_of->scan)) {
         move_from_bin(scan);
       }
     }

@@ -76,7 +76,7 @@ class Scanner {
   /// @throws Error "no-such-scan", "not-found"  if there is no such pose
   Job find_pose(std::string_view id, int number) const;
 
-  /// Removes a pose: its scan is deleted, and the model chosen before it is restored.
+  /// Removes a pose: its scan is moved into the bin, and the model chosen before it is restored.
   /// @param number  of the pose, from 1
   /// @throws Error "no-such-scan", "not-found"  if there is no such pose; "busy"  if it is being
   ///               scanned, or a later one was merged with it
@@ -118,7 +118,8 @@ class Scanner {
   ///               ends meanwhile
   Job adopt(const ArchiveSource& archive);
 
-  /// Moves a scan out of the bin. @throws Error "no-such-scan"
+  /// Moves a scan out of the bin. A pose that was removed from its scan joins it again.
+  /// @throws Error "no-such-scan"; "busy"  if a model of the scan that it joins is being built
   void restore(std::string_view id);
 
   /// Removes the scans in the bin permanently.

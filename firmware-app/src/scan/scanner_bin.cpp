@@ -73,6 +73,10 @@ void Scanner::remove(std::string_view id) {
 
 void Scanner::restore(std::string_view id) {
   const std::lock_guard lock(scans_);
+  const auto scan = store_.bin().find(id);
+  if (scan && scan->job.pose_of && is_building(scan->job.pose_of->scan)) {
+    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  }
   store_.restore(id);
 }
 

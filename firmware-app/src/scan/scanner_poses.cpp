@@ -98,8 +98,7 @@ void Scanner::remove_pose(const Job& pose) {
     throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
   }
   expect_last_pose(pose);
-  store_.withdraw_pose(first, pose.id);
-  store_.remove(pose.id);
+  store_.discard_pose(pose.id);
 }
 
 void Scanner::remove_build(std::string_view id, int number) {

@@ -1,0 +1,143 @@
+// What lies within the window before anybody scrolls, on screens of all sizes: Start at a first visit, and the result of a scan.
+
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+
+import {complaints, overflow} from './access.js';
+import {openBrowser, openPage, picture} from './browser.js';
+import {scan, startScanner} from './scanner.js';
+
+const screens = {phone: [390, 844], small: [360, 640], tablet: [820, 1180], desktop: [1280, 860]};
+const shortScreens = {landscape: [844, 390], magnified: [640, 430]};
+
+const clock = {check: 'clock', name: 'Clock', state: 'warning', measured: '2020-01-25 06:22 UTC, not from a time server', action: '',
+  advice: 'Connect the scanner to a network with internet, or its scans have wrong dates.'};
+
+/**
+ * Opens the page as if the computer had these warnings.
+ * @returns {Promise<import('playwright-core').Page>}
+ */
+async function openWith(browser, url, warnings) {
+  const {page} = await openPage(browser, 'about:blank');
+  await page.route('**/api/v1/events', (route) => route.abort());
+  await page.route('**/api/v1/status', async (route) => {
+    const status = await route.fetch().then((response) => response.json()).catch(() => null);
+    await (status ? route.fulfill({json: {...status, warnings}}) : route.abort());
+  });
+  await page.goto(url);
+  await page.locator('[data-panel=waiting]').waitFor({state: 'hidden'});
+  return page;
+}
+
+/** Gives the window a size, and scrolls to its top. */
+async function resize(page, [width, height]) {
+  await page.setViewportSize({width, height});
+  await page.evaluate(() => scrollTo(0, 0));
+}
+
+/** Why an element is not wholly in sight, or an empty text. @param {string} id */
+const hiddenPart = (page, id) => page.evaluate((name) => {
+  const element = document.getElementById(name);
+  const {left, top, right, bottom} = element.getBoundingClientRect();
+  const isSeen = (x, y) => element.contains(document.elementFromPoint(x, y));
+  const middle = (left + right) / 2;
+  return isSeen(middle, top + 3) && isSeen(middle, bottom - 3) ? '' : `#${name} from ${top} to ${bottom} of ${innerHeight}`;
+}, id);
+
+/** The part of the model's picture within the window, pixels. */
+const pictureInSight = (page) => page.locator('#view').evaluate((view) => {
+  const {top, bottom} = view.getBoundingClientRect();
+  return Math.min(bottom, innerHeight) - Math.max(top, 0);
+});
+
+const sizeOf = (page) => page.locator('#view').evaluate((view) => view.clientHeight);
+
+async function firstVisit(page) {
+  await page.locator('#first-steps').waitFor();
+  await page.locator('#warnings li').waitFor();
+  for (const [name, size] of Object.entries(screens)) {
+    await resize(page, size);
+    assert.equal(await hiddenPart(page, 'start'), '', name);
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    const lines = await page.evaluate(() => ['#warnings li', '#first-steps'].map((part) => document.querySelector(part).clientHeight));
+    assert.ok(lines.every((height) => height < 60), `each is one line, not ${lines} pixels high: ${name}`);
+    await picture(page, `first-visit-${name}`);
+  }
+  assert.deepEqual(await complaints(page), []);
+}
+
+/** The words of a list's items that can be seen. */
+const wordsIn = (list) => list.evaluate((found) => {
+  const isSeen = (element) => element.getBoundingClientRect().width > 1;
+  return [...found.children].filter(isSeen).flatMap(({children}) => [...children].filter(isSeen).map((part) => part.textContent)).filter(Boolean);
+});
+
+async function devices(page) {
+  const list = page.getByRole('list', {name: 'Devices'});
+  await resize(page, screens.phone);
+  assert.deepEqual(await wordsIn(list), ['ready'], 'one dot and one word for devices that are well');
+  await resize(page, screens.desktop);
+  assert.equal((await wordsIn(list)).filter((word) => word === 'ready').length, 2);
+}
+
+async function warnings(browser, url) {
+  const supply = {check: 'supply', name: 'Supply voltage', state: 'warning', measured: '4.5 V', action: '', advice: 'Use another supply.'};
+  const now = () => new Date().toISOString().replace('T', ' ').slice(0, 16);
+  const told = [supply, {...clock, measured: `${now()} UTC, not from a time server`}];
+  const page = await openWith(browser, url, told);
+  const lines = page.locator('#warnings li');
+  await lines.first().waitFor();
+  assert.match((await lines.allInnerTexts()).join(), /^Supply voltage: 4\.5 V\. Use another supply\.$/, 'a clock that is right is no warning');
+  await lines.getByRole('button', {name: 'Supply voltage: 4.5 V.'}).click();
+  await lines.getByRole('button', {expanded: true}).waitFor();
+  await page.getByRole('button', {name: 'Dismiss: Supply voltage'}).click();
+  await page.locator('#warnings').waitFor({state: 'hidden'});
+  const seen = async () => {
+    await page.waitForResponse('**/api/v1/status');
+    await page.waitForResponse('**/api/v1/status');  // what the one before told is shown
+    return lines.count();
+  };
+  await page.reload();
+  assert.equal(await seen(), 0, 'this browser keeps it');
+  told[0] = {...supply, measured: '4.4 V'};
+  assert.equal(await seen(), 0, 'whatever its number is');
+  told[0] = {...supply, state: 'fault'};
+  await lines.first().waitFor();
+  await page.unrouteAll({behavior: 'ignoreErrors'});
+  await page.context().close();
+}
+
+async function result(page) {
+  await page.locator('#tools').waitFor();
+  await page.locator('#verdict').waitFor();
+  for (const [name, size] of Object.entries({...screens, ...shortScreens})) {
+    await resize(page, size);
+    for (const id of ['verdict', 'download']) {
+      assert.equal(await hiddenPart(page, id), '', name);
+    }
+    const inSight = await pictureInSight(page);
+    assert.ok(inSight > await sizeOf(page) - 1 && inSight > 200, `the whole picture, not ${inSight} pixels of it: ${name}`);
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `result-${name}`);
+  }
+  assert.ok(await page.locator('#verdict').evaluate((verdict) => verdict.clientHeight) < 48, 'the verdict is one line');
+  await resize(page, screens.desktop);
+  await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
+  assert.ok(await pictureInSight(page) > 300, 'the picture stays beside what is scrolled');
+  assert.deepEqual(await complaints(page), []);
+}
+
+test('what matters is in sight on every screen', async (t) => {
+  const scanner = await startScanner(t);
+  const browser = await openBrowser(t);
+  const page = await openWith(browser, scanner.url, [clock]);
+  await t.test('Start at a first visit, below one warning', () => firstVisit(page));
+  await t.test('the devices that are well, as one dot on a phone', () => devices(page));
+  await page.unrouteAll({behavior: 'ignoreErrors'});
+  await page.context().close();
+  await t.test('warnings, until they are dismissed', () => warnings(browser, scanner.url));
+  const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
+  const opened = await openPage(browser, `${scanner.url}#${id}`);
+  await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));
+  assert.deepEqual(opened.faults, []);
+});

@@ -33,9 +33,32 @@ missing_packages() {
   done
 }
 
+# apt_get ARGUMENT...: runs apt-get, with its output in build/packages.log, and tells how far it is.
 apt_get() {
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -o DPkg::Lock::Timeout=300 "$@" \
-    >>build/packages.log 2>&1 </dev/null
+  rm -f build/packages.failed
+  {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -o DPkg::Lock::Timeout=300 -o APT::Status-Fd=1 "$@" \
+      2>&1 </dev/null || : >build/packages.failed
+  } | {
+    told=
+    # Example of a line of progress: "pmstatus:cmake:34.5:Unpacking cmake (amd64)".
+    while IFS= read -r line; do
+      case $line in
+        dlstatus:*) doing="downloading packages" ;;
+        pmstatus:*) doing="installing packages" ;;
+        *)
+          printf '%s\n' "$line" >>build/packages.log
+          continue
+          ;;
+      esac
+      percent=${line#*:*:}
+      tens="$doing, ${percent%%.*}"
+      tens="${tens%[0-9]}0 %"
+      [ "$tens" = "$told" ] || say "$tens"
+      told=$tens
+    done
+  }
+  [ ! -e build/packages.failed ]
 }
 
 # install_packages SECTION...: installs missing packages; needs no network if there are none.
@@ -59,10 +82,22 @@ install_packages() {
   }
 }
 
+# compilers: prints how many compilers may run at a time: one a core, as far as there is memory for 0.7 GB each.
+compilers() {
+  available=$(awk '/^MemAvailable:/ { print int($2 / 700000) }' /proc/meminfo)
+  cores=$(nproc)
+  [ "${available:-1}" -ge 1 ] || available=1
+  echo $((available < cores ? available : cores))
+}
+
 # build PRESET [BUILD_PRESET]: configures build/PRESET and builds it, or only the targets of BUILD_PRESET; with ccache,
 # if installed.
 build() {
-  say "building build/$1"
+  if [ -e "build/$1/build.ninja" ]; then
+    say "building build/$1: what has changed"
+  else
+    say "building build/$1: the first time takes minutes"
+  fi
   mkdir -p build
   if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER="${CMAKE_CXX_COMPILER_LAUNCHER-ccache}"
@@ -71,5 +106,5 @@ build() {
     cat "build/$1.log" >&2
     return 1
   fi
-  cmake --build --preset "${2-$1}" -j "$(nproc)"
+  NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "${2-$1}" -j "$(compilers)"
 }

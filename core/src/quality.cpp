@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "calibrate/missing_part.hpp"
+#include "calibrate/object_view.hpp"
 #include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
 
-constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
-constexpr double min_volume = 1e-7;        // cubic metres
+constexpr double min_volume = 1e-7;  // cubic metres
 
 // Two stops of a correct rig disagree by 0.5 to 0.7 mm at 0.65 m with a Kinect v1, whose noise
 // grows with the square of the distance.

@@ -1,8 +1,12 @@
 #include "config/config_store.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
@@ -10,6 +14,7 @@
 namespace octurn {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// Stores that are opened one after the other on the same data folder.
@@ -169,6 +174,38 @@ TEST_F(ConfigStores, ReturnToTheLastGoodSettingsOnce) {
   EXPECT_TRUE(store.return_to_last_good());
   EXPECT_EQ(open().stored(), json({{"threads", 3}}));
   EXPECT_FALSE(store.return_to_last_good());
+}
+
+/// Things in place of a file that can be neither read nor replaced.
+const std::vector<std::function<void(const fs::path& file)>> obstacles{
+    [](const fs::path& file) { fs::create_directory(file); },
+    [](const fs::path& file) { ASSERT_EQ(::mkfifo(file.c_str(), 0644), 0); },
+    [](const fs::path& file) { fs::create_symlink("/dev/full", file); }};
+
+TEST_F(ConfigStores, ServeAlsoIfTheLastGoodSettingsCannotBeKept) {
+  for (const auto& obstacle : obstacles) {
+    ConfigStore store = open();
+    store.change({{"threads", 3}});
+    fs::remove_all(file("settings.last.json"));
+    obstacle(file("settings.last.json"));
+    EXPECT_NO_THROW(store.keep_as_good());
+    EXPECT_EQ(open().stored(), json({{"threads", 3}}));
+  }
+}
+
+TEST_F(ConfigStores, ReturnToTheLastGoodSettingsAlsoIfTheseCannotBeStored) {
+  for (const auto& obstacle : obstacles) {
+    fs::remove_all(file("settings.json"));
+    ConfigStore store = open();
+    store.change({{"threads", 3}});
+    store.keep_as_good();
+    store.change({{"threads", 4}});
+    fs::remove(file("settings.json"));
+    obstacle(file("settings.json"));
+    EXPECT_TRUE(store.return_to_last_good());
+    EXPECT_EQ(store.stored(), json({{"threads", 3}}));
+    EXPECT_EQ(store.config().limits.threads, 3);
+  }
 }
 
 TEST(ConfigSchema, TellsWhatIsAllowedAndWhatWaitsForARestart) {

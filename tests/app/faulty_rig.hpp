@@ -34,12 +34,13 @@ class FaultyRig {
     seen_ = stops == 4 ? four_sides : seen_at_stops(stops);
   }
 
-  RigOptions options(double speed) {
+  RigOptions options(double speed, const Retries& retries = {}) {
     return {.speed = speed,
             .stepper = StepperSettings{.speed_steps_per_second = 5000,
                                        .start_speed_steps_per_second = 5000,
                                        .ramp_steps_per_second2 = 1e6,
                                        .settle_time = std::chrono::milliseconds(0)},
+            .retries = retries,
             .open_sensor =
                 [this](const std::string&) {
                   if (fails(Fault::unplugged)) {
@@ -50,15 +51,20 @@ class FaultyRig {
             .open_lines = [this](const StepperSettings&) { return opened_lines(); }};
   }
 
-  /// Lets a fault begin at a stop. @param lasts  time after which it goes away by itself
-  void fail(Fault fault, int stop,
-            std::chrono::steady_clock::duration lasts = std::chrono::hours(1)) {
+  /// Lets a fault begin at a stop.
+  void fail(Fault fault, int stop) {
     fault_stop_ = stop;
-    lasts_ = lasts;
     begun_ = false;
     fault_ = fault;
   }
   void mend() { fault_ = Fault::none; }
+
+  /// Has the sensor send no frame until `let_go`, so that a scan stays at its stop.
+  void hold() { is_held_ = true; }
+  void let_go() {
+    is_held_ = false;
+    is_held_.notify_all();
+  }
 
   bool is_motor_on() const { return motor_on_; }
   std::int64_t position() const { return position_; }
@@ -106,9 +112,8 @@ class FaultyRig {
     return seen;
   }
 
-  /// Whether this fault is active: it begins at its stop and lasts for its time.
+  /// Whether this fault is active: it begins at its stop.
   bool fails(Fault fault) {
-    const auto now = std::chrono::steady_clock::now();
     if (fault_ != fault) {
       return false;
     }
@@ -116,14 +121,12 @@ class FaultyRig {
         stop_positions(0, steps, stops_)[static_cast<std::size_t>(fault_stop_)];
     const std::int64_t begin =
         fault == Fault::line_refused ? std::max<std::int64_t>(stop - 3, 0) : stop;  // in the move
-    if (!begun_ && position_ >= begin) {
-      begin_ = now;
-      begun_ = true;
-    }
-    return begun_ && now - begin_.load() < lasts_.load();
+    begun_ = begun_ || position_ >= begin;
+    return begun_;
   }
 
   DepthFrame look() {
+    is_held_.wait(true);
     if (fails(Fault::silent)) {
       throw Error(ErrorCode::sensor_silent, "no frame came", "Plug it in again.");
     }
@@ -175,8 +178,7 @@ class FaultyRig {
   std::atomic<Fault> fault_ = Fault::none;
   std::atomic<int> fault_stop_ = 0;
   std::atomic<bool> begun_ = false;
-  std::atomic<std::chrono::steady_clock::duration> lasts_ = {};
-  std::atomic<std::chrono::steady_clock::time_point> begin_ = {};
+  std::atomic<bool> is_held_ = false;
 };
 
 }  // namespace octurn

@@ -2,10 +2,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "support/http_client.hpp"
@@ -17,6 +20,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Options of a server whose patience with slow clients is longer than any test.
+const HttpOptions patient{.address = "127.0.0.1", .port = 0, .request_timeout = 1h};
+
 /// Responds with the request as JSON.
 Response echo(const Request& request) {
   nlohmann::json said{{"method", request.method}, {"path", request.path}, {"body", request.body}};
@@ -26,14 +32,10 @@ Response echo(const Request& request) {
   return {.headers = {{"Content-Type", "application/json"}}, .body = said.dump()};
 }
 
-HttpServer echo_server() {
-  return {{.address = "127.0.0.1", .port = 0, .request_timeout = 1s}, echo};
-}
-
 nlohmann::json said(const Reply& reply) { return nlohmann::json::parse(reply.body); }
 
 TEST(HttpServer, HandsOverTheWholeRequest) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer server(patient, echo);
   const Reply reply =
       request(server.port(), "POST", "/a%20b/c?query=1", R"({"x":1})", {{"X-Test", "yes"}});
   EXPECT_EQ(reply.status, 200);
@@ -44,7 +46,7 @@ TEST(HttpServer, HandsOverTheWholeRequest) {
 }
 
 TEST(HttpServer, TakesABodyInChunks) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer server(patient, echo);
   const Reply reply = reply_to(server.port(),
                                "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked"
                                "\r\n\r\n3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n");
@@ -52,7 +54,7 @@ TEST(HttpServer, TakesABodyInChunks) {
 }
 
 TEST(HttpServer, SaysTheLengthAndWhatEveryPageMayDo) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer server(patient, echo);
   const Reply reply = request(server.port(), "GET", "/");
   EXPECT_EQ(reply.header("Content-Length"), std::to_string(reply.body.size()));
   EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff");
@@ -61,7 +63,7 @@ TEST(HttpServer, SaysTheLengthAndWhatEveryPageMayDo) {
 }
 
 TEST(HttpServer, AnswersAHeadWithoutTheBody) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer server(patient, echo);
   const Reply whole = request(server.port(), "GET", "/");
   const Reply head = request(server.port(), "HEAD", "/");
   EXPECT_EQ(head.status, 200);
@@ -82,8 +84,7 @@ std::string ask_on(const FileDescriptor& socket) {
 }
 
 TEST(HttpServer, KeepsTheConnectionOfWhoAsksForIt) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0},
-                          [](const Request&) { return Response{.body = "body"}; });
+  const HttpServer server(patient, [](const Request&) { return Response{.body = "body"}; });
   const FileDescriptor socket = connected(server.port());
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(reply_from(ask_on(socket)).header("Connection"), "keep-alive");
@@ -93,8 +94,7 @@ TEST(HttpServer, KeepsTheConnectionOfWhoAsksForIt) {
 }
 
 TEST(HttpServer, ClosesWhereABodyMayBeUnread) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0},
-                          [](const Request&) { return Response{.status = 409}; });
+  const HttpServer server(patient, [](const Request&) { return Response{.status = 409}; });
   const Reply chunked = reply_to(server.port(),
                                  "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n"
                                  "Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
@@ -108,8 +108,7 @@ TEST(HttpServer, ClosesWhereABodyMayBeUnread) {
 
 // Each idle connection holds a thread. They are cut when another client needs one.
 TEST(HttpServer, AnswersOthersBesideKeptConnections) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0},
-                          [](const Request&) { return Response{.body = "body"}; });
+  const HttpServer server(patient, [](const Request&) { return Response{.body = "body"}; });
   std::vector<FileDescriptor> idle;
   for (int i = 0; i < 60; ++i) {
     idle.push_back(connected(server.port()));
@@ -119,7 +118,7 @@ TEST(HttpServer, AnswersOthersBesideKeptConnections) {
 }
 
 TEST(HttpServer, LeavesPreflightsToItsOwner) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer server(patient, echo);
   const Reply reply = request(server.port(), "OPTIONS", "/", "",
                               {{"Origin", "http://evil.example"},
                                {"Access-Control-Request-Method", "POST"},
@@ -136,7 +135,7 @@ TEST(HttpServer, SendsAPartOfAFile) {
     content[i] = static_cast<char>(i * 31 >> 3);
   }
   put(folder.path() / "file", content);
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+  const HttpServer server(patient, [&](const Request&) {
     return Response{
         .status = 206,
         .body = FileSlice{FileDescriptor(::open((folder.path() / "file").c_str(), O_RDONLY)), 1000,
@@ -149,7 +148,7 @@ TEST(HttpServer, SendsAPartOfAFile) {
 }
 
 TEST(HttpServer, RefusesABodyThatIsTooLarge) {
-  const HttpServer server = echo_server();
+  const HttpServer server(patient, echo);
   EXPECT_EQ(request(server.port(), "POST", "/", std::string(65536, ' ')).status, 200);
   EXPECT_EQ(request(server.port(), "POST", "/", std::string(65537, ' ')).status, 413);
   const Reply announced = reply_to(server.port(),
@@ -164,7 +163,7 @@ TEST(HttpServer, RefusesABodyThatIsTooLarge) {
 }
 
 TEST(HttpServer, LeavesAnUploadToItsOwner) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0}, [](const Request& request) {
+  const HttpServer server(patient, [](const Request& request) {
     std::array<std::byte, 1000> part{};
     std::size_t bytes = 0;
     for (std::size_t got = 1; got > 0; bytes += got) {
@@ -182,8 +181,7 @@ TEST(HttpServer, LeavesAnUploadToItsOwner) {
 }
 
 TEST(HttpServer, AnswersAnUploadThatItDoesNotWant) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0},
-                          [](const Request&) { return Response{.status = 409}; });
+  const HttpServer server(patient, [](const Request&) { return Response{.status = 409}; });
   const std::string head =
       "PUT / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5000000\r\n"
       "Content-Type: application/octet-stream\r\n\r\n";
@@ -191,7 +189,7 @@ TEST(HttpServer, AnswersAnUploadThatItDoesNotWant) {
 }
 
 TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {
-  const HttpServer server = echo_server();
+  const HttpServer server(patient, echo);
   const std::string host = "Host: localhost\r\n\r\n";
   for (const std::string& text : std::vector<std::string>{
            "\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n" + host, "BREW / HTTP/1.1\r\n" + host,
@@ -200,7 +198,10 @@ TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {
            "POST / HTTP/1.1\r\nContent-Length: abc\r\n" + host,
            "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n" + host,
            "GET / HTTP/1.1\r\nX: " + std::string(20000, 'a') + "\r\n" + host}) {
-    const Reply reply = reply_to(server.port(), text);
+    const FileDescriptor socket = connected(server.port());
+    send_text(socket, text);
+    ::shutdown(socket.number(), SHUT_WR);  // so that the server waits for nothing more
+    const Reply reply = reply_from(receive_all(socket));
     EXPECT_TRUE(reply.status == 0 || reply.status >= 400)
         << reply.status << " for " << text.substr(0, 60);
   }
@@ -208,7 +209,7 @@ TEST(HttpServer, RefusesMalformedHeadsAndStaysUp) {
 }
 
 TEST(HttpServer, EndsConnectionsThatStall) {
-  const HttpServer server = echo_server();  // its patience is 1 s
+  const HttpServer server({.address = "127.0.0.1", .port = 0, .request_timeout = 300ms}, echo);
   for (const char* const text :
        {"", "GET / HTT", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1234"}) {
     const FileDescriptor socket = connected(server.port());
@@ -219,7 +220,7 @@ TEST(HttpServer, EndsConnectionsThatStall) {
 
 // The server's patience is longer than the test, so it answers beside stalled clients or never.
 TEST(HttpServer, AnswersOthersWhileSomeStall) {
-  const HttpServer server({.address = "127.0.0.1", .port = 0, .request_timeout = 1h}, echo);
+  const HttpServer server(patient, echo);
   std::vector<FileDescriptor> stalled;
   for (int i = 0; i < 10; ++i) {
     stalled.push_back(connected(server.port()));
@@ -229,12 +230,49 @@ TEST(HttpServer, AnswersOthersWhileSomeStall) {
 }
 
 TEST(HttpServer, SaysThatThePortIsTaken) {
-  const HttpServer first({.address = "127.0.0.1", .port = 0}, echo);
+  const HttpServer first(patient, echo);
   const Error error =
       error_thrown_by([&] { HttpServer({.address = "127.0.0.1", .port = first.port()}, echo); });
   EXPECT_EQ(error.code(), ErrorCode::listen_failed);
   EXPECT_NE(std::string(error.what()).find(std::to_string(first.port())), std::string::npos);
   EXPECT_NE(error.hint().find("--port"), std::string::npos);
+}
+
+/// Lowers this process's limit of open files to a number of free ones, for its lifetime.
+class FewDescriptors {
+ public:
+  explicit FewDescriptors(rlim_t free) {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const FileDescriptor next(::dup(STDIN_FILENO));
+    const rlimit few{.rlim_cur = static_cast<rlim_t>(next.number()) + free,
+                     .rlim_max = before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &few);
+  }
+  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  FewDescriptors(const FewDescriptors&) = delete;
+  FewDescriptors& operator=(const FewDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/// The code of the error that starting a server throws; empty if it starts.
+std::string code_at_start(const HttpOptions& options, rlim_t free_descriptors) try {
+  const FewDescriptors few(free_descriptors);
+  const HttpServer server(options, echo);
+  return "";
+} catch (const Error& error) {
+  return std::string(to_string(error.code()));
+}
+
+TEST(HttpServer, LeavesNothingBehindWhereverItsStartFails) {
+  const HttpOptions options{.address = "127.0.0.1", .port = HttpServer(patient, echo).port()};
+  std::set<std::string> codes;
+  for (rlim_t free = 0; free < 12; ++free) {
+    codes.insert(code_at_start(options, free));
+    EXPECT_EQ(code_at_start(options, 100), "") << "the port is free after " << free;
+  }
+  EXPECT_EQ(codes, (std::set<std::string>{"", "listen-failed", "no-descriptors"}));
 }
 
 TEST(HttpServer, SaysThatAnAddressIsNone) {

@@ -140,11 +140,11 @@ TEST_F(LaserCalibrationOfARig, StaysAsItIsWhereATurnIsRefused) {
 
 TEST_F(LaserCalibrationOfARig, EndsWithItsLasersOffWhenATurnIsCancelled) {
   Scanner scanner(rig_.options(speed), {}, store_);
-  rig_.on_picture = [&](SimulatedLaserRig& rig) {
+  rig_.on_picture([&](SimulatedLaserRig& rig) {
     if (rig.is_lit()) {
       scanner.cancel_calibration();
     }
-  };
+  });
   const CalibrationRun run = turn(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::cancelled);
   EXPECT_FALSE(rig_.is_lit());

@@ -156,13 +156,13 @@ TEST(LaserScanTime, HasEachPictureWrittenWhileTheNextOneIsTaken) {
   constexpr int stops = 3;
   SimulatedLaserRig simulated;
   int written = 0;
-  simulated.on_picture = [&](SimulatedLaserRig& rig) {
+  simulated.on_picture([&](SimulatedLaserRig& rig) {
     const std::string stem = "snapshots/00" + std::to_string(rig.pictures / 3);
     constexpr std::array<const char*, 3> before{"", "-dark.png", "-left.png"};
     if (const auto which = static_cast<std::size_t>(rig.pictures % 3); which > 0) {
       written += comes(folder.path() / (stem + before[which])) ? 1 : 0;
     }
-  };
+  });
   Rig rig(simulated.options(1000));
   ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), rig, {}, {}));
   EXPECT_EQ(written, 2 * stops);

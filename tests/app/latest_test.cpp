@@ -5,6 +5,8 @@
 #include <array>
 #include <thread>
 
+#include "support/patience.hpp"
+
 namespace octurn {
 namespace {
 
@@ -32,7 +34,7 @@ TEST(Latest, WaitsForWhatIsWanted) {
       latest.set(value);
     }
   });
-  EXPECT_EQ(*latest.wait({}, 20s, [](int value) { return value == 100; }), 100);
+  EXPECT_EQ(*latest.wait({}, patience, [](int value) { return value == 100; }), 100);
 }
 
 TEST(Latest, StopsWaitingInTimeOrWhenAsked) {

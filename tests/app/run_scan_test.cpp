@@ -1,14 +1,14 @@
 #include "scan/run_scan.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <stdexcept>
 #include <vector>
 
 #include "app/few_snapshots.hpp"
+#include "app/wrapped_sensor.hpp"
 #include "octurn/scan_folder.hpp"
+#include "support/small_disk.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -158,14 +158,18 @@ TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
 
 TEST(RunScan, FailsWhenTheSensorFallsSilentAndKeepsWhatWasStored) {
   const TemporaryFolder folder;
-  Rig rig(rig_of("octurn-simulator://?speed=20&silent-after=60"));
+  RigOptions options = rig_of();
+  options.open_sensor = [](const std::string& uri) {
+    return std::make_unique<SensorSilentOnceTurned>(uri);
+  };
+  Rig rig(options);
   const Error error =
-      error_thrown_by([&] { run_scan(few_snapshots(200), {}, folder.path(), rig, {}, {}); });
+      error_thrown_by([&] { run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}); });
   EXPECT_EQ(error.code(), ErrorCode::sensor_silent);
   EXPECT_FALSE(error.hint().empty());
   const Scan scan = read_scan(folder.path());
-  EXPECT_GE(scan.shots.size(), 1U);
-  EXPECT_EQ(snapshots_in(folder.path()), static_cast<int>(scan.shots.size()));
+  EXPECT_EQ(scan.shots.size(), 1U);
+  EXPECT_EQ(snapshots_in(folder.path()), 1);
 }
 
 TEST(RunScan, FailsWhenTheSensorIsUnplugged) {
@@ -196,28 +200,11 @@ TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
   EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }), "empty");
 }
 
-/// Limits the size of this process's files, to simulate a full disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_ = {};
-};
-
 TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
   for (const rlim_t bytes : {10'000U, 400'000U}) {  // less than a snapshot; less than the model
     const TemporaryFolder folder;
     Rig rig(rig_of());
-    const FileSizeLimit limit(bytes);
+    const SmallDisk disk(bytes);
     ScanSettings settings = few_snapshots();
     settings.method = Method::intersection;  // its model is the larger one
     const Error error =

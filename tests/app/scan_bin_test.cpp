@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -138,16 +139,56 @@ TEST_F(ScanBinTest, LosesWhatIsThereForMoreThanThirtyDays) {
   EXPECT_TRUE(fs::is_empty(bin()));
 }
 
-TEST_F(ScanBinTest, GivesItsSpaceToANewScanWhatWasDeletedFirstGoingFirst) {
+/// Adds a file that takes that many bytes of the disk, and more for its name.
+void add_file(const fs::path& file, std::uint64_t bytes) {
+  std::ofstream stream(file, std::ios::binary);
+  const std::string mb(std::size_t{1} << 20U, 'x');
+  for (std::uint64_t written = 0; written < bytes; written += mb.size()) {
+    stream << mb;
+  }
+}
+
+TEST_F(ScanBinTest, GivesNoSpaceIfAllOfItDoesNotSuffice) {
   ScanStore store(folder_.path());
-  const Job old = finished(store);
-  const Job young = finished(store);
-  store.discard(young.id);
-  store.discard(old.id);
-  store.make_room(store.free_bytes(), "nothing more");
-  EXPECT_EQ(store.bin().list().size(), 2U) << "there is room enough";
-  EXPECT_EQ(code_thrown_by([&] { store.make_room(std::uint64_t{1} << 62U, "all"); }), "disk-full");
-  EXPECT_TRUE(store.bin().is_empty());
+  for (int i = 0; i < 2; ++i) {
+    store.discard(finished(store).id);
+  }
+  store.make_room(0, "nothing");
+  EXPECT_EQ(store.bin().list().size(), 2U);
+  const std::uint64_t more = std::uint64_t{1} << 40U;  // than others free on this disk meanwhile
+  EXPECT_EQ(code_thrown_by([&] { store.make_room(store.free_bytes() + more, "more"); }),
+            "disk-full");
+  EXPECT_EQ(store.bin().list().size(), 2U);
+}
+
+TEST_F(ScanBinTest, NamesTheScansWhoseSpaceSuffices) {
+  constexpr std::uint64_t mb = std::uint64_t{1} << 20U;
+  ScanStore store(folder_.path());
+  std::vector<std::string> ids;
+  for (int i = 0; i < 3; ++i) {
+    ids.push_back(finished(store).id);
+    add_file(store.folder(ids.back()) / "snapshots.png", 2 * mb);
+  }
+  // The time of deletion is in whole seconds: renamed, so that the order is that of the ids.
+  for (const std::string& id : ids) {
+    store.discard(id);
+    fs::rename(*std::ranges::find_if(
+                   fs::directory_iterator(bin()), fs::directory_iterator(),
+                   [&](const auto& entry) { return entry.path().string().ends_with(id); }),
+               bin() / (id + "." + id));
+  }
+  const ScanBin binned(bin(), [](const fs::path&) { return Job(); });
+  using Ids = std::vector<std::string>;
+  EXPECT_EQ(binned.oldest(1), Ids({ids[0]}));
+  EXPECT_EQ(binned.oldest(2 * mb), Ids({ids[0]}));
+  EXPECT_EQ(binned.oldest(3 * mb), Ids({ids[0], ids[1]}));
+  EXPECT_EQ(binned.oldest(6 * mb), ids);
+  EXPECT_EQ(binned.oldest(8 * mb), Ids());
+
+  // A file that has a name elsewhere is not freed.
+  fs::create_hard_link(bin() / (ids[0] + "." + ids[0]) / "snapshots.png", scans() / "other.png");
+  EXPECT_EQ(binned.oldest(mb), Ids({ids[0], ids[1]}));
+  EXPECT_EQ(binned.oldest(6 * mb), Ids());
 }
 
 TEST_F(ScanBinTest, KeepsItsIdsFromNewScansAlthoughTheClockHasGoneBack) {

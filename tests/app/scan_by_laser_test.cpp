@@ -2,12 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/scanner_fixture.hpp"
@@ -22,7 +18,6 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace std::chrono_literals;
 
 constexpr int stops = 6;
 constexpr double speed = 200;
@@ -44,14 +39,13 @@ Job ended(Scanner& scanner) {
 
 class ScanByLaser : public ::testing::Test {
  protected:
-  /// Calls `action` before picture `number`, counted from the scan's start.
-  void before_picture(int number, const std::function<void()>& action) {
-    rig_.on_picture = [=, first = std::make_shared<std::optional<int>>()](SimulatedLaserRig& rig) {
-      *first = first->value_or(rig.pictures);
-      if (rig.pictures - **first == number) {
+  /// Calls `action` before picture `number` of the scanner's next scan, counted from 0.
+  void before_picture(Scanner& scanner, int number, const std::function<void()>& action) {
+    rig_.on_picture([=, &scanner, pictures = 0](SimulatedLaserRig&) mutable {
+      if (scanner.status().is_scanning() && pictures++ == number) {
         action();
       }
-    };
+    });
   }
 
   TemporaryFolder folder_ = {};
@@ -129,22 +123,20 @@ TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
     scanner.start(settings());
     ended(scanner);
   }
-  const std::size_t begin = rig_.log.find('A');
+  const std::string log = rig_.log();
+  const std::size_t begin = log.find('A');
   std::string expected;
   for (int stop = 0; stop < stops; ++stop) {
     expected += std::string(stop == 0 ? "" : "p") + "ApaBpb";
   }
   ASSERT_NE(begin, std::string::npos);
-  EXPECT_EQ(rig_.log.substr(begin, expected.size()), expected);
-  EXPECT_EQ(rig_.log.find('A', begin + expected.size()), std::string::npos);
+  EXPECT_EQ(log.substr(begin, expected.size()), expected);
+  EXPECT_EQ(log.find('A', begin + expected.size()), std::string::npos);
 }
 
 TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
-  before_picture(7, [this, done = std::make_shared<bool>()] {
-    rig_.lost_pictures = *done ? 0 : 1;
-    *done = true;
-  });
   Scanner scanner(rig_.options(speed), {}, store_);
+  before_picture(scanner, 7, [this] { rig_.lost_pictures = 1; });
   scanner.start(settings());
   const Job job = ended(scanner);
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
@@ -152,8 +144,8 @@ TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
 }
 
 TEST_F(ScanByLaser, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
-  before_picture(10, [this] { rig_.is_unplugged = true; });
   Scanner scanner(rig_.options(speed), {}, store_);
+  before_picture(scanner, 10, [this] { rig_.is_unplugged = true; });
   scanner.start(settings());
   const Job paused = ended(scanner);
   ASSERT_EQ(paused.state, JobState::paused);
@@ -163,7 +155,6 @@ TEST_F(ScanByLaser, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
   EXPECT_LT(paused.snapshots_done, stops);
   EXPECT_EQ(read_scan(store_.folder(paused.id)).shots.size(),
             static_cast<std::size_t>(paused.snapshots_done));
-  rig_.on_picture = [](SimulatedLaserRig&) {};
   rig_.is_unplugged = false;
   ASSERT_TRUE(scanner.resume(paused.id));
   EXPECT_EQ(ended(scanner).state, JobState::finished);
@@ -183,13 +174,8 @@ TEST_F(ScanByLaser, PausesWithTheNameOfALaserThatGivesNoLight) {
 
 TEST_F(ScanByLaser, EndsWithItsLasersOffWhenItIsCancelled) {
   Scanner scanner(rig_.options(speed), {}, store_);
-  std::atomic<bool> is_there = false;
-  before_picture(5, [&] { is_there = true; });
-  const auto job = scanner.start(settings());
-  while (!is_there) {
-    std::this_thread::yield();
-  }
-  scanner.cancel(job->id);
+  before_picture(scanner, 5, [&] { scanner.cancel(scanner.status().job->id); });
+  scanner.start(settings());
   EXPECT_EQ(ended(scanner).state, JobState::cancelled);
   EXPECT_FALSE(rig_.is_lit());
 }

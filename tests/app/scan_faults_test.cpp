@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/faulty_rig.hpp"
+#include "app/scanner_fixture.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/job_file.hpp"
 #include "scan/scanner.hpp"
-#include "support/patience.hpp"
-#include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -20,8 +19,8 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr int stops = 4;
-constexpr double speed = 500;         // the patience of 30 s is 60 ms
-constexpr double patient_speed = 20;  // the patience of 30 s is 1.5 s
+constexpr std::chrono::hours forever(1'000'000);  // also at that speed
+constexpr double speed = 500;  // a failing stop is retried for 60 ms in place of 30 s
 
 ScanSettings settings(Method method = Method::solid) {
   return {.snapshots = stops, .frames = 2, .method = method, .leaf_size = 0.004};
@@ -104,9 +103,13 @@ TEST_P(ScanFaults, ThatPassDoNotEvenPauseAScan) {
     const TemporaryFolder folder;
     ScanStore store(folder.path());
     FaultyRig rig(stops);
-    Scanner scanner(rig.options(patient_speed), {}, store);
-    rig.fail(GetParam().fault, stop, 250ms);  // 5 s of simulated time
+    Scanner scanner(rig.options(speed, {.time = forever}), {}, store);
+    rig.fail(GetParam().fault, stop);
     scanner.start(settings());
+    const Status failing = wait_until(
+        scanner, [](const Status& status) { return !status.busy() || status.job->failure; });
+    EXPECT_TRUE(failing.busy());
+    rig.mend();
     const Job done = ended(scanner);
     ASSERT_EQ(done.state, JobState::finished) << done.failure->detail;
     EXPECT_FALSE(done.failure);
@@ -186,9 +189,11 @@ TEST_F(PausedScan, CountsTheLatePulsesOfAllItsParts) {
 TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {
   const Job job = pause();
   rig_.mend();
+  rig_.hold();
   const auto other = scanner_.start(settings());
-  ASSERT_TRUE(other);
   EXPECT_FALSE(scanner_.resume(job.id));  // as the other scan runs
+  rig_.let_go();
+  ASSERT_TRUE(other);
   EXPECT_EQ(ended(scanner_).state, JobState::finished);
   ASSERT_TRUE(scanner_.resume(job.id));
   EXPECT_EQ(ended(scanner_).state, JobState::finished);
@@ -213,13 +218,10 @@ TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
   ScanStore store(folder.path());
   FaultyRig rig(stops);
   rig.fail(Fault::silent, 1);
-  Scanner patient(rig.options(1), {}, store);
+  Scanner patient(rig.options(speed, {.time = forever, .interval = forever}), {}, store);
   patient.start(settings());
-  Status status = patient.status();
-  while (status.busy() && !status.job->failure) {
-    std::this_thread::yield();
-    status = patient.status();
-  }
+  const Status status =
+      wait_until(patient, [](const Status& now) { return !now.busy() || now.job->failure; });
   EXPECT_EQ(status.job->state, JobState::running);
   EXPECT_EQ(status.job->failure->code, ErrorCode::sensor_silent);
   EXPECT_TRUE(patient.cancel(status.job->id));  // while it waits to try again

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
@@ -52,14 +55,15 @@ class ScanLens : public ::testing::Test {
     return *status.job;
   }
 
-  /// Waits until `count` views of the board are taken.
-  static void wait_for_views(const Scanner& scanner, int count) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while ((**scanner.calibration_run()).stop < count &&
-           std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    ASSERT_GE((**scanner.calibration_run()).stop, count);
+  /// Calls `action` once, before the first picture after `count` views of the board, on the thread
+  /// that takes them: no further view comes before.
+  void after_views(const Scanner& scanner, int count, const std::function<void()>& action) {
+    rig_.on_picture([=, &scanner, is_done = false](SimulatedLaserRig&) mutable {
+      const std::optional<CalibrationRun> run = *scanner.calibration_run();
+      if (run && run->stop >= count && !std::exchange(is_done, true)) {
+        action();
+      }
+    });
   }
 
   Scan stored(const Job& job) const { return read_scan(store_.folder(job.id)); }
@@ -82,7 +86,7 @@ TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
   EXPECT_NEAR(found.fx, truth.fx, 0.001 * truth.fx);
   EXPECT_NEAR(found.cx, truth.cx, 0.5);
   EXPECT_NEAR(run.lens->lens.k1, -0.05, 0.003);
-  EXPECT_EQ(rig_.log.find_first_of("AB"), std::string::npos) << "no laser is on";
+  EXPECT_EQ(rig_.log().find_first_of("AB"), std::string::npos) << "no laser is on";
 
   const Scan before = stored(scanned(scanner, few_stops()));
   EXPECT_EQ(before.intrinsics.fx, settings_.lens.fx) << "nobody has kept it yet";
@@ -100,14 +104,14 @@ TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
 
 TEST_F(ScanLens, OfAScanThatGoesOnIsTheOneItWasBegunWith) {
   Scanner scanner(rig_.options(speed), {}, store_);
-  rig_.on_picture = [&](SimulatedLaserRig& rig) {
-    if (std::ranges::count(rig.log, 'B') == 2) {  // at the second stop
+  rig_.on_picture([&](SimulatedLaserRig& rig) {
+    if (std::ranges::count(rig.log(), 'B') == 2) {  // at the second stop
       scanner.pause(scanner.status().job->id);
     }
-  };
+  });
   const Job paused = scanned(scanner, few_stops());
   ASSERT_EQ(paused.state, JobState::paused);
-  rig_.on_picture = [](SimulatedLaserRig&) {};
+  rig_.on_picture([](SimulatedLaserRig&) {});
 
   LensReport other{.accepted = true, .views = 12, .corners = 1000, .rms = 0.1};
   other.lens = *rig_.other_lens;
@@ -120,9 +124,8 @@ TEST_F(ScanLens, OfAScanThatGoesOnIsTheOneItWasBegunWith) {
 TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
   Scanner scanner(rig_.options(speed), {}, store_);
   EXPECT_FALSE(scanner.solve_lens());
+  after_views(scanner, 2, [&] { EXPECT_TRUE(scanner.solve_lens()); });
   ASSERT_TRUE(scanner.look_at_board());
-  wait_for_views(scanner, 2);
-  EXPECT_TRUE(scanner.solve_lens());
   const CalibrationRun run = ended(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::refused);
   EXPECT_NE(run.lens->reason.find("at least 5"), std::string::npos) << run.lens->reason;
@@ -131,18 +134,18 @@ TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
 
 TEST_F(ScanLens, IsNotLookedForAnyMoreAfterACancel) {
   Scanner scanner(rig_.options(speed), {}, store_);
+  after_views(scanner, 1, [&] {
+    EXPECT_FALSE(scanner.look_at_board()) << "one at a time";
+    EXPECT_TRUE(scanner.cancel_calibration());
+  });
   ASSERT_TRUE(scanner.look_at_board());
-  EXPECT_FALSE(scanner.look_at_board()) << "one at a time";
-  wait_for_views(scanner, 1);
-  EXPECT_TRUE(scanner.cancel_calibration());
   EXPECT_EQ(ended(scanner).state, CalibrationRun::State::cancelled);
 }
 
 TEST_F(ScanLens, SaysWhatFailsWhereTheCameraIsPulled) {
   Scanner scanner(rig_.options(speed), {}, store_);
+  after_views(scanner, 1, [&] { rig_.is_unplugged = true; });
   ASSERT_TRUE(scanner.look_at_board());
-  wait_for_views(scanner, 1);
-  rig_.is_unplugged = true;
   const CalibrationRun run = ended(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::failed);
   EXPECT_EQ(run.failure->code, ErrorCode::sensor_lost);

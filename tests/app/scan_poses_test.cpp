@@ -28,13 +28,6 @@ class ScanPosesTest : public ScannerTest {
   /// The model of a scan, as a client gets it.
   std::string model_of(const std::string& id) const { return content_of(store_.model_file(id)); }
 
-  /// Waits until the scan of another pose has stored a snapshot.
-  static Status wait_for_snapshot(const Scanner& scanner, const std::string& pose) {
-    return wait_until(scanner, [&](const Status& status) {
-      return status.job && status.job->id == pose && status.job->snapshots_done > 0;
-    });
-  }
-
   /// Registers the first further pose again by a choice. @return the build when it has ended
   static BuildRun choose(Scanner& scanner, const std::string& first, const PoseChoice& choice) {
     EXPECT_TRUE(scanner.choose_pose(first, 1, choice));
@@ -95,14 +88,15 @@ class ScanPosesTest : public ScannerTest {
 };
 
 TEST_F(ScanPosesTest, LeaveTheFirstScanAsItWasWhenTheyAreCancelled) {
-  Scanner scanner(rig(), {}, store_);
+  Scanner scanner(gate_.before(rig()), {}, store_);
   const Job first = scan(scanner, quick());
   const std::string model = model_of(first.id);
+  gate_.hold(scanner, 1);
   const auto pose = scanner.start_pose(first.id, quick());
   ASSERT_TRUE(pose);
   EXPECT_FALSE(scanner.start_pose(first.id, quick())) << "while one is scanned";
   EXPECT_THROW(scanner.remove_pose(first.id, 1), Error);
-  wait_for_snapshot(scanner, pose->id);
+  wait_for_snapshots(scanner, 1);
   EXPECT_TRUE(scanner.cancel(pose->id));
   scanner.wait_until_done(patience);
   ASSERT_EQ(scanner.poses(first.id).size(), 1U);
@@ -119,10 +113,11 @@ TEST_F(ScanPosesTest, GoOnAfterTheProgramEndedAndAreMergedAndTakenBack) {
   std::string first;
   std::string pose;
   {
-    Scanner scanner(rig(), {}, store_);
+    Scanner scanner(gate_.before(rig()), {}, store_);
     first = scan(scanner, quick(6)).id;
+    gate_.hold(scanner, 1);
     pose = scanner.start_pose(first, quick(6))->id;
-    wait_for_snapshot(scanner, pose);
+    wait_for_snapshots(scanner, 1);
   }
   const std::string model = model_of(first);
   EXPECT_EQ(store_.get(pose).state, JobState::interrupted);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "settings/field.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 #include "voxel/checked_levels.hpp"
@@ -123,6 +124,35 @@ TEST(ScanSettings, AreReadFromAJobOfVersion01AsThatWroteThem) {
   EXPECT_EQ(to_json(stored(settings)), with_later_keys(settings));
   settings["clip_mm"] = {0.0, 0.0, 0.0, 0.5, 0.5, 0.5};  // thinner than its leaves of 4 mm
   EXPECT_EQ(to_json(stored(settings)), with_later_keys(settings));
+}
+
+TEST(ScanSettings, AreReadBackAtTheEndsOfTheirStoredRanges) {
+  ScanSettings settings;
+  for (const Field& field : fields(settings, stored_ranges)) {
+    for (const char* const end : {"minimum", "maximum"}) {
+      if (field.access.schema.contains(end)) {
+        settings = ScanSettings{};
+        const double number = field.access.schema[end].get<double>();
+        const bool is_whole = field.access.schema["type"] == "integer";
+        const json value = is_whole ? json(static_cast<int>(number)) : json(number);
+        field.access.read(JsonValue(value, "value", ErrorCode::job_malformed));
+        const json written = to_json(settings);
+        EXPECT_EQ(to_json(stored(written)), written) << field.key << " " << end;
+      }
+    }
+  }
+  settings = ScanSettings{};
+  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(1000);
+  settings.clip = {.min = -corner, .max = corner};
+  EXPECT_EQ(to_json(stored(to_json(settings))), to_json(settings));
+}
+
+TEST(ScanSettings, OfARequestHaveNarrowerRangesThanThoseOfAFile) {
+  for (const json& given :
+       {json{{"snapshots", 401}}, json{{"clip_mm", {0, 0, 0, 10'000.1, 1, 1}}}}) {
+    EXPECT_EQ(code_thrown_by([&] { parsed(given.dump().c_str()); }), "bad-settings") << given;
+    EXPECT_NO_THROW(stored(given)) << given;
+  }
 }
 
 TEST(ScanSettings, RefuseAKeyThatIsNone) {

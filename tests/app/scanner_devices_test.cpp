@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <utility>
 
 #include "app/scanner_fixture.hpp"
+#include "app/wrapped_sensor.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -13,14 +15,21 @@ using namespace std::chrono_literals;
 
 TEST_F(ScannerTest, OpensASensorAgainThatFellSilent) {
   RigOptions options = rig();
-  options.open_sensor = [falls_silent = true](const std::string& uri) mutable {
-    return open_sensor(std::exchange(falls_silent, false) ? uri + "&silent-after=10" : uri);
+  std::atomic<bool> is_seen = false;
+  options.open_sensor = [&, is_first = true](const std::string& uri) mutable {
+    if (std::exchange(is_first, false)) {
+      return std::unique_ptr<DepthSensor>(std::make_unique<SensorSilentOnceTurned>(uri));
+    }
+    is_seen.wait(false);
+    return open_sensor(uri);
   };
   Scanner scanner(options, {}, store_);
-  scanner.start(few_snapshots(20));
+  scanner.start(few_snapshots());
   const Status silent = wait_until(scanner, [](const Status& status) {
     return status.job->failure.has_value() || !status.busy();
   });
+  is_seen = true;
+  is_seen.notify_all();
   EXPECT_TRUE(silent.busy());
   EXPECT_EQ(silent.job->failure->code, ErrorCode::sensor_silent);
   ASSERT_TRUE(silent.job->times.until_pause);
@@ -120,9 +129,10 @@ TEST_F(ScannerTest, ShowsWhatTheSensorSeesNow) {
 }
 
 TEST_F(ScannerTest, ShowsWhatItSawLastDuringAScan) {
-  Scanner scanner(rig(), {}, store_);
-  ASSERT_TRUE(scanner.start(few_snapshots(50)));
-  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 1);
+  ASSERT_TRUE(scanner.start(few_snapshots()));
+  wait_for_snapshots(scanner, 1);
   EXPECT_EQ(scanner.camera_frame()->frame.height, 480);
   EXPECT_TRUE(scanner.status().busy());
 }

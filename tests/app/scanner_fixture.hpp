@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/few_snapshots.hpp"
+#include "app/frame_gate.hpp"
 #include "scan/scanner.hpp"
 #include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
@@ -20,6 +21,13 @@ inline Status wait_until(const Scanner& scanner, const std::function<bool(const 
     status = scanner.status();
   }
   return status;
+}
+
+/// Waits until the running scan has that many snapshots. @return the status then
+inline Status wait_for_snapshots(const Scanner& scanner, int snapshots) {
+  return wait_until(scanner, [=](const Status& status) {
+    return status.job->snapshots_done >= snapshots || !status.busy();
+  });
 }
 
 inline bool is_ready(const Status& status) {
@@ -41,6 +49,7 @@ class ScannerTest : public ::testing::Test {
 
   TemporaryFolder folder_;
   ScanStore store_{folder_.path()};
+  FrameGate gate_;  // for a scanner of a test
 };
 
 }  // namespace octurn

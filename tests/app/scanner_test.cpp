@@ -34,26 +34,30 @@ TEST_F(ScannerTest, ScansToTheEnd) {
 }
 
 TEST_F(ScannerTest, RefusesASecondStartAndTakesTheNextOneAfterwards) {
-  Scanner scanner(rig(), {}, store_);
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 0);
   ASSERT_TRUE(scanner.start(few_snapshots()));
   EXPECT_FALSE(scanner.start(few_snapshots()));
   EXPECT_EQ(store_.list().size(), 1U);
+  gate_.let_go();
   scanner.wait_until_done(patience);
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
 }
 
 TEST_F(ScannerTest, CancelsAScanAndDoesTheNextOne) {
-  Scanner scanner(rig(), {}, store_);
-  const auto job = scanner.start(few_snapshots(200));
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
+  const auto job = scanner.start(few_snapshots());
   EXPECT_FALSE(scanner.cancel("20261121-081500-0000"));
-  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 2; });
+  wait_for_snapshots(scanner, 2);
   EXPECT_TRUE(scanner.cancel(job->id));
   const Status status = scanner.wait_until_done(patience);
-  EXPECT_LT(status.job->snapshots_done, 200);
+  EXPECT_EQ(status.job->snapshots_done, 2);
   EXPECT_EQ(status.job->state, JobState::cancelled);
   EXPECT_EQ(store_.find(job->id)->state, JobState::cancelled);
-  EXPECT_GE(read_scan(store_.folder(job->id)).shots.size(), 2U);
+  EXPECT_EQ(read_scan(store_.folder(job->id)).shots.size(), 2U);
   EXPECT_FALSE(scanner.cancel(job->id));
+  gate_.let_go();
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::finished);
   EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "not-paused")
       << "its object has gone since";
@@ -63,10 +67,11 @@ TEST_F(ScannerTest, PausesAScanAndGoesOnWithTheTimeThatItHasTaken) {
   std::string id;
   std::chrono::duration<double> elapsed = {};
   {
-    Scanner scanner(rig(), {}, store_);
+    Scanner scanner(gate_.before(rig()), {}, store_);
+    gate_.hold(scanner, 2);
     id = scanner.start(few_snapshots(6))->id;
     EXPECT_FALSE(scanner.pause("20261121-081500-0000"));
-    wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 2; });
+    wait_for_snapshots(scanner, 2);
     EXPECT_TRUE(scanner.pause(id));
     const Job paused = *scanner.wait_until_done(patience).job;
     EXPECT_EQ(paused.state, JobState::paused);
@@ -83,11 +88,13 @@ TEST_F(ScannerTest, PausesAScanAndGoesOnWithTheTimeThatItHasTaken) {
 }
 
 TEST_F(ScannerTest, GoesOnWithTheLastScanThatWasEnded) {
-  Scanner scanner(rig(), {}, store_);
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
   const std::string id = scanner.start(few_snapshots(6))->id;
-  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 2; });
+  wait_for_snapshots(scanner, 2);
   scanner.cancel(id);
   ASSERT_EQ(scanner.wait_until_done(patience).job->state, JobState::cancelled);
+  gate_.let_go();
   ASSERT_TRUE(scanner.can_resume(scanner.find(id)));
   ASSERT_TRUE(scanner.resume(id));
   const Job done = *scanner.wait_until_done(patience).job;
@@ -96,22 +103,17 @@ TEST_F(ScannerTest, GoesOnWithTheLastScanThatWasEnded) {
 }
 
 TEST_F(ScannerTest, KeepsTheTimeOfAScanThatIsCutOff) {
-  Scanner scanner(rig(), {}, store_);
-  const std::string id = scanner.start(few_snapshots(200))->id;
-  wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 3; });
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
+  const std::string id = scanner.start(few_snapshots())->id;
+  wait_for_snapshots(scanner, 2);  // that of the first is saved by then
   EXPECT_GT(store_.get(id).times.elapsed.count(), 0) << "as a power cut would find it";
-  scanner.cancel(id);
-  scanner.wait_until_done(patience);
-}
-
-/// Waits until the running scan has that many snapshots. @return the status then
-Status wait_for_snapshots(const Scanner& scanner, int snapshots) {
-  return wait_until(scanner, [=](const Status& s) { return s.job->snapshots_done >= snapshots; });
 }
 
 TEST_F(ScannerTest, RemovesNoScanThatRuns) {
-  Scanner scanner(rig(), {}, store_);
-  const auto job = scanner.start(few_snapshots(200));
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 1);
+  const auto job = scanner.start(few_snapshots());
   EXPECT_EQ(code_thrown_by([&] { scanner.remove(job->id); }), "busy");
   wait_for_snapshots(scanner, 1);
   scanner.cancel(job->id);
@@ -122,8 +124,9 @@ TEST_F(ScannerTest, RemovesNoScanThatRuns) {
 }
 
 TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
-  Scanner scanner(rig(), {}, store_);
-  const auto job = scanner.start(few_snapshots(200));
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
+  const auto job = scanner.start(few_snapshots());
   scanner.label(job->id, {.name = "Hase", .notes = "of clay"});
   EXPECT_EQ(scanner.status().job->label.name, "Hase");
   wait_for_snapshots(scanner, 2);
@@ -143,8 +146,9 @@ void bar_from_being_saved(const std::filesystem::path& file) {
 }
 
 TEST_F(ScannerTest, CallsAScanInterruptedWhoseEndCannotBeSavedAndResumesIt) {
-  Scanner scanner(rig(), {}, store_);
-  const auto job = scanner.start(few_snapshots(20));
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
+  const auto job = scanner.start(few_snapshots());
   wait_for_snapshots(scanner, 2);
   const std::filesystem::path record = store_.folder(job->id) / "job.json";
   bar_from_being_saved(record);
@@ -155,13 +159,15 @@ TEST_F(ScannerTest, CallsAScanInterruptedWhoseEndCannotBeSavedAndResumesIt) {
   EXPECT_EQ(shown.snapshots_done, static_cast<int>(read_scan(store_.folder(job->id)).shots.size()));
   EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "write-failed");
   std::filesystem::remove(record);
+  gate_.let_go();
   ASSERT_TRUE(scanner.resume(job->id));
   EXPECT_EQ(scanner.wait_until_done(patience).job->state, JobState::finished);
 }
 
 TEST_F(ScannerTest, CancelsAScanWhoseEndCouldNotBeSaved) {
-  Scanner scanner(rig(), {}, store_);
-  const auto job = scanner.start(few_snapshots(200));
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 1);
+  const auto job = scanner.start(few_snapshots());
   wait_for_snapshots(scanner, 1);
   const std::filesystem::path record = store_.folder(job->id) / "job.json";
   bar_from_being_saved(record);
@@ -249,32 +255,37 @@ TEST(Heartbeat, IsAliveForAsLongAsItMayBeSilent) {
 
 // The countdown is tested in TimeLeft, as it depends on the machine's speed here.
 TEST_F(ScannerTest, TellsWhatIsLeftOnceThereIsSomethingToTellItFrom) {
-  Scanner scanner(rig(), {}, store_);
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  const auto has_time_left = [](const Status& s) { return s.job->times.left.has_value(); };
+  gate_.hold(scanner, 0);
   ASSERT_TRUE(scanner.start(few_snapshots(8)));
-  EXPECT_FALSE(scanner.status().job->times.left);
-  const Status early =
-      wait_until(scanner, [](const Status& s) { return s.job->times.left.has_value(); });
+  EXPECT_FALSE(has_time_left(scanner.status()));
+  gate_.hold(scanner, 4);
+  const Status early = wait_until(scanner, has_time_left);
+  ASSERT_TRUE(early.job->times.left);
   EXPECT_GT(early.job->snapshots_done, 0);
   EXPECT_GE(*early.job->times.left, 0s);
+  gate_.let_go();
   const Status done = scanner.wait_until_done(patience);
   ASSERT_EQ(done.job->state, JobState::finished);
   EXPECT_GT(done.job->times.elapsed, early.job->times.elapsed);
-  ASSERT_TRUE(scanner.start(few_snapshots(200)));
-  const Status next =
-      wait_until(scanner, [](const Status& s) { return s.job->times.left.has_value(); });
-  EXPECT_LT(next.job->snapshots_done, 100) << "the scan before tells how long this one takes";
+  gate_.hold(scanner, 0);
+  ASSERT_TRUE(scanner.start(few_snapshots(8)));
+  EXPECT_TRUE(has_time_left(wait_until(scanner, has_time_left)))
+      << "the scan before tells how long this one takes";
 }
 
 TEST_F(ScannerTest, CallsAScanInterruptedThatItsOwnEndCutsShort) {
   std::string id;
   {
-    Scanner scanner(rig(), {}, store_);
-    id = scanner.start(few_snapshots(200))->id;
-    wait_until(scanner, [](const Status& status) { return status.job->snapshots_done >= 1; });
+    Scanner scanner(gate_.before(rig()), {}, store_);
+    gate_.hold(scanner, 1);
+    id = scanner.start(few_snapshots())->id;
+    wait_for_snapshots(scanner, 1);
   }
   EXPECT_EQ(store_.find(id)->state, JobState::interrupted);
   EXPECT_EQ(store_.find(id)->failure->code, ErrorCode::interrupted);
-  EXPECT_GE(read_scan(store_.folder(id)).shots.size(), 1U);
+  EXPECT_EQ(read_scan(store_.folder(id)).shots.size(), 1U);
 }
 
 }  // namespace

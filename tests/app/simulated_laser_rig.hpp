@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,9 +26,12 @@ inline LaserSettings small_laser_settings() {
 }
 
 /// A simulated rig with a camera and lasers that fails as a test wants. It tracks which lasers are
-/// on.
+/// on. A Scanner also reads pictures while it has no scan, so what a test may use then is atomic or
+/// a function.
 class SimulatedLaserRig {
  public:
+  using OnPicture = std::function<void(SimulatedLaserRig& rig)>;
+
   explicit SimulatedLaserRig(LaserSettings settings = small_laser_settings())
       : settings_(std::move(settings)) {}
 
@@ -51,7 +55,7 @@ class SimulatedLaserRig {
               opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser,
                                                                          bool on) {
                 set(laser, on && !(dark_laser == laser));
-                log += static_cast<char>((on ? 'A' : 'a') + static_cast<char>(laser));
+                add_to_log(static_cast<char>((on ? 'A' : 'a') + static_cast<char>(laser)));
                 is_on_[laser] = on;
               };
               return opened;
@@ -60,6 +64,18 @@ class SimulatedLaserRig {
 
   bool is_lit() const { return is_on_[0] || is_on_[1]; }
 
+  /// A and B for a laser that was switched on, a and b for off, p for a picture.
+  std::string log() const {
+    const std::lock_guard lock(mutex_);
+    return log_;
+  }
+
+  /// Has a function called before each picture, on the thread that reads it.
+  void on_picture(OnPicture action) {
+    const std::lock_guard lock(mutex_);
+    on_picture_ = std::make_shared<OnPicture>(std::move(action));
+  }
+
   std::atomic<bool> is_unplugged = false;
   std::atomic<int> lost_pictures = 0;                ///< so many of the next are never handed out
   std::atomic<int> pictures = 0;                     ///< that were handed out
@@ -67,9 +83,6 @@ class SimulatedLaserRig {
   std::optional<CameraLens> other_lens = {};         ///< that differs from the told one
   std::optional<Eigen::Isometry3d> other_pose = {};  ///< the same of the camera's pose
   double left_turn = 0;  ///< radians that the left laser was turned in its holder, untold
-  std::string log = {};  ///< A and B for on, a and b for off, p for a picture; read after a scan
-  /// Called before each picture.
-  std::function<void(SimulatedLaserRig& rig)> on_picture = [](SimulatedLaserRig&) {};
 
  private:
   class FailingCamera final : public Camera {
@@ -90,7 +103,7 @@ class SimulatedLaserRig {
    private:
     template <typename Read>
     std::optional<TimedPicture> read_by(const Read& read) {
-      rig_.on_picture(rig_);
+      rig_.tell_of_picture();
       if (rig_.is_unplugged) {
         throw Error(ErrorCode::sensor_lost, "the camera is gone", "Plug it in.");
       }
@@ -100,7 +113,9 @@ class SimulatedLaserRig {
       }
       auto picture = read();
       rig_.pictures += picture ? 1 : 0;
-      rig_.log += picture ? "p" : "";
+      if (picture) {
+        rig_.add_to_log('p');
+      }
       return picture;
     }
 
@@ -108,8 +123,25 @@ class SimulatedLaserRig {
     std::unique_ptr<Camera> camera_;
   };
 
+  void add_to_log(char what) {
+    const std::lock_guard lock(mutex_);
+    log_ += what;
+  }
+
+  void tell_of_picture() {
+    std::unique_lock lock(mutex_);
+    const auto action = on_picture_;
+    lock.unlock();
+    if (action) {
+      (*action)(*this);
+    }
+  }
+
   LaserSettings settings_;
   std::array<std::atomic<bool>, 2> is_on_ = {};
+  mutable std::mutex mutex_ = {};  // guards what follows
+  std::string log_ = {};
+  std::shared_ptr<OnPicture> on_picture_ = {};
 };
 
 }  // namespace octurn

@@ -1,22 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 
-#include "app/scanner_fixture.hpp"
+#include "app/app_fixture.hpp"
 #include "http/handlers/events.hpp"
-#include "octurn/file.hpp"
-#include "outgoing/address_book.hpp"
-#include "outgoing/printer_uploads.hpp"
 
 namespace octurn {
 namespace {
 
-/// The daemon's state with a simulated rig.
-class StatusNewsTest : public ScannerTest {
+class StatusNewsTest : public AppTest {
  protected:
-  StatusNewsTest() { write_file(folder_.path() / "index.html", "<!doctype html>"); }
-
   /// Calls `news` until it returns some.
   static std::vector<News> wait_for_news(StatusNews& news) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
@@ -32,31 +25,10 @@ class StatusNewsTest : public ScannerTest {
     const auto found = std::ranges::find(news, kind, &News::kind);
     return found == news.end() ? "" : found->data;
   }
-
-  Scanner scanner_{rig(), {}, store_};
-  ConfigStore settings_{ConfigLayers{.file = {.data = folder_.path()}}};
-  TurntableRunner turntable_{scanner_, store_};
-  AccessKeys keys_{folder_.path() / "keys.json"};
-  AddressBook addresses_{folder_.path() / "addresses.json"};
-  PrinterUploads uploads_;
-  std::atomic<std::uint64_t> free_ = 5;
-  MachineWatch machine_{{.free_bytes = [this] { return free_.load(); },
-                         .warnings = [] { return std::vector<Finding>{}; }},
-                        {.disk = std::chrono::milliseconds(1)}};
 };
 
 TEST_F(StatusNewsTest, MakesNoStatusWhileNothingChanges) {
-  const Page page(folder_.path());
-  const App app{.scanner = scanner_,
-                .store = store_,
-                .page = page,
-                .settings = settings_,
-                .turntable = turntable_,
-                .keys = keys_,
-                .machine = machine_,
-                .addresses = addresses_,
-                .uploads = uploads_,
-                .rig = rig()};
+  const App app = make_app();
   wait_until(scanner_, [](const Status& status) {  // until the worker's status is final
     return is_ready(status) && status.turntable.state == DeviceStatus::State::ready;
   });

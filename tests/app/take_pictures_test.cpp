@@ -18,7 +18,6 @@ namespace octurn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using namespace std::chrono_literals;
 
 constexpr int width = 60;
 constexpr int height = 90;
@@ -108,7 +107,7 @@ struct Bench {
       }
       if (bench_.stale > 0) {
         --bench_.stale;
-        return TimedPicture{.picture = grey(255), .begin = Clock::now() - 1s};
+        return TimedPicture{.picture = grey(255), .begin = {}};
       }
       bench_.log += "p";
       bool is_line_seen = false;

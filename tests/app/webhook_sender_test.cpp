@@ -16,7 +16,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr WebhookLimits brisk{.poll_interval = 1ms, .first_pause = 1ms, .max_attempts = 3};
+constexpr WebhookLimits brisk{
+    .poll_interval = 1ms, .first_pause = 1ms, .max_attempts = 3, .patience = 1h};
 
 /// A server that answers each request with the next of these statuses, and repeats the last one.
 class Receiver {
@@ -229,10 +230,8 @@ TEST(WebhookSender, EndsAtOnceWhileAReceiverIsSlow) {
   const std::string url = "http://127.0.0.1:" + std::to_string(slow.port()) + "/";
   const std::string id = book.add(Webhook{.url = url}).id;
   {
-    WebhookLimits patient = brisk;
-    patient.patience = 1h;
     WebhookSender sender(
-        book, [] { return std::vector<WebhookEvent>{}; }, patient);
+        book, [] { return std::vector<WebhookEvent>{}; }, brisk);
     sender.queue(id, {.name = "test", .body = "{}"});
     asked.get_future().wait();
   }  // the destructor returns here, or CTest's timeout ends the test

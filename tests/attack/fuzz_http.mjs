@@ -14,7 +14,7 @@ const total = argument(0, 5000);
 const seed = argument(1, 20261123);
 const batch = 500;
 const together = 12; // fewer than the server lets one address hold
-const patience = 45_000; // ms, as the server waits for the rest of an announced body
+const patience = 100_000; // ms; the server waits less for the rest of an announced body
 
 /** Sends a request. @returns {Promise<Buffer>} all bytes received until the connection ends */
 function exchange(port, {bytes, parts, ending}) {

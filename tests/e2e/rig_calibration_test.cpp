@@ -99,12 +99,6 @@ TEST(RigCalibration, IsMeasuredWithATurnThatTheNextScanUses) {
   EXPECT_EQ(begun.status, 202) << begun.body;
   EXPECT_EQ(parsed(begun)["run"]["state"], "running");
   EXPECT_EQ(parsed(begun)["run"]["stops"], 12);
-  for (const char* const path : {calibration, "/api/v1/scans"}) {
-    const Reply second =
-        daemon.post(path, path == calibration ? R"({"kind": "turn"})" : R"({"snapshots": 3})");
-    EXPECT_EQ(second.status, 409) << path;
-    EXPECT_EQ(parsed(second)["code"], "busy");
-  }
   const json now = wait_until_measured(daemon);
   const json& run = now["run"];
   ASSERT_EQ(run["state"], "done") << run["report"]["reason"] << run["error"];
@@ -136,10 +130,16 @@ TEST(RigCalibration, IsThatOfTheLastScanThatSolvedItsOwn) {
 
 TEST(RigCalibration, StaysAsItIsWhenTheTurnIsCancelled) {
   const TemporaryFolder folder;
-  const Daemon daemon(folder.path());
+  const Daemon daemon(folder.path(), {"--simulate-speed", "1"});  // the turn takes 40 s
   const std::string cancel = std::string(calibration) + "/cancel";
   EXPECT_EQ(parsed(daemon.post(cancel, ""))["code"], "not-running");
   EXPECT_EQ(daemon.post(calibration, R"({"kind": "turn", "stops": 72})").status, 202);
+  for (const char* const path : {calibration, "/api/v1/scans"}) {
+    const Reply second =
+        daemon.post(path, path == calibration ? R"({"kind": "turn"})" : R"({"snapshots": 3})");
+    EXPECT_EQ(second.status, 409) << path;
+    EXPECT_EQ(parsed(second)["code"], "busy");
+  }
   EXPECT_EQ(daemon.post(cancel, "").status, 202);
   EXPECT_EQ(wait_until_measured(daemon)["run"]["state"], "cancelled");
   EXPECT_EQ(get(daemon)["source"], "default");
@@ -191,8 +191,8 @@ TEST(CalibrateRigCommand, TurnsAndStoresThePose) {
 
 TEST(CalibrateRigCommand, EndsAtASignalAndStoresNothing) {
   const TemporaryFolder folder;
-  Program program({octurn_program(), "calibrate", "--simulate", "--simulate-speed", "1", "--data",
-                   folder.path() / "data"});
+  Program program({octurn_program(), "calibrate", "--simulate", "--simulate-speed", "1", "--stops",
+                   "72", "--data", folder.path() / "data"});
   while (!fs::exists(folder.path() / "data" / "platform.json")) {
     std::this_thread::yield();  // until it turns
   }

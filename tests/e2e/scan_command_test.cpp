@@ -134,8 +134,8 @@ TEST(ScanCommand, ScansAndWritesTheModel) {
 
 TEST(ScanCommand, StopsWhenItIsInterrupted) {
   const TemporaryFolder folder;
-  Program program({octurn_program(), "scan", "--simulate", "--data", folder.path() / "data", "-o",
-                   folder.path() / "Scan.stl"});
+  Program program({octurn_program(), "scan", "--simulate", "--snapshots", "200", "--data",
+                   folder.path() / "data", "-o", folder.path() / "Scan.stl"});
   while (!fs::exists(folder.path() / "data" / "scans")) {
     std::this_thread::yield();
   }

@@ -102,7 +102,8 @@ TEST(SensorMapApi, SaysWhyAWallIsRefused) {
 
 TEST(SensorMapApi, IsCancelledAndLeavesThePlatformInView) {
   const TemporaryFolder folder;
-  const Daemon daemon(folder.path(), {"--sensor", "octurn-simulator://"});
+  // 200 frames take 33 s.
+  const Daemon daemon(folder.path(), {"--sensor", "octurn-simulator://?speed=0.2"});
   EXPECT_EQ(daemon.post(calibration, R"({"kind": "wall", "frames": 200})").status, 202);
   EXPECT_EQ(daemon.post(calibration, look).status, 409);
   EXPECT_EQ(request(daemon.port(), "PATCH", calibration, R"({"sensor_map": null})").status, 409);

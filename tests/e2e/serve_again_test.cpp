@@ -67,6 +67,28 @@ TEST(Serve, KeepsItsDevicesClosedAfterItWasKilledThreeTimesSoonAfterItsStart) {
   EXPECT_TRUE(sees(Daemon(command_with_devices(folder.path()))));
 }
 
+TEST(Serve, StartsOnAFullDiskAfterAChangeOfTheSettings) {
+  const TemporaryFolder folder;
+  {
+    Daemon daemon(folder.path());
+    EXPECT_EQ(
+        request(daemon.port(), "PATCH", "/api/v1/settings", R"({"scan": {"frames": 7}})").status,
+        200);
+    daemon.program().send_signal(SIGTERM);
+    EXPECT_EQ(daemon.program().wait(), 0);
+  }
+  const fs::path last = folder.path() / "data" / "settings.last.json";
+  for (int i = 0; i < 2; ++i) {
+    Daemon daemon(folder.path(), {}, {.file_bytes = 0});  // no file can be written
+    EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["frames"], 7);
+    daemon.program().send_signal(SIGTERM);
+    EXPECT_EQ(daemon.program().wait(), 0);
+    EXPECT_NE(daemon.program().errors().find("not kept as the last good ones"), std::string::npos);
+    fs::remove(last);
+    fs::create_directory(last);
+  }
+}
+
 TEST(Serve, FindsWhatAKilledDaemonLeftBehind) {
   const TemporaryFolder folder;
   const std::string scan = end_while_it_scans(folder.path(), SIGKILL, -SIGKILL);

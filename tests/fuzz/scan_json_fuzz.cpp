@@ -1,16 +1,20 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "octurn/error.hpp"
+#include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 
 // Any text is refused by an Error of one line, or gives a scan with the properties that
-// octurn/scan_folder.hpp promises.
+// octurn/scan_folder.hpp promises. From a small one a model is made, by depth images of all depths.
 
 namespace {
 
@@ -60,11 +64,58 @@ void check(const octurn::Scan& scan) {
   }
 }
 
+constexpr int max_pixels = 32 * 32;  // so that a model takes milliseconds
+constexpr std::size_t max_shots = 3;
+
+/// A depth image of the scan's size: a tilted plane of all depths, with some pixels that lack one.
+octurn::DepthFrame frame_of(const octurn::Intrinsics& lens, std::size_t shot) {
+  octurn::DepthFrame frame{.width = lens.width, .height = lens.height};
+  const int pixels = lens.width * lens.height;
+  for (int i = 0; i < pixels; ++i) {
+    frame.depth.push_back(i % 11 == 0 ? std::uint16_t{0}
+                                      : static_cast<std::uint16_t>(1 + (65534 * i) / pixels));
+  }
+  if (shot % 2 == 1) {
+    std::ranges::reverse(frame.depth);
+  }
+  return frame;
+}
+
+void reconstruct(const octurn::Scan& scan) {
+  if (scan.laser || scan.intrinsics.width * scan.intrinsics.height > max_pixels ||
+      scan.shots.size() > max_shots) {
+    return;
+  }
+  for (const octurn::Method method : {octurn::Method::solid, octurn::Method::intersection}) {
+    const octurn::ReconstructOptions options{.method = method,
+                                             .leaf_size = 1.0 / 64,
+                                             .clip = model_clip(scan),
+                                             .placements = placements(scan)};
+    const auto reconstruction = octurn::make_reconstructor(options);
+    for (std::size_t i = 0; i < scan.shots.size(); ++i) {
+      const octurn::Shot& shot = scan.shots[i];
+      reconstruction->add({.frame = frame_of(scan.intrinsics, i),
+                           .intrinsics = scan.intrinsics,
+                           .object_from_sensor = model_pose(scan, shot),
+                           .pose = shot.pose});
+    }
+    reconstruction->surface({}, [](std::span<const octurn::Facet> facets) {
+      for (const octurn::Facet& facet : facets) {
+        for (const std::array<float, 3> corner : facet.corners) {
+          require(std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]));
+        }
+      }
+    });
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    check(octurn::parse_scan({reinterpret_cast<const char*>(data), size}));
+    const octurn::Scan scan = octurn::parse_scan({reinterpret_cast<const char*>(data), size});
+    check(scan);
+    reconstruct(scan);
   } catch (const octurn::Error& error) {
     require(std::string_view(error.what()).find('\n') == std::string_view::npos);
   }

@@ -30,7 +30,7 @@ async function scan(guest) {
 
 async function testScan(guest) {
   const {seconds, model} = await scan(guest);
-  const response = await fetch(`${guest.url}Scan.stl`, {signal: AbortSignal.timeout(60000)});
+  const response = await fetch(`${guest.url}Scan.stl`, {signal: AbortSignal.timeout(1000 * patience)});
   const mesh = measure(Buffer.from(await response.arrayBuffer()));
   require(mesh.triangles > 1000, `the model has ${mesh.triangles} triangles`);
   require(mesh.openEdges === 0, `the model has ${mesh.openEdges} open edges`);

@@ -156,7 +156,7 @@ export class Guest {
   async ask(path, method = 'GET', body = undefined) {
     const response = await fetch(`${this.url}api/v1/${path}`, {
       method, headers: {'Content-Type': 'application/json'}, body: body && JSON.stringify(body),
-      signal: AbortSignal.timeout(60000)});
+      signal: AbortSignal.timeout(600_000)});
     if (!response.ok) {
       throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
     }
@@ -178,7 +178,7 @@ export class Guest {
   }
 
   /** Runs a command in the guest, as root. @returns {Promise<string>} what it prints */
-  async run(command, seconds = 60) {
+  async run(command, seconds = 600) {
     const name = `command-${++this.#commands}`;
     const begin = this.#said.length;
     // The console echoes the command line, so the line must not contain the marks in their printed form.

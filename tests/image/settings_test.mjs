@@ -31,7 +31,7 @@ async function open(url, password) {
 }
 
 async function testSsh(guest, key) {
-  await guest.run(`echo ${key.secret} | base64 -d >/run/key; until (: </dev/tcp/127.0.0.1/22) 2>/dev/null; do sleep 1; done`, 120);
+  await guest.run(`echo ${key.secret} | base64 -d >/run/key; until (: </dev/tcp/127.0.0.1/22) 2>/dev/null; do sleep 1; done`);
   const login = (options) => guest.run(`dbclient -y ${options} root@127.0.0.1 'id -un' </dev/null 2>&1 | tail -n 1`);
   const root = await login('-i /run/key');
   require(root === 'root', `with the key in octurn.txt, SSH says ${root}`);

@@ -75,13 +75,13 @@ const unite = (guest) => guest.run('ip rule add pref 0 lookup local; ' +
   'for rule in 1 1 2 2 3; do ip rule del pref $rule; done; ip route flush table 71; ip route flush table 72');
 
 /** The scanner's response to a phone that requests a path of any host. @param {string} filter  a command to filter the response */
-const askByAir = (guest, host, path, filter) => guest.run('timeout 60 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
-  `printf 'GET ${path} HTTP/1.1\\r\\nHost: ${host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; cat <&3" | ${filter}`, 90);
+const askByAir = (guest, host, path, filter) => guest.run('timeout 300 bash -c "exec 3<>/dev/tcp/192.168.77.1/80; ' +
+  `printf 'GET ${path} HTTP/1.1\\r\\nHost: ${host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; cat <&3" | ${filter}`);
 
 /** A phone's connectivity check finds the page: through the name server of its lease, and through the captive portal. */
 async function testPortal(guest) {
   const [host, path] = ['captive.apple.com', '/hotspot-detect.html'];
-  const found = await guest.run(`resolvectl query --interface=wlan1 --cache=no ${host}`, 90);
+  const found = await guest.run(`resolvectl query --interface=wlan1 --cache=no ${host}`);
   require(found.startsWith(`${host}: 192.168.77.1 `), `a phone that asks for ${host} is told ${found}`);
   const answer = await askByAir(guest, host, path, 'head -n 20');
   require(/^HTTP\/1.1 302 /.test(answer) && answer.includes('Location: http://192.168.77.1/'), `${host} answers ${answer}`);

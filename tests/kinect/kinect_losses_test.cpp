@@ -108,6 +108,16 @@ TEST(KinectLosses, SaysThatItIsSilent) {
   EXPECT_EQ(code_thrown_by([&] { next_frame(*sensor); }), "sensor-silent");
 }
 
+TEST(KinectLosses, AreNoSignalsThatInterruptItsWait) {
+  KinectOnDesk desk({frame_of(700)});
+  const auto sensor = open_sensor("kinect://");
+  next_frame(*sensor);
+  desk->interruptions = 3;
+  for (int i = 0; i < 20 || desk->interruptions > 0; ++i) {
+    EXPECT_GT(next_frame(*sensor).depth[0], 0);
+  }
+}
+
 TEST(KinectLosses, EndsItsTrafficWhenItIsClosed) {
   KinectOnDesk desk({frame_of(700)});
   {

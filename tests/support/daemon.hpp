@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -22,7 +23,8 @@ inline nlohmann::json parsed(const Reply& reply) {
   return nlohmann::json::parse(reply.body, nullptr, false);
 }
 
-/// `octurn serve` on the simulated rig, much faster than real time, on a free local port.
+/// `octurn serve` on the simulated rig, much faster than real time unless `more` has another
+/// --simulate-speed, on a free local port.
 class Daemon {
  public:
   explicit Daemon(const std::filesystem::path& folder, std::vector<std::string> more = {},
@@ -39,10 +41,12 @@ class Daemon {
   static std::vector<std::string> command(const std::filesystem::path& folder,
                                           std::vector<std::string> more = {}, int port = 0) {
     put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
-    std::vector<std::string> words{
-        octurn_program(), "serve",     "--simulate",  "--simulate-speed",   "20",
-        "--listen",       "127.0.0.1", "--port",      std::to_string(port), "--data",
-        folder / "data",  "--web",     folder / "web"};
+    std::vector<std::string> words{octurn_program(), "serve", "--simulate"};
+    if (std::ranges::find(more, "--simulate-speed") == more.end()) {
+      words.insert(words.end(), {"--simulate-speed", "20"});
+    }
+    words.insert(words.end(), {"--listen", "127.0.0.1", "--port", std::to_string(port), "--data",
+                               folder / "data", "--web", folder / "web"});
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -92,7 +96,13 @@ class Daemon {
   int port_ = 0;
 };
 
+/// The state of a scan in its folder. @param data  folder of the daemon's  @param scan  its path
+inline std::string stored_state(const std::filesystem::path& data, const std::string& scan) {
+  const std::filesystem::path id = std::filesystem::path(scan).filename();
+  return nlohmann::json::parse(content_of(data / "scans" / id / "job.json"))["state"];
+}
+
 inline const std::string quick = R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 4})";
-inline const std::string endless = R"({"snapshots": 200, "frames": 2, "leaf_size_mm": 4})";
+inline const std::string endless = R"({"snapshots": 400, "frames": 2, "leaf_size_mm": 4})";
 
 }  // namespace octurn

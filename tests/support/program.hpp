@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -49,6 +50,7 @@ class Program {
       arguments.push_back(argument.data());
     }
     arguments.push_back(nullptr);
+    ::malloc_trim(0);  // what earlier tests have freed is not the program's: see peak_memory_bytes
     process_ = ::fork();
     if (process_ == 0) {
       ::dup2(out[1].number(), STDOUT_FILENO);

@@ -88,15 +88,23 @@ class JsonObject {
 /// depth, and some threads have a stack of 100 KB.
 inline constexpr int max_json_depth = 32;
 
-/// Maximum size of a document, bytes: room for 40,000 snapshots with poses. The parsed values take
-/// up to 16 times as much.
+/// Maximum size of a document, bytes: room for 40,000 snapshots with poses.
 inline constexpr std::size_t max_json_bytes = std::size_t{16} << 20U;
+
+/// Limits of an untrusted document. The text's size alone does not bound the memory of its values:
+/// an empty array has 3 bytes of text, and takes about 230 when it is read as an element.
+struct JsonLimits {
+  std::size_t bytes = max_json_bytes;
+  std::size_t values = 1'000'000;  ///< 40,000 snapshots with poses have 920,000
+};
 
 /// Parses an untrusted JSON text. All JSON that the library and the program read goes through it.
 ///
 /// @param code  of the errors
 /// @param what  the text's name in messages: "the body"
-/// @throws Error  of that code, if the text is not JSON, nested too deeply or too large
-nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what);
+/// @throws Error  of that code, if the text is not JSON, nested too deeply, too large, or has too
+///                many values
+nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what,
+                          const JsonLimits& limits = {});
 
 }  // namespace octurn

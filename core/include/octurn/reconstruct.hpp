@@ -114,6 +114,10 @@ struct MemoryNeed {
 /// @throws Error "bad-settings"  that says which option is out of its range
 MemoryNeed expected_memory(const ReconstructOptions& options);
 
+/// The thickness of the shells that the method `solid` makes of a space without a platform (see
+/// tiles.hpp), metres: two voxels.
+double shell_thickness(const ReconstructOptions& options);
+
 /// The size of a surface.
 struct SurfaceCount {
   std::uint64_t leaves = 0;  ///< occupied leaves; of the method `solid`, voxels inside

@@ -110,6 +110,13 @@ void fit_to_sensor(ReconstructOptions& options, const Scan& scan);
 /// Whether all shots belong to one turn of the platform, with one calibration and clip box.
 bool is_one_turn(const Scan& scan);
 
+/// Whether each shot has its own pose: it is a scan of a space, without a platform.
+bool has_free_poses(const Scan& scan);
+
+/// The clip box of a scan with free poses that has no other: larger than any scan, metres.
+inline const Box everywhere{.min = Eigen::Vector3d::Constant(-1e6),
+                            .max = Eigen::Vector3d::Constant(1e6)};
+
 /// Parses and checks the text of a `scan.json`. Unknown keys are ignored.
 ///
 /// @throws Error "scan-malformed"  with the key and what is wrong with it: missing, of the wrong

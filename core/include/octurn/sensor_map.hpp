@@ -52,6 +52,10 @@ SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> pn
 /// @throws Error "scan-malformed"  as `decode_sensor_map`, or if there is no such file
 SensorMap read_sensor_map(const std::filesystem::path& file);
 
+/// Reads the map of a sensor. A picture of another size is refused before it is decoded.
+/// @throws Error "scan-malformed"  also if the map has another size than the sensor's frames
+SensorMap read_sensor_map(const std::filesystem::path& file, const Intrinsics& sensor);
+
 /// Writes a map whole or not at all. @throws Error "disk-full", "write-failed"
 void write_sensor_map(const std::filesystem::path& file, const SensorMap& map);
 

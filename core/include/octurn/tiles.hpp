@@ -23,16 +23,6 @@ namespace octurn {
 ///
 /// The method `solid` makes a closed shell of every surface, as inside cannot be told from outside.
 
-/// Whether each shot of a scan has its own pose.
-bool has_free_poses(const Scan& scan);
-
-/// The clip box of a scan with free poses that has no other: larger than any scan, metres.
-inline const Box everywhere{.min = Eigen::Vector3d::Constant(-1e6),
-                            .max = Eigen::Vector3d::Constant(1e6)};
-
-/// The thickness of the shells of the method `solid`, metres: two voxels.
-double shell_thickness(const ReconstructOptions& options);
-
 /// A reconstruction of a space by the options' method. `placements` must be empty.
 /// @param spool  a folder; finished tiles are kept in an unnamed file on its disk until the surface
 ///               is drawn. Empty: the folder of temporary files

@@ -16,15 +16,14 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int max_iterations = 14;
-constexpr double max_motion = 0.03;    // radians or metres in one iteration
-constexpr double near_step = 1e-4;     // metres: the end is near
-constexpr double settled_step = 5e-6;  // metres
-constexpr std::size_t min_residuals = 60;
-constexpr double lever = 0.05;  // metres above the platform, where positions are judged
+constexpr double max_motion = 0.03;      // radians or metres in one iteration
+constexpr double near_step = 1e-4;       // metres: the end is near
+constexpr double settled_step = 5e-6;    // metres
+constexpr double position_lever = 0.05;  // metres above the platform, where positions are judged
 
 // Coarse to fine: from a start that is 20 mm off, residuals up to 20 mm pull the axis near. Then
 // only residuals that noise explains count.
-constexpr std::array schedule = {
+constexpr std::array axis_schedule = {
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
@@ -33,10 +32,10 @@ constexpr std::array schedule = {
     ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
 };
 
-constexpr std::size_t last_stage = schedule.size() - 1;
+constexpr std::size_t last_stage = axis_schedule.size() - 1;
 
 double step_length(const Vector4d& motion) {
-  return std::hypot(motion[2] + lever * motion[1], motion[3] - lever * motion[0]);
+  return std::hypot(motion[2] + position_lever * motion[1], motion[3] - position_lever * motion[0]);
 }
 
 double largest_eigenvalue(const Eigen::Matrix2d& symmetric) {
@@ -64,7 +63,7 @@ Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformP
 
 double AxisSolution::position_sigma() const {
   Eigen::Matrix<double, 2, 4> at_lever = Eigen::Matrix<double, 2, 4>::Zero();
-  at_lever << 0, lever, 1, 0, -lever, 0, 0, 1;
+  at_lever << 0, position_lever, 1, 0, -position_lever, 0, 0, 1;
   const Eigen::Matrix2d spread = at_lever * covariance * at_lever.transpose();
   return std::sqrt(largest_eigenvalue(spread));
 }
@@ -80,7 +79,7 @@ std::optional<AxisSolution> solve_axis(const TurnViews& turn, const PlatformPlan
   AxisSolution solution{.platform_from_sensor = start};
   std::size_t stage = 0;
   for (int i = 0; i < max_iterations; ++i) {
-    const ResidualLimits& limits = schedule[stage];
+    const ResidualLimits& limits = axis_schedule[stage];
     const NormalEquations sums =
         normal_equations<4>(turn, solution.platform_from_sensor, limits, threads, axis_row);
     if (sums.count < min_residuals) {

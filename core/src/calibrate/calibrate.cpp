@@ -28,8 +28,7 @@ namespace {
 using Eigen::Vector3d;
 
 // A solution beyond one of these limits is refused.
-constexpr double min_object_pixels = 120;  // at a stop, on average: 2 cm at 0.7 m
-constexpr std::size_t min_pairs = 6;       // three, in both directions
+constexpr std::size_t min_pairs = 6;  // three, in both directions
 constexpr std::size_t min_plane_inliers = 500;
 constexpr double max_plane_rms = 0.0015;  // metres
 constexpr double min_plane_share = 0.3;
@@ -174,7 +173,7 @@ std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& vi
 }
 
 /// Sets the distances of a solution from the told pose.
-void compare(CalibrationReport& report, const Eigen::Isometry3d& told) {
+void compare_with_told(CalibrationReport& report, const Eigen::Isometry3d& told) {
   const Eigen::Isometry3d solved_from_told = report.platform_from_sensor * told.inverse();
   const Vector3d origin = solved_from_told.translation();
   const Vector3d axis = solved_from_told.linear() * Vector3d::UnitZ();
@@ -274,7 +273,7 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.direction_sigma = solution->direction_sigma();
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
-  compare(report, turn.platform_from_sensor);
+  compare_with_told(report, turn.platform_from_sensor);
   if (!is_uneven && all_stand_as_told(report)) {
     add_focal_length(report, solve_focal_length(views, plane, report.platform_from_sensor, threads),
                      turn.intrinsics.fx);

@@ -18,10 +18,10 @@ constexpr int thinning = ScanCheck::Stop::thinning;
 constexpr std::size_t pixels_for_one = std::size_t{thinning} * thinning;  // for each one kept
 // Pixels for which a point of a line counts: the spacing of lines of neighbouring stops.
 constexpr std::size_t pixels_of_line = 4;
-constexpr int block = 4;                  // kept rows and columns to a side
-constexpr double readings_wanted = 400;   // of a stop, to compare
-constexpr double platform_radius = 0.13;  // metres, in which heights are counted
-constexpr double max_cut_step = 0.01;     // metres between neighbours of one surface
+constexpr int depth_block_side = 4;        // kept rows and columns to a side
+constexpr double compared_readings = 400;  // of a stop, to compare
+constexpr double platform_radius = 0.13;   // metres, in which heights are counted
+constexpr double max_cut_step = 0.01;      // metres between neighbours of one surface
 constexpr double min_cut_height =
     0.01;  // metres above the box's bottom: the platform's rim is lower
 // A reading belongs to a surface if at least `min_beside` of its eight neighbours continue it, with
@@ -146,9 +146,10 @@ std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& len
   std::vector<float> nearest;
   for (int v = 0; v < lens.height; ++v) {
     for (int u = 0; u < lens.width; ++u) {
-      double min = points.depth(u * block, v * block);
-      for (int i = 0; i < block * block; ++i) {
-        min = std::min(min, points.depth(u * block + i % block, v * block + i / block));
+      double min = points.depth(u * depth_block_side, v * depth_block_side);
+      for (int i = 0; i < depth_block_side * depth_block_side; ++i) {
+        min = std::min(min, points.depth(u * depth_block_side + i % depth_block_side,
+                                         v * depth_block_side + i / depth_block_side));
       }
       nearest.push_back(static_cast<float>(min));
     }
@@ -207,7 +208,7 @@ void ScanCheck::Stop::add_height(const Vector3d& point, std::size_t count) {
 
 ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask)
     : object_from_sensor(thin.object_from_sensor),
-      blocks{.lens = merged(thin.intrinsics, block)},
+      blocks{.lens = merged(thin.intrinsics, depth_block_side)},
       view(thin.frame, thin.intrinsics, mask),
       heights(static_cast<std::size_t>(std::lround(2 * highest / height_step))) {
   const Points points(thin);
@@ -231,7 +232,7 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
     }
   }
   keep_each_once(seen);
-  const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / readings_wanted)));
+  const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / compared_readings)));
   readings = view.readings(step);
   std::erase_if(readings, [&](const SurfaceReading& reading) {
     return !contains(clip, object_from_sensor * reading.point);

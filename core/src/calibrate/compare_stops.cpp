@@ -5,6 +5,7 @@
 #include "calibrate/checked_stop.hpp"
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/median.hpp"
+#include "calibrate/stop_pairs.hpp"
 #include "mesh/places.hpp"
 #include "octurn/units.hpp"
 
@@ -16,9 +17,8 @@ using Eigen::Vector3d;
 // Angles between compared stops. Near stops hardly show a wrong axis, far ones see other surfaces.
 constexpr double min_apart_deg = 20;
 constexpr double max_apart_deg = 50;
-constexpr double max_neighbour_deg = 100;  // if no stop lies within them
 
-constexpr double max_distance = 0.02;          // metres: beyond it lies another surface
+constexpr double max_surface_distance = 0.02;  // metres: beyond it lies another surface
 constexpr double confirming_distance = 0.006;  // metres
 // Metres, at 1 m: 2.2 mm at 0.65 m, four times the distance between two stops by a Kinect's noise.
 constexpr double far_at_1_m = 0.0052;
@@ -54,11 +54,10 @@ struct Comparison {
 enum class Agreement { unknown, confirmed, contradicted };
 
 /// @param point  of the object's frame, and its normal
-Agreement compare(const ScanCheck::Stop& to, const Vector3d& point, const Vector3d& normal,
-                  Comparison& comparison) {
-  constexpr double min_agreement = 0.7;  // cosine between the two normals
+Agreement compare_reading(const ScanCheck::Stop& to, const Vector3d& point, const Vector3d& normal,
+                          Comparison& comparison) {
   const Vector3d seen_from = to.object_from_sensor.inverse() * point;
-  if (to.empty_depth(seen_from) > seen_from.z() + max_distance) {
+  if (to.empty_depth(seen_from) > seen_from.z() + max_surface_distance) {
     return Agreement::contradicted;
   }
   const auto surface = to.view.look_up(seen_from);
@@ -67,7 +66,7 @@ Agreement compare(const ScanCheck::Stop& to, const Vector3d& point, const Vector
   }
   const Vector3d other = to.object_from_sensor.linear() * surface->normal;
   const double distance = other.dot(point - to.object_from_sensor * surface->point);
-  if (std::abs(distance) < max_distance && other.dot(normal) > min_agreement) {
+  if (std::abs(distance) < max_surface_distance && other.dot(normal) > min_normal_agreement) {
     comparison.distances.push_back(static_cast<float>(std::abs(distance)));
     if (std::abs(distance) > far_at_1_m * surface->point.z() * surface->point.z()) {
       comparison.disagreeing.push_back(point);
@@ -88,7 +87,7 @@ Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::s
     bool is_confirmed = false;
     bool is_contradicted = false;
     for (const std::size_t to : partners) {
-      const Agreement agreement = compare(*stops[to], point, normal, comparison);
+      const Agreement agreement = compare_reading(*stops[to], point, normal, comparison);
       is_confirmed |= agreement == Agreement::confirmed;
       is_contradicted |= agreement == Agreement::contradicted;
     }

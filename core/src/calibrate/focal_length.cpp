@@ -18,17 +18,17 @@ using Eigen::Vector3d;
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-constexpr std::array schedule = {ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
-                                 ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
-                                 ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002}};
-constexpr std::size_t min_residuals = 60;
+constexpr std::array focal_schedule = {
+    ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
+    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
+    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002}};
 constexpr double direction_sigma_deg = 0.05;  // between the plane's normal and the axis
 // Metres: systematic error of the residuals at edges and grazing angles, all around an object. A
 // focal length 1 % off changes those of a flat box by as much.
 constexpr double systematic_error = 3e-5;
 constexpr double max_change = 0.2;  // in one iteration: more is no focal length
 constexpr double min_error = 0.01;
-constexpr double min_sigmas = 5;
+constexpr double focal_sigmas = 5;
 
 /// Derivative of points in the platform frame by the focal factor s, with the plane kept at z = 0.
 class Widening {
@@ -91,7 +91,7 @@ std::optional<FocalLength> solve_focal_length(TurnViews& turn, PlatformPlane pla
   const double information = std::pow(radians_from_degrees(direction_sigma_deg), -2);
   double width = 1;
   double sigma = 0;
-  for (const ResidualLimits& limits : schedule) {
+  for (const ResidualLimits& limits : focal_schedule) {
     const Widening widening(plane, platform_from_sensor);
     const NormalEquations sums = normal_equations<5>(
         turn, platform_from_sensor, limits, threads, [&](const StopResidual& residual) {
@@ -127,7 +127,7 @@ std::optional<FocalLength> solve_focal_length(TurnViews& turn, PlatformPlane pla
 
 std::optional<CalibrationFinding> find_wrong_focal_length(const FocalLength& solved, double told) {
   const double error = std::abs(solved.ratio - 1);
-  if (error < min_error || error < min_sigmas * solved.sigma) {
+  if (error < min_error || error < focal_sigmas * solved.sigma) {
     return std::nullopt;
   }
   std::array<char, 128> text{};

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// Weighted least squares over the residuals of a turn.
+/// Weighted least squares over residuals.
 template <int unknowns>
 struct NormalEquations {
   using Vector = Eigen::Matrix<double, unknowns, 1>;

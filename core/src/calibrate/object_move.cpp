@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "calibrate/normal_equations.hpp"
 #include "calibrate/object_view.hpp"
+#include "calibrate/stop_step.hpp"
 #include "io/number_text.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/units.hpp"
@@ -19,13 +21,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Readings = std::vector<SurfaceReading>;
 
-constexpr double min_object_pixels = 120;  // 2 cm at 0.7 m
-constexpr double readings_wanted = 2000;
-constexpr int max_step = 6;  // pixels
-// Pixels with correlated errors in the difference of two depth images, some 7 x 7: errors of longer
-// range are fixed, and cancel.
-constexpr double correlated_pixels = 50;
-constexpr double min_agreement = 0.7;    // cosine between the two normals
+constexpr double move_readings_wanted = 2000;
+constexpr int max_move_spacing = 6;      // pixels
 constexpr double min_found_again = 0.3;  // of the readings; fewer: another object, or none
 
 // A prior for motions that the shape does not determine: a ball's turn, a wall's sideways shift.
@@ -34,26 +31,19 @@ constexpr double min_noise = 0.0003;      // metres: residuals of so few reading
 constexpr double expected_shift = 0.003;
 constexpr double expected_turn = 0.1;  // radians
 
-constexpr double min_shift = 0.001;  // metres
 constexpr double min_turn_deg = 0.6;
 constexpr double certain_sigmas = 3;
 
-/// Limits of one iteration.
-struct Limits {
-  double max_distance = 0;  ///< metres: beyond it lies another surface
-  double cauchy_scale = 0;  ///< metres
-};
-
-constexpr std::array<Limits, 10> schedule{{{max_measured_shift, 0.004},
-                                           {max_measured_shift, 0.004},
-                                           {max_measured_shift, 0.004},
-                                           {max_measured_shift, 0.004},
-                                           {0.01, 0.002},
-                                           {0.01, 0.002},
-                                           {0.01, 0.002},
-                                           {0.005, 0.002},
-                                           {0.005, 0.002},
-                                           {0.005, 0.002}}};
+constexpr std::array<ResidualLimits, 10> move_schedule{{{max_measured_shift, 0.004},
+                                                        {max_measured_shift, 0.004},
+                                                        {max_measured_shift, 0.004},
+                                                        {max_measured_shift, 0.004},
+                                                        {0.01, 0.002},
+                                                        {0.01, 0.002},
+                                                        {0.01, 0.002},
+                                                        {0.005, 0.002},
+                                                        {0.005, 0.002},
+                                                        {0.005, 0.002}}};
 
 /// A motion along the platform.
 struct Motion {
@@ -67,20 +57,11 @@ struct Motion {
   }
 };
 
-/// The least-squares problem for small changes of a motion.
-struct Equations {
-  Matrix3d normal_matrix = Matrix3d::Zero();  ///< of shift x, shift y and turn
-  Vector3d right = Vector3d::Zero();
-  double weight = 0;
-  double squares = 0;
-  std::size_t count = 0;
-};
-
 /// Readings inside the box, in the platform's frame.
 Readings readings_in(const ObjectView& view, const Isometry3d& platform_from_sensor,
                      const Box& clip) {
-  const int step =
-      std::clamp(static_cast<int>(std::sqrt(view.pixels() / readings_wanted)), 1, max_step);
+  const int step = std::clamp(static_cast<int>(std::sqrt(view.pixels() / move_readings_wanted)), 1,
+                              max_move_spacing);
   Readings inside;
   for (const SurfaceReading& reading : view.readings(step)) {
     const Vector3d point = platform_from_sensor * reading.point;
@@ -98,7 +79,7 @@ double sigma_along(const Vector2d& shift, const Eigen::Matrix2d& covariance) {
   return distance > 0 ? shift.norm() / distance : std::sqrt(covariance.diagonal().maxCoeff());
 }
 
-Vector3d find_middle(const Readings& readings) {
+Vector3d mean_point(const Readings& readings) {
   Vector3d sum = Vector3d::Zero();
   for (const SurfaceReading& reading : readings) {
     sum += reading.point;
@@ -106,12 +87,13 @@ Vector3d find_middle(const Readings& readings) {
   return sum / static_cast<double>(std::max<std::size_t>(readings.size(), 1));
 }
 
-Equations equations(const Readings& readings, const ObjectView& again,
-                    const Isometry3d& platform_from_sensor, const Motion& motion,
-                    const Limits& limits) {
+/// The least-squares problem for small changes of a motion: of shift x, shift y and turn.
+NormalEquations<3> move_equations(const Readings& readings, const ObjectView& again,
+                                  const Isometry3d& platform_from_sensor, const Motion& motion,
+                                  const ResidualLimits& limits) {
   const Isometry3d sensor_from_platform = platform_from_sensor.inverse();
   const Eigen::AngleAxisd rotation(motion.turn, Vector3d::UnitZ());
-  Equations all;
+  NormalEquations<3> all;
   for (const SurfaceReading& reading : readings) {
     const Vector3d point = motion(reading.point);
     const auto surface = again.look_up(sensor_from_platform * point);
@@ -121,19 +103,13 @@ Equations equations(const Readings& readings, const ObjectView& again,
     const Vector3d normal = platform_from_sensor.linear() * surface->normal;
     const double distance = normal.dot(point - platform_from_sensor * surface->point);
     if (std::abs(distance) > limits.max_distance ||
-        normal.dot(rotation * reading.normal) < min_agreement) {
+        normal.dot(rotation * reading.normal) < min_normal_agreement) {
       continue;
     }
     const Vector3d turning =
         Vector3d::UnitZ().cross(Vector3d(rotation * (reading.point - motion.middle)));
     const Vector3d row(normal.x(), normal.y(), normal.dot(turning));
-    const double ratio = distance / limits.cauchy_scale;
-    const double weight = 1 / (1 + ratio * ratio);
-    all.normal_matrix += weight * row * row.transpose();
-    all.right -= weight * distance * row;
-    all.weight += weight;
-    all.squares += weight * distance * distance;
-    ++all.count;
+    all.add(row, distance, limits.weight(distance));
   }
   return all;
 }
@@ -157,14 +133,14 @@ std::optional<ObjectMove> measure_move(const Snapshot& first, const DepthFrame& 
   const Vector3d prior(noise / (expected_shift * expected_shift),
                        noise / (expected_shift * expected_shift),
                        noise / (expected_turn * expected_turn));
-  Motion motion{.middle = find_middle(readings)};
+  Motion motion{.middle = mean_point(readings)};
   ObjectMove move;
-  for (const Limits& limits : schedule) {
-    const Equations all = equations(readings, after, pose, motion, limits);
+  for (const ResidualLimits& limits : move_schedule) {
+    const NormalEquations<3> all = move_equations(readings, after, pose, motion, limits);
     if (static_cast<double>(all.count) < min_found_again * static_cast<double>(readings.size())) {
       return ObjectMove{.shift = max_measured_shift};
     }
-    const Matrix3d normal_matrix = all.normal_matrix + Matrix3d(prior.asDiagonal());
+    const Matrix3d normal_matrix = all.matrix + Matrix3d(prior.asDiagonal());
     const Vector3d state(motion.shift.x(), motion.shift.y(), motion.turn);
     const Eigen::LDLT<Matrix3d> factors(normal_matrix);
     const Vector3d change = factors.solve(all.right - prior.cwiseProduct(state));
@@ -185,7 +161,7 @@ void add_move(std::vector<CalibrationFinding>& findings, const ObjectMove& move)
   const bool is_explained = std::ranges::any_of(findings, [&](const CalibrationFinding& finding) {
     return std::ranges::find(explanations, finding.code) != explanations.end();
   });
-  const bool has_shifted = move.shift > std::max(min_shift, certain_sigmas * move.shift_sigma);
+  const bool has_shifted = move.shift > std::max(min_move_shift, certain_sigmas * move.shift_sigma);
   const bool has_turned = std::abs(move.turn) > std::max(radians_from_degrees(min_turn_deg),
                                                          certain_sigmas * move.turn_sigma);
   if (is_explained || !(has_shifted || has_turned)) {

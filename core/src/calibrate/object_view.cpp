@@ -10,22 +10,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_height = 0.4;
-constexpr double max_radius = 0.2;
+constexpr double max_mask_radius = 0.2;
 // Surfaces at a grazing angle determine the axis's position best: at 0.65 m the depth of one at 75
 // degrees changes by 17 mm over 5 pixels, and an object of 3 cm shows little else.
-constexpr double max_step = 0.022;   // metres: a larger range of depth is an edge
-constexpr double min_cosine = 0.25;  // between normal and ray
+constexpr double max_depth_range = 0.022;  // metres: a larger range of depth is an edge
+constexpr double min_cosine = 0.25;        // between normal and ray
 
 /// The corners of a box around what a mask contains, metres, optical frame.
 std::array<Vector3d, 8> to_corners(const ObjectView::Mask& mask) {
   const Vector3d& up = mask.plane.normal;
   const Vector3d foot = mask.axis_point - mask.plane.height(mask.axis_point) * up;
-  const Vector3d right = max_radius * up.unitOrthogonal();
+  const Vector3d right = max_mask_radius * up.unitOrthogonal();
   const Vector3d ahead = up.cross(right);
   std::array<Vector3d, 8> corners;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    corners[i] = foot + ((i & 1U) != 0 ? max_height : mask.min_height) * up +
+    corners[i] = foot + ((i & 1U) != 0 ? max_object_height : mask.min_height) * up +
                  ((i & 2U) != 0 ? 1 : -1) * right + ((i & 4U) != 0 ? 1 : -1) * ahead;
   }
   return corners;
@@ -36,8 +35,8 @@ std::array<Vector3d, 8> to_corners(const ObjectView::Mask& mask) {
 bool ObjectView::Mask::contains(const Vector3d& point) const {
   const double height = plane.height(point);
   const Vector3d across = point - axis_point - height * plane.normal;
-  return height > min_height && height < max_height &&
-         across.squaredNorm() < max_radius * max_radius;
+  return height > min_height && height < max_object_height &&
+         across.squaredNorm() < max_mask_radius * max_mask_radius;
 }
 
 ObjectView::ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask)
@@ -83,7 +82,7 @@ std::optional<SurfaceReading> ObjectView::read(int u, int v) const {
     sums.sum_v += dv * sum;
   }
   if (!(farthest > 0) ||
-      1 / static_cast<double>(farthest) - 1 / static_cast<double>(nearest) > max_step) {
+      1 / static_cast<double>(farthest) - 1 / static_cast<double>(nearest) > max_depth_range) {
     return std::nullopt;
   }
   const Vector3d ray = to_ray(intrinsics_, window_.left + u, window_.top + v);

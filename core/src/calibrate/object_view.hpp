@@ -16,6 +16,19 @@ struct SurfaceReading {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of length one, towards the sensor
 };
 
+/// Least cosine between two normals of one surface.
+inline constexpr double min_normal_agreement = 0.7;
+
+/// Height of the volume of objects on the platform, metres.
+inline constexpr double max_object_height = 0.4;
+
+/// With fewer pixels at a stop, an object is too small: 2 cm at 0.7 m.
+inline constexpr double min_object_pixels = 120;
+
+/// Pixels that share the sensor's error, about 7 x 7. Errors of longer range are fixed, and cancel
+/// in the difference of two depth images.
+inline constexpr double correlated_pixels = 50;
+
 /// The rectangle of a stop's depth image that shows the object.
 class ObjectView {
  public:

@@ -9,8 +9,8 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t block = 8;                        // samples to a side, of 4 pixels each
-constexpr std::size_t min_samples = block * block / 2;  // in a block
+constexpr std::size_t block_samples = 8;  // to a side of a block, of 4 pixels each
+constexpr std::size_t min_samples = block_samples * block_samples / 2;  // in a block
 constexpr std::size_t min_blocks = 6;
 
 /// For each sample on the plane its mean distance from it over all stops, units of disparity.
@@ -38,12 +38,13 @@ std::optional<double> measure_platform_map(const PlatformSamples& samples,
     double differences = 0;
     std::size_t count = 0;
   };
-  const std::size_t blocks_in_row = samples.columns / block + 1;
-  std::vector<Sum> sums((samples.rays.size() / samples.columns / block + 1) * blocks_in_row);
+  const std::size_t blocks_in_row = samples.columns / block_samples + 1;
+  std::vector<Sum> sums((samples.rays.size() / samples.columns / block_samples + 1) *
+                        blocks_in_row);
   for (std::size_t sample = 0; sample < samples.rays.size(); ++sample) {
     if (is_plane[sample]) {
-      Sum& sum =
-          sums[sample / samples.columns / block * blocks_in_row + sample % samples.columns / block];
+      Sum& sum = sums[sample / samples.columns / block_samples * blocks_in_row +
+                      sample % samples.columns / block_samples];
       sum.differences += mean_difference(samples, plane, sample);
       ++sum.count;
     }

@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector3d;
 
 // The told surface may be wrong by 30 mm and 5 degrees, which is 15 mm at the largest radius.
-constexpr double max_height = 0.06;  // metres from the told surface
-constexpr double max_radius = 0.17;  // metres from the axis
-constexpr double max_slope_deg = 6;  // of a plane, against the told surface
+constexpr double max_surface_height = 0.06;  // metres from the told surface
+constexpr double max_surface_radius = 0.17;  // metres from the axis
+constexpr double max_slope_deg = 6;          // of a plane, against the told surface
 constexpr double inlier_height = 0.003;
 constexpr double object_height = 0.006;  // above the plane: more than the platform's noise
 constexpr int candidates = 400;
@@ -67,8 +67,8 @@ std::optional<Candidate> plane_through(const Vector3d& a, const Vector3d& b, con
 /// Whether a reading may be the platform's: near the surface as told, and near its axis.
 /// @param point  metres, in the platform's frame as told
 bool may_be_platform(const Vector3d& point) {
-  return std::abs(point.z()) < max_height &&
-         point.head<2>().squaredNorm() < max_radius * max_radius;
+  return std::abs(point.z()) < max_surface_height &&
+         point.head<2>().squaredNorm() < max_surface_radius * max_surface_radius;
 }
 
 /// Readings that `accept(pixel, point)` takes, spread over all stops.

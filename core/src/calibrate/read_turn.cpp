@@ -15,14 +15,13 @@ constexpr std::size_t plane_stops = 6;  // enough to find the object above their
 // Metres above the plane. The threshold selects readings that err towards the sensor, which biases
 // the axis away from it. A low threshold keeps that to few of the readings of a flat object's
 // walls.
-constexpr double min_height = 0.0025;
+constexpr double min_reading_height = 0.0025;
 // Readings of the object that are used, per stop and per turn. More cost time and lower the sigma
 // by little.
-constexpr double readings_wanted = 300;
-constexpr double turn_readings_wanted = 24 * readings_wanted;
-constexpr int max_step = 8;               // pixels
-constexpr double correlated_pixels = 50;  // about 7 x 7 pixels share the sensor's error
-constexpr double uses = 8;                // comparisons that share a reading and its error
+constexpr double stop_readings_wanted = 300;
+constexpr double turn_readings_wanted = 24 * stop_readings_wanted;
+constexpr int max_spacing = 8;  // pixels
+constexpr double uses = 8;      // comparisons that share a reading and its error
 
 /// Stops all around the turn.
 std::vector<std::size_t> spread_stops(std::size_t stops) {
@@ -59,8 +58,9 @@ const std::optional<PlatformPlane>& TurnReader::find_platform() {
 
 TurnViews TurnReader::read_views() {
   const Eigen::Isometry3d levelled = level(turn_.platform_from_sensor, *plane_);
-  const ObjectView::Mask mask{
-      .plane = *plane_, .axis_point = levelled.inverse().translation(), .min_height = min_height};
+  const ObjectView::Mask mask{.plane = *plane_,
+                              .axis_point = levelled.inverse().translation(),
+                              .min_height = min_reading_height};
   std::vector<std::optional<ObjectView>> views(turn_.angles.size());
   for_each_stop(views.size(), threads_, [&](std::size_t stop) {
     if (!kept_[stop]) {
@@ -79,8 +79,8 @@ TurnViews TurnReader::read_views() {
   }
   const double each = pixels / static_cast<double>(std::max<std::size_t>(views.size(), 1));
   const double wanted =
-      std::min(readings_wanted, turn_readings_wanted / static_cast<double>(views.size()));
-  const int step = std::clamp(static_cast<int>(std::sqrt(each / wanted)), 1, max_step);
+      std::min(stop_readings_wanted, turn_readings_wanted / static_cast<double>(views.size()));
+  const int step = std::clamp(static_cast<int>(std::sqrt(each / wanted)), 1, max_spacing);
   seen.correlation = uses + correlated_pixels / (step * step);
   for (const ObjectView& view : seen.views) {
     seen.readings.push_back(view.readings(step));

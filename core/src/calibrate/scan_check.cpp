@@ -14,7 +14,7 @@ namespace {
 
 using Stops = std::vector<const ScanCheck::Stop*>;
 
-constexpr std::size_t window = 5;  // steps of height that a platform's readings spread over
+constexpr std::size_t height_window = 5;  // steps of height that a platform's readings spread over
 constexpr std::size_t min_platform_readings = 500;  // at a stop
 
 /// The largest angle between neighbouring stops, radians, from the sensor's headings in the
@@ -42,9 +42,9 @@ std::optional<double> find_platform(const Stops& stops) {
   }
   std::size_t best = 0;
   std::size_t best_count = 0;
-  for (std::size_t first = 0; first + window <= counts.size(); ++first) {
+  for (std::size_t first = 0; first + height_window <= counts.size(); ++first) {
     const auto begin = counts.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::size_t count = std::accumulate(begin, begin + window, std::size_t{0});
+    const std::size_t count = std::accumulate(begin, begin + height_window, std::size_t{0});
     if (count > best_count) {
       best = first;
       best_count = count;
@@ -54,7 +54,7 @@ std::optional<double> find_platform(const Stops& stops) {
     return std::nullopt;
   }
   double sum = 0;
-  for (std::size_t bin = best; bin < best + window; ++bin) {
+  for (std::size_t bin = best; bin < best + height_window; ++bin) {
     const double height =
         (static_cast<double>(bin) + 0.5) * ScanCheck::Stop::height_step - ScanCheck::Stop::highest;
     sum += height * static_cast<double>(counts[bin]);

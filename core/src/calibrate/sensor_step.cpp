@@ -1,6 +1,6 @@
 #include "calibrate/sensor_step.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -14,10 +14,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double lever = 0.1;      // metres: a tilt counts by its height there
-constexpr double min_size = 5e-4;  // metres
-constexpr double min_sigmas = 5;
-constexpr double min_explained = 0.85;  // above the 0.75 that a step explains of a steady drift
+constexpr double tilt_lever = 0.1;  // metres: a tilt counts by its height there
+constexpr double min_size = 5e-4;   // metres
+constexpr double bump_sigmas = 5;
+constexpr double min_bump_explained =
+    0.85;  // above the 0.75 that a step explains of a steady drift
 
 /// Measurements of each stop: a tilt's two components times the lever, and a height.
 constexpr Index rows_of_stop = 3;
@@ -30,9 +31,8 @@ struct Fit {
 };
 
 Fit fit(const MatrixXd& columns, const VectorXd& measured) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> factors(columns);
-  Fit solved{.values = factors.solve(measured),
-             .inverse = (columns.transpose() * columns).inverse()};
+  Fit solved{.values = {}, .inverse = (columns.transpose() * columns).inverse()};
+  solved.values = solved.inverse * (columns.transpose() * measured);
   solved.squares = (measured - columns * solved.values).squaredNorm();
   return solved;
 }
@@ -59,7 +59,7 @@ std::optional<SensorStep> solve_sensor_step(const std::vector<StopPlane>& planes
   VectorXd measured(background.rows());
   for (std::size_t stop = 0; stop < planes.size(); ++stop) {
     measured.segment<rows_of_stop>(rows_of_stop * static_cast<Index>(stop))
-        << lever * planes[stop].tilt,
+        << tilt_lever * planes[stop].tilt,
         planes[stop].height;
   }
   const double all_squares = fit(background, measured).squares;
@@ -78,7 +78,7 @@ std::optional<SensorStep> solve_sensor_step(const std::vector<StopPlane>& planes
       const double variance = solved.squares / static_cast<double>(columns.rows() - columns.cols());
       best = {
           .stop = stop,
-          .tilt = step.head<2>().norm() / lever,
+          .tilt = step.head<2>().norm() / tilt_lever,
           .height = step.z(),
           .size = step.norm(),
           .sigma = std::sqrt(variance * solved.inverse.diagonal().head<rows_of_stop>().maxCoeff()),
@@ -89,8 +89,8 @@ std::optional<SensorStep> solve_sensor_step(const std::vector<StopPlane>& planes
 }
 
 std::optional<CalibrationFinding> find_bump(const SensorStep& step) {
-  if (step.size < min_size || step.size < min_sigmas * step.sigma ||
-      step.explained < min_explained) {
+  if (step.size < min_size || step.size < bump_sigmas * step.sigma ||
+      step.explained < min_bump_explained) {
     return std::nullopt;
   }
   std::array<char, 128> text{};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "calibrate/object_view.hpp"
 #include "calibrate/platform_samples.hpp"
 #include "octurn/sensor_map.hpp"
 
@@ -15,10 +16,9 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // The volume of objects on the platform, metres: above its noise, and in front of walls behind it.
-constexpr double max_radius = 0.17;
-constexpr double min_height = 0.006;
-constexpr double max_height = 0.4;
-constexpr double noise = 4 * disparity_unit;
+constexpr double max_object_radius = 0.17;
+constexpr double min_object_height = 0.006;
+constexpr double disparity_noise = 4 * disparity_unit;
 // Readings at an object's edges jump between object and background.
 constexpr double edge_share = 0.1;
 
@@ -31,8 +31,8 @@ std::optional<Vector3d> object_point(const PlatformSamples& samples,
   }
   const Vector3d point =
       platform_from_sensor * (samples.rays[pixel] * static_cast<double>(depths[pixel]));
-  const bool is_object = point.z() > min_height && point.z() < max_height &&
-                         point.head<2>().squaredNorm() < max_radius * max_radius;
+  const bool is_object = point.z() > min_object_height && point.z() < max_object_height &&
+                         point.head<2>().squaredNorm() < max_object_radius * max_object_radius;
   return is_object ? std::optional(point) : std::nullopt;
 }
 
@@ -47,8 +47,8 @@ struct Count {
 };
 
 /// Compares what two stops read of an object.
-Count compare(const PlatformSamples& samples, const std::vector<float>& first,
-              const std::vector<float>& other, const Isometry3d& platform_from_sensor) {
+Count count_differences(const PlatformSamples& samples, const std::vector<float>& first,
+                        const std::vector<float>& other, const Isometry3d& platform_from_sensor) {
   Count count;
   for (std::size_t pixel = 0; pixel < samples.rays.size(); ++pixel) {
     const bool is_read_twice = first[pixel] > 0 && other[pixel] > 0;
@@ -57,7 +57,7 @@ Count compare(const PlatformSamples& samples, const std::vector<float>& first,
       const double difference =
           1 / static_cast<double>(first[pixel]) - 1 / static_cast<double>(other[pixel]);
       ++count.all;
-      count.wrong += std::abs(difference) > noise ? 1 : 0;
+      count.wrong += std::abs(difference) > disparity_noise ? 1 : 0;
     }
   }
   return count;
@@ -79,7 +79,8 @@ Count compare_turned(const PlatformSamples& samples, const Intrinsics& lens,
     const auto at = sample_at(samples, lens, turned);
     if (at && depths[*at] > 0) {
       ++count.all;
-      count.wrong += 1 / turned.z() - 1 / static_cast<double>(depths[*at]) > noise ? 1 : 0;
+      count.wrong +=
+          1 / turned.z() - 1 / static_cast<double>(depths[*at]) > disparity_noise ? 1 : 0;
     }
   }
   return count;
@@ -87,7 +88,8 @@ Count compare_turned(const PlatformSamples& samples, const Intrinsics& lens,
 
 bool looks_still(const PlatformSamples& samples, const Isometry3d& platform_from_sensor) {
   return std::ranges::all_of(samples.depths, [&](const std::vector<float>& depths) {
-    return compare(samples, samples.depths.front(), depths, platform_from_sensor).is_edges_alone();
+    return count_differences(samples, samples.depths.front(), depths, platform_from_sensor)
+        .is_edges_alone();
   });
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "calibrate/for_each_stop.hpp"
+#include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -15,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array schedule = {
+constexpr std::array angle_schedule = {
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.004},
     ResidualLimits{.max_distance = 0.02, .cauchy_scale = 0.003},
@@ -42,7 +43,7 @@ constexpr double min_drift_deg = 8;
 constexpr double straight = 0.97;  // correlation of drift and angle
 
 /// The pairs from one stop in the normal equations: an entry for each partner.
-struct PairSums {
+struct PairAngleSums {
   std::size_t to = 0;
   double from_from = 0;
   double from_to = 0;
@@ -51,21 +52,21 @@ struct PairSums {
   double right_to = 0;
 };
 
-struct StopSums {
-  std::vector<PairSums> pairs = {};
+struct StopAngleSums {
+  std::vector<PairAngleSums> pairs = {};
   double weight = 0;
   double squares = 0;
 };
 
-StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose,
-                      const std::vector<double>& offsets, std::size_t stop,
-                      const ResidualLimits& limits) {
-  StopSums sums;
+StopAngleSums angle_sums(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                         const std::vector<double>& offsets, std::size_t stop,
+                         const ResidualLimits& limits) {
+  StopAngleSums sums;
   for_each_residual(turn, pose, offsets, stop, limits, [&](const StopResidual& residual) {
     if (sums.pairs.empty() || sums.pairs.back().to != residual.to) {
       sums.pairs.push_back({.to = residual.to});
     }
-    PairSums& pair = sums.pairs.back();
+    PairAngleSums& pair = sums.pairs.back();
     // A platform that stands further on by w has the point R(-w) p in the object's frame.
     const double by_from = -residual.normal_from.dot(Vector3d::UnitZ().cross(residual.point_from));
     const double by_to = residual.normal_to.dot(Vector3d::UnitZ().cross(residual.point_to));
@@ -81,28 +82,29 @@ StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose,
   return sums;
 }
 
-struct Equations {
+struct AngleEquations {
   Eigen::MatrixXd normal_matrix;
   Eigen::VectorXd right;
   double variance = 0;
   double sensitivity = 0;  // metres for a radian, root mean square
 };
 
-Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
-                    const std::vector<double>& offsets, const ResidualLimits& limits, int threads) {
+AngleEquations angle_equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                               const std::vector<double>& offsets, const ResidualLimits& limits,
+                               int threads) {
   const std::size_t stops = turn.views.size();
-  std::vector<StopSums> of_stops(stops);
+  std::vector<StopAngleSums> of_stops(stops);
   for_each_stop(stops, threads, [&](std::size_t stop) {
-    of_stops[stop] = sums_of_stop(turn, pose, offsets, stop, limits);
+    of_stops[stop] = angle_sums(turn, pose, offsets, stop, limits);
   });
   const auto size = static_cast<Eigen::Index>(stops);
-  Equations all{.normal_matrix = Eigen::MatrixXd::Zero(size, size),
-                .right = Eigen::VectorXd::Zero(size)};
+  AngleEquations all{.normal_matrix = Eigen::MatrixXd::Zero(size, size),
+                     .right = Eigen::VectorXd::Zero(size)};
   double weight = 0;
   double squares = 0;
   for (std::size_t stop = 0; stop < stops; ++stop) {
     const auto from = static_cast<Eigen::Index>(stop);
-    for (const PairSums& pair : of_stops[stop].pairs) {
+    for (const PairAngleSums& pair : of_stops[stop].pairs) {
       const auto to = static_cast<Eigen::Index>(pair.to);
       all.normal_matrix(from, from) += pair.from_from;
       all.normal_matrix(to, to) += pair.to_to;
@@ -129,12 +131,6 @@ double worst_sigma(const Eigen::MatrixXd& covariance) {
       Eigen::MatrixXd::Constant(stops, stops - 1, -1.0 / static_cast<double>(stops));
   from_mean.bottomRows(stops - 1) += Eigen::MatrixXd::Identity(stops - 1, stops - 1);
   return std::sqrt((from_mean * covariance * from_mean.transpose()).diagonal().maxCoeff());
-}
-
-std::string degrees_text(double angle) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f degrees", degrees_from_radians(angle));
-  return text.data();
 }
 
 /// The sigma of the step from a stop to the next; the first stop's angle is fixed.
@@ -190,7 +186,7 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   const double step = steps[static_cast<std::size_t>(at)];
   return CalibrationFinding{
       .code = "slip",
-      .detail = "at stop " + std::to_string(stop) + " the platform stood " + degrees_text(step) +
+      .detail = "at stop " + std::to_string(stop) + " the platform stood " + degrees_text(step, 1) +
                 " from where it should",
       .hint = "Look whether the platform slipped or the motor lost a step; turn more slowly.",
       .stop = stop,
@@ -225,7 +221,7 @@ std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
   std::array<char, 64> ratio{};
   std::snprintf(ratio.data(), ratio.size(), "%.4f", turn / (turn + drift));
   return CalibrationFinding{.code = "turn-not-whole",
-                            .detail = "a whole turn came out as " + degrees_text(turn + drift),
+                            .detail = "a whole turn came out as " + degrees_text(turn + drift, 1),
                             .hint = "Multiply gear_ratio by " + std::string(ratio.data()) + ".",
                             .stop = {},
                             .angle = {},
@@ -239,8 +235,9 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
                                               int threads) {
   const std::size_t stops = turn.views.size();
   StopOffsets solved{.offsets = std::vector<double>(stops, 0.0), .covariance = {}};
-  for (const ResidualLimits& limits : schedule) {
-    const Equations all = equations(turn, platform_from_sensor, solved.offsets, limits, threads);
+  for (const ResidualLimits& limits : angle_schedule) {
+    const AngleEquations all =
+        angle_equations(turn, platform_from_sensor, solved.offsets, limits, threads);
     if (all.sensitivity < min_sensitivity) {
       return std::nullopt;
     }

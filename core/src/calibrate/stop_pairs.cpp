@@ -15,11 +15,10 @@ namespace {
 // Stops at small angles share more surface; those at large ones determine the axis better.
 constexpr std::array apart_deg = {15.0, 30.0, 45.0, 75.0, 90.0};
 constexpr double tolerance_deg = 7.6;  // stops of a turn are rarely just so far apart
-constexpr double max_neighbour_deg = 100;
 constexpr std::size_t few_stops = 12;  // up to here the largest angle is compared, too
 
 /// The angle from `a` to `b`, from -pi to pi.
-double turn_between(double a, double b) { return std::remainder(b - a, 2 * std::numbers::pi); }
+double angle_between(double a, double b) { return std::remainder(b - a, 2 * std::numbers::pi); }
 
 /// The stop whose angle from another is nearest to `wanted`, within the tolerance.
 std::optional<std::size_t> find_stop(const std::vector<double>& angles, std::size_t from,
@@ -27,7 +26,7 @@ std::optional<std::size_t> find_stop(const std::vector<double>& angles, std::siz
   std::optional<std::size_t> nearest;
   double error = tolerance;
   for (std::size_t to = 0; to < angles.size(); ++to) {
-    const double off = std::abs(turn_between(wanted, turn_between(angles[from], angles[to])));
+    const double off = std::abs(angle_between(wanted, angle_between(angles[from], angles[to])));
     if (to != from && off < error) {
       error = off;
       nearest = to;

@@ -43,6 +43,9 @@ struct ResidualLimits {
   }
 };
 
+/// With fewer residuals of a turn nothing is solved.
+inline constexpr std::size_t min_residuals = 60;
+
 /// Compares the readings of one stop with the surfaces that its partners saw.
 /// @param platform_from_sensor  that is tried, metres
 /// @param stop_offsets          radians, of each stop: true angle less the told one
@@ -51,7 +54,6 @@ template <typename Visit>
 void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,
                        const std::vector<double>& stop_offsets, std::size_t from,
                        const ResidualLimits& limits, Visit visit) {
-  constexpr double min_agreement = 0.7;  // cosine between the two normals
   const Eigen::Isometry3d sensor_from_platform = platform_from_sensor.inverse();
   std::vector<SurfaceReading> placed = turn.readings[from];  // in the platform's frame
   for (SurfaceReading& reading : placed) {
@@ -77,7 +79,8 @@ void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_
       const Eigen::Vector3d back = to_from_from.transpose() * normal;
       const Eigen::Vector3d seen = platform_from_sensor * surface->point;
       const double distance = normal.dot(turned - seen);
-      if (std::abs(distance) < limits.max_distance && back.dot(reading.normal) > min_agreement) {
+      if (std::abs(distance) < limits.max_distance &&
+          back.dot(reading.normal) > min_normal_agreement) {
         visit(StopResidual{.from = from,
                            .to = pair.to,
                            .distance = distance,

@@ -18,36 +18,34 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr ResidualLimits limits{.max_distance = 0.02, .cauchy_scale = 0.004};
-constexpr std::size_t min_residuals = 60;
-constexpr double min_shift = 0.001;  // metres
+constexpr ResidualLimits step_limits{.max_distance = 0.02, .cauchy_scale = 0.004};
 constexpr double shift_sigmas = 5;
-constexpr double min_explained = 0.05;  // of the residuals' sum of squares
-constexpr double better = 1.5;          // times the share of a turn, which has one unknown less
+constexpr double min_move_explained = 0.05;  // of the residuals' sum of squares
+constexpr double better = 1.5;  // times the share of a turn, which has one unknown less
 
 /// Unknowns of each stop: a shift along x and y and a turn about z, in the object's frame.
 constexpr Index unknowns = 3;
 
 /// The residuals of a pair of stops in the normal equations.
-struct PairSums {
+struct PairMotionSums {
   std::size_t to = 0;
   Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
-struct StopSums {
-  std::vector<PairSums> pairs = {};
+struct StopMotionSums {
+  std::vector<PairMotionSums> pairs = {};
   double weight = 0;
   double squares = 0;
   std::size_t count = 0;
 };
 
-StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std::size_t stop) {
-  StopSums sums;
+StopMotionSums motion_sums(const TurnViews& turn, const Eigen::Isometry3d& pose, std::size_t stop) {
+  StopMotionSums sums;
   const std::vector<double> as_told(turn.angles.size(), 0.0);
   const Eigen::Matrix3d to_object =
       Eigen::AngleAxisd(-turn.angles[stop], Vector3d::UnitZ()).toRotationMatrix();
-  for_each_residual(turn, pose, as_told, stop, limits, [&](const StopResidual& residual) {
+  for_each_residual(turn, pose, as_told, stop, step_limits, [&](const StopResidual& residual) {
     if (sums.pairs.empty() || sums.pairs.back().to != residual.to) {
       sums.pairs.push_back({.to = residual.to});
     }
@@ -56,7 +54,7 @@ StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std:
     Eigen::Matrix<double, 6, 1> row;
     row << normal.x(), normal.y(), turning, -normal.x(), -normal.y(),
         -residual.normal_to.dot(Vector3d::UnitZ().cross(residual.point_to));
-    const double weight = limits.weight(residual.distance);
+    const double weight = step_limits.weight(residual.distance);
     sums.pairs.back().normal_matrix += weight * row * row.transpose();
     sums.pairs.back().right += weight * residual.distance * row;
     sums.weight += weight;
@@ -66,7 +64,7 @@ StopSums sums_of_stop(const TurnViews& turn, const Eigen::Isometry3d& pose, std:
   return sums;
 }
 
-struct Equations {
+struct MotionEquations {
   MatrixXd normal_matrix;
   VectorXd right;
   double weight = 0;
@@ -74,16 +72,17 @@ struct Equations {
   std::size_t count = 0;
 };
 
-Equations equations(const TurnViews& turn, const Eigen::Isometry3d& pose, int threads) {
+MotionEquations motion_equations(const TurnViews& turn, const Eigen::Isometry3d& pose,
+                                 int threads) {
   const std::size_t stops = turn.views.size();
-  std::vector<StopSums> of_stops(stops);
+  std::vector<StopMotionSums> of_stops(stops);
   for_each_stop(stops, threads,
-                [&](std::size_t stop) { of_stops[stop] = sums_of_stop(turn, pose, stop); });
+                [&](std::size_t stop) { of_stops[stop] = motion_sums(turn, pose, stop); });
   const Index size = unknowns * static_cast<Index>(stops);
-  Equations all{.normal_matrix = MatrixXd::Zero(size, size), .right = VectorXd::Zero(size)};
+  MotionEquations all{.normal_matrix = MatrixXd::Zero(size, size), .right = VectorXd::Zero(size)};
   for (std::size_t stop = 0; stop < stops; ++stop) {
     const Index from = unknowns * static_cast<Index>(stop);
-    for (const PairSums& pair : of_stops[stop].pairs) {
+    for (const PairMotionSums& pair : of_stops[stop].pairs) {
       const Index to = unknowns * static_cast<Index>(pair.to);
       for (const auto& [row, first] : {std::pair{from, Index{0}}, std::pair{to, unknowns}}) {
         for (const auto& [column, second] : {std::pair{from, Index{0}}, std::pair{to, unknowns}}) {
@@ -117,7 +116,7 @@ struct Solved {
   double explained = 0;
 };
 
-Solved solve(const Equations& all, const MatrixXd& columns) {
+Solved solve_hypothesis(const MotionEquations& all, const MatrixXd& columns) {
   const MatrixXd normal_matrix = columns.transpose() * all.normal_matrix * columns;
   const VectorXd right = columns.transpose() * all.right;
   const Eigen::LDLT<MatrixXd> factors(normal_matrix);
@@ -133,12 +132,12 @@ Solved solve(const Equations& all, const MatrixXd& columns) {
 std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
                                             const Eigen::Isometry3d& platform_from_sensor,
                                             int threads) {
-  const Equations all = equations(turn, platform_from_sensor, threads);
+  const MotionEquations all = motion_equations(turn, platform_from_sensor, threads);
   if (all.count < min_residuals || !(all.squares > 0)) {
     return std::nullopt;
   }
   const MatrixXd axis = make_axis_columns(turn.angles);
-  const double of_axis = solve(all, axis).explained;
+  const double of_axis = solve_hypothesis(all, axis).explained;
   const double variance = all.squares / all.weight * turn.correlation;
   ObjectStep best;
   for (std::size_t stop = 1; stop < turn.angles.size(); ++stop) {
@@ -151,9 +150,9 @@ std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
       moved(row + 1, 1) = 1;
       turned(row + 2, 0) = 1;
     }
-    best.turn_explained =
-        std::max(best.turn_explained, (solve(all, turned).explained - of_axis) / all.squares);
-    const Solved solved = solve(all, moved);
+    best.turn_explained = std::max(
+        best.turn_explained, (solve_hypothesis(all, turned).explained - of_axis) / all.squares);
+    const Solved solved = solve_hypothesis(all, moved);
     const double explained = (solved.explained - of_axis) / all.squares;
     if (solved.values.allFinite() && explained > best.explained) {
       best.stop = stop;
@@ -167,8 +166,8 @@ std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
 
 std::optional<CalibrationFinding> find_move(const ObjectStep& step) {
   const double size = step.shift.norm();
-  if (size < min_shift || size < shift_sigmas * step.sigma || step.explained < min_explained ||
-      step.explained < better * step.turn_explained) {
+  if (size < min_move_shift || size < shift_sigmas * step.sigma ||
+      step.explained < min_move_explained || step.explained < better * step.turn_explained) {
     return std::nullopt;
   }
   std::array<char, 96> text{};

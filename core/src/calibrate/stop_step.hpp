@@ -29,6 +29,9 @@ std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
                                             const Eigen::Isometry3d& platform_from_sensor,
                                             int threads);
 
+/// Smaller shifts of the object are no finding, metres.
+inline constexpr double min_move_shift = 0.001;
+
 /// The finding "moved" of the object, if the step is large, certain, and no turn explains the
 /// residuals as well.
 std::optional<CalibrationFinding> find_move(const ObjectStep& step);

@@ -13,11 +13,11 @@ namespace {
 // Limits of a flat wall. Units are steps of a Kinect's disparity.
 constexpr double min_coverage = 0.9;
 constexpr double max_slant_deg = 20;
-constexpr double max_distance = 2;    // metres: the map is for objects at 0.5 to 1 m
-constexpr double far_off = 4;         // units from the plane; a sensor's own error is less
-constexpr double max_far_off = 0.05;  // share of the blocks
-constexpr double step = 3;            // units between cells of 8 pixels that are 16 pixels apart
-constexpr double max_steps = 0.005;   // share of such pairs
+constexpr double max_wall_distance = 2;  // metres: the map is for objects at 0.5 to 1 m
+constexpr double far_off = 4;            // units from the plane; a sensor's own error is less
+constexpr double max_far_off = 0.05;     // share of the blocks
+constexpr double min_step = 3;           // units between cells of 8 pixels that are 16 pixels apart
+constexpr double max_steps = 0.005;      // share of such pairs
 
 /// Share of the known blocks that lie off the plane.
 double far_off_share(const BlockValues& residuals) {
@@ -57,7 +57,7 @@ double step_share(const BlockValues& grid) {
            {cell_mean(grid, column + apart, row), cell_mean(grid, column, row + apart)}) {
         if (here && there) {
           ++pairs;
-          steps += std::abs(*here - *there) > step * disparity_unit ? 1 : 0;
+          steps += std::abs(*here - *there) > min_step * disparity_unit ? 1 : 0;
         }
       }
     }
@@ -91,7 +91,7 @@ std::string refuse_wall(const WallBlocks& wall, const WallPlane& plane,
     return "the wall is slanted by " + number_text("%.0f", slant) +
            " degrees: have the sensor look at it more squarely";
   }
-  if (plane.distance() > max_distance) {
+  if (plane.distance() > max_wall_distance) {
     return "the wall is " + number_text("%.1f", plane.distance()) +
            " m away: 0.6 to 0.9 m is the distance of an object";
   }

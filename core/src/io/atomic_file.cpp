@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t block_bytes = std::size_t{1} << 20U;
+constexpr std::size_t write_block_bytes = std::size_t{1} << 20U;
 constexpr std::size_t page_bytes = 4096;  // direct writes need memory aligned to pages
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* doing, int number) {
@@ -55,7 +55,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& target, int at
 
 AtomicFile::AtomicFile(std::filesystem::path target, unsigned permissions)
     : target_(std::move(target)),
-      block_(static_cast<std::byte*>(std::aligned_alloc(page_bytes, block_bytes)), &std::free) {
+      block_(static_cast<std::byte*>(std::aligned_alloc(page_bytes, write_block_bytes)),
+             &std::free) {
   if (!block_) {
     throw std::bad_alloc();
   }
@@ -83,11 +84,11 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const auto part = bytes.first(std::min(bytes.size(), block_bytes - filled_));
+    const auto part = bytes.first(std::min(bytes.size(), write_block_bytes - filled_));
     std::ranges::copy(part, block_.get() + filled_);
     filled_ += part.size();
     bytes = bytes.subspan(part.size());
-    if (filled_ == block_bytes) {
+    if (filled_ == write_block_bytes) {
       if (written_ == 0) {
         set_direct(true);
       }

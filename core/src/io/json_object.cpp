@@ -203,20 +203,25 @@ std::string JsonObject::path_to(std::string_view key) const {
   return object_.name().empty() ? std::string(key) : object_.name() + "." + std::string(key);
 }
 
-json parse_json(std::string_view text, ErrorCode code, const std::string& what) {
-  if (text.size() > max_json_bytes) {
+json parse_json(std::string_view text, ErrorCode code, const std::string& what,
+                const JsonLimits& limits) {
+  if (text.size() > limits.bytes) {
     throw Error(code, what + " has " + std::to_string(text.size()) + " bytes: must have at most " +
-                          std::to_string(max_json_bytes));
+                          std::to_string(limits.bytes));
   }
-  const auto expect_shallow = [&](int depth, json::parse_event_t event, const json& /*value*/) {
+  std::size_t values = 0;
+  const auto expect_small = [&](int depth, json::parse_event_t event, const json& /*value*/) {
     const bool opens =
         event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
     if (opens && depth >= max_json_depth) {
       throw Error(code, what + " is nested more than " + std::to_string(max_json_depth) + " deep");
     }
+    if ((opens || event == json::parse_event_t::value) && ++values > limits.values) {
+      throw Error(code, what + " has more than " + std::to_string(limits.values) + " values");
+    }
     return true;
   };
-  json document = json::parse(text, expect_shallow, false);
+  json document = json::parse(text, expect_small, false);
   if (document.is_discarded()) {
     throw Error(code, what + " is not JSON");
   }

@@ -8,6 +8,7 @@
 #include "io/pose_json.hpp"
 #include "io/radial_distortion.hpp"
 #include "io/sensor_json.hpp"
+#include "octurn/intrinsics_json.hpp"
 
 namespace octurn {
 namespace {
@@ -16,15 +17,14 @@ using nlohmann::json;
 
 constexpr std::string_view dark = "dark";     // the picture without laser light
 constexpr std::size_t max_lasers = 8;         // more than any rig has
-constexpr double max_distortion = 100;        // of k1 and k2: wider than any lens
 constexpr double normal_tolerance = 1e-4;     // for rounded decimals in a file
 constexpr double max_source_distance = 0.05;  // metres of a laser from its plane
-constexpr double max_place = 100;             // metres
+constexpr double max_laser_place = 100;       // metres
 
 std::array<double, 4> plane_from(const JsonValue& value) {
   std::array<double, 4> plane{};
   std::ranges::transform(value.elements(4), plane.begin(), [](const JsonValue& element) {
-    return element.number(-max_place, max_place);
+    return element.number(-max_laser_place, max_laser_place);
   });
   return plane;
 }

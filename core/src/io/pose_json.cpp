@@ -1,6 +1,8 @@
 #include "io/pose_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "io/laser_json.hpp"
 #include "octurn/snapshot.hpp"
@@ -10,6 +12,18 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
+
+// Metres from a frame's origin. As far as the box `everywhere` reaches, so that products of places
+// and focal lengths stay finite as float.
+constexpr double max_pose_coordinate = 1e6;
+
+double place_from(const JsonValue& value) {
+  const double place = value.number();
+  if (!(std::abs(place) <= max_pose_coordinate)) {
+    value.refuse("a number from -1000000 to 1000000");
+  }
+  return place;
+}
 
 SolvedPose solved_from(const JsonValue& solved) {
   JsonObject keys(solved);
@@ -49,7 +63,7 @@ Eigen::Vector3d point_from(const JsonValue& array) {
   Eigen::Vector3d point;
   int axis = 0;
   for (const JsonValue& value : array.elements(3)) {
-    point[axis++] = value.number();
+    point[axis++] = place_from(value);
   }
   return point;
 }
@@ -60,7 +74,7 @@ Eigen::Isometry3d pose_from(const JsonValue& matrix) {
   for (const JsonValue& values : matrix.elements(4)) {
     int column = 0;
     for (const JsonValue& value : values.elements(4)) {
-      pose(row, column++) = value.number();
+      pose(row, column++) = place_from(value);
     }
     ++row;
   }
@@ -122,6 +136,9 @@ json to_json(const RigPose& calibration) {
 }
 
 std::vector<ScanPose> poses_from(const JsonValue& poses, const Scan& scan) {
+  if (poses.json().size() > max_poses) {
+    poses.refuse("an array of at most " + std::to_string(max_poses));
+  }
   std::vector<ScanPose> all;
   for (const JsonValue& pose : poses.elements()) {
     all.push_back(scan_pose_from(pose, scan));

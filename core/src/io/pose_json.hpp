@@ -33,6 +33,9 @@ struct RigPose {
 RigPose calibration_from(const JsonValue& calibration);
 nlohmann::json to_json(const RigPose& calibration);
 
+/// Maximum number of an object's poses in a scan.
+inline constexpr int max_poses = 1000;
+
 /// Reads the poses of a scan of version 2.
 /// @param scan  supplies calibration and clip box to poses without their own
 std::vector<ScanPose> poses_from(const JsonValue& poses, const Scan& scan);

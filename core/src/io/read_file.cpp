@@ -12,7 +12,7 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t block_bytes = std::size_t{1} << 16U;
+constexpr std::size_t read_block_bytes = std::size_t{1} << 16U;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
   throw Error(ErrorCode::read_failed, file.string() + ": cannot be read: " + reason,
@@ -59,7 +59,7 @@ std::optional<std::string> read_regular_file(const std::filesystem::path& file,
   std::string content;
   for (;;) {
     const std::size_t had = content.size();
-    content.resize(had + std::min(block_bytes, max_bytes + 1 - had));
+    content.resize(had + std::min(read_block_bytes, max_bytes + 1 - had));
     const ssize_t got = ::read(open.number(), content.data() + had, content.size() - had);
     if (got < 0 && errno != EINTR) {
       fail(file, std::generic_category().message(errno));

@@ -13,17 +13,12 @@
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/png.hpp"
-#include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
 
 using nlohmann::json;
-
-constexpr int max_poses = 1000;
-
-constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
 /// The default root cube of models: the clip box of a scan by laser line that has none.
 const Box whole_root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
@@ -40,7 +35,7 @@ Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCam
     shot.angle = radians_from_degrees(keys.at("angle_deg").number());
     return shot;
   }
-  shot.pose = keys.whole_number("pose", 0, max_poses).value_or(0);
+  shot.pose = keys.whole_number("pose", 0, max_poses - 1).value_or(0);
   const auto matrix = keys.value("object_from_sensor");
   const auto angle = keys.value("angle_deg");
   if (matrix && angle) {
@@ -94,8 +89,8 @@ void expect_lasers(const Scan& scan, const std::optional<SolvedPose>& solved) {
   }
   for (const Laser& laser : solved->lasers) {
     if (std::ranges::count(scan.laser->lasers, laser.name, &Laser::name) == 0) {
-      throw Error(malformed, "\"solved.lasers\" has \"" + laser.name +
-                                 "\", which is none of \"sensor.lasers\"");
+      throw Error(ErrorCode::scan_malformed, "\"solved.lasers\" has \"" + laser.name +
+                                                 "\", which is none of \"sensor.lasers\"");
     }
   }
 }
@@ -105,15 +100,15 @@ void expect_poses(const Scan& scan) {
   const std::size_t poses = std::max<std::size_t>(scan.poses.size(), 1);
   for (std::size_t i = 0; i < scan.shots.size(); ++i) {
     if (static_cast<std::size_t>(scan.shots[i].pose) >= poses) {
-      throw Error(malformed, "\"snapshots[" + std::to_string(i) + "].pose\" is " +
-                                 std::to_string(scan.shots[i].pose) + ": \"poses\" has " +
-                                 std::to_string(poses));
+      throw Error(ErrorCode::scan_malformed, "\"snapshots[" + std::to_string(i) + "].pose\" is " +
+                                                 std::to_string(scan.shots[i].pose) +
+                                                 ": \"poses\" has " + std::to_string(poses));
     }
   }
 }
 
 Scan scan_from(const json& document) {
-  JsonObject root(document, malformed, "");
+  JsonObject root(document, ErrorCode::scan_malformed, "");
   if (const JsonValue format = root.at("format"); format.text() != "octurn-scan") {
     format.refuse("\"octurn-scan\"");
   }
@@ -170,11 +165,12 @@ void write_document(const std::filesystem::path& folder, const json& document) {
 
 Scan parse_scan(std::string_view text) {
   try {
-    return scan_from(parse_json(text, malformed, "it"));
+    return scan_from(parse_json(text, ErrorCode::scan_malformed, "it"));
   } catch (const Error& error) {
-    throw Error(
-        error.code(), std::string("scan.json: ") + error.what(),
-        error.code() == malformed ? "The folder is not a scan that this version can read." : "");
+    throw Error(error.code(), std::string("scan.json: ") + error.what(),
+                error.code() == ErrorCode::scan_malformed
+                    ? "The folder is not a scan that this version can read."
+                    : "");
   }
 }
 
@@ -188,13 +184,7 @@ Scan read_scan(const std::filesystem::path& folder) {
 }
 
 void use_sensor_map(Scan& scan, const std::filesystem::path& file) {
-  SensorMap map = read_sensor_map(file);
-  if (map.width != scan.intrinsics.width || map.height != scan.intrinsics.height) {
-    throw Error(ErrorCode::scan_malformed,
-                file.string() + ": is for another sensor than the scan's: it has another size",
-                "Take the map of the sensor that made the scan.");
-  }
-  scan.sensor_map = std::make_shared<const SensorMap>(std::move(map));
+  scan.sensor_map = std::make_shared<const SensorMap>(read_sensor_map(file, scan.intrinsics));
 }
 
 DepthFrame corrected(DepthFrame frame, const Scan& scan) {
@@ -205,7 +195,7 @@ DepthFrame corrected(DepthFrame frame, const Scan& scan) {
 Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, const Shot& shot) {
   const Intrinsics& intrinsics = scan.intrinsics;
   if (scan.laser) {
-    throw Error(malformed, "a scan by laser line has no depth images");
+    throw Error(ErrorCode::scan_malformed, "a scan by laser line has no depth images");
   }
   const std::string png = read_scan_file(folder / shot.file);
   DepthFrame frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
@@ -246,7 +236,7 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
 void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved) {
   const std::string text = read_scan_file(folder / "scan.json");
   parse_scan(text);  // refuses a file that is not a scan
-  json document = parse_json(text, malformed, "scan.json");
+  json document = parse_json(text, ErrorCode::scan_malformed, "scan.json");
   document["calibration"]["solved"] = to_json(solved);
   write_document(folder, document);
 }

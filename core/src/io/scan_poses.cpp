@@ -5,7 +5,6 @@
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
-#include "octurn/tiles.hpp"
 
 namespace octurn {
 namespace {

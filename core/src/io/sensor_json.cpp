@@ -7,22 +7,15 @@
 #include "io/laser_json.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/intrinsics_json.hpp"
 
 namespace octurn {
 namespace {
 
-constexpr int max_side = 8192;                       // pixels; no depth sensor's image is larger
-constexpr std::size_t max_file_bytes = 256U << 20U;  // twice an uncompressed image of that size
+constexpr std::size_t max_image_bytes = 256U
+                                        << 20U;  // twice an uncompressed image of max_image_side
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
-
-double positive_in(JsonObject& keys, std::string_view key) {
-  const JsonValue value = keys.at(key);
-  if (value.number() <= 0) {
-    value.refuse("above 0");
-  }
-  return value.number();
-}
 
 }  // namespace
 
@@ -32,18 +25,13 @@ SensorJson sensor_from(const JsonValue& object) {
   if (kind && kind->text() != "laser-line") {
     kind->refuse("\"laser-line\", or left out for a sensor that measures depth");
   }
-  SensorJson sensor{.name = keys.at("name").text(),
-                    .serial = {},
-                    .intrinsics = {.width = keys.at("width").whole_number(2, max_side),
-                                   .height = keys.at("height").whole_number(2, max_side),
-                                   .fx = positive_in(keys, "fx"),
-                                   .fy = positive_in(keys, "fy"),
-                                   .cx = keys.at("cx").number(),
-                                   .cy = keys.at("cy").number()}};
+  SensorJson sensor{.name = keys.at("name").text(), .serial = {}, .intrinsics = lens_from(keys)};
+  sensor.intrinsics.width = keys.at("width").whole_number(2, max_image_side);
+  sensor.intrinsics.height = keys.at("height").whole_number(2, max_image_side);
   if (kind) {
     sensor.laser = laser_camera_from(keys, sensor.intrinsics);
   } else {
-    sensor.intrinsics.depth_unit = positive_in(keys, "depth_unit_m");
+    sensor.intrinsics.depth_unit = depth_unit_from(keys);
   }
   sensor.serial = keys.text("serial").value_or("");
   return sensor;
@@ -83,10 +71,10 @@ std::string read_bytes(const std::filesystem::path& file, ErrorCode missing, std
     throw Error(missing, file.string() + ": " + (error ? error.message() : "not a regular file"),
                 std::string(hint));
   }
-  if (std::filesystem::file_size(file, error) > max_file_bytes) {
+  if (std::filesystem::file_size(file, error) > max_image_bytes) {
     throw Error(malformed, file.string() + ": too large for a file of a scan");
   }
-  return read_regular_file(file, max_file_bytes).value_or("");
+  return read_regular_file(file, max_image_bytes).value_or("");
 }
 
 std::string read_scan_file(const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -15,15 +16,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* keyword = "octurn-sensor-map";
-constexpr ErrorCode malformed = ErrorCode::scan_malformed;
+constexpr const char* map_keyword = "octurn-sensor-map";
 constexpr const char* hint = "Make it again with `octurn calibrate --wall`.";
 
-constexpr std::uint32_t max_side = 4096;             // pixels
-constexpr std::size_t max_file_bytes = 128U << 20U;  // twice two uncompressed images of that size
-constexpr double step = 1e-5;                        // 1/m, a unit of the samples
-constexpr int zero = 1 << 15;                        // the sample of error 0
-constexpr double max_inverse_depth = 100;            // 1/m
+constexpr std::uint32_t max_map_side = 4096;        // pixels
+constexpr std::size_t max_map_bytes = 128U << 20U;  // twice two uncompressed images of that size
+constexpr std::size_t max_map_values = 1000;        // of its text, which has about ten
+constexpr double step = 1e-5;                       // 1/m, a unit of the samples
+constexpr int zero = 1 << 15;                       // the sample of error 0
+constexpr double max_inverse_depth = 100;           // 1/m
 
 /// Appends the samples of a plane of the map.
 void append(std::vector<std::uint16_t>& samples, const std::vector<float>& plane) {
@@ -43,7 +44,7 @@ std::vector<float> to_plane(std::span<const std::uint16_t> samples) {
   return plane;
 }
 
-json to_json(const SensorMap& map) {
+json to_document(const SensorMap& map) {
   json inverse_depths{map.near_inverse_depth};
   if (!map.far.empty()) {
     inverse_depths.push_back(map.far_inverse_depth);
@@ -55,7 +56,7 @@ json to_json(const SensorMap& map) {
 
 /// Reads the text of a map. The planes stay empty; `far_inverse_depth` is 0 if there is only one.
 SensorMap from_json(const json& document) {
-  JsonObject keys(document, malformed, "");
+  JsonObject keys(document, ErrorCode::scan_malformed, "");
   if (const JsonValue version = keys.at("version"); version.number() != 1) {
     version.refuse("1, which this program reads");
   }
@@ -91,24 +92,24 @@ std::vector<std::byte> encode_sensor_map(const SensorMap& map) {
   return encode_grey_png(
       map.width, map.far.empty() ? map.height : 2 * map.height,
       std::span<const std::uint16_t>(samples),
-      {.keyword = keyword,
-       .text = to_json(map).dump(-1, ' ', true, json::error_handler_t::replace)});
+      {.keyword = map_keyword,
+       .text = to_document(map).dump(-1, ' ', true, json::error_handler_t::replace)});
 }
 
-SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> png) {
-  const PngSource source{.name = name, .bytes = png, .malformed = malformed, .hint = hint};
-  const GreyPng image =
-      decode_grey16_png(source, keyword, [&](std::uint32_t width, std::uint32_t height) {
-        if (width > max_side || height > 2 * max_side) {
-          source.refuse(size_text(width, height) + ": larger than any sensor's");
-        }
-      });
+namespace {
+
+using ExpectSize = std::function<void(std::uint32_t width, std::uint32_t height)>;
+
+/// @param expect_size  called with the picture's size before pixels are allocated
+SensorMap decode_map(const PngSource& source, const ExpectSize& expect_size) {
+  const GreyPng image = decode_grey16_png(source, map_keyword, expect_size);
   if (image.text.empty()) {
     source.refuse("a picture, but no map of a sensor");
   }
   SensorMap map;
   try {
-    map = from_json(parse_json(image.text, malformed, "its text"));
+    map = from_json(
+        parse_json(image.text, ErrorCode::scan_malformed, "its text", {.values = max_map_values}));
   } catch (const Error& error) {
     source.refuse(error.what());
   }
@@ -125,18 +126,60 @@ SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> pn
   return map;
 }
 
-SensorMap read_sensor_map(const std::filesystem::path& file) {
+PngSource map_source(std::string_view name, std::span<const std::byte> png) {
+  return {.name = name, .bytes = png, .malformed = ErrorCode::scan_malformed, .hint = hint};
+}
+
+std::string read_map_file(const std::filesystem::path& file) {
   std::optional<std::string> bytes;
   try {
-    bytes = read_regular_file(file, max_file_bytes);
+    bytes = read_regular_file(file, max_map_bytes);
   } catch (const Error& error) {
-    throw Error(malformed, error.what(), error.hint());
+    throw Error(ErrorCode::scan_malformed, error.what(), error.hint());
   }
   if (!bytes) {
-    throw Error(malformed, file.string() + ": no such file",
+    throw Error(ErrorCode::scan_malformed, file.string() + ": no such file",
                 "Make one with `octurn calibrate --wall`.");
   }
-  return decode_sensor_map(file.string(), std::as_bytes(std::span(*bytes)));
+  return *std::move(bytes);
+}
+
+}  // namespace
+
+SensorMap decode_sensor_map(std::string_view name, std::span<const std::byte> png) {
+  const PngSource source = map_source(name, png);
+  return decode_map(source, [&](std::uint32_t width, std::uint32_t height) {
+    if (width > max_map_side || height > 2 * max_map_side) {
+      source.refuse(size_text(width, height) + ": larger than any sensor's");
+    }
+  });
+}
+
+SensorMap read_sensor_map(const std::filesystem::path& file) {
+  const std::string bytes = read_map_file(file);
+  return decode_sensor_map(file.string(), std::as_bytes(std::span(bytes)));
+}
+
+SensorMap read_sensor_map(const std::filesystem::path& file, const Intrinsics& sensor) {
+  const std::string bytes = read_map_file(file);
+  const auto refuse_size = [&] {
+    throw Error(ErrorCode::scan_malformed,
+                file.string() + ": is for another sensor than the scan's: it has another size",
+                "Take the map of the sensor that made the scan.");
+  };
+  const std::string name = file.string();
+  SensorMap map = decode_map(map_source(name, std::as_bytes(std::span(bytes))),
+                             [&](std::uint32_t width, std::uint32_t height) {
+                               const auto rows = static_cast<std::uint32_t>(sensor.height);
+                               if (width != static_cast<std::uint32_t>(sensor.width) ||
+                                   (height != rows && height != 2 * rows)) {
+                                 refuse_size();
+                               }
+                             });
+  if (map.height != sensor.height) {
+    refuse_size();
+  }
+  return map;
 }
 
 void write_sensor_map(const std::filesystem::path& file, const SensorMap& map) {

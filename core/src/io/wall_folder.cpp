@@ -11,14 +11,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr ErrorCode malformed = ErrorCode::recording_malformed;
-
 std::string read_wall_bytes(const std::filesystem::path& file) {
-  return read_bytes(file, malformed, "Record one with `octurn record --wall`.", malformed);
+  return read_bytes(file, ErrorCode::recording_malformed, "Record one with `octurn record --wall`.",
+                    ErrorCode::recording_malformed);
 }
 
 Wall wall_from(const json& document) {
-  JsonObject root(document, malformed, "");
+  JsonObject root(document, ErrorCode::recording_malformed, "");
   if (const JsonValue format = root.at("format"); format.text() != "octurn-wall") {
     format.refuse("\"octurn-wall\"");
   }
@@ -48,9 +47,9 @@ Wall wall_from(const json& document) {
 
 Wall parse_wall(std::string_view text) {
   try {
-    return wall_from(parse_json(text, malformed, "it"));
+    return wall_from(parse_json(text, ErrorCode::recording_malformed, "it"));
   } catch (const Error& error) {
-    throw Error(malformed, std::string("wall.json: ") + error.what(),
+    throw Error(ErrorCode::recording_malformed, std::string("wall.json: ") + error.what(),
                 "The folder is not a wall that this version can read.");
   }
 }

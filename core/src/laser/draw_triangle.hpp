@@ -25,10 +25,18 @@ void visit_pixels(const std::array<ImageCorner, 3>& c, int width, int height, co
   }
   const auto [u0, u1] = std::minmax({c[0].u, c[1].u, c[2].u});
   const auto [v0, v1] = std::minmax({c[0].v, c[1].v, c[2].v});
-  const int right = static_cast<int>(std::min(u1, width - 1.0));
-  const int bottom = static_cast<int>(std::min(v1, height - 1.0));
-  for (int v = static_cast<int>(std::ceil(std::max(v0, 0.0))); v <= bottom; ++v) {
-    for (int u = static_cast<int>(std::ceil(std::max(u0, 0.0))); u <= right; ++u) {
+  // Clamped on both sides before the conversion: a corner may be projected beyond the range of int.
+  const auto first = [](double min, int size) {
+    return static_cast<int>(std::ceil(std::clamp(min, 0.0, static_cast<double>(size))));
+  };
+  const auto last = [](double max, int size) {
+    return static_cast<int>(std::clamp(max, -1.0, size - 1.0));
+  };
+  const int left = first(u0, width);
+  const int right = last(u1, width);
+  const int bottom = last(v1, height);
+  for (int v = first(v0, height); v <= bottom; ++v) {
+    for (int u = left; u <= right; ++u) {
       const double b = ((u - c[0].u) * (c[2].v - c[0].v) - (c[2].u - c[0].u) * (v - c[0].v)) / area;
       const double d = ((c[1].u - c[0].u) * (v - c[0].v) - (u - c[0].u) * (c[1].v - c[0].v)) / area;
       const double a = 1 - b - d;

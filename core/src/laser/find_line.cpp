@@ -13,7 +13,7 @@ namespace {
 
 // Rows are smoothed by the binomial filter 1 4 6 4 1, whose gain is 16.
 constexpr int gain = 16;
-constexpr int reach = 2;  // pixels of the filter to each side
+constexpr int filter_reach = 2;  // pixels of the filter to each side
 
 // Thresholds on the smoothed difference: grey levels above the dark picture, times the gain.
 constexpr int min_peak = 8 * gain;
@@ -65,7 +65,7 @@ bool smooth(Row& row, std::vector<int>& difference) {
   if (brightest * gain < min_peak) {
     return false;
   }
-  for (std::size_t u = reach; u + reach < width; ++u) {
+  for (std::size_t u = filter_reach; u + filter_reach < width; ++u) {
     row.smooth[u] = difference[u - 2] + difference[u + 2] +
                     4 * (difference[u - 1] + difference[u + 1]) + 6 * difference[u];
   }
@@ -80,7 +80,8 @@ int end_of_light(const Row& row, int peak, int step) {
   const int valley = std::max(min_valley, top / valley_share);
   int lowest = top;
   int lowest_at = peak;
-  for (int u = peak; u >= reach && u < row.width() - reach && std::abs(u - peak) <= max_half_width;
+  for (int u = peak;
+       u >= filter_reach && u < row.width() - filter_reach && std::abs(u - peak) <= max_half_width;
        u += step) {
     const int value = row.at(u);
     if (value < floor) {
@@ -129,7 +130,7 @@ bool is_glare(const Row& row, int first, int last) {
 }
 
 void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) {
-  for (int u = reach; u < row.width() - reach; ++u) {
+  for (int u = filter_reach; u < row.width() - filter_reach; ++u) {
     if (row.at(u) < min_peak || row.at(u) < row.at(u - 1) || row.at(u) <= row.at(u + 1)) {
       continue;
     }
@@ -173,7 +174,7 @@ LineScale line_scale(double pixel) {
   constexpr double edge = 0.0004;       // half a line's width
   constexpr double jump = 0.0012;
   const auto rows = [&](double length, int max) {
-    return std::clamp(static_cast<int>(std::lround(length / pixel)), 1, max);
+    return static_cast<int>(std::lround(std::clamp(length / pixel, 1.0, static_cast<double>(max))));
   };
   return {.fit_rows = rows(fit_reach, 12),
           .edge_rows = rows(edge, 4),

@@ -21,17 +21,17 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t max_views = 24;   // one every 15 degrees is enough for registration
-constexpr int max_width = 480;          // pixels of a view, 0.3 mm each on an object of 10 cm
-constexpr double depth_unit = 0.00002;  // metres
+constexpr std::size_t max_depth_views = 24;  // one every 15 degrees is enough for registration
+constexpr int max_width = 480;               // pixels of a view, 0.3 mm each on an object of 10 cm
+constexpr double depth_unit = 0.00002;       // metres
 
 // Maximum platform angle between a view and a line that is drawn in it, radians. From a larger
 // angle rays may pass through surface that no line met, and would mark it as free space.
-constexpr double reach = std::numbers::pi / 4;
+constexpr double max_view_angle = std::numbers::pi / 4;
 
 /// Whether a line seen at one platform angle is drawn in the view at another.
 bool is_near(double angle, double other) {
-  return std::abs(std::remainder(angle - other, 2 * std::numbers::pi)) <= reach;
+  return std::abs(std::remainder(angle - other, 2 * std::numbers::pi)) <= max_view_angle;
 }
 
 /// The intrinsics of the same camera with pixels `factor` times as wide.
@@ -121,8 +121,8 @@ RegistrationTurn laser_turn(const std::filesystem::path& folder, const Scan& sca
                         .platform_from_sensor = model_pose(scan),
                         .clip = scan.clip};
   std::vector<SurfaceView> views;
-  for (std::size_t i = 0; i < std::min(stops, max_views); ++i) {
-    turn.angles.push_back(scan.shots[i * stops / std::min(stops, max_views)].angle);
+  for (std::size_t i = 0; i < std::min(stops, max_depth_views); ++i) {
+    turn.angles.push_back(scan.shots[i * stops / std::min(stops, max_depth_views)].angle);
     views.emplace_back(turn.intrinsics,
                        object_from_sensor(turn.platform_from_sensor, turn.angles.back()));
   }

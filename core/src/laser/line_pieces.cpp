@@ -13,8 +13,8 @@ constexpr std::size_t min_rows = 6;  // of a piece
 
 /// Index of the sample in [first, end) whose column is nearest to `u`; -1 if all are farther than
 /// `max_jump`.
-std::int32_t nearest(const std::vector<LineSample>& samples, std::size_t first, std::size_t end,
-                     float u, float max_jump) {
+std::int32_t nearest_sample(const std::vector<LineSample>& samples, std::size_t first,
+                            std::size_t end, float u, float max_jump) {
   std::int32_t best = -1;
   float best_distance = max_jump;
   for (std::size_t i = first; i < end; ++i) {
@@ -40,9 +40,10 @@ void link(std::vector<LineSample>& samples, float max_jump) {
       ++below;
     }
     for (std::size_t i = first; i < end; ++i) {
-      const std::int32_t next = nearest(samples, end, below, samples[i].u, max_jump);
-      if (next >= 0 && nearest(samples, first, end, samples[static_cast<std::size_t>(next)].u,
-                               max_jump) == static_cast<std::int32_t>(i)) {
+      const std::int32_t next = nearest_sample(samples, end, below, samples[i].u, max_jump);
+      if (next >= 0 &&
+          nearest_sample(samples, first, end, samples[static_cast<std::size_t>(next)].u,
+                         max_jump) == static_cast<std::int32_t>(i)) {
         samples[i].next = next;
       }
     }

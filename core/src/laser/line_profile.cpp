@@ -8,9 +8,9 @@
 namespace octurn {
 namespace {
 
-constexpr double nearest = 0.03;   // metres in front of the camera
-constexpr double farthest = 3.0;   // no line is seen farther away
-constexpr double min_sine = 0.02;  // of the angle between ray and plane
+constexpr double nearest_line = 0.03;  // metres in front of the camera
+constexpr double farthest_line = 3.0;  // no line is seen farther away
+constexpr double min_sine = 0.02;      // of the angle between ray and plane
 
 }  // namespace
 
@@ -41,8 +41,8 @@ Eigen::Vector3d meet(const LineProfile::Ray& ray, const Laser& laser) {
   const double y = static_cast<double>(ray.y);
   const double across = laser.normal.x() * x + laser.normal.y() * y + laser.normal.z();
   const double z = laser.distance / across;
-  const bool is_met =
-      std::abs(across) > min_sine * std::sqrt(x * x + y * y + 1) && z > nearest && z < farthest;
+  const bool is_met = std::abs(across) > min_sine * std::sqrt(x * x + y * y + 1) &&
+                      z > nearest_line && z < farthest_line;
   if (!is_met) {
     return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_row_side = 0.0025;  // metres, between neighbouring rows of one line
-constexpr double gap = 0.0015;           // metres, besides the platform's motion there
-constexpr double max_side = 0.01;        // metres, for any number of stops
+constexpr double max_row_side = 0.0025;     // metres, between neighbouring rows of one line
+constexpr double gap = 0.0015;              // metres, besides the platform's motion there
+constexpr double max_triangle_side = 0.01;  // metres, for any number of stops
 
 /// A line's points in the optical frame of the stop whose strip is made, in the order of its rays.
 std::vector<Vector3d> to_points(const PlacedLine& line, const Eigen::Isometry3d& own_from_line) {
@@ -61,7 +61,7 @@ class LineJoiner {
 
   Limits limits_at(const Vector3d& point) const {
     const Vector3d turned = own_from_other_ * point;
-    return {.side = std::min(gap + (turned - point).norm(), max_side),
+    return {.side = std::min(gap + (turned - point).norm(), max_triangle_side),
             .towards = column(turned) - column(point)};
   }
 

@@ -15,11 +15,11 @@
 namespace octurn {
 namespace {
 
-constexpr int margin = 2;               // pixels around what a view shows
-constexpr int max_side = 4096;          // pixels of a view
-constexpr double own_share = 0.49;      // of the own line at a pixel: neighbours overlap a little
-constexpr float min_cosine = 0.15F;     // of incidence: 81 degrees
-constexpr float weight_of_line = 2.0F;  // of a surface: it outweighs one ray that passes through
+constexpr int margin = 2;            // pixels around what a view shows
+constexpr int max_view_side = 4096;  // pixels of a view
+constexpr double own_share = 0.49;   // of the own line at a pixel: neighbours overlap a little
+constexpr float min_strip_cosine = 0.15F;  // of incidence: 81 degrees
+constexpr float weight_of_line = 2.0F;     // of a surface: it outweighs one ray that passes through
 constexpr double platform_slack = 0.0015;  // metres above the platform that may be the platform
 
 /// Flags the points of a strip that lie inside the clip boxes: 1, else 0.
@@ -93,7 +93,7 @@ class StripView {
         }
       }
     }
-    if (!(u1 - u0 < max_side) || !(v1 - v0 < max_side) || u1 < u0) {
+    if (!(u1 - u0 < max_view_side) || !(v1 - v0 < max_view_side) || u1 < u0) {
       return false;
     }
     const double left = std::floor(u0) - margin;
@@ -129,7 +129,7 @@ class StripView {
     }
     const double sign = towards < 0 ? -1 : 1;
     const auto cosine = static_cast<float>(std::abs(towards) / (length * p.norm()));
-    if (cosine < min_cosine) {
+    if (cosine < min_strip_cosine) {
       return std::nullopt;
     }
     const Eigen::Vector3d unit = normal * (sign / length);

@@ -18,11 +18,11 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t max_views = 36;     // of a pose: 10 degrees apart
-constexpr double min_cosine = 0.25;       // of incidence, 75 degrees: beyond, pixels are smeared
-constexpr double behind_surface = 0.002;  // metres: depth is drawn at the pixel's centre
-constexpr double min_depth = 0.01;        // metres in front of the camera
-constexpr float bright_level = 240;       // of the brightest colours after brightening
+constexpr std::size_t max_pictures = 36;     // of a pose: 10 degrees apart
+constexpr double min_picture_cosine = 0.25;  // of incidence, 75 degrees: beyond, pixels are smeared
+constexpr double behind_surface = 0.002;     // metres: depth is drawn at the pixel's centre
+constexpr double min_depth = 0.01;           // metres in front of the camera
+constexpr float bright_level = 240;          // of the brightest colours after brightening
 constexpr Rgb white = {255, 255, 255};
 
 /// The weighted sum of a vertex's colours in the pictures.
@@ -39,7 +39,7 @@ std::vector<std::size_t> chosen_shots(const Scan& scan) {
   }
   std::vector<std::size_t> chosen;
   for (const auto& [pose, shots] : poses) {
-    const std::size_t count = std::min(shots.size(), max_views);
+    const std::size_t count = std::min(shots.size(), max_pictures);
     for (std::size_t i = 0; i < count; ++i) {
       chosen.push_back(shots[i * shots.size() / count]);
     }
@@ -128,7 +128,7 @@ void look(const VertexMesh& mesh, std::span<const Vector3f> normals, const Colou
     const Vector3d& point = in_camera[i];
     const Vector3d normal = sensor_from_object.linear() * normals[i].cast<double>();
     const double cosine = -normal.dot(point) / point.norm();
-    if (point.z() < min_depth || !(cosine > min_cosine)) {
+    if (point.z() < min_depth || !(cosine > min_picture_cosine)) {
       continue;
     }
     const Eigen::Vector2d ideal = project(lens, point);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/radial_distortion.hpp"
+#include "lens/grey_image.hpp"
 #include "lens/lens_solver.hpp"
 #include "octurn/lens.hpp"
 #include "octurn/units.hpp"
@@ -14,12 +15,11 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t min_views = 5;
-constexpr std::size_t min_corners = 12;    // of a view: three by four
-constexpr double min_tilt_deg = 20;        // between two boards
-constexpr double max_focal_sigma = 0.003;  // of the focal length
+constexpr std::size_t min_view_corners = 12;  // of a view: three by four
+constexpr double min_tilt_deg = 20;           // between two boards
+constexpr double max_focal_sigma = 0.003;     // of the focal length
 constexpr double min_coverage = 0.85;
 constexpr double max_rms = 0.6;  // pixels, at the usual width
-constexpr double usual_width = 820;
 
 std::string number(double value, int digits) {
   std::ostringstream text;
@@ -77,7 +77,7 @@ std::string find_fault(const LensReport& report) {
     return "the board was shown in " + number(100 * share, 0) +
            " % of the picture only: a lens distorts most at the edges";
   }
-  if (report.rms > max_rms * std::max(1.0, report.lens.intrinsics.width / usual_width)) {
+  if (report.rms > max_rms * std::max(1.0, report.lens.intrinsics.width / double{usual_width})) {
     return "the corners lie " + number(report.rms, 2) +
            " pixels from where a lens would show them: the board was not flat, or it moved";
   }
@@ -92,7 +92,7 @@ std::string find_fault(const LensReport& report) {
 
 /// Whether a view's corners determine a homography well: at least 12, over three rows and columns.
 bool is_usable(const BoardView& view) {
-  if (view.size() < min_corners) {
+  if (view.size() < min_view_corners) {
     return false;
   }
   const auto [left, right] = std::ranges::minmax(view, {}, &BoardCorner::column);

@@ -11,9 +11,9 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t max_features = 2000;
-constexpr float min_response = 40;  // grey levels: a corner with a contrast of about 8
-constexpr int ring_radius = 5;      // pixels, of the detector
-constexpr int spread = 3;           // pixels, radius of the non-maximum suppression
+constexpr float min_response = 40;     // grey levels: a corner with a contrast of about 8
+constexpr int ring_radius = 5;         // pixels, of the detector
+constexpr int suppression_radius = 3;  // pixels, of the non-maximum suppression
 
 struct Offset {
   int u = 0;
@@ -63,8 +63,8 @@ float response_at(const GreyImage& image, int u, int v) {
 
 bool is_maximum(const GreyImage& responses, int u, int v) {
   const float here = responses.at(u, v);
-  for (int dv = -spread; dv <= spread; ++dv) {
-    for (int du = -spread; du <= spread; ++du) {
+  for (int dv = -suppression_radius; dv <= suppression_radius; ++dv) {
+    for (int du = -suppression_radius; du <= suppression_radius; ++du) {
       const float other = responses.at(u + du, v + dv);
       const bool is_before = dv < 0 || (dv == 0 && du < 0);
       if (other > here || (other == here && is_before)) {

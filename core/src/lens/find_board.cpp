@@ -13,9 +13,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t min_corners = 20;
-constexpr int usual_width = 820;  // pixels: features are detected at about this width
-constexpr int first_reach = 4;    // pixels around a corner, before its squares' size is known
+constexpr std::size_t min_board_corners = 20;
+constexpr int first_reach = 4;  // pixels around a corner, before its squares' size is known
 constexpr int least_reach = 3;
 constexpr int most_reach = 12;
 constexpr double reach_share = 0.5;  // of the distance to the nearest corner
@@ -50,7 +49,7 @@ BoardView find_board(const Picture& picture) {
   const GreyImage image = smoothed(reduced(picture, side));
   const std::vector<Vector2d> corners = find_corners(image);
   const std::vector<LatticePlace> places = grow_lattice(corners, find_edges(image, corners));
-  if (places.size() < min_corners) {
+  if (places.size() < min_board_corners) {
     return {};
   }
   const GreyImage whole = side == 1 ? image : smoothed(reduced(picture, 1));
@@ -64,7 +63,7 @@ BoardView find_board(const Picture& picture) {
       view.push_back({.pixel = pixel, .column = place.square.x(), .row = place.square.y()});
     }
   }
-  return view.size() < min_corners ? BoardView{} : view;
+  return view.size() < min_board_corners ? BoardView{} : view;
 }
 
 }  // namespace octurn

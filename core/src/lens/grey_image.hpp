@@ -7,6 +7,10 @@
 
 namespace octurn {
 
+/// Pixels. Larger pictures are reduced to about this width to detect corners; limits in pixels hold
+/// for it.
+inline constexpr int usual_width = 820;
+
 /// A grey picture in floating point.
 struct GreyImage {
   int width = 0;                   ///< pixels

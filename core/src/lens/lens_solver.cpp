@@ -68,7 +68,7 @@ Matrix6d damped(Matrix6d matrix, double damping) {
 }
 
 /// The lens's equations after elimination of the boards (Schur complement).
-std::pair<Matrix6d, Vector6d> reduced(const Equations& equations, double damping) {
+std::pair<Matrix6d, Vector6d> without_boards(const Equations& equations, double damping) {
   Matrix6d matrix = Matrix6d::Zero();
   Vector6d right = Vector6d::Zero();
   for (const ViewEquations& view : equations.views) {
@@ -80,7 +80,7 @@ std::pair<Matrix6d, Vector6d> reduced(const Equations& equations, double damping
 }
 
 LensAndBoards stepped(const LensAndBoards& from, const Equations& equations, double damping) {
-  const auto [matrix, right] = reduced(equations, damping);
+  const auto [matrix, right] = without_boards(equations, damping);
   const Vector6d change = matrix.ldlt().solve(right);
   LensAndBoards to = from;
   to.lens += change;
@@ -139,7 +139,7 @@ LensFit fit_lens(const std::vector<BoardView>& views, LensAndBoards first) {
   const auto corners = static_cast<double>(count_corners(views));
   const double unknowns = 6 + 6 * static_cast<double>(views.size());
   const double variance = equations.squares / std::max(1.0, 2 * corners - unknowns);
-  const Matrix6d spread = reduced(equations, 0).first.fullPivLu().inverse();
+  const Matrix6d spread = without_boards(equations, 0).first.fullPivLu().inverse();
   fit.sigma = (variance * spread.diagonal()).cwiseAbs().cwiseSqrt();
   fit.rms = std::sqrt(equations.squares / corners);
   return fit;

@@ -8,11 +8,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_gap = 0.012;       // metres between foot and platform before the fit
-constexpr double min_facing = 0.99;     // cosine between the foot's normal and straight down
-constexpr double min_area_cells = 100;  // of 2 mm: 4 cm2
-constexpr double max_spread = 0.0003;   // metres, of the foot's heights
-constexpr double max_below = 0.0015;    // metres below the foot that noise explains
+constexpr double max_gap = 0.012;          // metres between foot and platform before the fit
+constexpr double min_facing = 0.99;        // cosine between the foot's normal and straight down
+constexpr double min_area_cells = 100;     // of 2 mm: 4 cm2
+constexpr double max_spread = 0.0003;      // metres, of the foot's heights
+constexpr double max_below_foot = 0.0015;  // metres below the foot that noise explains
 constexpr double max_below_share = 0.02;
 
 /// Adds a point-to-plane equation for each point of a foot: its distance from the platform is 0.
@@ -54,7 +54,7 @@ Contact find_contact(const std::vector<SurfacePoint>& points,
   }
   const auto below =
       static_cast<double>(std::ranges::count_if(points, [&](const SurfacePoint& point) {
-        return height_above(point.point) < sum / count - max_below;
+        return height_above(point.point) < sum / count - max_below_foot;
       }));
   if (below > max_below_share * count) {
     contact.foot.clear();

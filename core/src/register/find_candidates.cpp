@@ -22,7 +22,7 @@ constexpr int joined_iterations = 12;  // by then most have converged to a few p
 constexpr std::size_t refined_points = 1500;
 constexpr int rough_iterations = 6;
 constexpr std::size_t refined_poses = 60;
-constexpr int iterations = 40;
+constexpr int refined_iterations = 40;
 constexpr std::size_t max_shapes = 5;     // from which a person can choose
 constexpr std::size_t shapes_turned = 2;  // best candidates whose half turns are tried, too
 
@@ -149,7 +149,8 @@ std::vector<PoseCandidate> with_half_turns(std::vector<PoseCandidate> candidates
   for (std::size_t i = 0; i < std::min(candidates.size(), shapes_turned); ++i) {
     std::ranges::copy(half_turns(target, turn, candidates[i]), std::back_inserter(turned));
   }
-  turned = judged(std::move(turned), target, turn, refined_points, iterations, threads, stop);
+  turned =
+      judged(std::move(turned), target, turn, refined_points, refined_iterations, threads, stop);
   candidates.insert(candidates.end(), turned.begin(), turned.end());
   std::ranges::stable_sort(candidates, {}, &PoseCandidate::contradiction);
   candidates = distinct(candidates, find_middle(turn.points));
@@ -191,8 +192,8 @@ std::vector<PoseCandidate> find_candidates(const Target& target, const SeenTurn&
   candidates =
       judged(std::move(candidates), target, turn, joined_points, joined_iterations, threads, stop);
   drop_contradicted(candidates);
-  candidates =
-      judged(std::move(candidates), target, turn, refined_points, iterations, threads, stop);
+  candidates = judged(std::move(candidates), target, turn, refined_points, refined_iterations,
+                      threads, stop);
   order_by_fit(candidates);
   return with_half_turns(std::move(candidates), target, turn, threads, stop);
 }
@@ -201,7 +202,7 @@ PoseCandidate refine_candidate(const Target& target, const SeenTurn& turn,
                                const Isometry3d& start) {
   PoseCandidate candidate;
   candidate.target_from_points = start;
-  return judged({candidate}, target, turn, refined_points, iterations, 1, {}).front();
+  return judged({candidate}, target, turn, refined_points, refined_iterations, 1, {}).front();
 }
 
 std::vector<PoseCandidate> without_same_shapes(const std::vector<PoseCandidate>& candidates,

@@ -21,20 +21,20 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t rotations = 4416;
-constexpr std::size_t rough_points = 100;
-constexpr int rough_shifts = 4;
-constexpr std::size_t rough_kept = 500;
+constexpr std::size_t coarse_points = 100;
+constexpr int coarse_shifts = 4;
+constexpr std::size_t coarse_kept = 500;
 constexpr std::size_t fine_points = 300;
 constexpr int fine_shifts = 1;
 constexpr std::size_t kept = 100;
 constexpr double search_agreement = 0.3;  // cosine between normals: rotations are 15 degrees apart
-constexpr double min_agreement = 0.6;     // cosine between two normals of one surface
-constexpr double far_limit = 0.012;       // metres, at the first iteration
-constexpr double near_limit = 0.004;      // at the last
-constexpr int approach = 8;               // iterations from the first limit to the last
-constexpr double cauchy_scale = 0.002;
-constexpr double settled = 1e-5;  // metres
-constexpr double contact_weight =
+constexpr double min_point_agreement = 0.6;  // cosine between two normals of one surface
+constexpr double far_limit = 0.012;          // metres, at the first iteration
+constexpr double near_limit = 0.004;         // at the last
+constexpr int approach = 8;                  // iterations from the first limit to the last
+constexpr double point_cauchy_scale = 0.002;
+constexpr double settled_search = 1e-5;  // metres
+constexpr double point_contact_weight =
     4;  // of a foot's point: a platform is known better than a reading
 
 // Poses that differ by less count as one.
@@ -159,11 +159,11 @@ RigidFit fit(const NearestPoints& target, const std::vector<SurfacePoint>& point
     const Vector3d at = pose * point.point;
     const SurfacePoint* const nearest = target.find(at);
     if (nearest == nullptr || (nearest->point - at).squaredNorm() > limit * limit ||
-        nearest->normal.dot(pose.linear() * point.normal) < min_agreement) {
+        nearest->normal.dot(pose.linear() * point.normal) < min_point_agreement) {
       continue;
     }
     const double distance = nearest->normal.dot(at - nearest->point);
-    fit.add(at, nearest->normal, distance, cauchy_weight(distance, cauchy_scale));
+    fit.add(at, nearest->normal, distance, cauchy_weight(distance, point_cauchy_scale));
   }
   return fit;
 }
@@ -173,11 +173,11 @@ void add_contacts(RigidFit& fit, const PlatformConstraints& constraints,
   for (const Eigen::Isometry3d& target_from_platform : constraints.target_from_platforms) {
     const Contact foot =
         find_contact(points, target_from_platform.inverse() * pose, constraints.share);
-    add_moving_foot(fit, foot, pose, contact_weight);
+    add_moving_foot(fit, foot, pose, point_contact_weight);
   }
   const Contact foot =
       find_contact(constraints.target_points, pose.inverse(), constraints.target_share);
-  add_moving_platform(fit, foot, Eigen::Isometry3d::Identity(), contact_weight);
+  add_moving_platform(fit, foot, Eigen::Isometry3d::Identity(), point_contact_weight);
 }
 
 }  // namespace
@@ -188,9 +188,9 @@ std::vector<PoseCandidate> search_poses(const SearchedSide& target, const Search
     return Sample{.target = thinned(target.nearest.points(), count),
                   .turn = thinned(turn.nearest.points(), count)};
   };
-  const Sample rough = sample(rough_points);
-  std::vector<PoseCandidate> candidates = centred_candidates(target, rough);
-  keep_best(candidates, target, turn, rough, rough_shifts, rough_kept, threads, stop);
+  const Sample coarse = sample(coarse_points);
+  std::vector<PoseCandidate> candidates = centred_candidates(target, coarse);
+  keep_best(candidates, target, turn, coarse, coarse_shifts, coarse_kept, threads, stop);
   keep_best(candidates, target, turn, sample(fine_points), fine_shifts, kept, threads, stop);
   return candidates;
 }
@@ -206,7 +206,7 @@ PoseCandidate refine(const NearestPoints& target, const PlatformConstraints& con
     add_contacts(step, constraints, points, pose);
     const Eigen::Isometry3d motion = step.motion();
     pose = motion * pose;
-    if (i > approach && motion_length(motion, target.middle()) < settled) {
+    if (i > approach && motion_length(motion, target.middle()) < settled_search) {
       break;
     }
   }

@@ -16,15 +16,15 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr int max_iterations = 10;
-constexpr double settled = 1e-6;           // metres
-constexpr double readings_wanted = 300;    // of a stop
-constexpr int max_step = 6;                // pixels
-constexpr double min_cosine = 0.5;         // between a normal and the direction to the sensor
-constexpr double min_agreement = 0.7;      // cosine between two normals of one surface
-constexpr double max_distance = 0.004;     // metres
-constexpr double cauchy_scale = 0.0015;    // metres
-constexpr double correlated_pixels = 200;  // about 14 x 14 pixels share the sensor's error
-constexpr double contact_weight = 20;      // of a foot's point, the mean of many readings
+constexpr double settled_fit = 1e-6;             // metres
+constexpr double readings_wanted = 300;          // of a stop
+constexpr int max_reading_spacing = 6;           // pixels
+constexpr double min_facing_cosine = 0.5;        // between a normal and the direction to the sensor
+constexpr double min_reading_agreement = 0.7;    // cosine between two normals of one surface
+constexpr double max_distance = 0.004;           // metres
+constexpr double reading_cauchy_scale = 0.0015;  // metres
+constexpr double correlated_pixels = 200;        // about 14 x 14 pixels share the sensor's error
+constexpr double reading_contact_weight = 20;    // of a foot's point, the mean of many readings
 
 /// Readings of all stops of a turn.
 struct Readings {
@@ -38,7 +38,8 @@ Readings take_readings(const SeenTurn& turn) {
     pixels += view.pixels();
   }
   const double each = pixels / static_cast<double>(std::max<std::size_t>(turn.stops.size(), 1));
-  const int step = std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_step);
+  const int step =
+      std::clamp(static_cast<int>(std::sqrt(each / readings_wanted)), 1, max_reading_spacing);
   Readings readings{.of_stops = {}, .per_patch = std::max(1.0, correlated_pixels / (step * step))};
   for (const StopView& view : turn.stops) {
     readings.of_stops.push_back(view.readings(step));
@@ -64,11 +65,11 @@ bool match(const SurfacePoint& reading, const SeenTurn& other, const Isometry3d&
   for (const StopView& view : other.stops) {
     const Vector3d to_eye = view.eye() - point;
     const double towards = normal.dot(to_eye);
-    if (towards <= 0 || towards < min_cosine * to_eye.norm()) {
+    if (towards <= 0 || towards < min_facing_cosine * to_eye.norm()) {
       continue;
     }
     const auto surface = view.look_up(point);
-    if (surface && surface->normal.dot(normal) > min_agreement &&
+    if (surface && surface->normal.dot(normal) > min_reading_agreement &&
         std::abs(surface->normal.dot(point - surface->point)) < max_distance) {
       visit(Match{.reading = reading, .surface = *surface});
       any = true;
@@ -84,7 +85,7 @@ struct StopFit {
   std::size_t matched = 0;  // readings that were compared
 
   void add(const Vector3d& point, const Vector3d& normal, double distance) {
-    fit.add(point, normal, distance, cauchy_weight(distance, cauchy_scale));
+    fit.add(point, normal, distance, cauchy_weight(distance, reading_cauchy_scale));
     distances.push_back(static_cast<float>(std::abs(distance)));
   }
 };
@@ -169,13 +170,13 @@ StopFit compare(const Comparison& compared, const Isometry3d& pose, int threads,
 }
 
 /// Adds the constraints that flat feet lie on their platforms.
-void add_contacts(RigidFit& fit, const Comparison& compared, const Isometry3d& pose) {
+void add_feet(RigidFit& fit, const Comparison& compared, const Isometry3d& pose) {
   for (const PlacedTurn& placed : compared.placed) {
     const Isometry3d placed_from_turn = placed.object_from_turn.inverse() * pose;
     add_moving_foot(fit, find_contact(compared.turn.points, placed_from_turn, 1), pose,
-                    contact_weight);
+                    reading_contact_weight);
     add_moving_platform(fit, find_contact(placed.turn->points, placed_from_turn.inverse(), 1),
-                        placed.object_from_turn, contact_weight);
+                        placed.object_from_turn, reading_contact_weight);
   }
 }
 
@@ -219,10 +220,10 @@ ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn
   StopFit last;
   for (int i = 0; i < max_iterations; ++i) {
     last = compare(compared, result.object_from_turn, threads, stop);
-    add_contacts(last.fit, compared, result.object_from_turn);
+    add_feet(last.fit, compared, result.object_from_turn);
     const Isometry3d motion = last.fit.motion();
     result.object_from_turn = motion * result.object_from_turn;
-    if (motion_length(motion, middle) < settled) {
+    if (motion_length(motion, middle) < settled_fit) {
       break;
     }
   }

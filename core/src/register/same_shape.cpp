@@ -17,7 +17,7 @@ constexpr std::size_t compared_points = 1500;
 constexpr double same_surface = 0.0015;  // metres, along the normal
 constexpr double residuals_apart = 3;    // times the residual, where that is more
 constexpr double points_to_surface = 2;  // times that, in any direction: an edge has two normals
-constexpr double foot = 0.002;  // metres from a platform, where the object gets a flat base
+constexpr double base_height = 0.002;  // metres from a platform, where the object gets a flat base
 // On a ball scanned by a Kinect up to 0.9 % of the points lie off the surface: mixed pixels.
 constexpr double max_other_share = 0.02;
 
@@ -30,7 +30,7 @@ double other_share(const NearestPoints& a, const Isometry3d& a_from_points, cons
   const auto on = [&](const NearestPoints& surface, const Isometry3d& pose,
                       const SurfacePoint& point) {
     const Vector3d at = pose * point.point;
-    if (std::abs(at.z()) < foot) {
+    if (std::abs(at.z()) < base_height) {
       return true;
     }
     const SurfacePoint* const nearest = surface.find(at);

@@ -18,13 +18,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double platform_margin = 0.004;  // metres: lower readings may be the platform's
-constexpr double cell_side = 0.002;        // metres
-constexpr std::size_t many_stops = 16;     // from here on every other pixel is enough
-constexpr std::size_t min_readings = 3;    // in a cell
-constexpr double min_agreement = 0.7;      // length of the mean normal of a cell
-constexpr double max_below = 0.004;        // metres: a point lower than this is inside the platform
-constexpr int min_witnesses = 2;           // stops that see through a point
+constexpr double platform_margin = 0.004;   // metres: lower readings may be the platform's
+constexpr double cell_side = 0.002;         // metres
+constexpr std::size_t many_stops = 16;      // from here on every other pixel is enough
+constexpr std::size_t min_readings = 3;     // in a cell
+constexpr double min_cell_agreement = 0.7;  // length of the mean normal of a cell
+constexpr double max_below_platform =
+    0.004;                        // metres: a point lower than this is inside the platform
+constexpr int min_witnesses = 2;  // stops that see through a point
 
 struct Cell {
   Vector3d point = Vector3d::Zero();
@@ -54,7 +55,7 @@ std::vector<SurfacePoint> mean_points(const std::vector<std::vector<SurfacePoint
   std::vector<SurfacePoint> points;
   for (const auto& [key, cell] : cells) {
     const auto count = static_cast<double>(cell.count);
-    if (cell.count >= min_readings && cell.normal.norm() > min_agreement * count) {
+    if (cell.count >= min_readings && cell.normal.norm() > min_cell_agreement * count) {
       points.push_back({.point = cell.point / count, .normal = cell.normal.normalized()});
     }
   }
@@ -114,7 +115,7 @@ Vector3d find_middle(const std::vector<SurfacePoint>& points) {
 }
 
 bool contradicts(const SeenTurn& turn, const Vector3d& point) {
-  if (point.z() < -max_below) {
+  if (point.z() < -max_below_platform) {
     return true;
   }
   return turn.free_rays.pass(point, min_witnesses);

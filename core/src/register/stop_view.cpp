@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 // Maximum depth range of a 5 x 5 window, metres; a larger one is a depth edge. At 0.65 m the range
 // is 13 mm on a face at a grazing angle of 20 degrees, such as the top of a low object.
-constexpr double max_step = 0.018;
-constexpr double min_cosine = 0.35;  // between normal and ray
+constexpr double max_depth_range = 0.018;
+constexpr double min_ray_cosine = 0.35;  // between normal and ray
 
 std::size_t index(int u, int v, int width) {
   return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
@@ -88,11 +88,11 @@ std::optional<SurfacePoint> StopView::read(int u, int v) const {
   }
   const double nearest_of_all = nearest * intrinsics_.depth_unit;
   if (nearest_of_all <= nearest_z ||
-      farthest * intrinsics_.depth_unit - nearest_of_all > max_step) {
+      farthest * intrinsics_.depth_unit - nearest_of_all > max_depth_range) {
     return std::nullopt;
   }
   const Vector3d ray = to_ray(intrinsics_, window_.left + u, window_.top + v);
-  const auto normal = fit_normal(sums, intrinsics_, ray, min_cosine);
+  const auto normal = fit_normal(sums, intrinsics_, ray, min_ray_cosine);
   if (!normal) {
     return std::nullopt;
   }

@@ -131,7 +131,7 @@ TilePlan read_plan(const std::filesystem::path& file, const ReconstructOptions& 
                 "Make it by octurn reconstruct --plan -o.");
   }
   try {
-    return plan_from(parse_json(*text, malformed, "it"), options);
+    return plan_from(parse_json(*text, malformed, "it", {.values = max_json_bytes}), options);
   } catch (const Error& error) {
     throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
   }

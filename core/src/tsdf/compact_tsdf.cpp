@@ -33,8 +33,8 @@ bool has_surface(const TsdfBrick& brick) {
   return std::ranges::any_of(brick.weight, [](PackedWeight weight) { return weight != 0; });
 }
 
-CompactBrick compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index,
-                     int min_votes) {
+CompactBrick to_compact(const TsdfVolume& volume, const TsdfBrick& from, const Index3& index,
+                        int min_votes) {
   constexpr int side = VoxelGrid::brick_side;
   const int per_brick = volume.grid().blocks_per_brick();
   const int voxels = volume.grid().block_voxels();
@@ -85,7 +85,7 @@ void CompactTsdf::add_layer(const TsdfVolume& volume, int z, std::mutex& adding)
     for (int x = 0; x < grid_.size().x; ++x) {
       if (const TsdfBrick* brick = volume.find({x, y, z});
           brick != nullptr && has_surface(*brick)) {
-        make({x, y, z}) = compact(volume, *brick, {x, y, z}, min_votes_);
+        make({x, y, z}) = to_compact(volume, *brick, {x, y, z}, min_votes_);
       }
     }
   }

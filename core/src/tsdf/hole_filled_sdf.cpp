@@ -9,8 +9,6 @@
 namespace octurn {
 namespace {
 
-constexpr int brick_side = VoxelGrid::brick_side;
-
 // An observed surface is cut only this far below the platform of another pose, because poses are
 // accurate to some tenths of a millimetre.
 constexpr double observed_slack = 0.001;  // metres

@@ -9,8 +9,6 @@
 namespace octurn {
 namespace {
 
-constexpr int brick_side = VoxelGrid::brick_side;
-
 /// One bit for each voxel of a brick's row.
 template <typename IsInside>
 std::uint64_t row_bits(IsInside is_inside) {

@@ -12,7 +12,6 @@
 namespace octurn {
 namespace {
 
-constexpr int brick_side = VoxelGrid::brick_side;
 constexpr int root_bricks = 8;  // along a side of the largest nodes
 
 /// Adds the votes of rays that passed through, up to 255.

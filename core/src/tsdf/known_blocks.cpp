@@ -8,8 +8,6 @@
 namespace octurn {
 namespace {
 
-constexpr int brick_side = VoxelGrid::brick_side;
-
 // The distance that free voxels contribute to the fill. A smaller one would leave more of the
 // unobserved space inside the model.
 constexpr float free_distance = 0.8F * VoxelGrid::ticks;

@@ -2,15 +2,12 @@
 
 #include <cmath>
 
-#include "depth/depth_limits.hpp"
 #include "parallel/vector_levels.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/pixels.hpp"
 
 namespace octurn {
 namespace {
-
-constexpr auto min_z = static_cast<float>(nearest_z);
 
 /// The pixel that bounds a cube on one side, from -1024 to 16384. Projecting its edge at the near
 /// and the far plane bounds it.

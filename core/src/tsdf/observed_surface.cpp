@@ -15,7 +15,6 @@
 namespace octurn {
 namespace {
 
-constexpr int brick_side = VoxelGrid::brick_side;
 constexpr float unknown = std::numeric_limits<float>::infinity();
 
 // A crossing keeps this share of an edge from its ends, so that every triangle has an area.

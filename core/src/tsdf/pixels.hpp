@@ -1,6 +1,11 @@
 #pragma once
 
+#include "depth/depth_limits.hpp"
+
 namespace octurn {
+
+/// `nearest_z` in the precision in which voxels are projected.
+inline constexpr auto min_z = static_cast<float>(nearest_z);
 
 /// Added before a cast to int, so that pixel coordinates from -1024 on are positive and the cast
 /// rounds them down.

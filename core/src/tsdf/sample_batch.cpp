@@ -4,16 +4,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "depth/depth_limits.hpp"
 #include "parallel/vector_levels.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/pixels.hpp"
 
 namespace octurn {
 namespace {
-
-constexpr int brick_side = VoxelGrid::brick_side;
-constexpr auto min_z = static_cast<float>(nearest_z);
 
 auto four(SampleBatch::Each<float>& each, std::size_t first) {
   return Eigen::Array4f::Map(&each[first]);

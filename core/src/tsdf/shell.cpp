@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "octurn/tiles.hpp"
+#include "octurn/reconstruct.hpp"
 #include "voxel/checked_levels.hpp"
 
 namespace octurn {

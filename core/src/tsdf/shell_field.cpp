@@ -5,8 +5,6 @@
 namespace octurn {
 namespace {
 
-constexpr int side = VoxelGrid::brick_side;
-
 std::size_t table_size(const Index3& size) {
   return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
          static_cast<std::size_t>(size.z);
@@ -54,7 +52,7 @@ VoxelMask ShellField::inside(const Index3& low, const Index3& end) const {
     for (int y = low.y; y < end.y; ++y) {
       const auto row = mask.row(y - low.y, z - low.z);
       for (int x = low.x; x < end.x;) {
-        const int next = std::min((x >> 3) * side + side, end.x);
+        const int next = std::min((x >> 3) * brick_side + brick_side, end.x);
         if (find({x >> 3, y >> 3, z >> 3}) == nullptr) {
           x = next;
           continue;

@@ -35,7 +35,9 @@ VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double trunc
     const double corner = axis < 2 ? -root_side / 2 : 0.0;
     const int last = std::max((1 << levels) / brick_side, 1) - 1;
     const auto brick_at = [&](double at) {
-      return std::clamp(static_cast<int>(std::floor((at - corner) / brick_metres)), 0, last);
+      // Clamped before the conversion: a clip box may be far wider than int has bricks.
+      const double brick = std::floor((at - corner) / brick_metres);
+      return static_cast<int>(std::clamp(brick, 0.0, static_cast<double>(last)));
     };
     // The model stands on the platform, wherever the clip box begins.
     const int first = axis == 2 ? -below : brick_at(clip.min[axis]);

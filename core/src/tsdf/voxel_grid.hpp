@@ -87,4 +87,6 @@ class VoxelGrid {
   Index3 size_ = {};
 };
 
+inline constexpr int brick_side = VoxelGrid::brick_side;
+
 }  // namespace octurn

@@ -114,16 +114,16 @@ VoxelMask VoxelMask::cropped() const {
       last.x = at + 63 - std::countl_zero(columns[word]);
     }
   }
-  const int skipped = std::max(first.x - 1, 0) / 64;  // words
-  const int low_y = std::max(first.y - 1, 0);
-  VoxelMask mask({low_.x + 64 * skipped, low_.y + low_y, low_.z + first.z},
-                 {low_.x + std::min(last.x + 2, size_.x), low_.y + std::min(last.y + 2, size_.y),
-                  low_.z + last.z + 1});
-  for (int z = 0; z < mask.size_.z; ++z) {
-    for (int y = 0; y < mask.size_.y; ++y) {
-      std::ranges::copy(
-          row(low_y + y, first.z + z).subspan(static_cast<std::size_t>(skipped), mask.words_),
-          mask.row(y, z).begin());
+  const std::size_t added = first.x == 0 ? 1 : 0;  // words, for the margin before the first voxel
+  const std::size_t skipped = static_cast<std::size_t>(std::max(first.x - 1, 0)) / 64;
+  VoxelMask mask({low_.x + 64 * (static_cast<int>(skipped) - static_cast<int>(added)),
+                  low_.y + first.y - 1, low_.z + first.z},
+                 {low_.x + last.x + 2, low_.y + last.y + 2, low_.z + last.z + 1});
+  for (int z = first.z; z <= last.z; ++z) {
+    for (int y = first.y; y <= last.y; ++y) {
+      const auto from = row(y, z).subspan(skipped);
+      const auto to = mask.row(y - first.y + 1, z - first.z).subspan(added);
+      std::ranges::copy(from.first(std::min(from.size(), to.size())), to.begin());
     }
   }
   return mask;

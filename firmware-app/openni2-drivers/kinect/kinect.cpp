@@ -22,6 +22,13 @@ constexpr int packets = (frame_bytes + packet_bytes - 1) / packet_bytes;
 constexpr auto tilt_interval = std::chrono::seconds(1);
 constexpr timeval patience = {.tv_sec = 0, .tv_usec = 20'000};  // a stop request waits no longer
 
+/// Whether the result of handling USB events says that the device is lost. A signal that interrupts
+/// the wait, as when the program is stopped and continued, loses nothing.
+bool is_loss(int result) {
+  constexpr int interrupted = -10;  // LIBUSB_ERROR_INTERRUPTED, which libfreenect passes on
+  return result < 0 && result != interrupted;
+}
+
 int bytes_of_packet(int number) {
   return number + 1 < packets ? packet_bytes : frame_bytes - number * packet_bytes;
 }
@@ -68,12 +75,14 @@ Kinect::Kinect(int index) {
                                                : "kinect: none is plugged in");
   }
   freenect_set_user(device_, this);
-  freenect_set_depth_callback(device_, [](freenect_device* device, void* readings, std::uint32_t) {
-    static_cast<Kinect*>(freenect_get_user(device))
-        ->take_frame(static_cast<const std::uint16_t*>(readings));
-  });
+  // Nothing may be thrown through libfreenect, which is C.
+  freenect_set_depth_callback(
+      device_, [](freenect_device* device, void* readings, std::uint32_t /*time*/) noexcept {
+        static_cast<Kinect*>(freenect_get_user(device))
+            ->take_frame(static_cast<const std::uint16_t*>(readings));
+      });
   freenect_set_depth_chunk_callback(device_, [](void* frame, void* data, int number, int bytes,
-                                                void* kinect) {
+                                                void* kinect) noexcept {
     static_cast<Kinect*>(kinect)->take_packet(static_cast<std::byte*>(frame), data, number, bytes);
   });
   read_parameters();
@@ -133,7 +142,7 @@ void Kinect::stream(const std::stop_token& stop,
   auto tilt_due = steady_clock::now() + tilt_interval;
   while (!stop.stop_requested()) {
     timeval longest = patience;
-    if (freenect_process_events_timeout(context_.get(), &longest) < 0) {
+    if (is_loss(freenect_process_events_timeout(context_.get(), &longest))) {
       is_lost_ = true;
       break;
     }

@@ -9,7 +9,6 @@
 #include "octurn/file.hpp"
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/tiles.hpp"
 #include "progress_bar.hpp"
 #include "scan/tum_recording.hpp"
 #include "sensor/new_folder.hpp"

@@ -149,7 +149,6 @@ bool merge(const MergeArguments& arguments) try {
     throw Error(ErrorCode::bad_settings, "one turn alone: there is nothing to merge it with",
                 "Name the folders of two scans of the object.");
   }
-  solve_rigs(turns, threads, signal.token());
   const Registration registration = register_as_told(turns, arguments, threads, signal.token());
   if (registration.accepted) {
     write_merged_scan(arguments.output, turns, registration);

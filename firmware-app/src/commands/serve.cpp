@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <optional>
 
@@ -187,8 +188,15 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   return outcome;
 }
 
-/// Serves with the current settings. If they fail, restores the last ones that worked and asks for
-/// a restart.
+/// Whether other settings may help against an error. A full or failing disk and a data folder in
+/// use are no fault of the page's settings, which do not choose the folder.
+bool may_be_of_settings(ErrorCode code) {
+  constexpr std::array of_disk{ErrorCode::data_failed, ErrorCode::data_in_use, ErrorCode::disk_full,
+                               ErrorCode::read_failed, ErrorCode::write_failed};
+  return std::ranges::find(of_disk, code) == of_disk.end();
+}
+
+/// Serves with the current settings. If they fail, serves with the last ones that worked.
 Outcome serve_with_good_settings(Machine& machine) {
   ConfigStore settings = open_config(machine.arguments.config);
   if (const std::string trouble = settings.trouble(); !trouble.empty()) {
@@ -197,12 +205,12 @@ Outcome serve_with_good_settings(Machine& machine) {
   try {
     return serve_once(machine, settings);
   } catch (const Error& error) {
-    if (!settings.return_to_last_good()) {
+    if (!may_be_of_settings(error.code()) || !settings.return_to_last_good()) {
       throw;
     }
     log::error("settings", std::string("the page's last settings are undone: ") + error.what());
-    return Outcome::restart;
   }
+  return serve_once(machine, settings);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "config/page_keys.hpp"
+#include "log.hpp"
 #include "octurn/error.hpp"
 #include "settings/field.hpp"
 
@@ -124,7 +125,11 @@ std::vector<std::string> ConfigStore::restart_needed() const {
 
 void ConfigStore::keep_as_good() const {
   const std::lock_guard lock(mutex_);
-  write_last_good_settings(preset_.data, stored_.values);
+  try {
+    write_last_good_settings(preset_.data, stored_.values);
+  } catch (const Error& error) {
+    log::warning("settings", std::string("not kept as the last good ones: ") + error.what());
+  }
 }
 
 bool ConfigStore::return_to_last_good() {
@@ -133,7 +138,11 @@ bool ConfigStore::return_to_last_good() {
   if (last == stored_.values) {
     return false;
   }
-  write_stored_settings(preset_.data, last);
+  try {
+    write_stored_settings(preset_.data, last);
+  } catch (const Error& error) {
+    log::warning("settings", std::string("the last good ones are not stored: ") + error.what());
+  }
   stored_ = {.values = std::move(last)};
   in_force_ = wanted(stored_.values);
   return true;

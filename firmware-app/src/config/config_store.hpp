@@ -49,11 +49,11 @@ class ConfigStore {
   /// Keys whose setting is not in force yet, such as "turntable.gear_ratio".
   std::vector<std::string> restart_needed() const;
 
-  /// Stores the settings as good: the daemon serves with them.
-  /// @throws Error "disk-full", "write-failed"
+  /// Stores the settings as good: the daemon serves with them. Logs a warning if that fails.
   void keep_as_good() const;
 
-  /// Restores the settings that the daemon last served with.
+  /// Puts the settings into force that the daemon last served with. Logs a warning if they cannot
+  /// be stored: the next start then tries the others again.
   /// @return false if they are the current ones
   bool return_to_last_good();
 

@@ -8,7 +8,7 @@ namespace {
 constexpr Check gpio_chip{"gpio-chip", "GPIO chip"};
 constexpr Check gpio_lines{"gpio-lines", "GPIO lines"};
 constexpr Check wake_ups{"wake-ups", "Pulses in time"};
-constexpr Check turntable{"turntable", "Turntable"};
+constexpr Check turntable_check{"turntable", "Turntable"};
 
 void append_item(std::string& list, const std::string& item) {
   list += (list.empty() ? "" : ", ") + item;
@@ -79,6 +79,6 @@ Finding check_wake_ups(const Lateness& lateness, std::chrono::steady_clock::dura
                                 "the platform turns more slowly.");
 }
 
-Finding check_simulated_turntable() { return turntable.ok("simulated: it needs no GPIO"); }
+Finding check_simulated_turntable() { return turntable_check.ok("simulated: it needs no GPIO"); }
 
 }  // namespace octurn

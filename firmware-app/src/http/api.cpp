@@ -8,6 +8,7 @@
 #include "http/handlers/events.hpp"
 #include "http/json_body.hpp"
 #include "http/packed.hpp"
+#include "http/place.hpp"
 #include "http/problem.hpp"
 #include "http/routes.hpp"
 #include "http/same_origin.hpp"
@@ -16,6 +17,8 @@
 
 namespace octurn {
 namespace {
+
+constexpr const char* retry_after = "2";  // seconds: a file of a small model is made meanwhile
 
 /// The path segments that match `{id}` and `{number}` of a route; empty if the route has none.
 struct PathParts {
@@ -79,32 +82,18 @@ struct Call {
   }
 };
 
-/// Holds a semaphore for its lifetime; null: it holds nothing.
-class Place {
- public:
-  /// @throws Error "too-many"  if all are taken
-  explicit Place(std::counting_semaphore<>* places) : places_(places) {
-    if (places_ != nullptr && !places_->try_acquire()) {
-      throw Error(ErrorCode::too_many, "others are waiting for the devices already",
-                  "Try again soon.");
-    }
-  }
-  ~Place() {
-    if (places_ != nullptr) {
-      places_->release();
-    }
-  }
-  Place(const Place&) = delete;
-  Place& operator=(const Place&) = delete;
-
- private:
-  std::counting_semaphore<>* places_;
-};
-
 /// Adds a method to the value of an Allow header.
 void allow(std::string_view method, std::string& allowed) {
   allowed.append(allowed.empty() ? "" : ", ").append(method);
   allowed.append(method == "GET" ? ", HEAD" : "");
+}
+
+Response to_problem(const Error& error) {
+  Response response = problem(to_failure(error));
+  if (error.code() == ErrorCode::too_many) {
+    response.headers.emplace_back("Retry-After", retry_after);
+  }
+  return response;
 }
 
 Response wrong_method(const Request& request, const std::string& allowed) {
@@ -130,7 +119,7 @@ Response Api::answer(const Request& request) {
     const auto refused = refusal(request, app_.settings.config().host_names, body_type);
     return refused ? problem(*refused) : packed(request, tagged(request, dispatch(request)));
   } catch (const Error& error) {
-    return problem(to_failure(error));
+    return to_problem(error);
   } catch (const std::exception& error) {
     log::error("http", request.method + " " + request.path + ": " + error.what());
     return problem(
@@ -168,7 +157,7 @@ Response Api::dispatch(const Request& request) {
     for (const Route& route : part) {
       const auto parts = match(route.path, request.path);
       if (parts && route.method == method) {
-        const Place place(places_for(route));
+        const Place place(places_for(route), "others are waiting for the devices");
         return std::visit(Call{app_, events_, request, *parts}, route.handler);
       }
       if (parts) {

@@ -28,7 +28,7 @@ bool put(std::string_view text, const ByteSink& sink) {
 /// A watcher's place among `max_watchers`, given back at the end of its lifetime.
 class EventFeed::Place {
  public:
-  explicit Place(EventFeed& feed) : feed_(&feed) {}
+  explicit Place(EventFeed& feed) noexcept : feed_(&feed) {}
   Place(Place&& other) noexcept : feed_(std::exchange(other.feed_, nullptr)) {}
   Place& operator=(Place&&) = delete;
   ~Place() {
@@ -46,16 +46,19 @@ EventFeed::EventFeed(Poll poll, const FeedLimits& limits)
     : poll_(std::move(poll)), limits_(limits), board_(std::to_string(std::random_device{}())) {}
 
 std::optional<ByteStream> EventFeed::watch(std::string_view last_event_id) {
-  const std::lock_guard lock(mutex_);
-  if (watchers_ >= limits_.max_watchers) {
-    return std::nullopt;
+  std::uint64_t seen = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (watchers_ >= limits_.max_watchers) {
+      return std::nullopt;
+    }
+    seen = board_.number(last_event_id);
+    ++watchers_;
   }
-  ++watchers_;
+  Place place(*this);  // without the lock, which its destructor takes if the task cannot be made
   ByteStream stream;
   stream.make = std::packaged_task<void(const ByteSink&)>(
-      [this, seen = board_.number(last_event_id), place = Place(*this)](const ByteSink& sink) {
-        stream_events(seen, sink);
-      });
+      [this, seen, place = std::move(place)](const ByteSink& sink) { stream_events(seen, sink); });
   return stream;
 }
 

@@ -29,12 +29,13 @@ struct HttpService {
   std::optional<Login> login = {};  // if the page has a password
   const AccessKeys* keys = nullptr;
   HttpServer::Gate gate = {};
-  std::latch started{1};  // released once `guard` exists
+  std::latch started{1};  // released once `guard` exists, or the server has failed to start
   std::optional<ConnectionGuard> guard = {};
 
-  ConnectionGuard& wait_for_guard() {
+  /// @return null if the server has failed to start
+  ConnectionGuard* wait_for_guard() {
     started.wait();
-    return *guard;
+    return guard ? &*guard : nullptr;
   }
 };
 
@@ -99,13 +100,19 @@ Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answe
 // civetweb's callbacks are C, and nothing may be thrown through them.
 
 int take_up(const mg_connection* connection, void** /*data*/) noexcept {
-  to_service(connection).wait_for_guard().take_up();
+  if (ConnectionGuard* const guard = to_service(connection).wait_for_guard()) {
+    guard->take_up();
+  }
   return 0;
 }
 
 int answer_request(mg_connection* connection) noexcept try {
   HttpService& service = to_service(connection);
-  Exchange exchange(*connection, service.wait_for_guard());
+  ConnectionGuard* const guard = service.wait_for_guard();
+  if (guard == nullptr) {
+    return 503;  // the connection closes
+  }
+  Exchange exchange(*connection, *guard);
   Request request = exchange.head();
   std::optional<Response> refused = refusal(*connection, request, service);
   Response response = refused ? std::move(*refused) : answer_to(request, exchange, service.answer);
@@ -119,8 +126,10 @@ int answer_request(mg_connection* connection) noexcept try {
 
 /// Answers errors that civetweb detects: heads that are malformed, too large or too slow.
 int answer_error(mg_connection* connection, int /*status*/, const char* message) noexcept try {
-  Exchange exchange(*connection, to_service(connection).wait_for_guard());
-  exchange.send("GET", problem({.code = ErrorCode::bad_request, .detail = message, .hint = ""}));
+  if (ConnectionGuard* const guard = to_service(connection).wait_for_guard()) {
+    Exchange(*connection, *guard)
+        .send("GET", problem({.code = ErrorCode::bad_request, .detail = message, .hint = ""}));
+  }
   return 0;
 } catch (const std::exception& error) {
   log::error("http", std::string("a refusal has failed: ") + error.what());
@@ -178,10 +187,72 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
 
 }  // namespace
 
-struct HttpServer::Server {
-  HttpService service = {};
-  std::string address = {};  // at which this machine reaches the server
-  mg_context* context = nullptr;
+/// A server that runs as soon as `start` has returned. The destructor stops as much of it as has
+/// started: civetweb's threads use `service_`.
+class HttpServer::Server {
+ public:
+  Server() = default;
+  ~Server() {
+    if (context_ != nullptr) {
+      stop();
+    }
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  HttpService& service() { return service_; }
+
+  /// @throws Error "listen-failed", "no-descriptors"
+  void start(const HttpOptions& options) {
+    const bool v6 = options.address.find(':') != std::string::npos;
+    const std::string address = v6 ? "[" + options.address + "]" : options.address;
+    address_ = reaching(options.address);
+    context_ = start_civetweb(address + ":" + std::to_string(options.port), options, service_);
+    defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.request_timeout));
+    service_.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,
+                                                    .patience = options.request_timeout});
+    service_.started.count_down();
+  }
+
+  int port() const {
+    mg_server_port port{};
+    mg_get_server_ports(context_, 1, &port);
+    return port.port;
+  }
+
+ private:
+  void stop() {
+    if (service_.guard) {
+      service_.guard->close();
+    } else {
+      service_.started.count_down();  // threads may wait for the guard already
+    }
+    // civetweb checks whether to stop only between connections, or after 2 s without one. Opening
+    // connections until it has stopped makes that fast.
+    const int own_port = port();
+    accept_at_once(own_port);
+    const std::future<void> stopped = std::async(std::launch::async, mg_stop, context_);
+    while (stopped.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
+      std::array<char, 256> ignored{};
+      if (mg_connection* const connection =
+              mg_connect_client(address_.c_str(), own_port, 0, ignored.data(), ignored.size())) {
+        mg_close_connection(connection);
+      }
+    }
+    mg_exit_library();
+  }
+
+  static void accept_at_once(int port) {
+    try {
+      defer_accept(port, std::chrono::seconds(0));
+    } catch (const Error& error) {
+      log::warning("http", error.what());  // stopping takes longer
+    }
+  }
+
+  HttpService service_ = {};
+  std::string address_ = {};  // at which this machine reaches the server
+  mg_context* context_ = nullptr;
 };
 
 HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys, Gate gate)
@@ -190,44 +261,18 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
     throw Error(ErrorCode::bad_password_file, options.password_file.string() + ": cannot be read",
                 "`octurn password` makes it; the user that this program runs as must own it.");
   }
-  const bool v6 = options.address.find(':') != std::string::npos;
-  const std::string address = v6 ? "[" + options.address + "]" : options.address;
-  HttpService& service = server_->service;
+  HttpService& service = server_->service();
   service.answer = std::move(answer);
   service.keys = keys;
   service.gate = std::move(gate);
   if (!options.password_file.empty()) {
     service.login.emplace(options.password_file);
   }
-  server_->address = reaching(options.address);
-  server_->context = start_civetweb(address + ":" + std::to_string(options.port), options, service);
-  service.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,
-                                                 .patience = options.request_timeout});
-  defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.request_timeout));
-  service.started.count_down();
+  server_->start(options);
 }
 
-HttpServer::~HttpServer() {
-  server_->service.guard->close();
-  // civetweb checks whether to stop only between connections, or after 2 s without one. Opening
-  // connections until it has stopped makes that fast.
-  const int own_port = port();
-  defer_accept(own_port, std::chrono::seconds(0));
-  const std::future<void> stopped = std::async(std::launch::async, mg_stop, server_->context);
-  while (stopped.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
-    std::array<char, 256> ignored{};
-    if (mg_connection* const connection = mg_connect_client(server_->address.c_str(), own_port, 0,
-                                                            ignored.data(), ignored.size())) {
-      mg_close_connection(connection);
-    }
-  }
-  mg_exit_library();
-}
+HttpServer::~HttpServer() = default;
 
-int HttpServer::port() const {
-  mg_server_port port{};
-  mg_get_server_ports(server_->context, 1, &port);
-  return port.port;
-}
+int HttpServer::port() const { return server_->port(); }
 
 }  // namespace octurn

@@ -23,7 +23,7 @@ class HttpServer {
   /// @param answer  called by any thread of the pool; must not throw
   /// @param keys    admit programs as the password admits people; null: there are none
   /// @param gate    as `answer`
-  /// @throws Error "listen-failed", "bad-password-file"
+  /// @throws Error "listen-failed", "no-descriptors", "bad-password-file"; nothing runs then
   HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys = nullptr,
              Gate gate = {});
   ~HttpServer();
@@ -33,7 +33,7 @@ class HttpServer {
   int port() const;
 
  private:
-  struct Server;
+  class Server;
   std::unique_ptr<Server> server_;
 };
 

@@ -31,10 +31,7 @@ Job find_scan(const App& app, std::string_view id) { return app.scanner.find(id)
 
 std::vector<Job> all_scans(const App& app) { return app.scanner.list(); }
 
-std::optional<Job> running_scan(const App& app) {
-  const Status now = app.scanner.status();
-  return now.is_scanning() ? now.job : std::nullopt;
-}
+std::optional<Job> running_scan(const App& app) { return app.scanner.running(); }
 
 json to_json(const App& app, const Job& job) {
   json scan = with_preview(app, job);

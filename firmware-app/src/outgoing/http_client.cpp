@@ -36,7 +36,8 @@ void begin_with_curl() {
   [[maybe_unused]] static const CURLcode begun = curl_global_init(CURL_GLOBAL_DEFAULT);
 }
 
-extern "C" std::size_t keep_answer(char* bytes, std::size_t size, std::size_t count, void* answer) {
+extern "C" std::size_t keep_answer(char* bytes, std::size_t size, std::size_t count,
+                                   void* answer) noexcept {
   std::string& kept = *static_cast<std::string*>(answer);
   const std::size_t room = max_answer - std::min(max_answer, kept.size());
   kept.append(bytes, std::min(room, size * count));
@@ -191,8 +192,9 @@ OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token
   curl_multi_add_handle(multi.get(), transfer.get());
   const std::stop_callback wake(stop, [&] { curl_multi_wakeup(multi.get()); });
   int running = 1;
+  CURLMcode failed = CURLM_OK;
   while (running > 0 && !stop.stop_requested() &&
-         curl_multi_perform(multi.get(), &running) == CURLM_OK) {
+         (failed = curl_multi_perform(multi.get(), &running)) == CURLM_OK) {
     if (on_sent) {
       on_sent(transfer.sent());
     }
@@ -200,7 +202,9 @@ OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token
       curl_multi_poll(multi.get(), nullptr, 0, poll_ms, nullptr);
     }
   }
-  OutgoingAnswer answer = transfer.finish(find_result(multi.get()));
+  OutgoingAnswer answer = failed == CURLM_OK
+                              ? transfer.finish(find_result(multi.get()))
+                              : OutgoingAnswer{.trouble = curl_multi_strerror(failed)};
   curl_multi_remove_handle(multi.get(), transfer.get());
   return answer;
 }

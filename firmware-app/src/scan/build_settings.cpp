@@ -21,8 +21,8 @@ Access optional_pose(std::optional<Eigen::Isometry3d>& value) {
 
 }  // namespace
 
-std::vector<Field> fields(BuildSettings& settings) {
-  std::vector<Field> all = model_fields(settings.scan);
+std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges) {
+  std::vector<Field> all = model_fields(settings.scan, ranges);
   all.push_back({.key = "level",
                  .help = "surface of a coarser level; 0 is the root",
                  .access = whole(settings.level, 0, max_levels),
@@ -55,7 +55,7 @@ BuildSettings build_settings_from(const json& object, const BuildSettings& defau
 BuildSettings stored_build_settings_from(const JsonValue& object) {
   JsonObject keys(object);
   BuildSettings settings;
-  read_fields(keys, fields(settings));
+  read_fields(keys, fields(settings, stored_ranges));
   keys.refuse_unread();
   return settings;
 }

@@ -21,7 +21,7 @@ struct BuildSettings {
 };
 
 /// All these settings, each with its key, unit and range.
-std::vector<Field> fields(BuildSettings& settings);
+std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges = requested_ranges);
 
 nlohmann::json to_json(const BuildSettings& settings);
 
@@ -30,7 +30,8 @@ nlohmann::json to_json(const BuildSettings& settings);
 ///                               key
 BuildSettings build_settings_from(const nlohmann::json& object, const BuildSettings& defaults);
 
-/// Reads the settings of a stored build. @throws Error  as above, with the code of `object`
+/// Reads the settings of a stored build, with `stored_ranges`. @throws Error  as above, with the
+/// code of `object`
 BuildSettings stored_build_settings_from(const JsonValue& object);
 
 }  // namespace octurn

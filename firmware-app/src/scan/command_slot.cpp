@@ -1,33 +1,20 @@
 #include "scan/command_slot.hpp"
 
-#include <algorithm>
 #include <type_traits>
 #include <utility>
 
 namespace octurn {
 namespace {
 
-// Indices in `Command`: a higher rank is more urgent.
-constexpr std::size_t camera_rank = 0;
-constexpr std::size_t check_rank = 1;
-constexpr std::size_t rebuild_rank = 2;
-constexpr std::size_t build_rank = 3;
-constexpr std::size_t scan_rank = 4;  // also of the alternatives after it
-
-constexpr std::size_t measurement_index = 6;  // also of the alternatives after it
-constexpr std::size_t lens_index = 8;
-static_assert(
-    std::is_same_v<std::variant_alternative_t<measurement_index, Command>, CalibrateCommand> &&
-    std::is_same_v<std::variant_alternative_t<lens_index, Command>, LensCommand>);
-
-std::size_t to_rank(std::size_t index) { return std::min(index, scan_rank); }
-
-std::size_t to_rank(const Command& command) { return to_rank(command.index()); }
+Rank to_rank(const Command& command) {
+  return std::visit([](const auto& one) { return std::decay_t<decltype(one)>::rank; }, command);
+}
 
 }  // namespace
 
 CommandSlot::Subject CommandSlot::to_subject(const Command& command) {
-  Subject subject{.index = command.index()};
+  Subject subject{.rank = to_rank(command),
+                  .is_lens = std::holds_alternative<LensCommand>(command)};
   if (const auto* const scan = std::get_if<ScanCommand>(&command)) {
     subject.scan = scan->job.id;
   } else if (const auto* const resumed = std::get_if<ResumeCommand>(&command)) {
@@ -47,9 +34,9 @@ bool CommandSlot::has(Matches matches) const {
 }
 
 /// Whether no command of that rank or a higher one waits or runs; `mutex_` is held.
-bool CommandSlot::rank_is_free(std::size_t rank) const {
+bool CommandSlot::rank_is_free(Rank rank) const {
   return !ended_ && (!waiting_ || to_rank(waiting_->command) < rank) &&
-         (!running_ || to_rank(running_->index) < rank);
+         (!running_ || running_->rank < rank);
 }
 
 /// Replaces the waiting command; `mutex_` is held.
@@ -57,34 +44,34 @@ void CommandSlot::put(Command command, std::stop_source stop) {
   if (waiting_) {
     waiting_->stop.request_stop();
   }
-  const bool is_scan = to_rank(command) == scan_rank;
+  const bool is_scan = to_rank(command) == Rank::scan;
   waiting_.emplace(Taken{std::move(command), std::move(stop)});
-  if (running_ && (is_scan || to_rank(running_->index) == camera_rank)) {
+  if (running_ && (is_scan || running_->rank == Rank::camera)) {
     stop_.request_stop();
   }
   changed_.notify_all();
 }
 
-/// Puts a command into the slot unless one of that rank or a higher one waits or runs.
-bool CommandSlot::offer(Command command, std::size_t rank) {
+/// Puts a command into the slot unless one of its rank or a higher one waits or runs.
+bool CommandSlot::offer(Command command) {
   const std::lock_guard lock(mutex_);
-  if (!rank_is_free(rank)) {
+  if (!rank_is_free(to_rank(command))) {
     return false;
   }
   put(std::move(command), {});
   return true;
 }
 
-bool CommandSlot::offer_scan(Command scan) { return offer(std::move(scan), scan_rank); }
+bool CommandSlot::offer_scan(Command scan) { return offer(std::move(scan)); }
 
-bool CommandSlot::offer_build(BuildCommand build) { return offer(std::move(build), build_rank); }
+bool CommandSlot::offer_build(BuildCommand build) { return offer(std::move(build)); }
 
 bool CommandSlot::offer_rebuild(RebuildCommand rebuild, std::stop_source stop,
                                 Clock::duration patience) {
   std::unique_lock lock(mutex_);
-  const auto is_free = [&] { return !waiting_ && rank_is_free(rebuild_rank); };
+  const auto is_free = [&] { return !waiting_ && rank_is_free(Rank::rebuild); };
   if (!std::exchange(rebuild_waits_, true)) {
-    changed_.wait_for(lock, patience, [&] { return is_free() || !rank_is_free(build_rank); });
+    changed_.wait_for(lock, patience, [&] { return is_free() || !rank_is_free(Rank::build); });
     rebuild_waits_ = false;
   }
   if (!is_free()) {
@@ -96,8 +83,8 @@ bool CommandSlot::offer_rebuild(RebuildCommand rebuild, std::stop_source stop,
 
 bool CommandSlot::offer_check(DeviceCheckCommand check) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return rank_is_free(check_rank) || !rank_is_free(rebuild_rank); });
-  if (!rank_is_free(rebuild_rank)) {
+  changed_.wait(lock, [&] { return rank_is_free(Rank::check) || !rank_is_free(Rank::rebuild); });
+  if (!rank_is_free(Rank::rebuild)) {
     return false;
   }
   put(std::move(check), {});
@@ -120,22 +107,22 @@ ScanStop CommandSlot::scan_stop() const {
 void CommandSlot::stop_scan(ScanStop why) {
   const std::lock_guard lock(mutex_);
   scan_stop_ = why;
-  if (waiting_ && to_rank(waiting_->command) == scan_rank) {
+  if (waiting_ && to_rank(waiting_->command) == Rank::scan) {
     waiting_->stop.request_stop();
   }
-  if (running_ && to_rank(running_->index) == scan_rank) {
+  if (running_ && running_->rank == Rank::scan) {
     stop_.request_stop();
   }
 }
 
 bool CommandSlot::stop_build() {
   const std::lock_guard lock(mutex_);
-  if (waiting_ && to_rank(waiting_->command) == build_rank) {
+  if (waiting_ && to_rank(waiting_->command) == Rank::build) {
     waiting_.reset();
     changed_.notify_all();
     return true;
   }
-  if (running_ && to_rank(running_->index) == build_rank) {
+  if (running_ && running_->rank == Rank::build) {
     stop_.request_stop();
   }
   return false;
@@ -152,34 +139,32 @@ bool CommandSlot::solve_lens() {
 }
 
 bool CommandSlot::has_scan() const {
-  return has([](const Subject& subject) { return to_rank(subject.index) == scan_rank; });
+  return has([](const Subject& subject) { return subject.rank == Rank::scan; });
 }
 
 bool CommandSlot::has_scan(std::string_view id) const {
-  return has([&](const Subject& subject) {
-    return to_rank(subject.index) == scan_rank && subject.index < measurement_index &&
-           subject.scan == id;
-  });
+  return has(
+      [&](const Subject& subject) { return subject.rank == Rank::scan && subject.scan == id; });
 }
 
 bool CommandSlot::has_measurement() const {
-  return has([](const Subject& subject) { return subject.index >= measurement_index; });
+  return has([](const Subject& subject) { return subject.rank == Rank::scan && !subject.scan; });
 }
 
 bool CommandSlot::is_busy() const {
-  return has([](const Subject& subject) { return to_rank(subject.index) >= build_rank; });
+  return has([](const Subject& subject) { return subject.rank >= Rank::build; });
 }
 
 bool CommandSlot::has_build(std::string_view scan, std::optional<int> number) const {
   return has([&](const Subject& subject) {
-    return to_rank(subject.index) == build_rank && subject.scan == scan &&
+    return subject.rank == Rank::build && subject.scan == scan &&
            subject.build == number.value_or(subject.build);
   });
 }
 
 bool CommandSlot::is_occupied() const {
   const std::lock_guard lock(mutex_);
-  return !rank_is_free(rebuild_rank);
+  return !rank_is_free(Rank::rebuild);
 }
 
 void CommandSlot::end() {
@@ -220,7 +205,7 @@ std::optional<CommandSlot::Taken> CommandSlot::take(Clock::duration patience) {
 
 void CommandSlot::report_lens_view() {
   const std::lock_guard lock(mutex_);
-  if (running_ && running_->index == lens_index) {
+  if (running_ && running_->is_lens) {
     running_->has_views = true;
   }
 }

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <functional>
 #include <future>
 #include <memory>
@@ -21,11 +20,23 @@
 
 namespace octurn {
 
+/// Urgency of a command, ascending.
+enum class Rank {
+  camera,
+  check,
+  rebuild,
+  build,
+  scan,  ///< a scan, or a measurement of the rig
+};
+
 /// Read the sensor once, for the preview.
-struct CameraCommand {};
+struct CameraCommand {
+  static constexpr Rank rank = Rank::camera;
+};
 
 /// Check the rig.
 struct DeviceCheckCommand {
+  static constexpr Rank rank = Rank::check;
   /// Must return soon after a stop is requested.
   std::packaged_task<void(Rig& rig, const std::stop_token& stop)> check = {};
 };
@@ -33,6 +44,7 @@ struct DeviceCheckCommand {
 /// Compute something from a stored scan for an HTTP request: a model with other settings, or the
 /// colours of a model.
 struct RebuildCommand {
+  static constexpr Rank rank = Rank::rebuild;
   /// Writes its result into the pipe, and closes it. Polls the pipe's stop token.
   std::function<void(ModelPipe& pipe)> make = {};
   std::shared_ptr<ModelPipe> pipe = {};
@@ -40,6 +52,7 @@ struct RebuildCommand {
 
 /// Build a model from a stored scan, and keep it.
 struct BuildCommand {
+  static constexpr Rank rank = Rank::build;
   BuildRun run = {};
   bool becomes_model = false;
   std::optional<PoseChoice> pose = {};  ///< registers this pose again, and merges all poses
@@ -47,28 +60,34 @@ struct BuildCommand {
 
 /// Run a scan that has just been created.
 struct ScanCommand {
+  static constexpr Rank rank = Rank::scan;
   Job job = {};
 };
 
 /// Continue a scan that was paused, interrupted or cancelled.
 struct ResumeCommand {
+  static constexpr Rank rank = Rank::scan;
   Job job = {};
 };
 
 /// Measure the sensor's pose by a turn.
 struct CalibrateCommand {
+  static constexpr Rank rank = Rank::scan;
   ScanSettings settings = {};  ///< `snapshots` is the number of stops
 };
 
 /// Record frames of a flat wall for the map of the sensor's depth error.
 struct WallCommand {
+  static constexpr Rank rank = Rank::scan;
   int frames = 0;
 };
 
 /// Take pictures of a board to calibrate the lens of a camera with lasers.
-struct LensCommand {};
+struct LensCommand {
+  static constexpr Rank rank = Rank::scan;
+};
 
-/// The worker's commands, in ascending order of urgency.
+/// The worker's commands.
 using Command =
     std::variant<CameraCommand, DeviceCheckCommand, RebuildCommand, BuildCommand, ScanCommand,
                  ResumeCommand, CalibrateCommand, WallCommand, LensCommand>;
@@ -155,17 +174,18 @@ class CommandSlot {
  private:
   /// What a command works on.
   struct Subject {
-    std::size_t index = 0;   ///< of the command in `Command`
-    std::string scan = {};   ///< id
-    int build = 0;           ///< number
+    Rank rank = Rank::camera;
+    std::optional<std::string> scan = {};  ///< id; nullopt: none, as of a measurement
+    int build = 0;                         ///< number
+    bool is_lens = false;
     bool has_views = false;  ///< of a lens calibration
   };
 
   static Subject to_subject(const Command& command);
   template <typename Matches>
   bool has(Matches matches) const;
-  bool rank_is_free(std::size_t rank) const;
-  bool offer(Command command, std::size_t rank);
+  bool rank_is_free(Rank rank) const;
+  bool offer(Command command);
   void put(Command command, std::stop_source stop);
 
   mutable std::mutex mutex_;  // guards the members below

@@ -82,6 +82,13 @@ const Model* chosen_model(const Job& job) {
   return job.model ? &*job.model : nullptr;
 }
 
+Job with_stored_changes(Job working, const Job& stored) {
+  working.label = stored.label;
+  working.builds.all = stored.builds.all;
+  working.builds.chosen = stored.builds.chosen;
+  return working;
+}
+
 Job to_interrupted(Job job, int snapshots) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;

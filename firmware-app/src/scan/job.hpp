@@ -148,6 +148,10 @@ const Build* find_build(const Job& job, int number);
 /// Returns the chosen build's model, else the scan's own; null if there is none.
 const Model* chosen_model(const Job& job);
 
+/// Returns a scan as its worker has it, with what others may have changed in the stored scan
+/// meanwhile: the label and the builds.
+Job with_stored_changes(Job working, const Job& stored);
+
 /// Marks a scan as interrupted, because the program ended or its outcome could not be saved: it can
 /// be resumed.
 /// @param snapshots  number of stored snapshots

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "scan/calibration_json.hpp"
 #include "scan/failure_json.hpp"
@@ -16,6 +17,10 @@ namespace octurn {
 namespace {
 
 using nlohmann::json;
+
+// `to_job_text` writes more than six bytes for each value.
+constexpr JsonLimits job_limits{.bytes = max_job_bytes, .values = max_job_bytes / 6};
+constexpr double max_seconds = 1e9;  // 30 years: the clock's nanoseconds hold 292
 
 /// @param named  maps a name to its value
 template <typename Value>
@@ -40,6 +45,9 @@ std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_pose_of(*object));
 }
 
+/// The time that a scan has taken, within the range of the scanner's clock.
+double in_clock_range(double seconds) { return std::clamp(seconds, 0.0, max_seconds); }
+
 /// False without the key, which earlier versions did not write.
 bool flag_in(const std::optional<JsonValue>& flag) { return flag && flag->flag(); }
 
@@ -57,7 +65,7 @@ json to_job_json(const Job& job) {
               {"created", job.times.created},
               {"snapshots_done", job.snapshots_done},
               {"snapshots_total", job.settings.snapshots},
-              {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
+              {"seconds_elapsed", to_thousandths(in_clock_range(job.times.elapsed.count()))},
               {"late_pulses", job.times.late_pulses},
               {"settings", to_json(job.settings)},
               {"error", nullptr},
@@ -78,6 +86,18 @@ json to_job_json(const Job& job) {
   return object;
 }
 
+std::string to_job_text(const Job& job) {
+  return to_job_json(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Job parse_job(std::string_view text) {
+  return to_job(parse_json(text, ErrorCode::job_malformed, "the file", job_limits));
+}
+
+Job read_job(const std::filesystem::path& folder) {
+  return parse_job(read_regular_file(folder / "job.json", max_job_bytes).value_or(""));
+}
+
 Job to_job(const json& object) {
   JsonObject keys(object, ErrorCode::job_malformed, "");
   constexpr int max_int = std::numeric_limits<int>::max();
@@ -87,7 +107,7 @@ Job to_job(const json& object) {
           .phase = parse_name(keys.at("phase"), phase_named),
           .snapshots_done = static_cast<int>(keys.at("snapshots_done").number(0, max_int)),
           .times = {.created = keys.at("created").text(),
-                    .elapsed = Seconds(keys.at("seconds_elapsed").number(0, unlimited)),
+                    .elapsed = Seconds(in_clock_range(keys.at("seconds_elapsed").number())),
                     .late_pulses = static_cast<int>(number_or_zero(keys, "late_pulses", max_int))},
           .settings = stored_settings_from(keys.at("settings")),
           .failure = failure_from(keys.value("error")),

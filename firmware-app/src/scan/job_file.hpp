@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
 
 #include "scan/job.hpp"
 
@@ -14,8 +17,17 @@ inline constexpr std::size_t max_job_bytes = std::size_t{1} << 20U;
 /// this program reads the files of earlier ones.
 nlohmann::json to_job_json(const Job& job);
 
-/// Parses a scan's `job.json`.
+/// Returns the text of `job.json`. Invalid UTF-8 in names and messages is replaced.
+std::string to_job_text(const Job& job);
+
+/// Parses the JSON of a scan's `job.json`.
 /// @throws Error "job-malformed"  with the key that is missing or wrong
 Job to_job(const nlohmann::json& object);
+
+/// Parses the text of a `job.json`. @throws Error "job-malformed"  also if it is too large
+Job parse_job(std::string_view text);
+
+/// Reads the `job.json` of a scan's folder. @throws Error "job-malformed", "read-failed"
+Job read_job(const std::filesystem::path& folder);
 
 }  // namespace octurn

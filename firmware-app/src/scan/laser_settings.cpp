@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "octurn/intrinsics_json.hpp"
 #include "scan/pose_field.hpp"
 #include "settings/field.hpp"
 
@@ -78,33 +79,33 @@ std::vector<Field> lens_fields(LaserSettings& s) {
       {.key = "width",
        .unit = "pixels",
        .help = "width of the camera's pictures",
-       .access = whole(s.lens.width, 2, max_picture_side)},
+       .access = whole(s.lens.width, 2, max_image_side)},
       {.key = "height",
        .unit = "pixels",
        .help = "height of the camera's pictures",
-       .access = whole(s.lens.height, 2, max_picture_side)},
+       .access = whole(s.lens.height, 2, max_image_side)},
       {.key = "fx",
        .unit = "pixels",
        .help = "focal length, across",
-       .access = number(s.lens.fx, 1, max_focal_length)},
+       .access = number(s.lens.fx, min_focal, max_focal)},
       {.key = "fy",
        .unit = "pixels",
        .help = "focal length, down",
-       .access = number(s.lens.fy, 1, max_focal_length)},
+       .access = number(s.lens.fy, min_focal, max_focal)},
       {.key = "cx",
        .unit = "pixels",
        .help = "column of the optical axis; 0 is the middle of the first",
-       .access = number(s.lens.cx, -max_picture_side, max_picture_side)},
+       .access = number(s.lens.cx, -max_image_side, max_image_side)},
       {.key = "cy",
        .unit = "pixels",
        .help = "row of the optical axis",
-       .access = number(s.lens.cy, -max_picture_side, max_picture_side)},
+       .access = number(s.lens.cy, -max_image_side, max_image_side)},
       {.key = "k1",
        .help = "radial distortion of the lens, x (1 + k1 r^2 + k2 r^4)",
-       .access = number(s.k1, -max_lens_distortion, max_lens_distortion)},
+       .access = number(s.k1, -max_distortion, max_distortion)},
       {.key = "k2",
        .help = "radial distortion of the lens: the factor of r^4",
-       .access = number(s.k2, -max_lens_distortion, max_lens_distortion)},
+       .access = number(s.k2, -max_distortion, max_distortion)},
       {.key = "exposure_ms",
        .unit = "ms",
        .help = "of each picture: longer where a dark object shows no line, shorter where a bright "

@@ -14,10 +14,7 @@
 
 namespace octurn {
 
-// Limits of a camera's lens and of lasers, in settings and in files.
-inline constexpr int max_picture_side = 8192;       ///< pixels, as in scan folders
-inline constexpr double max_focal_length = 100000;  ///< pixels
-inline constexpr double max_lens_distortion = 100;  ///< of k1 and k2
+// A limit of lasers, in settings and in files.
 inline constexpr double max_laser_coordinate = 10;  ///< metres, of a plane and of a source
 
 /// The kind of sensor of a rig.

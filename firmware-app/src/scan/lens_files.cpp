@@ -7,6 +7,7 @@
 
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/intrinsics_json.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 #include "scan/sensor_map_files.hpp"
@@ -27,14 +28,20 @@ json to_numbers(const CameraLens& lens) {
           {"cy", in.cy}, {"k1", lens.k1}, {"k2", lens.k2}};
 }
 
-CameraLens to_numbers(JsonObject& keys, double least_focal) {
-  CameraLens lens{.intrinsics = {.fx = keys.at("fx").number(least_focal, max_focal_length),
-                                 .fy = keys.at("fy").number(least_focal, max_focal_length),
-                                 .cx = keys.at("cx").number(-max_picture_side, max_picture_side),
-                                 .cy = keys.at("cy").number(-max_picture_side, max_picture_side)}};
-  lens.k1 = keys.at("k1").number(-max_lens_distortion, max_lens_distortion);
-  lens.k2 = keys.at("k2").number(-max_lens_distortion, max_lens_distortion);
-  return lens;
+CameraLens to_lens(JsonObject& keys) {
+  return {.intrinsics = lens_from(keys),
+          .k1 = keys.at("k1").number(-max_distortion, max_distortion),
+          .k2 = keys.at("k2").number(-max_distortion, max_distortion)};
+}
+
+/// Reads the sigmas of a lens.
+CameraLens to_sigma(JsonObject& keys) {
+  return {.intrinsics = {.fx = keys.at("fx").number(0, max_focal),
+                         .fy = keys.at("fy").number(0, max_focal),
+                         .cx = keys.at("cx").number(0, max_focal),
+                         .cy = keys.at("cy").number(0, max_focal)},
+          .k1 = keys.at("k1").number(0, max_distortion),
+          .k2 = keys.at("k2").number(0, max_distortion)};
 }
 
 KeptLens to_kept_lens(const json& document) {
@@ -48,12 +55,12 @@ KeptLens to_kept_lens(const json& document) {
   JsonObject sigma(keys.at("sigma"));
   KeptLens kept{.serial = keys.at("serial").text(),
                 .made = keys.at("at").text(),
-                .lens = to_numbers(keys, 1),
-                .sigma = to_numbers(sigma, 0),
-                .rms = keys.at("rms_px").number(0, max_picture_side),
+                .lens = to_lens(keys),
+                .sigma = to_sigma(sigma),
+                .rms = keys.at("rms_px").number(0, max_image_side),
                 .views = keys.at("views").whole_number(0, max_views)};
-  kept.lens.intrinsics.width = keys.at("width").whole_number(2, max_picture_side);
-  kept.lens.intrinsics.height = keys.at("height").whole_number(2, max_picture_side);
+  kept.lens.intrinsics.width = keys.at("width").whole_number(2, max_image_side);
+  kept.lens.intrinsics.height = keys.at("height").whole_number(2, max_image_side);
   return kept;
 }
 

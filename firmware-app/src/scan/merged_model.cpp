@@ -11,16 +11,16 @@ namespace {
 
 /// Stores and chooses a build of all poses, and removes the builds with the last pose's earlier
 /// registration.
-void replace_builds(ScanStore& store, const Job& first, Build build, const std::string& pose) {
-  const auto& all = first.builds.all;
+void replace_builds(ScanStore& store, const std::string& id, Build build, const std::string& pose) {
+  const JobBuilds builds = store.get(id).builds;  // a person may have chosen another one meanwhile
   const auto before =
-      std::ranges::find_if(all, [&](const Build& other) { return has_pose(other, pose); });
-  build.replaced = before == all.end() ? first.builds.chosen : before->replaced;
-  store.add_build(first.id, build);
-  store.choose_build(first.id, build.number);
-  for (const Build& other : all) {
+      std::ranges::find_if(builds.all, [&](const Build& other) { return has_pose(other, pose); });
+  build.replaced = before == builds.all.end() ? builds.chosen : before->replaced;
+  store.add_build(id, build);
+  store.choose_build(id, build.number);
+  for (const Build& other : builds.all) {
     if (has_pose(other, pose)) {
-      store.remove_build(first.id, other.number);
+      store.remove_build(id, other.number);
     }
   }
 }
@@ -79,10 +79,11 @@ std::optional<Build> build_merged(ScanStore& store, const Job& first, const Merg
 }
 
 bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
-                const Limits& limits, const std::stop_token& stop, const BuildProgress& progress) {
+                const Limits& limits, const std::stop_token& stop,
+                const BuildProgress& progress) try {
   progress(Phase::registering, 0);
   const Job first = store.get(run.scan);
-  Job pose = store.get(choice.pose);
+  const Job pose = store.get(choice.pose);
   std::vector<std::string> poses = merged_poses(first, pose.id);
   std::vector<StoredTurn> turns =
       read_turns({store.merged_scan(first.id, poses), store.folder(pose.id)});
@@ -99,15 +100,18 @@ bool refit_pose(ScanStore& store, const BuildRun& run, const PoseChoice& choice,
     return false;
   }
   build->created = run.created;
-  replace_builds(store, first, *std::move(build), pose.id);
-  auto& known = pose.pose_of->registration;
-  known = PoseRegistration{
-      .accepted = true,
-      .pose = registration.poses.back(),
-      .candidates = known ? known->candidates : std::vector<RegistrationCandidate>{},
-      .candidate = choice.candidate};
-  store.save(pose);
+  replace_builds(store, first.id, *std::move(build), pose.id);
+  store.update(pose.id, [&](Job& stored) {
+    auto& known = stored.pose_of->registration;
+    known = PoseRegistration{
+        .accepted = true,
+        .pose = registration.poses.back(),
+        .candidates = known ? known->candidates : std::vector<RegistrationCandidate>{},
+        .candidate = choice.candidate};
+  });
   return true;
+} catch (const Stopped&) {
+  return false;
 }
 
 }  // namespace octurn

@@ -7,15 +7,13 @@
 
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
-#include "scan/solve_pose.hpp"
+#include "scan/solve_rigs.hpp"
 #include "scan/stored_scan.hpp"
 
 namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t max_kept_bytes = 16'000'000;  // cached depth images of all turns
 
 // Metres, around a turn's points in its clip box: without shrinking, boxes that are rotated against
 // each other span much empty space, which costs more than the object.
@@ -170,26 +168,6 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
   return merged;
 }
 
-/// Turns with the same configured pose come from one rig if their solved poses agree. Then all get
-/// the mean, which is more accurate than each. Does nothing if a turn is registered already.
-void share_rig(std::vector<StoredTurn>& turns) {
-  std::vector<SolvedPose> solved;
-  const Eigen::Isometry3d& told = turns.front().scan.platform_from_sensor;
-  for (const StoredTurn& turn : turns) {
-    const Scan& scan = turn.scan;
-    if (turn.object_from_platform || !scan.solved ||
-        scan.platform_from_sensor.matrix() != told.matrix()) {
-      return;
-    }
-    solved.push_back(*scan.solved);
-  }
-  if (const auto shared = shared_pose(solved)) {
-    for (StoredTurn& turn : turns) {
-      turn.scan.solved->platform_from_sensor = *shared;
-    }
-  }
-}
-
 /// Makes the registration input of a depth sensor's turn.
 RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop) {
   RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
@@ -215,31 +193,9 @@ std::vector<StoredTurn> read_turns(const std::vector<fs::path>& folders) {
   return turns;
 }
 
-void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop) {
-  for (StoredTurn& turn : turns) {
-    if (turn.scan.solved) {
-      continue;
-    }
-    const SnapshotSource stored = stored_snapshots(turn.folder, turn.scan, stop);
-    const auto kept = std::make_shared<KeptFrames>(stored.count, max_kept_bytes / turns.size());
-    const SnapshotSource read_once{.count = stored.count, .read = [&](std::size_t index) {
-                                     Snapshot snapshot = stored.read(index);
-                                     kept->keep(index, snapshot.frame);
-                                     return snapshot;
-                                   }};
-    const ScanSolution solution = solve_scan(turn.folder, turn.scan, read_once, threads, stop);
-    turn.kept = kept;
-    if (solution.replaces_told) {
-      turn.scan.solved = solution.solved;
-    }
-  }
-  if (!turns.empty() && !turns.front().scan.laser) {  // planes belong to their turn's pose
-    share_rig(turns);
-  }
-}
-
 Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop) {
+  solve_rigs(turns, threads, stop);
   std::vector<RegistrationTurn> seen;
   for (StoredTurn& turn : turns) {
     RegistrationTurn one =
@@ -256,7 +212,11 @@ Registration register_turns(std::vector<StoredTurn>& turns, int threads,
     };
     seen.push_back(std::move(one));
   }
-  return register_turns(seen, threads, stop);
+  Registration registration = register_turns(seen, threads, stop);
+  for (StoredTurn& turn : turns) {
+    turn.kept.reset();  // the model that follows needs the memory
+  }
+  return registration;
 }
 
 void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& turns,

@@ -20,7 +20,8 @@ struct StoredTurn {
   std::optional<Eigen::Isometry3d> object_from_platform = {};
   /// A person's estimate of that pose, which registration refines.
   std::optional<Eigen::Isometry3d> prior_object_from_platform = {};
-  /// Cached depth images.
+  bool is_rig_solved = false;  ///< registration has solved the sensor's pose, or refused to
+  /// Depth images, cached from solving to registering.
   std::shared_ptr<const KeptFrames> kept = {};
   /// Bounding box of each stop's points inside the clip box, set by registration: metres, platform
   /// frame at angle 0.
@@ -33,13 +34,11 @@ struct StoredTurn {
 ///                                 as `read_scan`
 std::vector<StoredTurn> read_turns(const std::vector<std::filesystem::path>& folders);
 
-/// Solves the sensor's pose for each turn without a solved one, from its snapshots. The configured
-/// pose stays if the solution is refused or confirms it. Turns of one rig share the mean of their
-/// solved poses.
-void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
-
-/// Registers the turns, and sets their `extents`. @throws Error, Stopped  as `read_snapshot` and
-/// `register_turns`
+/// Registers the turns, and sets their `extents`. Solves the sensor's pose first, for each turn
+/// that has no solved one and is not registered yet, from its snapshots. The configured pose stays
+/// if the solution is refused or confirms it. Turns of one rig share the mean of their solved
+/// poses.
+/// @throws Error, Stopped  as `read_snapshot` and `register_turns`
 Registration register_turns(std::vector<StoredTurn>& turns, int threads,
                             const std::stop_token& stop);
 

@@ -21,12 +21,20 @@ namespace octurn {
 /// @throws Error "sensor-missing", "sensor-failed"
 CameraAndLasers open_camera_and_lasers(const LaserSettings& settings);
 
+/// How long, and how often, a scan retries a stop at which a device failed: at least once. A Kinect
+/// that is plugged in again is ready after 2 to 3 s.
+struct Retries {
+  std::chrono::duration<double> time = std::chrono::seconds(30);
+  std::chrono::duration<double> interval = std::chrono::seconds(2);
+};
+
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< device URI of OpenNI2
   double speed = 1.0;                           ///< of a simulated rig, relative to real time
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
   double platform_angle_deg = 0;                ///< initial angle
+  Retries retries = {};                         ///< by the clock of a simulated rig
   /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
   /// Functions that open the devices; tests replace them.

@@ -1,5 +1,7 @@
 #include "scan/scan_bin.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
@@ -21,6 +23,31 @@ std::optional<std::pair<ScanTime, std::string>> parse_folder_name(const std::str
   }
   return std::pair(to_time(name.substr(0, dot)), name.substr(dot + 1));
 }
+
+/// Counts the bytes that the removal of folders frees. A file with several names, such as a
+/// snapshot of a merged scan, is freed with the last of them.
+class FreedBytes {
+ public:
+  void add(const fs::path& folder) {
+    std::error_code ignored;  // what cannot be read frees nothing
+    for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end;
+         entry.increment(ignored)) {
+      struct stat status = {};
+      if (::lstat(entry->path().c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+          ++names_[{status.st_dev, status.st_ino}] == status.st_nlink) {
+        bytes_ += static_cast<std::uint64_t>(status.st_blocks) * block_bytes;
+      }
+    }
+  }
+
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  static constexpr std::uint64_t block_bytes = 512;  // of st_blocks, on every file system
+
+  std::uint64_t bytes_ = 0;
+  std::map<std::pair<dev_t, ino_t>, nlink_t> names_ = {};  // removed names of each file
+};
 
 }  // namespace
 
@@ -66,6 +93,17 @@ bool ScanBin::is_empty() const {
 std::string ScanBin::newest_id() const {
   const std::lock_guard lock(mutex_);
   return scans_.empty() ? "" : scans_.rbegin()->first;
+}
+
+std::vector<std::string> ScanBin::oldest(std::uint64_t bytes) const {
+  const std::vector<BinnedScan> scans = list();
+  std::vector<std::string> ids;
+  FreedBytes freed;
+  for (auto scan = scans.rbegin(); scan != scans.rend() && freed.bytes() < bytes; ++scan) {
+    freed.add(path(*scan));
+    ids.push_back(scan->job.id);
+  }
+  return freed.bytes() < bytes ? std::vector<std::string>() : ids;
 }
 
 void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {

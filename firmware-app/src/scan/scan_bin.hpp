@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -41,6 +42,10 @@ class ScanBin {
 
   /// Returns the newest id of a scan in the bin; empty if there is none.
   std::string newest_id() const;
+
+  /// Lists the ids of the scans, first deleted first, whose removal frees at least that many bytes:
+  /// no more than needed. Empty if not even the removal of all scans frees them.
+  std::vector<std::string> oldest(std::uint64_t bytes) const;
 
   /// Moves a scan into the bin. @throws Error "data-failed", "disk-full"
   void take(const std::filesystem::path& scan, const Job& job, ScanTime now);

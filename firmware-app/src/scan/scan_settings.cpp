@@ -18,10 +18,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_snapshots = 400;  // a laser's lines are then 0.9 degrees apart
-constexpr int max_frames = 100;     // 3 s at 30 frames a second: more does not lower the noise
+constexpr int max_frames = 100;  // 3 s at 30 frames a second: more does not lower the noise
 constexpr int max_threads = 256;
-constexpr double max_clip_mm = 10000;  // no depth sensor of this kind sees farther
 constexpr double max_root_mm = 10000;
 constexpr double min_leaf_mm = 0.1;   // larger roots need more: see `check_leaf`
 constexpr double min_memory_mb = 17;  // of the intersection method with one thread
@@ -31,9 +29,9 @@ const auto solid_program_bytes = static_cast<std::size_t>(bytes_from_mb(12));
 const auto intersection_program_bytes = static_cast<std::size_t>(bytes_from_mb(10));
 
 /// @return nullopt unless these are six numbers in range that span a box of positive volume
-std::optional<Box> box_from(const json& mm) {
-  const auto in_range = [](const json& value) {
-    return value.is_number() && std::abs(value.get<double>()) <= max_clip_mm;
+std::optional<Box> box_from(const json& mm, double max_coordinate_mm) {
+  const auto in_range = [&](const json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= max_coordinate_mm;
   };
   if (!mm.is_array() || mm.size() != 6 || !std::ranges::all_of(mm, in_range)) {
     return std::nullopt;
@@ -56,15 +54,15 @@ json to_mm(const Box& box) {
   return mm;
 }
 
-Access box(Box& value) {
-  const json side{{"type", "number"}, {"minimum", -max_clip_mm}, {"maximum", max_clip_mm}};
+Access box(Box& value, double max_coordinate_mm) {
+  const json side{
+      {"type", "number"}, {"minimum", -max_coordinate_mm}, {"maximum", max_coordinate_mm}};
   return {.read =
-              [&value](const JsonValue& given) {
-                const auto box = box_from(given.json());
+              [&value, max_coordinate_mm, side](const JsonValue& given) {
+                const auto box = box_from(given.json(), max_coordinate_mm);
                 if (!box) {
-                  given.refuse(
-                      "six numbers, x0 y0 z0 x1 y1 z1, from -10000 to 10000, each of the first "
-                      "three below its partner");
+                  given.refuse("six numbers, x0 y0 z0 x1 y1 z1, from " + allowed_text(side) +
+                               ", each of the first three below its partner");
                 }
                 value = *box;
               },
@@ -72,11 +70,11 @@ Access box(Box& value) {
           .schema = {{"type", "array"}, {"items", side}, {"minItems", 6}, {"maxItems", 6}}};
 }
 
-std::vector<Field> capture_fields(ScanSettings& s) {
+std::vector<Field> capture_fields(ScanSettings& s, const SettingRanges& ranges) {
   return {
       {.key = "snapshots",
        .help = "stops in a turn",
-       .access = whole(s.snapshots, 1, max_snapshots)},
+       .access = whole(s.snapshots, 1, ranges.max_snapshots)},
       {.key = "filter",
        .help = "how the frames of a stop become one: basic takes the first, average the mean at "
                "each pixel, average-discard only where every frame has a reading",
@@ -95,8 +93,8 @@ std::vector<Field> joined(std::vector<Field> fields, const std::vector<Field>& m
 
 }  // namespace
 
-std::vector<Field> fields(ScanSettings& s) {
-  return joined(scan_fields(s),
+std::vector<Field> fields(ScanSettings& s, const SettingRanges& ranges) {
+  return joined(scan_fields(s, ranges),
                 {{.key = "platform_from_sensor",
                   .unit = "m",
                   .help = "pose of the sensor: four rows of four numbers",
@@ -107,7 +105,7 @@ std::vector<Field> fields(ScanSettings& s) {
                   .access = number(s.depth_scale, min_depth_scale, max_depth_scale)}});
 }
 
-std::vector<Field> model_fields(ScanSettings& s) {
+std::vector<Field> model_fields(ScanSettings& s, const SettingRanges& ranges) {
   return {
       {.key = "method",
        .help = "solid: one closed, filled, smooth part; intersection: a shell of what was seen",
@@ -144,12 +142,12 @@ std::vector<Field> model_fields(ScanSettings& s) {
       {.key = "clip_mm",
        .unit = "mm",
        .help = "box around the object in the platform frame: its smallest x, y, z and its largest",
-       .access = box(s.clip)},
+       .access = box(s.clip, ranges.max_coordinate_mm)},
   };
 }
 
-std::vector<Field> scan_fields(ScanSettings& s) {
-  return joined(capture_fields(s), model_fields(s));
+std::vector<Field> scan_fields(ScanSettings& s, const SettingRanges& ranges) {
+  return joined(capture_fields(s, ranges), model_fields(s, ranges));
 }
 
 std::vector<Field> fields(Limits& limits) {
@@ -229,7 +227,7 @@ ScanSettings settings_from(const json& object, const ScanSettings& defaults,
 ScanSettings stored_settings_from(const JsonValue& object) {
   JsonObject keys(object);
   ScanSettings settings;
-  read_fields(keys, fields(settings));
+  read_fields(keys, fields(settings, stored_ranges));
   keys.refuse_unread();
   return settings;
 }

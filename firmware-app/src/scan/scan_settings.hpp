@@ -33,6 +33,20 @@ std::string_view to_string(PoseSource source);
 inline constexpr double min_depth_scale = 0.97;
 inline constexpr double max_depth_scale = 1.03;
 
+/// Ranges of settings that are wider in files than in requests.
+struct SettingRanges {
+  int max_snapshots;
+  double max_coordinate_mm;  ///< of the clip box
+};
+
+/// Of a request. A laser's lines are 0.9 degrees apart with 400 snapshots in a turn. No depth
+/// sensor of this kind sees farther than 10 m.
+inline constexpr SettingRanges requested_ranges{.max_snapshots = 400, .max_coordinate_mm = 10'000};
+
+/// Of a stored scan, which may be imported: it may be merged of several turns, and have the clip
+/// box of a larger rig. Scans beyond these ranges are not imported.
+inline constexpr SettingRanges stored_ranges{.max_snapshots = 4000, .max_coordinate_mm = 1'000'000};
+
 /// The settings of a scan.
 struct ScanSettings {
   int snapshots = 36;  ///< stops in a turn
@@ -68,11 +82,13 @@ struct ModelSettings {
 struct Field;
 
 /// All settings of a scan, each with its key, unit and range.
-std::vector<Field> fields(ScanSettings& settings);
+std::vector<Field> fields(ScanSettings& settings, const SettingRanges& ranges = requested_ranges);
 /// The settings of `octurn scan`: all except the sensor's pose and depth scale.
-std::vector<Field> scan_fields(ScanSettings& settings);
+std::vector<Field> scan_fields(ScanSettings& settings,
+                               const SettingRanges& ranges = requested_ranges);
 /// The settings of a model, which need no new capture.
-std::vector<Field> model_fields(ScanSettings& settings);
+std::vector<Field> model_fields(ScanSettings& settings,
+                                const SettingRanges& ranges = requested_ranges);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
 
@@ -93,7 +109,8 @@ nlohmann::json to_json(const ScanSettings& settings);
 ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& defaults,
                            const std::string& name = "");
 
-/// Reads the settings of a stored scan. Its clip box may be thinner than a leaf, as in version 0.1.
+/// Reads the settings of a stored scan, with `stored_ranges`. Its clip box may be thinner than a
+/// leaf, as in version 0.1.
 /// @throws Error  as above, with the code of `object`
 ScanSettings stored_settings_from(const JsonValue& object);
 

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "log.hpp"
 #include "octurn/file.hpp"
-#include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "scan/build_file.hpp"
 #include "scan/job_file.hpp"
@@ -19,7 +17,6 @@ namespace octurn {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 // Names of unfinished folders, and of folders being removed, begin with a dot: they are not listed,
 // and the next start removes them.
@@ -32,17 +29,6 @@ int count_snapshots(const fs::path& folder) {
   } catch (const std::exception&) {
     return 0;  // the scan ended before its first snapshot, which writes scan.json
   }
-}
-
-/// Returns the text of `job.json`. Invalid UTF-8 in names and messages is replaced.
-std::string to_text(const Job& job) {
-  return to_job_json(job).dump(1, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
-/// @throws Error "job-malformed", "read-failed"
-Job read_job(const fs::path& folder) {
-  return to_job(parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
-                           ErrorCode::job_malformed, "the file"));
 }
 
 /// Loads the scan of a folder. One that cannot be read gets the state failed.
@@ -132,7 +118,7 @@ Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>&
 
 /// Writes `job.json` into a temporary folder, and renames it to the scan's. `writing_` is held.
 void ScanStore::enter(const fs::path& beginning, const Job& job) {
-  write_file(beginning / "job.json", to_text(job));
+  write_file(beginning / "job.json", to_job_text(job));
   std::error_code error;
   fs::rename(beginning, folder(job.id), error);
   if (error) {
@@ -152,21 +138,34 @@ ScanTime ScanStore::next_time() const {
 
 void ScanStore::save(const Job& job) {
   const std::lock_guard writing(writing_);
-  get(job.id);  // throws if there is no such scan
-  write_job(job);
-  const std::lock_guard lock(mutex_);
-  Job& held = jobs_.find(job.id)->second;
-  ScanLabel label = held.label;  // may have changed since `job` was copied
-  if (job.state != JobState::running || held.state != job.state) {
+  const Job stored = get(job.id);
+  keep(with_stored_changes(job, stored));
+  if (job.state != JobState::running || stored.state != JobState::running) {
+    const std::lock_guard lock(mutex_);
     ++revision_;
   }
-  held = job;
-  held.label = std::move(label);
+}
+
+Job ScanStore::update(std::string_view id, const std::function<void(Job&)>& change) {
+  const std::lock_guard writing(writing_);
+  Job job = get(id);
+  change(job);
+  keep(job);
+  const std::lock_guard lock(mutex_);
+  ++revision_;
+  return job;
+}
+
+/// Writes `job.json`, then changes the scan in memory. `writing_` is held.
+void ScanStore::keep(const Job& job) {
+  write_job(job);
+  const std::lock_guard lock(mutex_);
+  jobs_.find(job.id)->second = job;
 }
 
 /// `writing_` is held.
 void ScanStore::write_job(const Job& job) const {
-  write_file(folder(job.id) / "job.json", to_text(job));
+  write_file(folder(job.id) / "job.json", to_job_text(job));
 }
 
 Job ScanStore::interrupt(std::string_view id) {

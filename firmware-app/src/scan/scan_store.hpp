@@ -39,9 +39,18 @@ class ScanStore {
   /// @param pose_of  the link of a scan of another pose
   Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {});
 
-  /// Writes `job.json`. If that fails, the scan in memory does not change.
+  /// Writes `job.json` with the progress or the outcome of a scan that runs. Its label and its
+  /// builds stay as stored: they may have changed since `job` was copied. If writing fails, the
+  /// scan in memory does not change.
   /// @throws Error "no-such-scan", "disk-full", "write-failed"
   void save(const Job& job);
+
+  /// Changes a stored scan, with no other change between reading and writing it.
+  /// @param change  of anything but the label; must not write to this store. If it throws, nothing
+  ///                changes.
+  /// @return the changed scan
+  /// @throws Error  as `save`, and what `change` throws
+  Job update(std::string_view id, const std::function<void(Job&)>& change);
 
   /// Marks a scan whose outcome could not be saved as interrupted, as the next start would.
   /// @throws Error "no-such-scan"
@@ -83,9 +92,10 @@ class ScanStore {
   /// Removes the scans in the bin permanently.
   void empty_bin();
 
-  /// Removes scans from the bin, first deleted first, until `needed` bytes are free.
+  /// Removes scans from the bin, first deleted first, until `needed` bytes are free. Removes none
+  /// if the space of all of them would not suffice.
   /// @param what  what is to be written, such as "a model"
-  /// @throws Error "disk-full"  if the bin is empty and the space still does not suffice
+  /// @throws Error "disk-full"  if the space does not suffice
   void make_room(std::uint64_t needed, const std::string& what);
 
   /// Makes a temporary folder for a scan from another Octurn. The next start removes leftovers.
@@ -169,6 +179,7 @@ class ScanStore {
   void move_from_bin(const BinnedScan& scan);
   void move_to_bin(const Job& job);
   void write_job(const Job& job) const;
+  void keep(const Job& job);
 
   std::filesystem::path data_;
   std::filesystem::path scans_;

@@ -65,13 +65,15 @@ void ScanStore::empty_bin() {
 
 void ScanStore::make_room(std::uint64_t needed, const std::string& what) {
   const std::lock_guard writing(writing_);
-  while (free_bytes() < needed && !bin_.is_empty()) {
-    const std::string oldest = bin_.list().back().job.id;
-    log::info("store", std::string("scan ")
-                           .append(oldest)
-                           .append(" leaves the bin: its space is needed for ")
-                           .append(what));
-    bin_.remove(oldest);
+  const std::uint64_t free = free_bytes();
+  if (free < needed) {
+    for (const std::string& id : bin_.oldest(needed - free)) {
+      log::info("store", std::string("scan ")
+                             .append(id)
+                             .append(" leaves the bin: its space is needed for ")
+                             .append(what));
+      bin_.remove(id);
+    }
   }
   expect_room(data_, free_bytes(), needed, what);
 }

@@ -104,16 +104,12 @@ void ScanStore::drop_build(std::string_view id, int number) {
 }
 
 void ScanStore::choose_build(std::string_view id, int number) {
-  const std::lock_guard writing(writing_);
-  Job job = get(id);
-  if (number == 0 ? !job.model : find_build(job, number) == nullptr) {
-    throw_no_such_build(number);
-  }
-  job.builds.chosen = number;
-  write_job(job);
-  const std::lock_guard lock(mutex_);
-  jobs_.find(id)->second.builds.chosen = number;
-  ++revision_;
+  update(id, [&](Job& job) {
+    if (number == 0 ? !job.model : find_build(job, number) == nullptr) {
+      throw_no_such_build(number);
+    }
+    job.builds.chosen = number;
+  });
 }
 
 void ScanStore::remove_build(std::string_view id, int number) {

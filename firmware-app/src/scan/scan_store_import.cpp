@@ -1,12 +1,11 @@
 // ScanStore: import of scans from another Octurn.
 
 #include <chrono>
-#include <nlohmann/json.hpp>
+#include <cstddef>
 #include <string>
+#include <system_error>
 
 #include "octurn/error.hpp"
-#include "octurn/file.hpp"
-#include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/tiles.hpp"
 #include "scan/job_file.hpp"
@@ -21,23 +20,61 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view unfinished_import = ".new-import-";
+constexpr std::size_t max_adopted_bytes = max_job_bytes / 2;  // leaves room for the model
+constexpr std::size_t max_created = 40;  // characters; "2026-11-21T08:15:00Z" has 20
 
-/// Reads the job of an imported scan; default settings if the folder has no `job.json`. Invalid
-/// labels are dropped.
+/// Reads a label, and removes the files of what cannot be one.
+ScanLabel read_adopted_label(const fs::path& folder) {
+  const ScanLabel found = read_label(folder);
+  LabelChange change;
+  if (!is_name(found.name)) {
+    change.name = "";
+  }
+  if (!is_notes(found.notes)) {
+    change.notes = "";
+  }
+  write_label(folder, change);
+  return changed(found, change);
+}
+
+/// Reads the job of an imported scan; default settings if the folder has no `job.json`.
+/// @throws Error "bad-request"
 Job read_adopted_job(const fs::path& folder, const Scan& scan) {
-  const auto text = read_regular_file(folder / "job.json", max_job_bytes);
-  Job job = text ? to_job(parse_json(*text, ErrorCode::bad_request, "job.json")) : Job{};
-  if (!text && scan.laser) {
+  Job job;
+  if (std::error_code ignored; fs::exists(folder / "job.json", ignored)) {
+    try {
+      job = read_job(folder);
+    } catch (const Error& error) {
+      throw Error(ErrorCode::bad_request, std::string("job.json: ") + error.what(),
+                  "Send a file that an Octurn has made: scan.zip.");
+    }
+  } else if (scan.laser) {
     use_laser_defaults(job.settings);
   }
-  job.label = read_label(folder);
-  if (!is_name(job.label.name)) {
-    job.label.name.clear();
+  if (job.times.created.size() > max_created) {
+    job.times.created.clear();
   }
-  if (!is_notes(job.label.notes)) {
-    job.label.notes.clear();
-  }
+  job.label = read_adopted_label(folder);
   return job;
+}
+
+/// Reads back what will be written of a job.
+/// @throws Error "bad-request"  if the next start of the program could not read it, such as a clip
+///               box beyond `stored_ranges`
+void expect_readable(const Job& job) {
+  const std::string text = to_job_text(job);
+  try {
+    if (text.size() > max_adopted_bytes) {
+      throw Error(ErrorCode::job_malformed,
+                  "its job.json would have " + std::to_string(text.size()) +
+                      " bytes: must have at most " + std::to_string(max_adopted_bytes));
+    }
+    parse_job(text);
+  } catch (const Error& error) {
+    throw Error(
+        ErrorCode::bad_request, std::string("this scan cannot be stored: ") + error.what(),
+        "Unpack the archive, and make its model with: octurn reconstruct FOLDER -o Scan.stl");
+  }
 }
 
 /// Turns a job into that of a scan with all its snapshots, which waits for its model.
@@ -87,6 +124,7 @@ Job ScanStore::adopt(const fs::path& beginning) {
   if (job.times.created.empty()) {
     job.times.created = utc_text(now, rfc3339);
   }
+  expect_readable(job);
   enter(beginning, job);
   return job;
 }

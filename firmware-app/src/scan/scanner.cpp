@@ -1,5 +1,6 @@
 #include "scan/scanner.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <future>
 #include <system_error>
@@ -66,10 +67,23 @@ std::optional<Job> Scanner::resume(std::string_view id) {
   if (slot_.has_scan()) {
     return std::nullopt;
   }
-  Job job = store_.get(id);
   if (slurm_ && slurm_->is_building(id)) {
     expect_idle(id);
   }
+  const Job job = store_.update(id, [this](Job& stored) {
+    expect_resumable(stored);
+    if (stored.state == JobState::cancelled) {
+      stored.builds.chosen = 0;  // a build of a part of the turn: the complete model replaces it
+    }
+    stored.state = JobState::running;
+    stored.phase = Phase::starting;
+    stored.failure.reset();
+  });
+  return hand_over(job, ResumeCommand{job});
+}
+
+/// @throws Error "not-paused"
+void Scanner::expect_resumable(const Job& job) const {
   if (!can_resume(job)) {
     throw Error(ErrorCode::not_paused,
                 "this scan is " + std::string(to_string(job.state)) +
@@ -77,14 +91,6 @@ std::optional<Job> Scanner::resume(std::string_view id) {
                 "Only a scan that was paused or interrupted can be resumed, or the last one if it "
                 "was ended.");
   }
-  if (job.state == JobState::cancelled) {
-    job.builds.chosen = 0;  // a build of a part of the turn: the complete model replaces it
-  }
-  job.state = JobState::running;
-  job.phase = Phase::starting;
-  job.failure.reset();
-  store_.save(job);
-  return hand_over(job, ResumeCommand{job});
 }
 
 /// Hands a scan to the worker, which has none; `scans_` is held.
@@ -118,18 +124,23 @@ bool Scanner::cancel(std::string_view id) {
     slot_.stop_scan(ScanStop::end);
     return true;
   }
-  std::optional<Job> job = store_.find(id);
+  const std::optional<Job> job = store_.find(id);
   if (!job || !is_resumable(job->state)) {
     return false;
   }
   if (job->pose_of) {
     store_.withdraw_pose(job->pose_of->scan, job->id);  // it may be merged already
   }
-  job->state = JobState::cancelled;
-  job->failure.reset();
-  store_.save(*job);
-  board_.set_job(*job);
-  return true;
+  bool is_ended = false;
+  const Job now = store_.update(id, [&](Job& stored) {
+    is_ended = is_resumable(stored.state);  // a build of Slurm may have finished it meanwhile
+    if (is_ended) {
+      stored.state = JobState::cancelled;
+      stored.failure.reset();
+    }
+  });
+  board_.set_job(now);
+  return is_ended;
 }
 
 void Scanner::label(std::string_view id, const LabelChange& change) {
@@ -139,18 +150,24 @@ void Scanner::label(std::string_view id, const LabelChange& change) {
 
 Job Scanner::find(std::string_view id) const {
   const Job stored = store_.get(id);
+  const std::optional<Job> now = running();
+  return now && now->id == id ? *now : stored;
+}
+
+std::optional<Job> Scanner::running() const {
   const Status now = status();
-  return now.is_scanning() && now.job->id == id ? *now.job : stored;
+  if (!now.is_scanning()) {
+    return std::nullopt;
+  }
+  const std::optional<Job> stored = store_.find(now.job->id);
+  return stored ? with_stored_changes(*now.job, *stored) : now.job;
 }
 
 std::vector<Job> Scanner::list() const {
   std::vector<Job> jobs = store_.list();
-  if (const Status now = status(); now.is_scanning()) {
-    for (Job& job : jobs) {
-      if (job.id == now.job->id) {
-        job = *now.job;
-      }
-    }
+  if (const std::optional<Job> now = running()) {
+    std::ranges::replace_if(
+        jobs, [&](const Job& job) { return job.id == now->id; }, *now);
   }
   return jobs;
 }

@@ -130,6 +130,9 @@ class Scanner {
   /// Returns a scan in its current state. @throws Error "no-such-scan"
   Job find(std::string_view id) const;
 
+  /// Returns the scan that runs, in its current state; nullopt if none does.
+  std::optional<Job> running() const;
+
   /// Lists all scans in their current state, newest first.
   std::vector<Job> list() const;
 
@@ -270,6 +273,7 @@ class Scanner {
  private:
   bool is_building(std::string_view id) const;
   void expect_idle(std::string_view id) const;
+  void expect_resumable(const Job& job) const;
   void expect_last_pose(const Job& pose) const;
   void expect_solved_lens() const;
   void remove_pose(const Job& pose);

@@ -40,9 +40,9 @@ std::optional<Job> Scanner::start_pose(std::string_view id, const ScanSettings& 
 
 std::vector<Job> Scanner::poses(std::string_view id) const {
   std::vector<Job> poses = store_.poses(id);
-  if (const Status now = status(); now.is_scanning()) {
+  if (const std::optional<Job> now = running()) {
     std::ranges::replace_if(
-        poses, [&](const Job& pose) { return pose.id == now.job->id; }, *now.job);
+        poses, [&](const Job& pose) { return pose.id == now->id; }, *now);
   }
   return poses;
 }

@@ -164,15 +164,16 @@ void SlurmBuilds::keep(Entry& entry) {
 }
 
 void SlurmBuilds::choose(const BuildTask& task) {
-  Job scan = store_.get(task.run.scan);
-  if (scan.state != JobState::interrupted) {
+  const Job scan = store_.update(task.run.scan, [&](Job& stored) {
+    if (stored.state == JobState::interrupted) {  // it had all snapshots, and waited for its model
+      stored.state = JobState::finished;
+      stored.failure.reset();
+      stored.builds.chosen = task.run.number;
+    }
+  });
+  if (scan.builds.chosen != task.run.number) {
     choose_built(store_, task);
-    return;
   }
-  scan.state = JobState::finished;  // it had all snapshots, and waited for its model
-  scan.failure.reset();
-  scan.builds.chosen = task.run.number;
-  store_.save(scan);
 }
 
 void SlurmBuilds::end(Entry& entry, BuildRun::State state, const std::optional<Failure>& failure) {

@@ -17,7 +17,12 @@ constexpr auto idle_beat = 5s;          // between heartbeats while there is not
 }  // namespace
 
 Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports)
-    : rig_(rig), speed_(rig.speed), told_laser_(rig.laser), limits_(limits), ports_(ports) {}
+    : rig_(rig),
+      speed_(rig.speed),
+      retries_(rig.retries),
+      told_laser_(rig.laser),
+      limits_(limits),
+      ports_(ports) {}
 
 void Worker::work() {
   open_turntable();  // so that the status shows it

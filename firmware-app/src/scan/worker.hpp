@@ -95,7 +95,8 @@ class Worker {
   void finish();
 
   Rig rig_;
-  double speed_;                             // of a simulated rig, relative to real time
+  double speed_;  // of a simulated rig, relative to real time
+  Retries retries_;
   std::optional<LaserSettings> told_laser_;  // from the settings; nullopt: a depth sensor
   Limits limits_;
   WorkerPorts ports_;

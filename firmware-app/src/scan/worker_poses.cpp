@@ -85,7 +85,7 @@ bool Worker::keep_merged(const Job& first, const MergedTurns& merged, const std:
     return false;
   }
   build->created = job_.times.created;
-  build->replaced = first.builds.chosen;
+  build->replaced = ports_.store.get(first.id).builds.chosen;  // another may be chosen meanwhile
   ports_.store.add_build(first.id, *build);
   ports_.store.choose_build(first.id, number);
   return true;

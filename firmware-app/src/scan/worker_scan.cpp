@@ -16,13 +16,6 @@
 namespace octurn {
 namespace {
 
-using namespace std::chrono_literals;
-
-// How long a scan retries the stop at which a device failed, at least once. A Kinect that is
-// plugged in again is ready after 2 to 3 s.
-constexpr auto attempts_time = 30s;
-constexpr auto attempt_interval = 2s;
-
 // A preview is sent after every snapshot: at most 3 MB, with leaves as fine as a screen shows.
 constexpr double preview_leaf_size = 0.002;  // metres
 constexpr std::uint64_t max_preview_facets = 60'000;
@@ -89,7 +82,7 @@ void Worker::run(Job job, const std::stop_token& stop) {
   finish();
 }
 
-/// Retries a stop at which a device fails; the scan pauses after `attempts_time`.
+/// Retries a stop at which a device fails; the scan pauses after `retries_.time`.
 void Worker::run_until_it_ends(const std::stop_token& stop) {
   const auto at_speed = [&](std::chrono::duration<double> life) {
     return std::chrono::duration_cast<Clock::duration>(life / speed_);
@@ -103,7 +96,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
     const Clock::time_point now = Clock::now();
     if (job_.snapshots_done > failed_at) {
       failed_at = job_.snapshots_done;
-      gives_up_ = now + at_speed(attempts_time);
+      gives_up_ = now + at_speed(retries_.time);
     }
     if (now >= *gives_up_) {
       job_.failure->hint += " Then resume the scan.";
@@ -113,7 +106,7 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
     time_left_->lose_pace();
     show_job();
     ports_.heartbeat.beat();
-    ports_.slot.wait_for_command(at_speed(attempt_interval));
+    ports_.slot.wait_for_command(at_speed(retries_.interval));
   }
   job_.state = JobState::cancelled;
   job_.failure.reset();

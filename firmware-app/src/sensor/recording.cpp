@@ -12,6 +12,7 @@
 
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/intrinsics_json.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/png.hpp"
 #include "octurn/units.hpp"
@@ -25,7 +26,6 @@ using nlohmann::json;
 constexpr const char* format = "octurn-recording";
 constexpr ErrorCode malformed = ErrorCode::recording_malformed;
 constexpr int format_version = 1;
-constexpr int largest_side = 10000;  // pixels
 constexpr double max_number = std::numeric_limits<double>::max();
 
 std::string frame_file(std::size_t frame) {
@@ -35,14 +35,11 @@ std::string frame_file(std::size_t frame) {
 }
 
 Intrinsics intrinsics_from(JsonObject& sensor) {
-  constexpr double smallest = 1e-9;
-  return {.width = sensor.at("width").whole_number(1, largest_side),
-          .height = sensor.at("height").whole_number(1, largest_side),
-          .fx = sensor.at("fx").number(smallest, max_number),
-          .fy = sensor.at("fy").number(smallest, max_number),
-          .cx = sensor.at("cx").number(),
-          .cy = sensor.at("cy").number(),
-          .depth_unit = sensor.at("depth_unit_m").number(smallest, 1)};
+  Intrinsics intrinsics = lens_from(sensor);
+  intrinsics.width = sensor.at("width").whole_number(2, max_image_side);
+  intrinsics.height = sensor.at("height").whole_number(2, max_image_side);
+  intrinsics.depth_unit = depth_unit_from(sensor);
+  return intrinsics;
 }
 
 RecordedFrame frame_from(const JsonValue& object) {

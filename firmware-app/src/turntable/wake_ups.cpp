@@ -1,14 +1,19 @@
 #include "turntable/wake_ups.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include "turntable/real_time.hpp"
 
 namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
 
 Lateness measure_wake_ups(int count, std::chrono::microseconds interval) {
-  using Clock = std::chrono::steady_clock;
   Lateness lateness;
   lateness.reserve(static_cast<std::size_t>(count));
   std::thread([&] {

@@ -56,6 +56,27 @@ TEST(ParseJson, RefusesWhatIsTooLarge) {
   EXPECT_EQ(code_thrown_by([&] { parsed_text(whole + " "); }), "bad-json");
 }
 
+TEST(ParseJson, RefusesMoreValuesThanAreAllowed) {
+  const auto parse = [](const std::string& text, std::size_t values) {
+    return parse_json(text, ErrorCode::bad_json, "the text", {.values = values});
+  };
+  for (const std::string& text : {R"([[], [], {}])", R"({"a": 1, "b": ["x"]})"}) {
+    EXPECT_NO_THROW(parse(text, 4)) << text;
+    const Error error = error_thrown_by([&] { parse(text, 3); });
+    EXPECT_EQ(error.code(), ErrorCode::bad_json);
+    EXPECT_STREQ(error.what(), "the text has more than 3 values");
+  }
+}
+
+TEST(ParseJson, BoundsTheMemoryOfAnyText) {
+  std::string many = "[[]";
+  while (many.size() + 4 < max_json_bytes) {
+    many += ",[]";
+  }
+  EXPECT_STREQ(error_thrown_by([&] { parsed_text(many + "]"); }).what(),
+               "the text has more than 1000000 values");
+}
+
 TEST(ParseJson, RefusesWhatIsNoJson) {
   for (const char* const text : {"", "{", "[1,]", "nan", "\xff", "[] []"}) {
     EXPECT_STREQ(error_thrown_by([&] { parsed_text(text); }).what(), "the text is not JSON")

@@ -132,9 +132,33 @@ TEST(ParseScan, RefusesNumbersOutOfTheirRange) {
     }
   }
   for (const char* length : {"/sensor/fx", "/sensor/fy", "/sensor/depth_unit_m"}) {
-    expect_refused(with(length, 0), dotted(length));
-    expect_refused(with(length, -575.8), dotted(length));
+    for (const json& wrong : {json(0), json(-575.8), json(1e-10), json(1e6), json(1e300)}) {
+      expect_refused(with(length, wrong), dotted(length));
+    }
   }
+  for (const char* centre : {"/sensor/cx", "/sensor/cy"}) {
+    expect_refused(with(centre, 8193), dotted(centre));
+    expect_refused(with(centre, -1e300), dotted(centre));
+  }
+}
+
+TEST(ParseScan, RefusesPlacesBeyondAThousandKilometres) {
+  for (const char* place : {"/calibration/platform_from_sensor/1/3", "/clip_m/max/2"}) {
+    expect_refused(with(place, 1'000'001), dotted(place));
+    expect_refused(with(place, 1e300), dotted(place));
+    EXPECT_NO_THROW(parse_scan(with(place, 1'000'000)));
+  }
+  expect_refused(with("/clip_m/min/0", -1e300), "clip_m.min[0]");
+}
+
+TEST(ParseScan, TakesLensesWhosePixelsStayFinite) {
+  json widest = contract;
+  widest["sensor"]["fx"] = 100'000;
+  widest["sensor"]["fy"] = 1;
+  widest["sensor"]["cx"] = -8192;
+  widest["sensor"]["cy"] = 8192;
+  widest["sensor"]["depth_unit_m"] = 1e-9;
+  EXPECT_NO_THROW(parse_scan(widest.dump()));
 }
 
 TEST(ParseScan, RefusesAnotherFormatAndAnotherVersion) {

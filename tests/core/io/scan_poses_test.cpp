@@ -6,7 +6,6 @@
 
 #include "core/io/scan_json.hpp"
 #include "octurn/scan_folder.hpp"
-#include "octurn/tiles.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -47,6 +46,18 @@ TEST(ScanOfPoses, HasTheSnapshotsOfEachInTheObjectsFrame) {
   // (-0.62, -0.75, 0.4). The pose's X axis is the object's -Z, its Z axis the object's X.
   const Eigen::Vector3d eye = model_pose(scan, scan.shots[1]).translation();
   EXPECT_LT((eye - Eigen::Vector3d(0.4 + 0.25, -0.75 + 0.5, 0.62 + 0.125)).norm(), 1e-12);
+}
+
+TEST(ScanOfPoses, HasAThousandAtMost) {
+  json scan = two_poses();
+  while (scan["poses"].size() < 1000) {
+    scan["poses"].push_back(scan["poses"][0]);
+  }
+  scan["snapshots"][0]["pose"] = 999;
+  EXPECT_EQ(parse_scan(scan.dump()).shots[0].pose, 999);
+
+  scan["poses"].push_back(scan["poses"][0]);
+  EXPECT_NE(refusal_of(scan).find("at most 1000"), std::string::npos) << refusal_of(scan);
 }
 
 TEST(ScanOfPoses, HasAClipBoxForEachAndOneAroundAll) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "core/tsdf/random_field.hpp"
@@ -28,6 +29,17 @@ TEST(VoxelGrid, CoversTheClipBoxAndAnEmptyBorder) {
     EXPECT_GT(box.max[axis] - 2 * brick, clip_box.max[axis] - brick);
   }
   EXPECT_EQ(box.min.z(), -brick);  // the first layer above the border stands on the platform
+}
+
+TEST(VoxelGrid, CoversTheRootOfAClipBoxBeyondTheRangeOfInt) {
+  const Box root{.min = {-0.5, -0.5, 0}, .max = {0.5, 0.5, 1}};
+  const VoxelGrid of_root(1.0, 10, root, 0.005);
+  for (const double far : {1e6, 1e9, 1e300, std::numeric_limits<double>::max()}) {
+    const Box clip{.min = Eigen::Vector3d::Constant(-far), .max = Eigen::Vector3d::Constant(far)};
+    const Box box = VoxelGrid(1.0, 10, clip, 0.005).box();
+    EXPECT_EQ(box.min, of_root.box().min) << far;
+    EXPECT_EQ(box.max, of_root.box().max) << far;
+  }
 }
 
 TEST(VoxelGrid, PutsAVoxelsCentreIntoItsMiddle) {

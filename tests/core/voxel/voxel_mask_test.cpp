@@ -80,6 +80,23 @@ TEST(VoxelMask, HoldsTheSameVoxelsWhenCropped) {
   EXPECT_EQ(empty_set().cropped().count(), 0U);
 }
 
+TEST(VoxelMask, HasAMarginWhenCroppedWhereItsVoxelsTouchItsSides) {
+  for (const int first : {0, 1, 63, 64, 65, 128}) {
+    VoxelMask set = empty_set();
+    add_block(set, {first, 0, 0}, {200, 40, 40});
+    const VoxelMask cropped = set.cropped();
+    ASSERT_EQ(cropped.count(), set.count()) << first;
+    const int x = set.low().x + first - cropped.low().x;
+    const int y = set.low().y - cropped.low().y;
+    EXPECT_GE(x, 1) << first;
+    EXPECT_EQ(y, 1) << first;
+    EXPECT_EQ(cropped.size().x, x + 200 - first + 1) << first;
+    EXPECT_EQ(cropped.size().y, 42) << first;
+    EXPECT_TRUE(cropped.contains(x, y, 0) && cropped.contains(x + 199 - first, y + 39, 39));
+    EXPECT_FALSE(cropped.contains(x - 1, y, 0) || cropped.contains(x, y - 1, 0));
+  }
+}
+
 /// Random voxels of that density, in a mask with several words a row.
 VoxelMask noise(std::uint32_t seed, double density) {
   VoxelMask mask({-70, 3, 0}, {0, 3 + 14, 12});

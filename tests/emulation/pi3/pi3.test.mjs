@@ -101,7 +101,7 @@ test('a stop request ends the move within one step, and the position is known', 
 
 test('lines that somebody else has are refused by name', () => {
   assert.match(runs.busy.said, /turntable-failed: line GPIO17 is in use by octurn/);
-  assert.equal(rises(runs.busy.events).length, 400);
+  assert.equal(rises(runs.busy.events).length, 1600);
 });
 
 /** Register writes to our GPIO lines: {line, level}, or {line, input}. */
@@ -114,7 +114,7 @@ test('the registers were written as the kernel says, change for change', () => {
   const seen = registerWrites().filter(({ level }) => level !== undefined);
   const told = names.flatMap((name) => runs[name].events)
     .filter(({ line }) => lines.includes(line)).map(({ line, level }) => ({ line, level }));
-  assert.ok(told.length > 2 * (800 + 1800 + 400 + 800));
+  assert.ok(told.length > 2 * (800 + 1800 + 1600 + 800));
   assert.deepEqual(seen, told);
 });
 

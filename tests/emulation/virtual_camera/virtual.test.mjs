@@ -13,7 +13,7 @@ test('pictures of libcamera\'s virtual camera come as they are, in grey and in c
     '-M', 'virt', '-cpu', 'cortex-a57', '-m', '512', '-nographic', '-no-reboot', '-monitor', 'none', '-serial', 'stdio', '-nic', 'none',
     '-icount', 'shift=2',  // the guest's clock slows down with this machine
     '-kernel', `${debian}/kernel`, '-initrd', `${folder}/initrd.gz`,
-    '-append', 'console=ttyAMA0 panic=-1 rdinit=/init quiet loglevel=3'], {encoding: 'utf8', timeout: 800_000, stdio: ['ignore', 'pipe', 'inherit']});
+    '-append', 'console=ttyAMA0 panic=-1 rdinit=/init quiet loglevel=3'], {encoding: 'utf8', timeout: 3_000_000, stdio: ['ignore', 'pipe', 'inherit']});
   const said = [...console.matchAll(/check: (.*?)\r?$/gm)].map(([, text]) => text);
   const [opened, ...pictures] = said.slice(0, -1);
   assert.equal(said.at(-1), 'ended well', console);

@@ -27,6 +27,7 @@ struct EmulatedKinect {
   std::atomic<double> speed = 1;  // as a multiple of 30 frames a second
 
   std::atomic<bool> silent = false;
+  std::atomic<int> interruptions = 0;  // of the next waits for events, as by signals
   // Every `loss_period`-th frame loses `lost_packets` packets from `first_lost` on; the loss may
   // extend into the next frame.
   std::atomic<int> loss_period = 1;

@@ -114,6 +114,10 @@ int libusb_cancel_transfer(libusb_transfer* transfer) {
 }
 
 int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
+  if (context->bus && context->bus->kinect.interruptions > 0) {
+    --context->bus->kinect.interruptions;
+    return LIBUSB_ERROR_INTERRUPTED;
+  }
   constexpr auto tick = std::chrono::milliseconds(5);
   const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +
                         std::chrono::microseconds(timeout->tv_usec);

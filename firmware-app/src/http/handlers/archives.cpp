@@ -4,6 +4,7 @@
 #include <future>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <semaphore>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "http/file_response.hpp"
 #include "http/handlers/models.hpp"
 #include "http/json_body.hpp"
+#include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/file.hpp"
 #include "scan/scan_archive.hpp"
@@ -23,7 +25,10 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t max_archive_bytes = std::uint64_t{1} << 30U;
 constexpr std::size_t archive_part_bytes = std::size_t{16} << 10U;
 
-std::mutex packing;  // one archive at a time
+// One archive is packed at a time, and one request waits. Each takes a thread of the server, on a
+// Pi for minutes.
+std::mutex packing;
+std::counting_semaphore<> packing_places{2};
 
 /// A folder or file that is removed at the end of its scope.
 class Scratch {
@@ -67,6 +72,7 @@ Response send_archive(App& app, const Request& request, std::string_view id) {
   if (job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
+  const Place place(&packing_places, "archives are being packed for others");
   const std::lock_guard lock(packing);
   const Scratch archive(app.store.data() / "scans" / (".export-" + job.id + ".zip"));
   std::async(std::launch::async, write_scan_archive, app.store.folder(id), archive.path()).get();

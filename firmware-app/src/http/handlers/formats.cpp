@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <semaphore>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "http/file_response.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/handlers/models.hpp"
+#include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "mesh/coarse_mesh.hpp"
 #include "mesh/mesh_formats.hpp"
@@ -32,6 +34,10 @@ std::mutex making;
 // Held while colours are checked and made, so that requests for several formats of a model make
 // them once.
 std::mutex colouring;
+// Of requests that hold these or wait for them: a browser has six connections, and the server 28.
+std::counting_semaphore<> making_places{6};
+
+Place place_for_making() { return {&making_places, "files of models are being made for others"}; }
 
 /// The modification time of a file; the minimum if there is no file.
 fs::file_time_type written(const fs::path& file) {
@@ -40,12 +46,22 @@ fs::file_time_type written(const fs::path& file) {
   return none ? fs::file_time_type::min() : time;
 }
 
+bool is_fresh(const fs::path& file, fs::file_time_type source) {
+  const fs::file_time_type made = written(file);
+  return made != fs::file_time_type::min() && made >= source;
+}
+
 /// Makes a file if it is missing, or older than its source. Runs on a new thread, as the HTTP
 /// server's threads have small stacks.
+/// @throws Error "too-many"  if it has to be made, and others are
 void keep_fresh(const fs::path& file, fs::file_time_type source,
                 const std::function<void()>& make) {
+  if (is_fresh(file, source)) {
+    return;
+  }
+  const Place place = place_for_making();
   const std::lock_guard lock(making);
-  if (const auto made = written(file); made == fs::file_time_type::min() || made < source) {
+  if (!is_fresh(file, source)) {  // another request may have made it meanwhile
     std::async(std::launch::async, make).get();
   }
 }
@@ -105,16 +121,18 @@ Paint wanted_paint(const Request& request) {
 /// Has the worker make the colours of a model if they are missing or outdated. The pictures are
 /// many and large, so that an occupied worker refuses.
 /// @param build  number of the model's build
-/// @throws Error "bad-settings"  if the scan has no colour pictures, "busy"
+/// @throws Error "bad-settings"  if the scan has no colour pictures, "busy", "too-many"
 void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
   if (!job.builds.have_colours) {
     throw Error(ErrorCode::bad_settings, "this scan has no pictures in colour",
                 "Only a scan by laser line has them, if its camera sees colours.");
   }
+  if (is_fresh(colours_file(model), written(model))) {
+    return;
+  }
+  const Place place = place_for_making();
   const std::lock_guard lock(colouring);
-  const bool is_fresh = written(colours_file(model)) > fs::file_time_type::min() &&
-                        written(colours_file(model)) >= written(model);
-  if (!is_fresh && !app.scanner.colour_model(job, build)) {
+  if (!is_fresh(colours_file(model), written(model)) && !app.scanner.colour_model(job, build)) {
     throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
                 "Wait for its end.");
   }

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <semaphore>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "http/entity_tags.hpp"
 #include "http/file_response.hpp"
+#include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
 #include "scan/model_pipe.hpp"
@@ -48,6 +50,22 @@ json to_numbers(const Headers& parameters) {
   return numbers;
 }
 
+// Of requests that wait for the worker: for their own model, or for some seconds until another one
+// is made.
+std::counting_semaphore<> worker_places{2};
+
+/// @throws Error "busy", "too-many"
+std::unique_ptr<ModelStream> stream_model(App& app, const Job& job,
+                                          const ReconstructOptions& options) {
+  const Place place(&worker_places, "others are waiting for a model");
+  auto model = app.scanner.stream_model(job.id, options);
+  if (!model) {
+    throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
+                "Wait for its end.");
+  }
+  return model;
+}
+
 /// Builds a model from the snapshots and streams it.
 Response make_model(App& app, const Request& request, const Job& job) {
   json numbers = to_numbers(request.parameters);
@@ -68,11 +86,7 @@ Response make_model(App& app, const Request& request, const Job& job) {
   if (job.state != JobState::running && job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
-  auto model = app.scanner.stream_model(job.id, options);
-  if (!model) {
-    throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
-                "Wait for its end.");
-  }
+  auto model = stream_model(app, job, options);
   const std::uint64_t bytes = model->bytes();
   ByteStream stream{.length = bytes, .stop = model->stop()};
   stream.make = std::packaged_task<void(const ByteSink&)>(

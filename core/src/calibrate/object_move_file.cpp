@@ -13,32 +13,32 @@ namespace {
 
 using nlohmann::json;
 
-constexpr ErrorCode malformed = ErrorCode::scan_malformed;
-constexpr const char* key = "last_look";
+constexpr const char* last_look_key = "last_look";
 
 /// Reads the scan.json of a folder, and checks that it is a scan's. @throws Error  as `read_scan`
 json read_document(const std::filesystem::path& folder) {
-  const std::string text = read_bytes(folder / "scan.json", ErrorCode::scan_missing,
-                                      "Name a folder that holds a whole scan.", malformed);
+  const std::string text =
+      read_bytes(folder / "scan.json", ErrorCode::scan_missing,
+                 "Name a folder that holds a whole scan.", ErrorCode::scan_malformed);
   parse_scan(text);
-  return parse_json(text, malformed, "scan.json");
+  return parse_json(text, ErrorCode::scan_malformed, "scan.json");
 }
 
 }  // namespace
 
 void write_object_move(const std::filesystem::path& folder, const ObjectMove& move) {
   json document = read_document(folder);
-  document[key] = {{"moved_mm", mm_from_metres(move.shift)},
-                   {"moved_sigma_mm", mm_from_metres(move.shift_sigma)},
-                   {"turned_deg", degrees_from_radians(move.turn)},
-                   {"turned_sigma_deg", degrees_from_radians(move.turn_sigma)}};
+  document[last_look_key] = {{"moved_mm", mm_from_metres(move.shift)},
+                             {"moved_sigma_mm", mm_from_metres(move.shift_sigma)},
+                             {"turned_deg", degrees_from_radians(move.turn)},
+                             {"turned_sigma_deg", degrees_from_radians(move.turn_sigma)}};
   write_file(folder / "scan.json", document.dump(1) + "\n");
 }
 
 std::optional<ObjectMove> read_object_move(const std::filesystem::path& folder) {
   const json document = read_document(folder);
-  JsonObject root(document, malformed, "");
-  const auto last_look = root.value(key);
+  JsonObject root(document, ErrorCode::scan_malformed, "");
+  const auto last_look = root.value(last_look_key);
   if (!last_look) {
     return std::nullopt;
   }

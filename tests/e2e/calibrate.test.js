@@ -5,7 +5,7 @@ import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
-import {ask, scan, startScanner} from './scanner.js';
+import {ask, quick, scan, startScanner} from './scanner.js';
 import {fromSide, planOf} from '../../web/plans.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
@@ -22,7 +22,7 @@ const tolerance = 3;
 
 /** @returns {Promise<import('./scanner.js').Scanner>} whose configured pose is the crooked one */
 async function startCrooked(t) {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: poseOf(crooked)});
   return scanner;
 }
@@ -94,6 +94,7 @@ async function setByHand(scanner, browser) {
   await page.waitForFunction((line) => document.querySelector('#overlay [data-line=axis]').getAttribute('d') === line, before);
   assert.deepEqual((await ask(scanner, 'calibration')).platform_from_sensor, from);
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /** Drags the top of the scanned space down, and saves it. */
@@ -120,6 +121,7 @@ async function dragSpace(scanner, browser) {
   await page.getByRole('button', {name: 'Keep the space'}).waitFor({state: 'hidden'});
   assert.equal((await ask(scanner, 'settings')).defaults.clip_mm[5], dragged);
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /** Drags the right side of the scanned space inwards in the live picture, and moves it back. */
@@ -141,6 +143,7 @@ async function dragHandle(scanner, browser) {
   await page.locator('#space-discard').click();
   assert.equal(await right.inputValue(), '140');
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /** One known length sets the scale; a wrong one is refused with its reason. */
@@ -154,6 +157,7 @@ async function setScale(scanner, browser) {
   await page.getByRole('button', {name: 'Set the scale'}).click();
   await page.getByText('Models are made 1.20% larger than the sensor tells.').waitFor();
   assert.equal((await ask(scanner, 'calibration')).scale, 1.012);
+  await page.context().close();
 }
 
 test('pose, space and scale are set on the page', async (t) => {
@@ -168,7 +172,7 @@ test('pose, space and scale are set on the page', async (t) => {
 const hasFinding = (scan) => scan.calibration.findings.some(({code}) => code === 'no-map');
 
 test('the sensor is flattened on the page, and the next scan sees evenly', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const first = await scan(scanner, {...draft, snapshots: 12});
   assert.ok(hasFinding(first));
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${first.id}`);
@@ -243,7 +247,7 @@ test('the page Calibrate is for everyone', async (t) => {
 });
 
 test('a first visit is led from the check to the calibration to the scan', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   const steps = page.locator('#first-steps');
   const state = (name) => steps.locator(`[data-step=${name}]`).getAttribute('data-state');

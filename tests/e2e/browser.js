@@ -48,7 +48,7 @@ export async function emptyPage(browser, {screen = 'desktop', colorScheme = 'lig
   const context = await browser.newContext({...screens[screen], colorScheme, locale, reducedMotion: 'reduce',
     httpCredentials: password === undefined ? undefined : {username: 'octurn', password}});
   const page = await context.newPage();
-  page.setDefaultTimeout(120000); // on a busy machine every picture takes its time
+  page.setDefaultTimeout(600000); // a busy machine takes minutes for what a scan or a calibration works out
   return page;
 }
 

@@ -93,7 +93,7 @@ export async function scan(scanner, settings) {
   let job = await ask(scanner, 'scans', 'POST', settings);
   while (job.state === 'running') {
     await new Promise((done) => {
-      setTimeout(done, 50);
+      setTimeout(done, 200);
     });
     job = await ask(scanner, `scans/${job.id}`);
   }

@@ -71,13 +71,26 @@ export async function startScanner(t, {rig = ['--simulate']} = {}) {
   return scanner;
 }
 
-/** Calls the API. @returns {Promise<any>} the response's body */
+/** @returns {Promise<void>} */
+const pause = () => new Promise((done) => {
+  setTimeout(done, 200);
+});
+
+/**
+ * Calls the API. On a busy machine a scanner that has just started may have no frame in time: it is asked again, as it says.
+ * @returns {Promise<any>} the response's body
+ */
 export async function ask(scanner, path, method = 'GET', body = undefined) {
   // A test that is busy for seconds would not notice that the server closed a kept-alive connection meanwhile.
   const response = await fetch(`${scanner.url}api/v1/${path}`,
       {method, headers: {'Content-Type': 'application/json', 'Connection': 'close'}, body: body && JSON.stringify(body)});
   if (!response.ok) {
-    throw new Error(`${method} ${path}: ${response.status} ${await response.text()}`);
+    const problem = await response.text();
+    if (response.status === 503 && problem.includes('the sensor has sent no frame yet')) {
+      await pause();
+      return ask(scanner, path, method, body);
+    }
+    throw new Error(`${method} ${path}: ${response.status} ${problem}`);
   }
   return response.status === 204 ? null : response.json();
 }
@@ -92,9 +105,7 @@ export async function scanFolders(scanner) {
 export async function scan(scanner, settings) {
   let job = await ask(scanner, 'scans', 'POST', settings);
   while (job.state === 'running') {
-    await new Promise((done) => {
-      setTimeout(done, 200);
-    });
+    await pause();
     job = await ask(scanner, `scans/${job.id}`);
   }
   return job;

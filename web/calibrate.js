@@ -74,6 +74,7 @@ async function keep() {
   if (pose) {
     await act('failure.pose', async () => {
       await requests.change({platform_from_sensor: pose});
+      showPlacement(pose);  // in force now; the lines would otherwise show the pose before it until the scanner is asked
       discard();
     });
   }

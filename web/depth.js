@@ -50,7 +50,13 @@ export const distanceText = (distance) => distance === null ? text('stage.no-rea
   distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
 /** @param {Uint8ClampedArray} pixels  of a grey picture: red, green, blue, alpha */
-const brightnessOf = (pixels) => Uint8Array.from({length: pixels.length / 4}, (_, index) => pixels[4 * index]);
+function brightnessOf(pixels) {
+  const brightness = new Uint8Array(pixels.length / 4);
+  for (let index = 0; index < brightness.length; ++index) {
+    brightness[index] = pixels[4 * index];
+  }
+  return brightness;
+}
 
 /**
  * Brightens a camera's grey picture in place: it is exposed for lasers, and dark. One pixel in a hundred becomes white, but not by

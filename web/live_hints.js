@@ -29,46 +29,43 @@ const oneSurface = 0.012;  // metres between neighbouring pixels of a surface; o
 const farthest = 24;    // brightness at the end of the range and beyond (API.md), so without a distance
 const distances = Float64Array.from({length: 256}, (_, brightness) => distanceOf(brightness) ?? 0);
 
-/** @param {number[]} sorted @param {number} share */
+/** @param {Float64Array} sorted @param {number} share */
 const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 
 /**
- * Each pixel's point in the platform's frame, as consecutive x y z; NaN without a distance.
- * @param {Uint8Array} brightness @param {number} width @param {Rig} rig
+ * Computes points of pixels. One array takes all of them in turn, as arrays for 76,800 pixels of each picture would keep a phone busy.
+ * @param {Uint8Array} brightness  of each pixel, row by row @param {number} width @param {Rig} rig
+ * @returns {(index: number, place: Float64Array) => void} sets `place` to the pixel's point in the platform's frame; NaN without a distance
  */
 function placesOf(brightness, width, {pose, sensor}) {
-  const places = new Float64Array(3 * brightness.length).fill(NaN);
   const step = sensor.width / width;
-  brightness.forEach((value, index) => {
-    if (value <= farthest) {
-      return;
-    }
-    const z = distances[value];
+  return (index, place) => {
+    const z = brightness[index] > farthest ? distances[brightness[index]] : NaN;
     const x = z * (index % width * step - sensor.cx) / sensor.fx;
     const y = z * (Math.floor(index / width) * step - sensor.cy) / sensor.fy;
     for (let axis = 0; axis < 3; ++axis) {
-      const [a, b, c, d] = pose[axis];
-      places[3 * index + axis] = a * x + b * y + c * z + d;
+      const row = pose[axis];
+      place[axis] = row[0] * x + row[1] * y + row[2] * z + row[3];
     }
-  });
-  return places;
+  };
 }
 
 /**
  * Counts pixels inside the space with a neighbour outside it on the same surface.
- * @param {Float64Array} places @param {Uint8Array} inside @param {number} width @param {number[]} clip  metres
+ * @param {ReturnType<typeof placesOf>} placeOf @param {Uint8Array} inside @param {number} width @param {number[]} clip  metres
  */
-function cutOf(places, inside, width, clip) {
+function cutOf(placeOf, inside, width, clip) {
   const cut = {top: 0, side: 0};
+  const [inner, outer] = [new Float64Array(3), new Float64Array(3)];
   const look = (/** @type {number} */ a, /** @type {number} */ b) => {
     if (inside[a] === inside[b]) {
       return;
     }
-    const outer = 3 * (inside[a] ? b : a);
-    const inner = 3 * (inside[a] ? a : b);
-    const apart = Math.hypot(places[outer] - places[inner], places[outer + 1] - places[inner + 1], places[outer + 2] - places[inner + 2]);
-    if (apart < oneSurface && places[outer + 2] > clip[2] + clear_mm / 1000) {
-      cut[places[outer + 2] > clip[5] ? 'top' : 'side'] += 1;
+    placeOf(inside[a] ? a : b, inner);
+    placeOf(inside[a] ? b : a, outer);
+    const apart = Math.hypot(outer[0] - inner[0], outer[1] - inner[1], outer[2] - inner[2]);
+    if (apart < oneSurface && outer[2] > clip[2] + clear_mm / 1000) {
+      cut[outer[2] > clip[5] ? 'top' : 'side'] += 1;
     }
   };
   for (let index = 0; index + width < inside.length; ++index) {
@@ -103,7 +100,8 @@ function unreadShare(brightness, isObject, width) {
  */
 export function seenOf(brightness, width, rig) {
   const clip = rig.clip_mm.map((value) => value / 1000);
-  const places = placesOf(brightness, width, rig);
+  const placeOf = placesOf(brightness, width, rig);
+  const place = new Float64Array(3);
   const inside = new Uint8Array(brightness.length);
   const isObject = new Uint8Array(brightness.length);
   const reach = Math.min(...[0, 1, 3, 4].map((side) => Math.abs(clip[side])));  // points nearer to the axis stay inside at every angle
@@ -111,9 +109,11 @@ export function seenOf(brightness, width, rig) {
   const all = {depth: [], across: [], up: []};
   let beyond = 0;
   let read = 0;
-  brightness.forEach((value, index) => {
+  for (let index = 0; index < brightness.length; ++index) {
+    const value = brightness[index];
     read += value === 0 ? 0 : 1;
-    const [x, y, z] = places.subarray(3 * index, 3 * index + 3);
+    placeOf(index, place);
+    const [x, y, z] = [place[0], place[1], place[2]];
     inside[index] = x >= clip[0] && y >= clip[1] && z >= clip[2] && x <= clip[3] && y <= clip[4] && z <= clip[5] ? 1 : 0;
     isObject[index] = inside[index] && z > clip[2] + clear_mm / 1000 ? 1 : 0;
     if (isObject[index]) {
@@ -122,21 +122,21 @@ export function seenOf(brightness, width, rig) {
       all.up.push(z);
       beyond += Math.hypot(x, y) > reach ? 1 : 0;
     }
-  });
-  Object.values(all).forEach((values) => values.sort((a, b) => a - b));
+  }
   const object = all.depth.length;
-  const span = (/** @type {number[]} */ values, from = quantile(values, 0.01)) => object === 0 ? 0 : 1000 * (quantile(values, 0.99) - from);
+  const [depth, across, up] = [all.depth, all.across, all.up].map((values) => Float64Array.from(values).sort());
+  const span = (/** @type {Float64Array} */ values, from = quantile(values, 0.01)) => object === 0 ? 0 : 1000 * (quantile(values, 0.99) - from);
   return {
     inside,
     object,
     read_share: read / brightness.length,
-    nearest: object === 0 ? NaN : quantile(all.depth, 0.01),
-    distance: object === 0 ? NaN : quantile(all.depth, 0.5),
-    width_mm: span(all.across),
-    height_mm: span(all.up, 0),
+    nearest: object === 0 ? NaN : quantile(depth, 0.01),
+    distance: object === 0 ? NaN : quantile(depth, 0.5),
+    width_mm: span(across),
+    height_mm: span(up, 0),
     beyond_share: object === 0 ? 0 : beyond / object,
     unread_share: unreadShare(brightness, isObject, width),
-    cut: cutOf(places, inside, width, clip),
+    cut: cutOf(placeOf, inside, width, clip),
   };
 }
 

@@ -8,9 +8,15 @@ export const radius_mm = 150;  // of the platform
 
 /** @param {SVGElement} overlay  over the whole picture @param {import('./live_hints.js').Rig} rig */
 export function drawLines(overlay, {pose, sensor, clip_mm}) {
-  overlay.setAttribute('viewBox', `0 0 ${sensor.width} ${sensor.height}`);
+  const viewBox = `0 0 ${sensor.width} ${sensor.height}`;
+  if (overlay.getAttribute('viewBox') !== viewBox) {
+    overlay.setAttribute('viewBox', viewBox);
+  }
   for (const [line, path] of Object.entries(overlayOf({pose, sensor, clip_mm, radius_mm}))) {
-    part(overlay, `[data-line=${line}]`).setAttribute('d', path);
+    const drawn = part(overlay, `[data-line=${line}]`);
+    if (drawn.getAttribute('d') !== path) {  // a browser draws it again, with its shadow, even if nothing has changed
+      drawn.setAttribute('d', path);
+    }
   }
 }
 

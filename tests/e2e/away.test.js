@@ -2,10 +2,10 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {chooseQuickScan, goTo, openBrowser, openPage} from './browser.js';
-import {lifelike, startScanner} from './scanner.js';
+import {startScanner} from './scanner.js';
 
 test('the page says that the scanner is gone, finds it again, and lists the scan that died with it', async (t) => {
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 200);
   await page.getByRole('button', {name: 'Start scan'}).click();

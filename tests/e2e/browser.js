@@ -1,11 +1,13 @@
-// Debian's Chromium, driven headless.
+// Debian's headless Chromium.
 
 import {mkdir} from 'node:fs/promises';
+import {after} from 'node:test';
 import {join} from 'node:path';
 import {chromium} from 'playwright-core';
 
 const noBackgroundTraffic = ['--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
-const softwareWebGl = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+// WebGL by software, which would take twice the time to draw the rest of the page, too.
+const softwareWebGl = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing'];
 const noWebGl = ['--disable-gpu', '--disable-software-rasterizer', '--disable-3d-apis'];
 
 const screens = {
@@ -13,16 +15,22 @@ const screens = {
   phone: {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true},
 };
 
+/** @type {Map<boolean, Promise<import('playwright-core').Browser>>} by hasWebGl: one for all tests of a file, as a start takes a second */
+const browsers = new Map();
+after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
+
 /**
- * @param {import('node:test').TestContext} t
+ * @param {import('node:test').TestContext} t  at its end all pages are closed
  * @param {{hasWebGl?: boolean}} options
  */
 export async function openBrowser(t, {hasWebGl = true} = {}) {
-  const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  const opened = browsers.get(hasWebGl) ?? chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
     args: [...noBackgroundTraffic, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
   });
-  t.after(() => browser.close());
+  browsers.set(hasWebGl, opened);
+  const browser = await opened;
+  t.after(() => Promise.all(browser.contexts().map((context) => context.close())));
   return browser;
 }
 
@@ -30,22 +38,35 @@ export async function openBrowser(t, {hasWebGl = true} = {}) {
 const isLatePicture = (message) => message.location().url.includes('/api/v1/preview/') && message.text().includes('503');
 
 /**
+ * An empty page with storage and cache of its own, without animations, which would be drawn sixty times a second.
+ *
+ * @typedef {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark', locale?: string, password?: string}} Visitor  password: of the page
+ * @param {import('playwright-core').Browser} browser
+ * @param {Visitor} visitor
+ */
+export async function emptyPage(browser, {screen = 'desktop', colorScheme = 'light', locale = 'en-US', password} = {}) {
+  const context = await browser.newContext({...screens[screen], colorScheme, locale, reducedMotion: 'reduce',
+    httpCredentials: password === undefined ? undefined : {username: 'octurn', password}});
+  const page = await context.newPage();
+  page.setDefaultTimeout(600000); // a busy machine takes minutes for what a scan or a calibration works out
+  return page;
+}
+
+/**
  * Opens the page and waits until it shows the scanner.
  *
  * @param {import('playwright-core').Browser} browser
  * @param {string} url
- * @param {{screen?: 'desktop' | 'phone', colorScheme?: 'light' | 'dark', locale?: string}} options
+ * @param {Visitor} visitor
  * @returns {Promise<{page: import('playwright-core').Page, faults: string[]}>}  faults: the errors so far, such as errors
  *     on the console and requests to other hosts
  */
-export async function openPage(browser, url, {screen = 'desktop', colorScheme = 'light', locale = 'en-US'} = {}) {
-  const context = await browser.newContext({...screens[screen], colorScheme, locale, reducedMotion: 'reduce'});
-  const page = await context.newPage();
-  page.setDefaultTimeout(120000); // on a busy machine every picture takes its time
+export async function openPage(browser, url, visitor = {}) {
+  const page = await emptyPage(browser, visitor);
   const faults = [];
   page.on('console', (message) => message.type() === 'error' && !isLatePicture(message) && faults.push(message.text()));
   page.on('pageerror', (error) => faults.push(error.message));
-  context.on('request', (request) => {
+  page.context().on('request', (request) => {
     const {origin, protocol} = new URL(request.url());
     if (origin !== new URL(url).origin && protocol !== 'blob:' && protocol !== 'data:') {
       faults.push(`request to ${request.url()}`);

@@ -5,7 +5,7 @@ import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
-import {ask, scan, startScanner} from './scanner.js';
+import {ask, quick, scan, startScanner} from './scanner.js';
 
 /** The simulated sensor's pose: 0.62 m in front of the axis, 0.36 m up, pitched down by 25 degrees. */
 const angle = 25 * Math.PI / 180;
@@ -88,7 +88,7 @@ async function buildAgain(scanner, {page, faults, made, rows}, screen) {
 }
 
 test('a scan with a wrong pose is straightened and built again from its page', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const browser = await openBrowser(t);
   for (const [screen, colorScheme] of [['desktop', 'light'], ['phone', 'dark']]) {
     await t.test(`on a ${screen}`, async () => {
@@ -98,7 +98,7 @@ test('a scan with a wrong pose is straightened and built again from its page', a
 });
 
 test('a build that lasts shows how far it is, and is cancelled', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const made = await scan(scanner, {snapshots: 8, leaf_size_mm: 8, filter: 'basic', method: 'intersection'});
   const {page} = await openPage(await openBrowser(t), `${scanner.url}#${made.id}`);
   await page.getByText('Build again', {exact: true}).waitFor();
@@ -110,7 +110,7 @@ test('a build that lasts shows how far it is, and is cancelled', async (t) => {
 });
 
 test('the places of a reason are marked in the picture', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const made = await scan(scanner, {snapshots: 6, leaf_size_mm: 4, filter: 'basic'});
   const browser = await openBrowser(t);
   const {page, faults} = await openPage(browser, scanner.url);

@@ -5,8 +5,7 @@ import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
-import {ask, scan, startScanner} from './scanner.js';
-import {fromSide, planOf} from '../../web/plans.js';
+import {ask, quick, scan, startScanner} from './scanner.js';
 import {poseOf} from '../../web/pose.js';
 import {measure} from '../web/mesh_file.js';
 
@@ -22,7 +21,7 @@ const tolerance = 3;
 
 /** @returns {Promise<import('./scanner.js').Scanner>} whose configured pose is the crooked one */
 async function startCrooked(t) {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: poseOf(crooked)});
   return scanner;
 }
@@ -41,11 +40,12 @@ function partsOf(stl) {
 
 const modelOf = async (scanner, {model}) => Buffer.from(await (await fetch(new URL(model.url, scanner.url))).arrayBuffer());
 
-const draft = {snapshots: 24, leaf_size_mm: 1};
+const draft = {snapshots: 8, leaf_size_mm: 4};
+const whole = {snapshots: 24, leaf_size_mm: 1};  // with fewer snapshots the flag, which is thin, has no end, and no verdict is good
 
 test('a crooked rig is calibrated on the page, and its models have flag and aerial', async (t) => {
   const scanner = await startCrooked(t);
-  const told = await scan(scanner, {...draft, calibrate: 'told'});
+  const told = await scan(scanner, {...whole, calibrate: 'told'});
   assert.notEqual(told.model.quality.verdict, 'good');
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${told.id}`);
   await picture(page, 'crooked-model');
@@ -53,14 +53,14 @@ test('a crooked rig is calibrated on the page, and its models have flag and aeri
 
   await page.getByRole('button', {name: 'Measure with a turn'}).click();
   await page.getByRole('progressbar', {name: 'Measuring with a turn'}).waitFor();
-  await page.getByText(/^The axis was \d+\.\d mm and \d\.\d\d° off$/).waitFor({timeout: 600000});  // a busy machine solves slowly
+  await page.getByText(/^The axis was \d+\.\d mm and \d\.\d\d° off$/).waitFor();
   const calibration = await ask(scanner, 'calibration');
   assert.equal(calibration.source, 'turn');
   assert.ok(calibration.after_mm < 1.2 && calibration.after_mm < calibration.before_mm);
   await page.getByRole('img', {name: 'The same slice with the pose that was found'}).waitFor();
   await picture(page, 'calibrated');
 
-  const right = await scan(scanner, {...draft, calibrate: 'told'});
+  const right = await scan(scanner, {...whole, calibrate: 'told'});
   const {aerial, flag} = partsOf(await modelOf(scanner, right));
   assert.ok(Math.abs(aerial - knobTop) < tolerance, `the aerial ends at ${aerial} mm`);
   assert.ok(Math.abs(flag - flagEnd) < tolerance, `the flag ends at ${flag} mm`);
@@ -72,104 +72,16 @@ test('a crooked rig is calibrated on the page, and its models have flag and aeri
 
 test('with the pose checked by each scan even the first has flag and aerial', async (t) => {
   const scanner = await startCrooked(t);
-  const {aerial, flag} = partsOf(await modelOf(scanner, await scan(scanner, {...draft, calibrate: 'auto'})));
+  const {aerial, flag} = partsOf(await modelOf(scanner, await scan(scanner, {...whole, calibrate: 'auto'})));
   assert.ok(Math.abs(aerial - knobTop) < tolerance, `the aerial ends at ${aerial} mm`);
   assert.ok(Math.abs(flag - flagEnd) < tolerance, `the flag ends at ${flag} mm`);
-});
-
-const axisLine = (page) => page.locator('#overlay [data-line=axis]').getAttribute('d');
-
-/** Moves the sensor by a step, saves the pose, and undoes it. */
-async function setByHand(scanner, browser) {
-  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
-  await page.locator('#overlay [data-line=axis][d]').waitFor({state: 'attached'});
-  const [before, from] = [await axisLine(page), (await ask(scanner, 'calibration')).platform_from_sensor];
-  await page.getByRole('button', {name: 'Higher, Z'}).press('Enter');
-  await page.waitForFunction((line) => document.querySelector('#overlay [data-line=axis]').getAttribute('d') !== line, before);
-  assert.deepEqual((await ask(scanner, 'calibration')).platform_from_sensor, from, 'nothing is stored by a step');
-  await page.getByRole('button', {name: 'Keep', exact: true}).press('Enter');
-  await page.getByText(/^Set by hand/).first().waitFor();
-  assert.ok(Math.abs((await ask(scanner, 'calibration')).platform_from_sensor[2][3] - from[2][3] - 0.001) < 1e-6);
-  await page.getByRole('button', {name: 'Undo the last change'}).press('Enter');
-  await page.waitForFunction((line) => document.querySelector('#overlay [data-line=axis]').getAttribute('d') === line, before);
-  assert.deepEqual((await ask(scanner, 'calibration')).platform_from_sensor, from);
-  assert.deepEqual(faults, []);
-}
-
-/** Drags the top of the scanned space down, and saves it. */
-async function dragSpace(scanner, browser) {
-  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
-  const top = page.getByLabel('Space upwards, to');
-  await page.waitForFunction(() => document.querySelector('#space [data-clip="5"]')?.value === '400');
-  await page.locator('#overlay [data-line=box][d]').waitFor({state: 'attached'});
-  const plan = await page.evaluate(() => {
-    const canvas = document.getElementById('plan-side');
-    canvas.scrollIntoView({block: 'center'});
-    const {left, top} = canvas.getBoundingClientRect();
-    return {left, top, width: canvas.clientWidth, height: canvas.clientHeight};
-  });
-  const [right, up] = planOf(fromSide, [-140, -140, 5, 140, 140, 400], 150, plan.width, plan.height).toPixel(0, 400);
-  const [x, y] = [plan.left + right, plan.top + up];
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  await page.mouse.move(x, y + 40, {steps: 4});
-  await page.mouse.up();
-  const dragged = Number(await top.inputValue());
-  assert.ok(dragged < 390 && dragged > 100, `dragged to ${dragged}`);
-  await page.getByRole('button', {name: 'Keep the space'}).click();
-  await page.getByRole('button', {name: 'Keep the space'}).waitFor({state: 'hidden'});
-  assert.equal((await ask(scanner, 'settings')).defaults.clip_mm[5], dragged);
-  assert.deepEqual(faults, []);
-}
-
-/** Drags the right side of the scanned space inwards in the live picture, and moves it back. */
-async function dragHandle(scanner, browser) {
-  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
-  const right = page.getByLabel('Space to the right, to');
-  const handle = page.locator('#overlay [data-side="3"]');
-  await page.waitForFunction(() => document.querySelector('#space [data-clip="3"]')?.value === '140');
-  // While parts of the page are still loading, the layout may move the handle away from the pointer.
-  for (let tries = 0; tries < 5 && await right.inputValue() === '140'; ++tries) {
-    await handle.hover();
-    const {x, y, width, height} = await handle.boundingBox();
-    await page.mouse.down();
-    await page.mouse.move(x + width / 2 - 25, y + height / 2, {steps: 4});
-    await page.mouse.up();
-  }
-  const dragged = Number(await right.inputValue());
-  assert.ok(dragged < 135 && dragged > 60, `dragged to ${dragged}`);
-  await page.locator('#space-discard').click();
-  assert.equal(await right.inputValue(), '140');
-  assert.deepEqual(faults, []);
-}
-
-/** One known length sets the scale; a wrong one is refused with its reason. */
-async function setScale(scanner, browser) {
-  const {page} = await openPage(browser, `${scanner.url}#calibrate`);
-  await page.getByLabel('Length on the model, mm').fill('100');
-  await page.getByLabel('Length by calipers, mm').fill('110');
-  await page.getByRole('button', {name: 'Set the scale'}).click();
-  await page.getByText(/more than a sensor can be off by/).waitFor();
-  await page.getByLabel('Length by calipers, mm').fill('101.2');
-  await page.getByRole('button', {name: 'Set the scale'}).click();
-  await page.getByText('Models are made 1.20% larger than the sensor tells.').waitFor();
-  assert.equal((await ask(scanner, 'calibration')).scale, 1.012);
-}
-
-test('pose, space and scale are set on the page', async (t) => {
-  const scanner = await startScanner(t);
-  const browser = await openBrowser(t);
-  await t.test('the pose by hand and keyboard, with the lines in the picture', () => setByHand(scanner, browser));
-  await t.test('the scanned space by dragging its sides', () => dragSpace(scanner, browser));
-  await t.test('the scanned space by its handles in the live picture', () => dragHandle(scanner, browser));
-  await t.test('the scale by one known length', () => setScale(scanner, browser));
 });
 
 const hasFinding = (scan) => scan.calibration.findings.some(({code}) => code === 'no-map');
 
 test('the sensor is flattened on the page, and the next scan sees evenly', async (t) => {
-  const scanner = await startScanner(t);
-  const first = await scan(scanner, {...draft, snapshots: 12});
+  const scanner = await startScanner(t, quick);
+  const first = await scan(scanner, draft);
   assert.ok(hasFinding(first));
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${first.id}`);
   await page.locator('#verdict-more').getByRole('link', {name: 'Flatten the sensor'}).click();
@@ -188,7 +100,7 @@ test('the sensor is flattened on the page, and the next scan sees evenly', async
   await picture(page, 'flattened');
   assert.deepEqual(await complaints(page), []);
 
-  const second = await scan(scanner, {...draft, snapshots: 12});
+  const second = await scan(scanner, draft);
   assert.ok(!hasFinding(second));
   await page.getByRole('button', {name: 'Remove the map'}).click();
   await page.getByText('Not done for this sensor.').waitFor();
@@ -243,7 +155,7 @@ test('the page Calibrate is for everyone', async (t) => {
 });
 
 test('a first visit is led from the check to the calibration to the scan', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   const steps = page.locator('#first-steps');
   const state = (name) => steps.locator(`[data-step=${name}]`).getAttribute('data-state');
@@ -257,7 +169,7 @@ test('a first visit is led from the check to the calibration to the scan', async
   assert.deepEqual(await complaints(page), []);
   await steps.getByRole('link', {name: 'Calibrate'}).click();
   await page.getByRole('button', {name: 'Measure with a turn'}).click();
-  await page.locator('#turn-outcome').waitFor({timeout: 600000});
+  await page.locator('#turn-outcome').waitFor();
   await goTo(page, 'Scan');
   await steps.locator('[data-step=scan][data-state=now]').waitFor();
   await scan(scanner, {...draft, snapshots: 4});

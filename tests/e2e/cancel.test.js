@@ -5,10 +5,10 @@ import {test} from 'node:test';
 
 import {chooseQuickScan, goTo, openBrowser, openPage} from './browser.js';
 import {measure} from '../web/mesh_file.js';
-import {ask, lifelike, scanFolders, startScanner} from './scanner.js';
+import {ask, scanFolders, startScanner} from './scanner.js';
 
 test('a scan cancelled half way ends at once, and keeps its snapshots', async (t) => {
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   const snapshots = 200;
   await chooseQuickScan(page, snapshots);

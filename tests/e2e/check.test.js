@@ -3,7 +3,7 @@ import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
 import {openBrowser, openPage, picture} from './browser.js';
-import {ask, lifelike, startScanner} from './scanner.js';
+import {ask, startScanner} from './scanner.js';
 
 const button = (page) => page.getByRole('button', {name: 'Check now'});
 const line = (page, name) => page.locator('.finding').filter({has: page.getByText(name, {exact: true})});
@@ -20,6 +20,7 @@ async function checkByKeyboard(scanner, browser) {
   assert.match(await line(page, 'Depth noise').innerText(), /\d\.\d\d mm on the platform/);
   assert.ok(await button(page).evaluate((one) => one === document.activeElement));
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /** Checks a scanner without a sensor, on one screen. */
@@ -33,6 +34,7 @@ async function checkBrokenOne(scanner, browser, screen) {
   assert.ok(overflow <= 0, `${overflow} pixels too wide`);
   await page.locator('.doctor').scrollIntoViewIfNeeded();
   await picture(page, `check-faults-${screen}`);
+  await page.context().close();
 }
 
 /** For a platform higher than configured, the finding's button starts a calibration turn, which finds its height. */
@@ -70,6 +72,7 @@ async function arriveSlowly(scanner, browser) {
   await button(page).click();
   await line(page, 'Sensor').waitFor();
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 /** During a scan, checks that would disturb it are skipped. */
@@ -81,6 +84,7 @@ async function checkDuringScan(scanner, browser) {
   assert.match(await line(page, 'Sensor').innerText(), /Not known[^]*a scan is running/i);
   assert.equal((await ask(scanner, 'status')).scan.id, id);
   await ask(scanner, `scans/${id}/cancel`, 'POST');
+  await page.context().close();
 }
 
 /** The link downloads the zip file under its name and keeps the page open. */
@@ -96,6 +100,7 @@ async function downloadDiagnostics(scanner, browser) {
   }
   assert.ok(await button(page).isVisible());
   assert.deepEqual(faults, []);
+  await page.context().close();
 }
 
 test('the scanner is checked on the page', async (t) => {
@@ -108,7 +113,7 @@ test('the scanner is checked on the page', async (t) => {
 });
 
 test('a finding has the button that cures it', async (t) => {
-  const scanner = await startScanner(t, lifelike); // a faster turn could end before the browser shows it
+  const scanner = await startScanner(t); // a faster turn could end before the browser shows it
   await measurePlatform(scanner, await openBrowser(t));
 });
 

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {openBrowser, openPage} from './browser.js';
+import {emptyPage, openBrowser, openPage} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 const maxWatchers = 8;
@@ -70,7 +70,7 @@ test('the page shows what it is told without asking, and asks where it is not to
   await page.getByText('Scan ended', {exact: true}).waitFor();
   await page.context().close();
 
-  const deaf = await (await browser.newContext()).newPage();
+  const deaf = await emptyPage(browser);
   await deaf.route('**/api/v1/events', (route) => route.abort());
   await deaf.goto(scanner.url);
   const {id: second} = await ask(scanner, 'scans', 'POST', {snapshots: 200, leaf_size_mm: 4});

@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 import {promisify} from 'node:util';
 
-import {ask, startScanner} from './scanner.js';
+import {ask, quick, startScanner} from './scanner.js';
 
 /** @param {string} language @returns {Promise<string[]>} the examples in it */
 async function examplesIn(language) {
@@ -28,7 +28,7 @@ async function beginOf(folder, name) {
 const nobody = 'http://127.0.0.1:9';
 
 test('those with curl do what they say', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const folder = await mkdtemp(join(tmpdir(), 'octurn-examples-'));
   t.after(() => rm(folder, {recursive: true}));
   const {key} = await ask(scanner, 'keys', 'POST', {name: 'curl', access: 'full'});

@@ -4,7 +4,7 @@ import {test} from 'node:test';
 
 import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
 import {measure} from '../web/mesh_file.js';
-import {lifelike, startScanner} from './scanner.js';
+import {startScanner} from './scanner.js';
 
 /** The number of different colours in the depth picture, and the share of its pixels with a reading. */
 const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
@@ -64,7 +64,7 @@ const noteProgress = (page) => page.evaluate(() => {
 
 test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) => {
   // Slow enough that the page, which asks several times a second, shows more than the beginning and the end.
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   assert.equal((await fetch(scanner.url)).headers.get('Content-Security-Policy').split(';')[0], `default-src 'self'`);
 
@@ -144,7 +144,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
 
 test('the model grows on the page while the platform turns', async (t) => {
   // The scan lasts longer than a busy machine takes to show a second mesh.
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url);
   await chooseQuickScan(page, 200);
   const sizes = new Set();  // bytes of the preview meshes so far

@@ -6,7 +6,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {emptyPage, openBrowser, openPage, picture} from './browser.js';
 import {configWith} from './password.js';
 import {startScanner} from './scanner.js';
 
@@ -23,11 +23,10 @@ async function makeKey(page, name, access) {
 }
 
 test('a key lets a program in until it is revoked', async (t) => {
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '8', '--config', await configWith(t, password)]});
+  const scanner = await startScanner(t, {rig: ['--simulate', '--config', await configWith(t, password)]});
   const status = async (key, path, method = 'GET') => (await fetch(`${scanner.url}${path}`,
       {method, headers: {'Authorization': `Bearer ${key}`, 'Content-Type': 'application/json'}, body: method === 'GET' ? undefined : '{}'})).status;
-  const context = await (await openBrowser(t)).newContext({httpCredentials: {username: 'octurn', password}});
-  const page = await context.newPage();
+  const page = await emptyPage(await openBrowser(t), {password});
   await page.goto(`${scanner.url}#settings`);
 
   await page.getByRole('button', {name: 'Make a key'}).click();
@@ -66,5 +65,6 @@ test('the keys are for everyone', async (t) => {
     assert.ok(await overflow(page) <= 0);
     await picture(page, `keys-${screen}`);
     assert.deepEqual(faults, []);
+    await page.context().close();
   }
 });

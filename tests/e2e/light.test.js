@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {openBrowser} from './browser.js';
-import {scan, startScanner} from './scanner.js';
+import {emptyPage, openBrowser} from './browser.js';
+import {quick, scan, startScanner} from './scanner.js';
 
 const maxForm = 60e3;  // bytes, without the live picture, which never ends
 const maxSight = 400e3;  // bytes until a model is first seen in 3D, with an empty cache
@@ -45,9 +45,9 @@ const sum = (all) => all.reduce((bytes, request) => bytes + request.bytes, 0);
 const table = (all) => all.map((request) => `${rounds(all, request)} ${request.bytes} ${request.url}`).join('\n');
 
 test('the form comes in at most 60 kB and four round trips, the first sight of a model in at most 400 kB, and what is kept only once', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const browser = await openBrowser(t);
-  const page = await (await browser.newContext()).newPage();
+  const page = await emptyPage(browser);
   const {all} = await count(page);
   await page.goto(scanner.url);
   await page.locator('#start').waitFor();
@@ -60,7 +60,7 @@ test('the form comes in at most 60 kB and four round trips, the first sight of a
 
   const {id, model} = await scan(scanner, {snapshots: 8, leaf_size_mm: 1});
   assert.ok(model.bytes > maxSight, `a model that could not be seen so soon: ${model.bytes} bytes`);
-  const other = await (await browser.newContext()).newPage();
+  const other = await emptyPage(browser);
   const {all: seen} = await count(other);
   await other.goto(`${scanner.url}#${id}`);
   await other.waitForFunction(() => performance.getEntriesByType('resource').some(({name, responseEnd}) => name.endsWith('/coarse.stl') && responseEnd > 0));

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {openBrowser, openPage, openSettings, picture} from './browser.js';
-import {lifelike, startScanner} from './scanner.js';
+import {startScanner} from './scanner.js';
 
 /** The share of the live picture's pixels that are coloured, not grey. */
 const colouredShare = (page) => page.locator('#depth').evaluate((canvas) => {
@@ -18,7 +18,7 @@ const waitForHint = (page, code) => page.locator(`#live-hint[data-code=${code}]`
 
 for (const screen of ['desktop', 'phone']) {
   test(`on a ${screen} the live picture colours what will be scanned, and says what would spoil it`, async (t) => {
-    const scanner = await startScanner(t, lifelike);
+    const scanner = await startScanner(t);
     const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen});
     await waitForHint(page, 'good');
     assert.match(await page.locator('#live-hint').innerText(), /Ready to scan\s+Seen: \d+ cm wide, \d+ cm high, \d+ cm away\./);

@@ -7,7 +7,7 @@ import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
-import {ask, scan, startScanner} from './scanner.js';
+import {ask, quick, scan, startScanner} from './scanner.js';
 
 /** Validates the scanner's responses against its OpenAPI description. */
 class Answers {
@@ -29,7 +29,7 @@ class Answers {
 }
 
 test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const description = await ask(scanner, 'openapi.json');
   const validated = await new Validator().validate(description);
   assert.ok(validated.valid, JSON.stringify(validated.errors));
@@ -64,7 +64,7 @@ test('it is OpenAPI 3.1, and what the scanner answers is as it says', async (t) 
 });
 
 test('what the disk has room for is counted in scans as they were, not as they could be', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   await scan(scanner, {snapshots: 4, leaf_size_mm: 4});
   const {findings} = await ask(scanner, 'doctor');
   const room = findings.find(({check}) => check === 'disk').measured;
@@ -88,5 +88,6 @@ test('a page shows it', async (t) => {
     assert.ok(await overflow(page) <= 0);
     await picture(page, `interface-${screen}`);
     assert.deepEqual(faults, []);
+    await page.context().close();
   }
 });

@@ -9,7 +9,7 @@ import {createServer} from 'node:http';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
-import {ask, scan, scanFolders, startScanner} from './scanner.js';
+import {ask, quick, scan, scanFolders, startScanner} from './scanner.js';
 
 /**
  * A server on loopback for a test.
@@ -105,7 +105,7 @@ const prusalink = (takes) => (request) => {
 };
 
 test('a model goes to each kind of printer, whole, and nothing is printed', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
   await ask(scanner, `scans/${id}`, 'PATCH', {name: 'Ölkanne 1'});
   const [folder] = await scanFolders(scanner);
@@ -142,7 +142,7 @@ test('a model goes to each kind of printer, whole, and nothing is printed', asyn
 });
 
 test('a printer that does not take a model says why, and what to do', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
   const plain = await serve(t, octoprint(/\.gcode$/));
   const {url} = plain;
@@ -170,7 +170,7 @@ test('a printer that does not take a model says why, and what to do', async (t) 
 });
 
 test('a webhook is told what happens, and again if it did not listen', async (t) => {
-  const scanner = await startScanner(t);
+  const scanner = await startScanner(t, quick);
   let isListening = true;
   const hub = await serve(t, () => ({status: isListening ? 204 : 500}));
   const told = () => hub.received.filter(({status}) => status === 204).map(({body}) => JSON.parse(body));

@@ -1,14 +1,13 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {openBrowser} from './browser.js';
+import {emptyPage, openBrowser} from './browser.js';
 import {configWith} from './password.js';
 import {startScanner} from './scanner.js';
 
 /** Opens the page in a browser with this password. */
 async function visit(browser, url, password) {
-  const context = await browser.newContext({httpCredentials: {username: 'octurn', password}});
-  const page = await context.newPage();
+  const page = await emptyPage(browser, {password});
   const response = await page.goto(url);
   return {page, status: response?.status()};
 }
@@ -16,7 +15,7 @@ async function visit(browser, url, password) {
 test('the page opens with its password alone', async (t) => {
   const password = 'open sesame: ä "quoted"';
   const config = await configWith(t, password);
-  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '8', '--config', config]});
+  const scanner = await startScanner(t, {rig: ['--simulate', '--config', config]});
   const browser = await openBrowser(t);
 
   assert.equal((await fetch(scanner.url)).status, 401);

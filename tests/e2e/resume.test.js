@@ -5,10 +5,10 @@ import {test} from 'node:test';
 import {promisify} from 'node:util';
 
 import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
-import {ask, lifelike, startScanner} from './scanner.js';
+import {ask, startScanner} from './scanner.js';
 
 test('a scan that was interrupted by the scanner\'s end is resumed on the page, and finished', async (t) => {
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
   const snapshots = 8;
   await chooseQuickScan(page, snapshots);
@@ -29,7 +29,7 @@ test('a scan that was interrupted by the scanner\'s end is resumed on the page, 
 });
 
 test('a scan is paused and resumed, ended and resumed, by a tap each', async (t) => {
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
   await chooseQuickScan(page, 200);
   await page.getByRole('button', {name: 'Start scan'}).click();

@@ -3,7 +3,7 @@ import {basename} from 'node:path';
 import {test} from 'node:test';
 
 import {goTo, openBrowser, openPage, picture} from './browser.js';
-import {ask, lifelike, scan, scanFolders, startScanner} from './scanner.js';
+import {ask, scan, scanFolders, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
 
@@ -97,7 +97,7 @@ test('what somebody else does to the scans is seen without a reload, and a refus
 });
 
 test('a scan that somebody else starts is followed, and can be looked away from', async (t) => {
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const earlier = await scan(scanner, draft);
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await goTo(page, 'Library');

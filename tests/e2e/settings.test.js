@@ -4,7 +4,7 @@ import {join} from 'node:path';
 import {test} from 'node:test';
 
 import {goTo, openBrowser, openPage, picture} from './browser.js';
-import {ask, lifelike, startScanner} from './scanner.js';
+import {ask, startScanner} from './scanner.js';
 
 async function openSettings(browser, scanner, options) {
   await Promise.all(browser.contexts().map((context) => context.close()));  // the number of event streams is limited
@@ -147,7 +147,7 @@ async function holdAnswers(page, method) {
 }
 
 test('the turntable gets one command at a time, however late the answers come', async (t) => {
-  const scanner = await startScanner(t, lifelike);  // a test of the turntable lasts longer than a busy browser takes
+  const scanner = await startScanner(t);  // a test of the turntable lasts longer than a busy browser takes
   const {page} = await openPage(await openBrowser(t, {hasWebGl: false}), scanner.url);
   const answered = (method) => page.waitForResponse((response) =>
     response.url().endsWith('/turntable') && response.request().method() === method);

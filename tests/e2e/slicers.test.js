@@ -5,33 +5,20 @@ import {execFile} from 'node:child_process';
 import {readFile, writeFile} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
-import {setTimeout as wait} from 'node:timers/promises';
 import {promisify} from 'node:util';
 
 import {curaSettings} from './cura_settings.js';
-import {startScanner} from './scanner.js';
+import {scan, startScanner} from './scanner.js';
 
 const run = promisify(execFile);
 const everyEdgeMatched = /Total disconnected facets\s*:\s*0\s+0/;
 const mended = ['Degenerate facets', 'Edges fixed', 'Facets removed', 'Facets added', 'Facets reversed', 'Backwards edges', 'Normals fixed'];
 
-/** Scans over the API, and resolves to the model's file. */
-async function scan(scanner, snapshots, method) {
-  const api = new URL('/api/v1/', scanner.url);
-  const started = await fetch(new URL('scans', api), {
-    method: 'POST',
-    headers: {'Content-Type': 'application/json'},
-    body: JSON.stringify({snapshots, method, filter: 'basic'}),
-  });
-  assert.equal(started.status, 202);
-  const here = new URL(started.headers.get('Location'), scanner.url);
-  let state = 'running';
-  for (let polls = 0; state === 'running' && polls < 400; ++polls) {
-    await wait(100);
-    ({state} = await (await fetch(here)).json());
-  }
+/** Scans, and resolves to the model's file. */
+async function modelOf(scanner, snapshots, method) {
+  const {state, model} = await scan(scanner, {snapshots, method, filter: 'basic'});
   assert.equal(state, 'finished');
-  const stl = await fetch(`${here}/Scan.stl`);
+  const stl = await fetch(new URL(model.url, scanner.url));
   assert.equal(stl.headers.get('Content-Type'), 'model/stl');
   const file = join(scanner.data, `${snapshots}.stl`);
   await writeFile(file, Buffer.from(await stl.arrayBuffer()));
@@ -62,12 +49,12 @@ const simulated = {rig: ['--simulate', '--simulate-speed', '30']};
 
 for (const [method, snapshots] of [['intersection', 8], ['intersection', 36], ['solid', 8], ['solid', 36]]) {
   test(`admesh and prusa-slicer accept a model by ${method} of ${snapshots} snapshots without repair`, async (t) => {
-    await expectNothingToMend(await scan(await startScanner(t, simulated), snapshots, method));
+    await expectNothingToMend(await modelOf(await startScanner(t, simulated), snapshots, method));
   });
 }
 
 test('prusa-slicer and CuraEngine slice a solid model without complaint', async (t) => {
-  const file = await scan(await startScanner(t, simulated), 8, 'solid');
+  const file = await modelOf(await startScanner(t, simulated), 8, 'solid');
   const gcode = `${file}.gcode`;
   const prusa = await slice('prusa-slicer',
       ['--export-gcode', '--layer-height', '0.3', '--perimeters', '1', '--fill-density', '0', '-o', gcode, file], gcode);
@@ -80,7 +67,7 @@ test('prusa-slicer and CuraEngine slice a solid model without complaint', async 
 });
 
 test('CuraEngine complains of a model that lacks a triangle', async (t) => {
-  const file = await scan(await startScanner(t, simulated), 8, 'solid');
+  const file = await modelOf(await startScanner(t, simulated), 8, 'solid');
   const stl = await readFile(file);
   stl.writeUInt32LE(stl.readUInt32LE(80) - 1, 80);
   await writeFile(file, stl.subarray(0, stl.length - 50));

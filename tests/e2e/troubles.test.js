@@ -8,7 +8,7 @@ import {promisify} from 'node:util';
 
 import {testedScreens, walk} from './access.js';
 import {goTo, openBrowser} from './browser.js';
-import {ask, lifelike, startScanner} from './scanner.js';
+import {ask, startScanner} from './scanner.js';
 
 const longScan = {snapshots: 200, leaf_size_mm: 8, filter: 'basic'};
 
@@ -71,14 +71,14 @@ const withoutSensor = {
 
 test('a page that tells of trouble is for everyone', async (t) => {
   const browser = await openBrowser(t);
-  const scanner = await startScanner(t, lifelike);
+  const scanner = await startScanner(t);
   const onePicture = join(scanner.data, 'one-picture');
   await promisify(execFile)(process.env.OCTURN_PROGRAM,
       ['record', '--simulate', '--simulate-speed', '20', '-o', onePicture, '--snapshots', '1', '--frames', '1']);
   const blind = await startScanner(t, {rig: ['--simulate', '--sensor', '/nowhere.oni']});
   for (const [screen, colorScheme] of testedScreens) {
     await t.test(`stopped scans, ${screen}, ${colorScheme}`, () => walk(browser, scanner.url, stopped(scanner), screen, colorScheme));
-    const failed = await startScanner(t, {rig: [...lifelike.rig, '--sensor', onePicture]});
+    const failed = await startScanner(t, {rig: ['--simulate', '--sensor', onePicture]});
     await t.test(`a sensor that fails, ${screen}, ${colorScheme}`, () => walk(browser, failed.url, failing(failed), screen, colorScheme));
     await t.test(`no sensor, ${screen}, ${colorScheme}`, () => walk(browser, blind.url, withoutSensor, screen, colorScheme));
   }

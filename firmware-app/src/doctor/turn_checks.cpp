@@ -88,13 +88,12 @@ TurnFinding check_play(const TurnMeasurement& turn, const StepperSettings& setti
 
 TurnFinding check_return(double return_deg) {
   const std::string measured = degrees(std::abs(return_deg)) + " from where it began";
-  return {.finding =
-              std::abs(return_deg) <= far_off_deg
-                  ? back.ok(measured)
-                  : back.fault(measured,
-                               "The motor loses steps: lower start_speed_deg_per_s and "
-                               "acceleration_deg_per_s2, give it more current, and see that "
-                               "nothing rubs.")};
+  return {.finding = std::abs(return_deg) <= far_off_deg
+                         ? back.ok(measured)
+                         : back.fault(measured,
+                                      "The motor loses steps: lower start_speed_deg_per_s and "
+                                      "acceleration_deg_per_s2, give it more current, and see that "
+                                      "nothing rubs.")};
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ async function readOnPhone(scanner, browser, finished, locale) {
   for (const place of ['', 'library', 'scanner', 'calibrate', 'settings', finished.id]) {
     await page.goto(`${scanner.url}#${place}`);
     await awaitPlace(page, place);
-    await page.locator(place === 'settings' ? '#cards' : place === finished.id ? '#download' : `main:not([hidden]) :is(h1, h2)`).first().waitFor();
+    await page.locator(place === 'settings' ? '#cards' : place === finished.id ? '#download' : 'main:not([hidden]) :is(h1, h2):visible').first().waitFor();
     await page.evaluate(() => document.querySelectorAll('main:not([hidden]) details').forEach((details) => { details.open = true; }));
     assert.ok(await overflow(page) <= 0, `${place} is ${await overflow(page)} pixels too wide in ${locale}`);
     assert.deepEqual(await badWords(page), [], `${place} in ${locale}`);

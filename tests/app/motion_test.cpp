@@ -6,13 +6,11 @@
 #include <numbers>
 #include <vector>
 
+#include "app/quick_motion.hpp"
 #include "turntable/stepper_settings.hpp"
 
 namespace octurn {
 namespace {
-
-constexpr Motion quick = {
-    .start_steps_per_second = 200, .top_steps_per_second = 800, .ramp_steps_per_second2 = 2000};
 
 std::vector<double> step_times(const Motion& motion, int steps) {
   std::vector<double> times;
@@ -25,7 +23,7 @@ std::vector<double> step_times(const Motion& motion, int steps) {
 
 TEST(SpeedProfile, TakesTheTimeOfEvenAccelerationAndItsMirrorImage) {
   // From 200 to 800 steps/s at 2000 steps/s^2: 150 steps in 0.3 s, twice; 500 steps at 800 steps/s.
-  EXPECT_NEAR(move_time(quick, 800), 0.3 + 500.0 / 800 + 0.3, 1e-9);
+  EXPECT_NEAR(move_time(quick_motion, 800), 0.3 + 500.0 / 800 + 0.3, 1e-9);
 }
 
 TEST(SpeedProfile, TurnsAShortMoveRoundInTheMiddle) {
@@ -49,7 +47,7 @@ TEST(SpeedProfile, IsNeverFasterThanTheTopSpeed) {
 }
 
 TEST(SpeedProfile, GainsAgainWhatItLost) {
-  SpeedProfile profile(quick, 800);
+  SpeedProfile profile(quick_motion, 800);
   for (int i = 0; i < 300; ++i) {
     profile.next_step();
   }
@@ -65,7 +63,7 @@ TEST(SpeedProfile, GainsAgainWhatItLost) {
 }
 
 TEST(SpeedProfile, StartsAgainAfterAStandstill) {
-  SpeedProfile profile(quick, 800);
+  SpeedProfile profile(quick_motion, 800);
   const double first = profile.next_step();
   for (int i = 0; i < 300; ++i) {
     profile.next_step();
@@ -134,11 +132,11 @@ TEST(SpeedProfile, LosesNothingWhereAMoveIsStopped) {
 }
 
 TEST(SpeedProfile, LosesStepsWhereItIsTooQuickForThePlatform) {
-  EXPECT_GT(std::abs(LoadedMotor{}.lost_deg(quick, 22)), 7) << "a period of the field";
+  EXPECT_GT(std::abs(LoadedMotor{}.lost_deg(quick_motion, 22)), 7) << "a period of the field";
 }
 
 TEST(SpeedProfile, BrakesAsItGainedSpeed) {
-  SpeedProfile profile(quick, 800);
+  SpeedProfile profile(quick_motion, 800);
   double speed = 0;
   for (int i = 0; i < 100; ++i) {
     speed = 1 / profile.next_step();

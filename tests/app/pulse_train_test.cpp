@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "app/quick_motion.hpp"
+
 namespace octurn {
 namespace {
 
@@ -48,11 +50,8 @@ PulseChanges changes_of(const Motion& motion, int steps,
 
 Duration punctual(std::size_t) { return 0s; }
 
-constexpr Motion quick = {
-    .start_steps_per_second = 200, .top_steps_per_second = 800, .ramp_steps_per_second2 = 2000};
-
 TEST(PulseTrain, RaisesTheLineOnceForEachStepAndLeavesItLow) {
-  const PulseChanges line = changes_of(quick, 800, punctual);
+  const PulseChanges line = changes_of(quick_motion, 800, punctual);
   ASSERT_EQ(line.changes.size(), 1600U);
   for (std::size_t i = 0; i < 1600; ++i) {
     EXPECT_EQ(line.changes[i].high, i % 2 == 0);
@@ -64,7 +63,7 @@ TEST(PulseTrain, HasNothingToDoForNoSteps) {
 }
 
 TEST(PulseTrain, TakesTheTimeOfItsRamps) {
-  const PulseChanges line = changes_of(quick, 800, punctual);
+  const PulseChanges line = changes_of(quick_motion, 800, punctual);
   // 0.3 s of acceleration, 500 steps at 800 steps/s, 0.3 s of deceleration; each step is rounded up
   // to a nanosecond.
   const Duration taken = line.rises().back() - start;
@@ -93,8 +92,8 @@ TEST(PulseTrain, NeverCatchesUp) {
     delayed += delay;
     return delay;
   };
-  const std::vector<Time> rises = changes_of(quick, 800, delays).rises();
-  const std::vector<Time> undelayed = changes_of(quick, 800, punctual).rises();
+  const std::vector<Time> rises = changes_of(quick_motion, 800, delays).rises();
+  const std::vector<Time> undelayed = changes_of(quick_motion, 800, punctual).rises();
 
   ASSERT_EQ(rises.size(), undelayed.size());
   ASSERT_GT(delayed, 1s);  // there was a delay to catch up with
@@ -106,7 +105,7 @@ TEST(PulseTrain, NeverCatchesUp) {
 TEST(PulseTrain, StartsSlowlyAgainAfterAStandstill) {
   // Pulse 400, at full speed, is delayed by more than a step takes at the starting speed.
   const auto delay = [](std::size_t change) { return change == 800 ? Duration(50ms) : 0ms; };
-  const std::vector<Time> rises = changes_of(quick, 800, delay).rises();
+  const std::vector<Time> rises = changes_of(quick_motion, 800, delay).rises();
   const Duration first = rises[0] - start;
   EXPECT_NEAR(static_cast<double>((rises[401] - rises[400]).count()),
               static_cast<double>(first.count()), 1);  // ns, rounding
@@ -115,7 +114,7 @@ TEST(PulseTrain, StartsSlowlyAgainAfterAStandstill) {
 
 TEST(PulseTrain, StartsSlowlyAgainAfterALevelThatWasLate) {
   const auto delay = [](std::size_t change) { return change == 801 ? Duration(50ms) : 0ms; };
-  const PulseChanges line = changes_of(quick, 800, delay);
+  const PulseChanges line = changes_of(quick_motion, 800, delay);
   const std::vector<Time> rises = line.rises();
   EXPECT_GT(rises[402] - rises[401], 4ms);  // a step takes 5 ms at first, 1.25 ms at full speed
   EXPECT_EQ(line.late.count, 1);
@@ -125,7 +124,7 @@ TEST(PulseTrain, CountsLatePulsesAndTellsTheWorst) {
   const auto delay = [](std::size_t change) {
     return change == 100 ? Duration(2ms) : change == 700 ? Duration(7ms) : Duration(100us);
   };
-  const LatePulses late = changes_of(quick, 800, delay).late;
+  const LatePulses late = changes_of(quick_motion, 800, delay).late;
   EXPECT_EQ(late.count, 2);
   EXPECT_EQ(late.longest, 7ms);
 }

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "app/quick_motion.hpp"
+
 namespace octurn {
 namespace {
 
@@ -40,10 +42,9 @@ TEST(SimulatedTurntable, TurnsToWholeStepsOfATurnOf800) {
 }
 
 TEST(SimulatedTurntable, TellsItsAngleAllTheWay) {
-  const auto told = steps_told(200, {.start_steps_per_second = 200,
-                                     .top_steps_per_second = 800,
-                                     .ramp_steps_per_second2 = 2000,
-                                     .settle_time = milliseconds(0)});
+  Motion motion = quick_motion;
+  motion.settle_time = milliseconds(0);
+  const auto told = steps_told(200, motion);
 
   // From 200 to 800 steps/s at 2000 steps/s^2 and back: 100 steps in 0.2317 s, twice.
   ASSERT_EQ(told.size(), 48U);  // 47 during the move's 0.4633 s, and one at its end

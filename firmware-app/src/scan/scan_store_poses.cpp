@@ -45,6 +45,12 @@ int build_before(const Job& job, const std::string& pose) {
   return first->replaced;
 }
 
+/// Whether the chosen build merges the pose.
+bool has_chosen_pose(const Job& job, const std::string& pose) {
+  const Build* const chosen = find_build(job, job.builds.chosen);
+  return chosen != nullptr && has_pose(*chosen, pose);
+}
+
 }  // namespace
 
 std::vector<Job> ScanStore::poses(std::string_view id) const {
@@ -76,8 +82,7 @@ fs::path ScanStore::merged_scan(std::string_view id, const std::vector<std::stri
 
 void ScanStore::withdraw_pose(std::string_view id, const std::string& pose) {
   const Job job = get(id);
-  if (const Build* const chosen = find_build(job, job.builds.chosen);
-      chosen != nullptr && has_pose(*chosen, pose)) {
+  if (has_chosen_pose(job, pose)) {
     choose_build(id, build_before(job, pose));
   }
   for (const Build& build : job.builds.all) {
@@ -91,8 +96,7 @@ void ScanStore::withdraw_pose(std::string_view id, const std::string& pose) {
 /// interrupted.
 void ScanStore::discard_pose(const std::string& id) {
   const Job first = get(get(id).pose_of.value().scan);
-  const Build* const chosen = find_build(first, first.builds.chosen);
-  const bool is_chosen = chosen != nullptr && has_pose(*chosen, id);
+  const bool is_chosen = has_chosen_pose(first, id);
   const Job pose = update(
       id, [&](Job& job) { job.pose_of->removed_build = is_chosen ? first.builds.chosen : 0; });
   if (is_chosen) {

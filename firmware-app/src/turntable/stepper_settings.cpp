@@ -164,10 +164,10 @@ std::vector<Field> fields(StepperSettings& settings) {
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
   check_lines(keys, settings);
   const int steps = to_motion(settings).steps_per_turn;
-  read_speeds_in_steps(keys, settings, steps);
   if (steps < min_steps) {
     keys.refuse("gear_ratio", settings.gear_ratio, "such that a turn has 4 steps or more");
   }
+  read_speeds_in_steps(keys, settings, steps);
   if (settings.take_up_steps > steps) {
     keys.refuse("take_up_steps", settings.take_up_steps,
                 "a whole number from 0 to " + std::to_string(steps) + ", a turn");

@@ -20,9 +20,8 @@ using IsAllowedName = std::function<bool(std::string_view name)>;
 
 /// Checks the archive's list of files without unpacking any. Uses 70 KB of stack, too much for a
 /// thread of the HTTP server.
-/// @throws Error "bad-request"  if the archive is damaged, lists more files or bytes than the
-/// limits
-///               allow, or has a name twice or one that is not allowed
+/// @throws Error "bad-request"  if the archive is damaged, exceeds a limit, or has a name twice or
+///               one that is not allowed
 void check_zip(const std::filesystem::path& archive, const IsAllowedName& is_allowed,
                const ZipLimits& limits = {});
 

@@ -22,9 +22,10 @@ constexpr int min_valley = 5 * gain;  // that separates two lines; bright ones n
 constexpr int valley_share = 5;       // of a peak, the same: a fifth
 constexpr int light_share = 20;       // of a peak: a line's light ends at a twentieth
 
-// Around a line is the halo of what it lights and of the lens, up to half of its peak and tens of
-// pixels wide. A line's own light ends a pixel and this multiple of its width at half of the peak
-// outside of that width. A line that shines on there has a halo: it lies below a straight baseline.
+// A real line has a halo, from the material and the lens: up to half of the peak, tens of pixels
+// wide. The line itself reaches beyond its full width at half maximum (FWHM) by a pixel plus this
+// multiple of the FWHM, on each side. Light beyond that is halo, and a straight baseline removes
+// it.
 constexpr double skirt = 0.6;
 
 constexpr int max_half_width = 40;  // pixels: no line is wider

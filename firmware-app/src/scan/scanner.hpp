@@ -274,6 +274,7 @@ class Scanner {
  private:
   bool is_building(std::string_view id) const;
   void expect_idle(std::string_view id) const;
+  void expect_not_building(std::string_view id) const;
   void expect_resumable(const Job& job) const;
   void expect_last_pose(const Job& pose) const;
   void expect_solved_lens() const;

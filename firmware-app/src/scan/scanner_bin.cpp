@@ -74,8 +74,8 @@ void Scanner::remove(std::string_view id) {
 void Scanner::restore(std::string_view id) {
   const std::lock_guard lock(scans_);
   const auto scan = store_.bin().find(id);
-  if (scan && scan->job.pose_of && is_building(scan->job.pose_of->scan)) {
-    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  if (scan && scan->job.pose_of) {
+    expect_not_building(scan->job.pose_of->scan);
   }
   store_.restore(id);
 }
@@ -85,6 +85,11 @@ void Scanner::expect_idle(std::string_view id) const {
   if (slot_.has_scan(id)) {
     throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
   }
+  expect_not_building(id);
+}
+
+/// @throws Error "busy"  if a model of the scan is being built
+void Scanner::expect_not_building(std::string_view id) const {
   if (is_building(id)) {
     throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
   }

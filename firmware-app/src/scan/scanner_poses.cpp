@@ -92,11 +92,8 @@ void Scanner::remove_pose(std::string_view id, int number) {
 
 /// `scans_` is held.
 void Scanner::remove_pose(const Job& pose) {
-  const std::string& first = pose.pose_of->scan;
   expect_idle(pose.id);
-  if (is_building(first)) {
-    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
-  }
+  expect_not_building(pose.pose_of->scan);
   expect_last_pose(pose);
   store_.discard_pose(pose.id);
 }

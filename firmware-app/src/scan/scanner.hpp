@@ -255,7 +255,6 @@ class Scanner {
   /// @param build  number of the model's build; 0: the scan's own model
   /// @return false while a scan or a build runs, or if another request takes too long
   /// @throws Error  as `octurn::colour_model` and `scan_of_model`; "busy"  if a scan starts
-  /// meanwhile
   bool colour_model(const Job& job, int build);
 
   /// Has the worker call `check` with the rig, between scans, and waits for it. A scan that starts

@@ -7,8 +7,8 @@
 #include "app/leave_behind.hpp"
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/job_file.hpp"
-#include "scan/scan_store.hpp"
+#include "store/job_file.hpp"
+#include "store/scan_store.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

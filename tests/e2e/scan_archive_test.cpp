@@ -1,6 +1,6 @@
 // Export of a scan as an archive, and its import by another Octurn.
 
-#include "scan/scan_archive.hpp"
+#include "store/scan_archive.hpp"
 
 #include <gtest/gtest.h>
 

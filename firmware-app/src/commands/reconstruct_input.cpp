@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "calibration/solve_pose.hpp"
+#include "capture/last_look.hpp"
 #include "commands/options.hpp"
 #include "process_memory.hpp"
-#include "scan/last_look.hpp"
-#include "scan/solve_pose.hpp"
 #include "settings/field.hpp"
 
 namespace octurn {

@@ -11,7 +11,7 @@
 #include "http/http_server.hpp"
 #include "log.hpp"
 #include "process_memory.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "service_manager.hpp"
 #include "signal_stop.hpp"

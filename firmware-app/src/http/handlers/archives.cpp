@@ -14,7 +14,7 @@
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/error.hpp"
-#include "scan/scan_archive.hpp"
+#include "store/scan_archive.hpp"
 
 namespace octurn {
 namespace {

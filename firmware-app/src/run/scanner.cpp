@@ -1,18 +1,33 @@
 #include "run/scanner.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <future>
+#include <mutex>
+#include <string>
 #include <system_error>
 #include <utility>
 
+#include "build/colour_model.hpp"
+#include "build/merged_model.hpp"
+#include "calibration/lens_files.hpp"
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "run/rebuild.hpp"
 #include "run/worker.hpp"
+#include "store/build_file.hpp"
+#include "store/data_folder.hpp"
+#include "store/scan_archive.hpp"
+#include "utc.hpp"
 
 namespace octurn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
+namespace fs = std::filesystem;
 
 constexpr auto camera_patience =
     15s;  // a sensor takes 1 to 2 s to its first frame, on a busy machine more
@@ -24,6 +39,58 @@ constexpr auto max_silence = 30s;     // of the worker: ten times the time that 
 RigOptions at_angle(RigOptions rig, double angle_deg) {
   rig.platform_angle_deg = angle_deg;
   return rig;
+}
+
+/// Whether a build merged a later pose with that one.
+bool is_built_on(const Job& first, const std::string& pose) {
+  return std::ranges::any_of(first.builds.all, [&](const Build& build) {
+    return has_pose(build, pose) && build.poses.back() != pose;
+  });
+}
+
+constexpr auto model_patience = std::chrono::seconds(5);  // maximum wait for another request
+
+/// Whether a scan has all its snapshots, but no model yet.
+bool waits_for_model(const Job& job) {
+  return job.state == JobState::interrupted && job.snapshots_done == job.settings.snapshots;
+}
+
+constexpr std::uint64_t import_factor = 3;  // the archive, its files, and their model
+constexpr const char* scan_from_file = "a scan from a file";
+
+std::mutex checking;  // one archive at a time: a check takes up to 100 MB of memory
+
+/// Checks that room can be made, without making it.
+/// @throws Error "disk-full"  if the free space and the bin's do not suffice
+void expect_possible_room(const ScanStore& store, std::uint64_t needed) {
+  const std::uint64_t free = store.free_bytes();
+  if (free < needed && store.bin().oldest(needed - free).empty()) {
+    expect_room(store.data(), free, needed, scan_from_file);
+  }
+}
+
+/// Receives an archive, checks it, and adds its scan to the store.
+Job take_archive(ScanStore& store, const ArchiveSource& archive, const fs::path& folder,
+                 const std::stop_token& stop) {
+  const fs::path file = folder / ".scan.zip";
+  receive_archive(
+      archive, file, [&](std::uint64_t bytes) { store.make_room(bytes, scan_from_file); }, stop);
+  const std::lock_guard lock(checking);
+  throw_if_stopped(stop);
+  const auto unpack = [&] {
+    check_archive_files(file);
+    store.make_room((import_factor - 1) * archive.bytes, scan_from_file);
+    read_scan_archive(file, folder, stop);
+  };
+  std::async(std::launch::async, unpack).get();  // on a larger stack than a server thread's
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return store.adopt(folder);
+}
+
+void remove_import(const fs::path& folder) {
+  std::error_code ignored;  // the next start removes leftovers
+  fs::remove_all(folder, ignored);
 }
 
 }  // namespace
@@ -283,5 +350,292 @@ bool Scanner::check_devices(std::function<void(Rig& rig, const std::stop_token& 
 }
 
 bool Scanner::is_alive() const { return heartbeat_.is_alive(max_silence); }
+
+std::optional<Job> Scanner::start_pose(std::string_view id, const ScanSettings& settings) {
+  const std::lock_guard lock(scans_);
+  const Job first = store_.get(id);
+  if (first.pose_of) {
+    throw Error(ErrorCode::no_model, "this scan is itself another pose of " + first.pose_of->scan,
+                "Add the pose to that one.");
+  }
+  if (first.state != JobState::finished) {
+    throw Error(ErrorCode::no_model, "this scan is " + std::string(to_string(first.state)),
+                "Only a finished one gets another pose.");
+  }
+  if (slot_.has_scan()) {
+    return std::nullopt;
+  }
+  const Job job = store_.create(settings, PoseOf{.scan = first.id});
+  return hand_over(job, ScanCommand{job});
+}
+
+std::vector<Job> Scanner::poses(std::string_view id) const {
+  std::vector<Job> poses = store_.poses(id);
+  if (const std::optional<Job> now = running()) {
+    std::ranges::replace_if(
+        poses, [&](const Job& pose) { return pose.id == now->id; }, *now);
+  }
+  return poses;
+}
+
+Job Scanner::find_pose(std::string_view id, int number) const {
+  store_.get(id);  // throws if there is no such scan
+  const std::vector<Job> poses = store_.poses(id);
+  if (number < 1 || number > static_cast<int>(poses.size())) {
+    throw Error(ErrorCode::not_found, "this scan has no other pose " + std::to_string(number),
+                "GET /api/v1/scans/ID/poses lists its poses.");
+  }
+  return poses[static_cast<std::size_t>(number) - 1];
+}
+
+void Scanner::expect_last_pose(const Job& pose) const {
+  if (is_built_on(store_.get(pose.pose_of->scan), pose.id)) {
+    throw Error(ErrorCode::busy, "a later pose was merged with this one",
+                "Take the last pose back first.");
+  }
+}
+
+std::optional<BuildRun> Scanner::choose_pose(std::string_view id, int number,
+                                             const PoseChoice& choice) {
+  const std::lock_guard lock(scans_);
+  const Job pose = find_pose(id, number);
+  expect_idle(pose.id);
+  if (pose.state != JobState::finished) {
+    throw Error(ErrorCode::no_model, "this pose is " + std::string(to_string(pose.state)),
+                "Only one that was scanned can be joined.");
+  }
+  expect_last_pose(pose);
+  const Job first = store_.get(id);
+  int snapshots = first.snapshots_done + pose.snapshots_done;
+  for (const std::string& other : merged_poses(first, pose.id)) {
+    snapshots += store_.get(other).snapshots_done;
+  }
+  return offer_build(
+      {.run = {.scan = first.id, .snapshots = snapshots, .settings = merged_settings(first, pose)},
+       .becomes_model = true,
+       .pose = choice});
+}
+
+void Scanner::remove_pose(std::string_view id, int number) {
+  const std::lock_guard lock(scans_);
+  remove_pose(find_pose(id, number));
+}
+
+/// `scans_` is held.
+void Scanner::remove_pose(const Job& pose) {
+  expect_idle(pose.id);
+  expect_not_building(pose.pose_of->scan);
+  expect_last_pose(pose);
+  store_.discard_pose(pose.id);
+}
+
+void Scanner::remove_build(std::string_view id, int number) {
+  std::error_code unreadable;
+  const auto folder = store_.model_file(id, number).parent_path();
+  if (number > 0 && std::filesystem::exists(folder / merged_folder, unreadable)) {
+    throw Error(ErrorCode::busy, "this model belongs to a pose of the scan",
+                "It goes with the pose.");
+  }
+  store_.remove_build(id, number);
+}
+
+std::optional<BuildRun> Scanner::build(std::string_view id, const BuildOrder& order) {
+  const std::lock_guard lock(scans_);
+  const Job job = store_.get(id);
+  if (job.state == JobState::running ||
+      (is_resumable(job.state) && !(slurm_ && waits_for_model(job)))) {
+    throw Error(ErrorCode::busy, "this scan has not ended", "Wait for its end, or end it.");
+  }
+  if (job.snapshots_done == 0) {
+    throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
+  }
+  BuildRun run{.scan = job.id, .snapshots = job.snapshots_done, .settings = order.settings};
+  return slurm_ ? slurm_->add(std::move(run), order.becomes_model)
+                : offer_build({.run = std::move(run), .becomes_model = order.becomes_model});
+}
+
+/// `scans_` is held.
+std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
+  store_.make_room(max_model_bytes(), "a model");
+  if (slot_.is_busy() || slot_.has_ended()) {
+    return std::nullopt;
+  }
+  BuildRun& run = command.run;
+  run.number = store_.next_build(run.scan);
+  run.created = utc_text(std::chrono::system_clock::now(), rfc3339);
+  board_.set_build_run(run);
+  if (!slot_.offer_build(command)) {
+    board_.drop_waiting_build({});  // the scanner is ending
+    return std::nullopt;
+  }
+  return run;
+}
+
+bool Scanner::cancel_build(std::string_view id, int number) {
+  if (slurm_ && slurm_->cancel(id, number)) {
+    return true;
+  }
+  const std::lock_guard lock(scans_);
+  if (!slot_.has_build(id, number)) {
+    return false;
+  }
+  if (slot_.stop_build()) {
+    board_.drop_waiting_build({});
+  }
+  return true;
+}
+
+bool Scanner::is_building(std::string_view id) const {
+  return slot_.has_build(id) || (slurm_ && slurm_->is_building(id));
+}
+
+std::vector<BuildRun> Scanner::build_runs() const {
+  std::vector<BuildRun> runs;
+  if (const auto run = build_run(); *run) {
+    runs.push_back(**run);
+  }
+  if (const auto elsewhere = slurm_runs()) {
+    runs.insert(runs.end(), elsewhere->begin(), elsewhere->end());
+  }
+  return runs;
+}
+
+std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
+                                                   const ReconstructOptions& options) {
+  return make_for_request([folder = store_.folder(id), options](ModelPipe& pipe) {
+    make_model(folder, options, pipe);
+  });
+}
+
+bool Scanner::colour_model(const Job& job, int build) {
+  const auto make = [job, build, this](ModelPipe& pipe) {
+    octurn::colour_model(store_.model_file(job.id, build), scan_of_model(store_, job, build),
+                         limits_.memory_bytes, pipe.stop().get_token());
+    pipe.set_length(0);
+    pipe.close();
+  };
+  return make_for_request(make) != nullptr;
+}
+
+/// @return null while a scan or a build runs, or if another request takes too long
+/// @throws Error  that `make` throws before it sets the pipe's length
+std::unique_ptr<ModelStream> Scanner::make_for_request(std::function<void(ModelPipe& pipe)> make) {
+  const auto pipe = std::make_shared<ModelPipe>();
+  return slot_.offer_rebuild({.make = std::move(make), .pipe = pipe}, pipe->stop(), model_patience)
+             ? std::make_unique<ModelStream>(pipe)
+             : nullptr;
+}
+
+void Scanner::remove(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  const Job job = store_.get(id);
+  if (job.pose_of && store_.find(job.pose_of->scan)) {
+    remove_pose(job);
+    return;
+  }
+  const std::vector<Job> poses = store_.poses(id);
+  for (const Job& pose : poses) {
+    expect_idle(pose.id);
+  }
+  expect_idle(id);
+  store_.discard(id);
+}
+
+void Scanner::restore(std::string_view id) {
+  const std::lock_guard lock(scans_);
+  const auto scan = store_.bin().find(id);
+  if (scan && scan->job.pose_of) {
+    expect_not_building(scan->job.pose_of->scan);
+  }
+  store_.restore(id);
+}
+
+/// Checks that a scan neither runs nor is being built. @throws Error "busy"
+void Scanner::expect_idle(std::string_view id) const {
+  if (slot_.has_scan(id)) {
+    throw Error(ErrorCode::busy, "this scan is running", "Cancel it first.");
+  }
+  expect_not_building(id);
+}
+
+/// @throws Error "busy"  if a model of the scan is being built
+void Scanner::expect_not_building(std::string_view id) const {
+  if (is_building(id)) {
+    throw Error(ErrorCode::busy, "a model of this scan is being built", "Cancel that first.");
+  }
+}
+
+Job Scanner::adopt(const ArchiveSource& archive) {
+  expect_possible_room(store_, import_factor * archive.bytes);
+  const std::filesystem::path folder = store_.begin_import();
+  Job job;
+  try {
+    job = take_archive(store_, archive, folder, ending_.get_token());
+  } catch (const Stopped&) {
+    remove_import(folder);
+    throw Error(ErrorCode::busy, "Octurn is ending", "Send the file again when it is back.");
+  } catch (...) {
+    remove_import(folder);
+    throw;
+  }
+  if (!slurm_) {
+    return resume(job.id).value_or(job);
+  }
+  try {
+    build(job.id, {.settings = {.scan = job.settings}, .becomes_model = true});
+  } catch (const Error& error) {  // the scan is imported, and can be built later
+    log::warning("scanner", "scan " + job.id + " is not built: " + error.what());
+  }
+  return job;
+}
+
+bool Scanner::look_at_board() {
+  return begin({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
+               LensCommand{});
+}
+
+bool Scanner::solve_lens() {
+  const std::lock_guard lock(scans_);
+  return slot_.solve_lens();
+}
+
+/// Checks that a lens waits to be kept; `scans_` is held. @throws Error "not-found"
+void Scanner::expect_solved_lens() const {
+  if (!solved_lens_) {
+    throw Error(ErrorCode::not_found, "no lens was found that could be kept",
+                "POST /api/v1/calibration with the kind \"lens\" looks for one.");
+  }
+}
+
+void Scanner::keep_lens() {
+  const std::lock_guard lock(scans_);
+  expect_solved_lens();
+  const std::string& camera = solved_lens_->camera;
+  octurn::keep_lens(store_.data(), camera, solved_lens_->report);
+  if (sensor_serial() == camera) {
+    board_.set_lens(find_lens(store_.data(), camera));
+  }
+  solved_lens_.reset();
+  board_.forget_calibration_run();
+}
+
+void Scanner::discard_lens() {
+  const std::lock_guard lock(scans_);
+  expect_solved_lens();
+  solved_lens_.reset();
+  board_.forget_calibration_run();
+}
+
+void Scanner::forget_lens() {
+  const std::lock_guard lock(scans_);
+  const std::string serial = sensor_serial();
+  std::error_code unreadable;
+  if (serial.empty() || !std::filesystem::exists(lens_path(store_.data(), serial), unreadable)) {
+    throw Error(ErrorCode::not_found, "no measured lens of this camera is kept",
+                "The lens of the settings is in use.");
+  }
+  remove_lens(store_.data(), serial);
+  board_.set_lens(std::nullopt);
+}
 
 }  // namespace octurn

@@ -134,6 +134,9 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   if (config.http.port == 0) {
     config.http.port = machine.port;
   }
+  if (config.http.port == machine.port) {
+    config.http.bind_patience = std::chrono::seconds(10);  // it was this program's until now
+  }
   const bool is_safe = machine.start != nullptr && machine.start->is_safe_mode();
   RigOptions rig = rig_options(machine.arguments.rig, config);
   if (is_safe) {

@@ -43,6 +43,12 @@ TEST(ScanArchive, MakesTheSameModelOnAnotherOcturn) {
   EXPECT_EQ(archive.header("Content-Type"), "application/zip");
   EXPECT_TRUE(first.get(scan + "/scan.zip").body == archive.body) << "the same bytes again";
 
+  // Where the data folder takes no archive, as on a full disk, another one does.
+  const std::string id = scan.substr(scan.rfind('/') + 1);
+  std::filesystem::create_directories(here.path() / "data" / "scans" / (".export-" + id + ".zip") /
+                                      "taken");
+  EXPECT_TRUE(first.get(scan + "/scan.zip").body == archive.body);
+
   const Daemon second(there.path(), {"--sensor", "nowhere"});  // it needs no rig
   const Reply imported = import(second, archive.body);
   ASSERT_EQ(imported.status, 201) << imported.body;

@@ -165,7 +165,7 @@ std::optional<Job> Scanner::hand_over(Job job, Command command) {
   board_.begin_scan(job,
                     Clock::now() - std::chrono::duration_cast<Clock::duration>(job.times.elapsed));
   if (!slot_.offer_scan(std::move(command))) {
-    board_.set_job(store_.interrupt(job.id));  // this program is ending
+    board_.set_job(store_.interrupt(job.id, interruption()));  // this program is ending
     return std::nullopt;
   }
   return job;

@@ -534,8 +534,11 @@ void Worker::finish() {
     ports_.store.save(job_);
   } catch (...) {
     // The job.json on the disk says that the scan runs: it is interrupted, as after a restart.
-    log::error("scanner", current_failure().detail);
-    job_ = ports_.store.interrupt(job_.id);
+    const Failure unsaved = current_failure();
+    log::error("scanner", unsaved.detail);
+    Failure reason = job_.failure.value_or(unsaved);
+    reason.hint += " Then resume the scan.";
+    job_ = ports_.store.interrupt(job_.id, reason);
   }
   ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_job(job_);

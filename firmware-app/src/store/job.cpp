@@ -79,13 +79,13 @@ Job with_stored_changes(Job working, const Job& stored) {
   return working;
 }
 
-Job to_interrupted(Job job, int snapshots) {
+Job to_interrupted(Job job, int snapshots, const Failure& reason) {
   job.state = JobState::interrupted;
   job.phase = Phase::done;
   job.snapshots_done = snapshots;
   job.times.left.reset();
   job.times.until_pause.reset();
-  job.failure = interruption();
+  job.failure = reason;
   return job;
 }
 

@@ -156,6 +156,6 @@ Job with_stored_changes(Job working, const Job& stored);
 /// Marks a scan as interrupted, because the program ended or its outcome could not be saved: it can
 /// be resumed.
 /// @param snapshots  number of stored snapshots
-Job to_interrupted(Job job, int snapshots);
+Job to_interrupted(Job job, int snapshots, const Failure& reason = interruption());
 
 }  // namespace octurn

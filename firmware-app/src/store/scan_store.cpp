@@ -57,6 +57,7 @@ Job load(const fs::path& folder) {
   }
   job.id = folder.filename().string();
   job.label = read_label(folder);
+  clear_unfinished(folder);
   clear_unfinished(folder / builds_folder);
   job.builds.all = read_builds(folder);
   return job;
@@ -308,7 +309,7 @@ void ScanStore::write_job(const Job& job) const {
   write_file(folder(job.id) / "job.json", to_job_text(job));
 }
 
-Job ScanStore::interrupt(std::string_view id) {
+Job ScanStore::interrupt(std::string_view id, const Failure& reason) {
   const int snapshots = count_snapshots(folder(id));
   const std::lock_guard writing(writing_);
   const std::lock_guard lock(mutex_);
@@ -316,7 +317,7 @@ Job ScanStore::interrupt(std::string_view id) {
   if (found == jobs_.end()) {
     throw_no_such_scan(id);
   }
-  found->second = to_interrupted(found->second, snapshots);
+  found->second = to_interrupted(found->second, snapshots, reason);
   ++revision_;
   return found->second;
 }
@@ -382,7 +383,6 @@ void ScanStore::recover() {
     if (job.state != JobState::running) {
       continue;
     }
-    clear_unfinished(folder(id));
     clear_unfinished(folder(id) / "snapshots");
     job = to_interrupted(job, count_snapshots(folder(id)));
     log::info("store", "scan " + id + " was interrupted after " +

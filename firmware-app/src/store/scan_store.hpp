@@ -53,8 +53,9 @@ class ScanStore {
   Job update(std::string_view id, const std::function<void(Job&)>& change);
 
   /// Marks a scan whose outcome could not be saved as interrupted, as the next start would.
+  /// @param reason  for display, until the next start
   /// @throws Error "no-such-scan"
-  Job interrupt(std::string_view id);
+  Job interrupt(std::string_view id, const Failure& reason);
 
   /// Lists all scans, newest first. One whose `job.json` could not be read is listed as failed.
   std::vector<Job> list() const;

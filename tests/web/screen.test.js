@@ -26,7 +26,7 @@ test('the panel is the form, the progress or a scan, as things are', () => {
 
 test('progress tells the stop, the share and the time left', () => {
   const {progress, title} = screenOf(scanning({}));
-  assert.equal(progress.text, 'Looking at stop 10 of 36');
+  assert.equal(progress.text, 'Capturing, stop 10 of 36');
   assert.equal(progress.left, 'about 45 s left');
   assert.equal(progress.percent, 24);
   assert.equal(title, '9/36 · Octurn');
@@ -41,7 +41,7 @@ test('the last stop is not the end: the model is still to be built', () => {
 });
 
 test('after the last snapshot the scanner looks once more at the first stop', () => {
-  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Looking once more at the first stop');
+  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Checking the first stop again');
 });
 
 test('what was left out of a model is told, but for crumbs', () => {
@@ -175,7 +175,7 @@ test('while a device is tried again the progress says which, and at what stop', 
   const {progress} = screenOf(scanning({error, seconds_until_pause: 20.3}));
   assert.equal(progress.text, 'Trying stop 10 of 36 again');
   assert.equal(progress.trouble, 'No frame for 2000 ms.');
-  assert.equal(progress.left, 'gives up in 21 s');
+  assert.equal(progress.left, 'pauses in 21 s');
   assert.equal(screenOf(scanning({error})).announcement, 'Trying stop 10 of 36 again.');
   assert.equal(screenOf(scanning({})).progress.trouble, '');
 });
@@ -192,7 +192,7 @@ test('a model is judged where it is shown and where it is listed', () => {
   assert.deepEqual(details.verdict.reasons.map(({detail, hint, action}) => [detail, hint, action.href]),
       [['The stops disagree by 4.2 mm.', 'Calibrate the rig.', '#calibrate']]);
   assert.deepEqual(rows[0].badge, {tone: 'bad', text: 'Not good'});
-  assert.equal(announcement, 'The model of Owl is ready. Not a good model.');
+  assert.equal(announcement, 'The model of Owl is ready. Not ready to print.');
 });
 
 test('a model that was never judged is finished, and no more', () => {
@@ -218,8 +218,8 @@ test('solving the pose and building again are told, after the turn', () => {
 test('a scan says what became of the pose', () => {
   const pose = (calibration) => screenOf(looking({...finished, calibration})).details.facts.find(({label}) => label === 'Pose')?.text;
   assert.equal(pose(null), undefined);
-  assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Found by this scan, looks agree to 0.52 mm');
+  assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Corrected by this scan; views agree to 0.52 mm');
   assert.equal(pose({accepted: true, confirms_told: true, reason: '', solved: {after_mm: 0.517}}),
-      'As it was, confirmed by this scan, looks agree to 0.52 mm');
-  assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'As it was: two stops are too few');
+      'Confirmed by this scan; views agree to 0.52 mm');
+  assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'Unchanged: two stops are too few');
 });

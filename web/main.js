@@ -54,8 +54,12 @@ async function look() {
     const news = states.withDefaults(states.withStatus(state, status), defaults);
     const listed = scans ? states.withScans(news, scans) : news;
     change(builds && builds.scan === listed.selected ? states.withBuilds(listed, builds.scan, builds.list) : listed);
-  } catch {
-    change(states.withoutAnswer(state));
+  } catch (error) {
+    if (error instanceof api.Problem) {
+      change(states.withoutAnswer(state));
+    } else {
+      reportError(error);  // of the page, and no sign that the scanner is silent
+    }
   }
 }
 
@@ -79,6 +83,9 @@ async function watch() {
 function follow() {
   const isScan = here() === 'scan';
   change(isScan ? states.withSelected(state, location.hash.slice(1) || null) : state);
+  if (isScan && location.hash && state.listed !== null && state.selected === null) {
+    history.replaceState(null, '', location.pathname);  // of no scan, or of the one that runs
+  }
   showPlace();
 }
 

@@ -6,7 +6,7 @@ import {found, pictureOf} from './library.js';
 import {isPartOfAnother, posesOf} from './poses.js';
 import {isBuilding, phaseText, progressOf} from './progress.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
-import {isAway, running, scanOf} from './state.js';
+import {isAway, running, scanOf, unfinished} from './state.js';
 import {text, translated} from './texts.js';
 import {refusalText} from './wording.js';
 
@@ -192,6 +192,12 @@ function deviceOf(role, device, isAway) {
   };
 }
 
+/** What the form says of a scan that is not finished. @param {State} state */
+function unfinishedOf(state) {
+  const scan = unfinished(state);
+  return scan && {id: scan.id, text: text('form.unfinished', {name: nameOf(scan), taken: taken(scan)})};
+}
+
 /** @param {State} state */
 function titleOf(state) {
   const scan = running(state);
@@ -244,7 +250,8 @@ export function screenOf(state) {
     isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
     devices,
     panel,
-    progress: scan && {...progressOf(scan), ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
+    unfinished: unfinishedOf(state),
+    progress: scan && {...progressOf(scan), ...(state.stopping === scan.id ? {text: text('phase.stopping')} : {}), isStopping: state.stopping === scan.id, ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
     details: shown && detailsOf(state, shown),
     builds: chosen && buildsOf(state, chosen),
     poses: chosen && posesOf(state, chosen),

@@ -79,10 +79,16 @@ export async function removeChosen() {
     return;
   }
   await act('failure.delete-all', async () => {
-    for (const id of ids) {
-      await api.remove(id);
+    /** @type {string[]} */
+    const removed = [];
+    try {
+      for (const id of ids) {
+        await api.remove(id);
+        removed.push(id);
+      }
+    } finally {
+      removed.length > 0 && bin.offerUndo(text('count.scans', {count: removed.length}), () => restore(removed));
     }
-    bin.offerUndo(text('count.scans', {count: ids.length}), () => restore(ids));
     return (now) => states.withLibrary(ids.reduce(states.withoutScan, now), {chosen: null});
   });
 }

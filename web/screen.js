@@ -275,6 +275,7 @@ export function screenOf(state) {
       isReachable: !away,
       isLive: state.status?.sensor.state === 'ready' && !away,
       isScanning: scan !== null,
+      hasHints: scan === null && !(panel === 'details' && shown && detailsOf(state, shown).canResume),  // on how the next scan may fail
     },
     ...libraryOf(state),
     footer: state.status ? {version: `Octurn ${state.status.version}`, disk: text('foot.free', {bytes: format.bytes(state.status.disk_free_bytes)})} : null,

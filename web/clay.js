@@ -61,7 +61,7 @@ ${shader.fragmentShader}`
 
 /** A light that moves with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
 export function lightBeside(camera) {
-  const light = new DirectionalLight(0xfff6e8, 1.1);
+  const light = new DirectionalLight(0xfff6e8, 0.9);
   light.position.set(-0.5, 0.8, 1);
   light.target = camera;
   camera.add(light);
@@ -69,7 +69,7 @@ export function lightBeside(camera) {
 
 /** A light from above whose soft shadow lies on the platform. */
 export class LightAbove {
-  light = new DirectionalLight(0xffffff, 0.9);
+  light = new DirectionalLight(0xffffff, 0.8);
 
   constructor() {
     this.light.castShadow = true;

@@ -65,7 +65,7 @@ export class Viewer {
     this.#scene.add(this.#above.light, this.#camera, this.#subject);
     lightBeside(this.#camera);
     this.#scene.environment = new PMREMGenerator(this.#renderer).fromScene(new RoomEnvironment(), 0.04).texture;
-    this.#scene.environmentIntensity = 0.75;
+    this.#scene.environmentIntensity = 0.5;
     this.#scene.environmentRotation.x = Math.PI / 2;  // from Y up to Z up
     this.#controls = new OrbitControls(this.#camera, canvas);
     canvas.style.touchAction = 'pan-y';  // a vertical swipe scrolls the page, as the picture may be as wide as the page

@@ -29,8 +29,9 @@ Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
 }
 
 void write_png(const std::filesystem::path& file, const std::vector<std::byte>& png) {
+  // Not the folders above: somebody may have removed the scan.
   std::error_code ignored;  // if the folder cannot be made, writing the file says why
-  std::filesystem::create_directories(file.parent_path(), ignored);
+  std::filesystem::create_directory(file.parent_path(), ignored);
   write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 

@@ -119,10 +119,11 @@ function verdictShown(state, {model, calibration}) {
 
 /**
  * Further downloads: the shown model in other formats, and the raw scan.
+ * @param {string[]} endings  of the formats
  * @param {Scan} scan  as shown
  */
-function formatsOf({id, model, state, snapshots_done, has_colours}) {
-  const others = model ? ['3mf', 'ply', 'glb'].map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
+function formatsOf(endings, {id, model, state, snapshots_done, has_colours}) {
+  const others = model ? endings.filter((ending) => ending !== 'stl').map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
   const models = [
     ...others.map(({format: name, url}) => ({name, title: text('scan.format', {format: name}), url})),
     ...(has_colours ? others : []).map(({format: name, url}) =>
@@ -143,7 +144,7 @@ const detailsOf = (state, scan) => ({
   canResume: scan.can_resume ?? (scan.state === 'paused' || scan.state === 'interrupted'),
   canEnd: scan.state === 'paused' || scan.state === 'interrupted',
   download: downloadOf(scan),
-  formats: formatsOf(scan),
+  formats: formatsOf(state.formats, scan),
   unbuilt: unbuiltOf(state, scan),
 });
 

@@ -15,6 +15,7 @@ import {initial as library} from './library.js';
  * @property {Scan[]} scans  newest first
  * @property {string | null} listed  mark of the status to which `scans` belongs
  * @property {Settings | null} defaults
+ * @property {string[]} formats  of models, such as "stl"
  * @property {string | null} selected  the scan in view; null for the form or the running scan
  * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan in view
  * @property {number | null} shownBuild  the build in view; null for the scan's model
@@ -33,6 +34,7 @@ export const initial = {
   scans: [],
   listed: null,
   defaults: null,
+  formats: [],
   selected: null,
   builds: null,
   shownBuild: null,
@@ -110,8 +112,8 @@ export const withoutScan = (state, id) => ({
   selected: state.selected === id ? null : state.selected,
 });
 
-/** @param {State} state @param {Settings} defaults @returns {State} */
-export const withDefaults = (state, defaults) => ({...state, defaults});
+/** @param {State} state @param {Settings} defaults @param {string[]} formats  of models @returns {State} */
+export const withDefaults = (state, defaults, formats) => ({...state, defaults, formats});
 
 /** Selects a scan; none if the list does not have it. @param {State} state @param {string | null} selected @returns {State} */
 export const withSelected = (state, selected) => ({

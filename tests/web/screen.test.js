@@ -5,7 +5,7 @@ import {screenOf} from '../../web/screen.js';
 import * as states from '../../web/state.js';
 import {finished, running, status} from './examples.js';
 
-const idle = states.withStatus(states.initial, status);
+const idle = states.withDefaults(states.withStatus(states.initial, status), null, ['stl', '3mf', 'ply', 'glb', 'obj']);
 const scanning = (changes) => states.withStatus(states.initial, {...status, scan: {...running, ...changes}});
 const looking = (scan) => states.withSelected(states.withScans(idle, [scan]), scan.id);
 
@@ -141,16 +141,16 @@ test('a model cannot be asked for while a scan runs, and its offer says so', () 
   assert.equal(screenOf(state).details.unbuilt.isBusy, true);
 });
 
-test('a finished scan is downloaded in four formats and as it was taken, one without a model only so', () => {
+test('a finished scan is downloaded in the formats that the scanner has, and as it was taken, one without a model only so', () => {
   const names = (scan) => screenOf(looking(scan)).details.formats.map(({url}) => url.split('/').at(-1));
-  assert.deepEqual(names(finished), ['Scan.3mf', 'Scan.ply', 'Scan.glb', 'scan.zip']);
+  assert.deepEqual(names(finished), ['Scan.3mf', 'Scan.ply', 'Scan.glb', 'Scan.obj', 'scan.zip']);
   assert.deepEqual(names({...running, state: 'cancelled'}), ['scan.zip']);
 });
 
 test('a scan whose pictures have colours is downloaded with them, too, but as STL', () => {
   const {details, stage} = screenOf(looking({...finished, has_colours: true}));
   const coloured = details.formats.filter(({url}) => url.includes('colour'));
-  assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['Scan.3mf?colour=true', 'Scan.ply?colour=true', 'Scan.glb?colour=true']);
+  assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['3mf', 'ply', 'glb', 'obj'].map((ending) => `Scan.${ending}?colour=true`));
   assert.equal(coloured[1].name, 'PLY in colour');
   assert.equal(new Set(details.formats.map(({name}) => name)).size, details.formats.length);
   assert.equal(stage.hasColours, true);
@@ -160,7 +160,7 @@ test('a scan whose pictures have colours is downloaded with them, too, but as ST
 test('a build that is looked at is downloaded in all formats, and not the scan\'s own model', () => {
   const url = '/api/v1/scans/done/builds/2/Scan.stl';
   const {formats} = screenOf(looking({...finished, model: {...finished.model, url}})).details;
-  assert.deepEqual(formats.slice(0, 3).map((format) => format.url), ['3mf', 'ply', 'glb'].map((ending) => url.replace(/stl$/, ending)));
+  assert.deepEqual(formats.slice(0, 4).map((format) => format.url), ['3mf', 'ply', 'glb', 'obj'].map((ending) => url.replace(/stl$/, ending)));
 });
 
 test('a scan has one name, in its row, its heading and the title', () => {

@@ -207,7 +207,8 @@ TEST(ScanStore, TakesAScanAsInterruptedThatCouldNotBeSaved) {
   const Job interrupted = store.interrupt(job.id, interruption());
   EXPECT_EQ(interrupted.state, JobState::interrupted);
   EXPECT_EQ(store.find(job.id)->failure->code, ErrorCode::interrupted);
-  EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa", interruption()); }), "no-such-scan");
+  EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa", interruption()); }),
+            "no-such-scan");
 }
 
 }  // namespace

@@ -78,6 +78,16 @@ TEST(SameOrigin, TakesAnUploadWhereOneIsExpected) {
   const Request upload = post({{"Content-Type", "application/octet-stream"}});
   EXPECT_EQ(code(upload), "wrong-content-type");
   EXPECT_EQ(refusal(upload, ours, upload_type), std::nullopt);
+  Request scan = post({{"Content-Type", "application/zip"}});
+  EXPECT_NE(refusal(scan, ours, upload_type), std::nullopt) << "an update is no archive";
+  scan.path = import_path;
+  EXPECT_EQ(refusal(scan, ours, upload_type), std::nullopt);
+  scan = post({});
+  scan.path = import_path;
+  EXPECT_EQ(refusal(scan, ours, upload_type), std::nullopt);
+  scan = post({{"Origin", "http://evil.example"}});
+  scan.path = import_path;
+  EXPECT_NE(refusal(scan, ours, upload_type), std::nullopt);
   EXPECT_NE(refusal(post({{"Content-Type", "application/json"}}), ours, upload_type), std::nullopt);
 }
 

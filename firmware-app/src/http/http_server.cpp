@@ -83,7 +83,7 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
 
 /// The answer to a request whose head is read.
 Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answer& answer) {
-  if (is_of_type(request.header("Content-Type").value_or(""), upload_type)) {
+  if (is_upload(request)) {
     request.upload = exchange.upload();
     return answer(request);
   }

@@ -85,8 +85,10 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                    .detail = "the request comes from " + std::string(*origin),
                    .hint = "Use the scanner's own page."};
   }
-  if (request.method != "DELETE" &&
-      !is_of_type(request.header("Content-Type").value_or(""), body_type)) {
+  const bool has_type = body_type == upload_type
+                            ? is_upload(request)
+                            : is_of_type(request.header("Content-Type").value_or(""), body_type);
+  if (request.method != "DELETE" && !has_type) {
     return Failure{.code = ErrorCode::wrong_content_type,
                    .detail = request.method + " needs Content-Type: " + std::string(body_type),
                    .hint = "Send the body in that format, and name it in the header Content-Type."};

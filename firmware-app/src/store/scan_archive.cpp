@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -141,6 +142,35 @@ void check_scan(const fs::path& folder, const std::stop_token& stop) {
   }
 }
 
+/// Maps the names in an archive to the files of its scan. An archive that was unpacked and packed
+/// again may have them in a folder, and files of other programs beside them, which are left out.
+/// @throws Error "bad-request"  if there is no scan.json, and as `list_zip`
+ToTarget to_target(const fs::path& archive) {
+  constexpr std::string_view scan_json = "scan.json";
+  constexpr std::string_view of_finder = "__MACOSX/";
+  const std::vector<std::string> names = list_zip(archive);
+  std::optional<std::string> folder;
+  for (const std::string& name : names) {
+    const std::string prefix = name.substr(0, name.rfind('/') + 1);
+    if (name == prefix + std::string(scan_json) && !name.starts_with(of_finder) &&
+        (!folder || prefix.size() < folder->size())) {
+      folder = prefix;
+    }
+  }
+  if (!folder) {
+    throw Error(
+        ErrorCode::bad_request,
+        "the archive has no scan.json" + (names.empty() ? std::string() : ", but " + names.front()),
+        "Send a file that an Octurn has made: scan.zip.");
+  }
+  return [prefix = *folder](std::string_view name) -> std::optional<std::string> {
+    if (!name.starts_with(prefix) || !is_scan_file(name.substr(prefix.size()))) {
+      return std::nullopt;
+    }
+    return std::string(name.substr(prefix.size()));
+  };
+}
+
 }  // namespace
 
 bool is_scan_file(std::string_view name) {
@@ -191,10 +221,10 @@ void receive_archive(const ArchiveSource& source, const fs::path& target,
   file.commit();
 }
 
-void check_archive_files(const fs::path& archive) { check_zip(archive, is_scan_file); }
+void check_archive_files(const fs::path& archive) { check_zip(archive, to_target(archive)); }
 
 void read_scan_archive(const fs::path& archive, const fs::path& scan, const std::stop_token& stop) {
-  unpack_zip(archive, scan, is_scan_file, {}, stop);
+  unpack_zip(archive, scan, to_target(archive), {}, stop);
   try {
     check_scan(scan, stop);
   } catch (const Error& error) {

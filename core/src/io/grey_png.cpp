@@ -262,9 +262,8 @@ std::vector<std::byte> encode_rgb_png(const ColourPicture& picture) {
 }
 
 void write_png(const std::filesystem::path& file, std::span<const std::byte> png) {
-  // Not the folders above, such as that of a scan which somebody removed meanwhile.
   std::error_code ignored;  // if the folder cannot be made, opening the file says why
-  std::filesystem::create_directory(file.parent_path(), ignored);
+  std::filesystem::create_directories(file.parent_path(), ignored);
   AtomicFile target(file);
   target.write(png);
   target.commit();

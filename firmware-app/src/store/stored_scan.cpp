@@ -71,6 +71,10 @@ SnapshotSource readable_snapshots(const std::filesystem::path& folder, const Sca
 
 void store_snapshot(const std::filesystem::path& folder, Scan& scan, const Shot& shot,
                     const DepthFrame& frame) {
+  if (std::error_code unknown; !std::filesystem::is_directory(folder, unknown)) {
+    throw Error(ErrorCode::write_failed, folder.string() + " is gone",
+                "Somebody may have removed or unmounted it.");
+  }
   write_depth_png(folder / shot.file, frame);
   scan.shots.push_back(shot);
   write_scan(folder, scan);

@@ -185,7 +185,7 @@ export function render(screen) {
   renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
-    element(id).setAttribute('aria-disabled', String(screen.isBusy || screen.progress?.isStopping));  // unlike disabled, it keeps the focus
+    element(id).setAttribute('aria-disabled', String(screen.isBusy || Boolean(screen.progress?.isStopping)));  // unlike disabled, it keeps the focus
   }
   if (screen.footer) {
     setText(element('version'), screen.footer.version);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 // The interface between the program and Octurn's Kinect driver: its URIs and its OpenNI2
@@ -19,8 +20,10 @@ inline constexpr int tilt_property = 0x4F430011;
 /// it, and it is set before the stream starts.
 inline constexpr int near_mode_property = 0x4F430012;
 
-/// Property of type int: the number of damaged frames that were dropped since the device was
-/// opened.
-inline constexpr int damaged_frames_property = 0x4F430013;
+/// Property of type PacketCounts: what arrived since the device was opened.
+inline constexpr int packet_counts_property = 0x4F430013;
+
+/// The depth of a pixel whose packet was lost. No reading's depth is that large.
+inline constexpr std::uint16_t lost_depth = 65535;
 
 }  // namespace octurn

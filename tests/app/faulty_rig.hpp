@@ -93,7 +93,7 @@ class FaultyRig {
                        TimedFrame{.frame = rig_.look(), .time = std::chrono::steady_clock::now()});
     }
     std::optional<Tilt> tilt() const override { return std::nullopt; }
-    std::optional<int> damaged_frames() const override { return std::nullopt; }
+    std::optional<PacketCounts> packet_counts() const override { return std::nullopt; }
     void show_angle(double /*angle*/) override {}
 
    private:

@@ -59,7 +59,7 @@ class SensorOfMovedObject final : public DepthSensor {
     return sensor_->read(stop);
   }
   std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
-  std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
+  std::optional<PacketCounts> packet_counts() const override { return sensor_->packet_counts(); }
   void show_angle(double angle) override {
     const double stop = angle * stops / (2 * std::numbers::pi);
     const auto nearest = static_cast<int>(std::lround(stop));

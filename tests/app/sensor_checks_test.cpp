@@ -19,8 +19,8 @@ using Time = std::chrono::steady_clock::time_point;
 constexpr auto period = std::chrono::nanoseconds(33'333'333);
 const Box clip{.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
 
-SensorSample sample_of(std::vector<Time> times, std::optional<int> damaged = {}) {
-  return {.name = "Kinect v1", .times = std::move(times), .damaged = damaged};
+SensorSample sample_of(std::vector<Time> times, std::optional<PacketCounts> packets = {}) {
+  return {.name = "Kinect v1", .times = std::move(times), .packets = packets};
 }
 
 /// Times of 60 frames, one each period, without the missing numbers.
@@ -90,12 +90,46 @@ TEST(LostFramesCheck, CountsTheGaps) {
   EXPECT_NE(busy.advice.find("too busy"), std::string::npos);
 }
 
-TEST(LostFramesCheck, TellsDamagedFramesFromABusyMachine) {
-  const Finding some = check_lost_frames(sample_of(every_period_but({20, 30, 31}), 3));
-  EXPECT_EQ(some.measured, "3 of 60, 3 of them damaged on the way");
+/// Counts of frames, each with 1000 packets.
+PacketCounts counts_of(int whole, int partial, int dropped, int lost_packets) {
+  return {.whole_frames = whole,
+          .partial_frames = partial,
+          .dropped_frames = dropped,
+          .packets = 1000 * (whole + partial + dropped),
+          .lost_packets = lost_packets};
+}
+
+TEST(LostFramesCheck, TellsALossyWireFromABusyMachine) {
+  const Finding some =
+      check_lost_frames(sample_of(every_period_but({20, 30, 31}), counts_of(57, 0, 3, 900)));
+  EXPECT_EQ(some.measured, "3 of 60, 0 more in part; 1.5 % of the packets lost");
   EXPECT_EQ(some.state, State::warning);
   EXPECT_NE(some.advice.find("cable"), std::string::npos);
-  EXPECT_EQ(check_lost_frames(sample_of(every_period_but({}), 61)).state, State::fault);
+  const Finding most =
+      check_lost_frames(sample_of(every_period_but({}), counts_of(60, 0, 61, 50000)));
+  EXPECT_EQ(most.state, State::fault);
+}
+
+TEST(LostFramesCheck, WarnsOfManyLostPackets) {
+  const auto check = [](int lost_packets) {
+    return check_lost_frames(sample_of(every_period_but({}), counts_of(40, 20, 0, lost_packets)));
+  };
+  EXPECT_EQ(check(300).state, State::ok);
+  EXPECT_EQ(check(300).measured, "0 of 60, 20 more in part; 0.5 % of the packets lost");
+  EXPECT_EQ(check(1200).state, State::warning);
+}
+
+TEST(LostFramesCheck, TellsOthersReportsAsReportsWhereTheyBelong) {
+  const auto advice_on = [](const char* board) {
+    return check_lost_frames(sample_of(every_period_but({}), counts_of(0, 60, 0, 3000)), board)
+        .advice;
+  };
+  EXPECT_NE(advice_on("Raspberry Pi 4 Model B Rev 1.4").find("Others report, without proof"),
+            std::string::npos);
+  EXPECT_NE(advice_on("Raspberry Pi 4 Model B Rev 1.4").find("pcie_aspm=off"), std::string::npos);
+  EXPECT_NE(advice_on("Raspberry Pi 3 Model B Rev 1.2").find("Others report"), std::string::npos);
+  EXPECT_EQ(advice_on("Raspberry Pi 3 Model B Rev 1.2").find("pcie"), std::string::npos);
+  EXPECT_EQ(advice_on("").find("report"), std::string::npos);
 }
 
 TEST(PlatformCheck, FindsThePlatformWhereTheCalibrationHasIt) {

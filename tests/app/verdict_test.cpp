@@ -73,7 +73,7 @@ class SensorOfLooks final : public DepthSensor {
     return TimedFrame{.frame = see_(look_), .time = std::chrono::steady_clock::now()};
   }
   std::optional<Tilt> tilt() const override { return std::nullopt; }
-  std::optional<int> damaged_frames() const override { return std::nullopt; }
+  std::optional<PacketCounts> packet_counts() const override { return std::nullopt; }
   void show_angle(double angle) override {
     const double stop = angle * stops / (2 * std::numbers::pi);
     const double nearest = std::round(stop);

@@ -8,7 +8,7 @@ const stops = 8;
 const pulsesToStop = (stop) => stop * stepsPerTurn / stops;
 
 const tornAtTimes = 'lose 3 100 5';  // of every third frame five packets
-const tornAlways = 'lose 1 100 5';
+const tornAlways = 'lose 1 100 60';  // more than a fifth
 
 const lostSteps = ({commanded, position}) => commanded - position;
 

@@ -40,19 +40,32 @@ TEST(KinectDoctor, ComparesTheTiltWithTheCalibration) {
   EXPECT_EQ(tilt["state"], "fault");
 }
 
-TEST(KinectDoctor, CountsDamagedFrames) {
+TEST(KinectDoctor, CountsLostFrames) {
   KinectOnDesk desk({wall()});
   desk->loss_period = 3;
   desk->first_lost = 100;
-  desk->lost_packets = 1;
+  desk->lost_packets = 60;
   const json lost = finding("lost-frames");
-  EXPECT_NE(lost["state"], "ok") << lost;
+  EXPECT_EQ(lost["state"], "warning") << lost;
+  EXPECT_NE(lost["measured"].get<std::string>().find(", 0 more in part; 8."), std::string::npos)
+      << lost;  // 60 of 3 x 242 packets
   EXPECT_NE(lost["advice"].get<std::string>().find("USB port"), std::string::npos) << lost;
+}
+
+TEST(KinectDoctor, CountsLostPackets) {
+  KinectOnDesk desk({wall()});
+  desk->loss_period = 2;
+  desk->lost_packets = 12;
+  const json lost = finding("lost-frames");
+  EXPECT_EQ(lost["state"], "warning") << lost;
+  EXPECT_NE(lost["measured"].get<std::string>().find(" more in part; 2.5 % of"), std::string::npos)
+      << lost;  // 30 or 31 frames of 60 or 61
 }
 
 TEST(KinectDoctor, CountsNoneOfAKinectThatIsWell) {
   const KinectOnDesk desk({wall()});
-  EXPECT_NE(finding("lost-frames")["measured"].get<std::string>().find(", 0 of them damaged"),
+  EXPECT_NE(finding("lost-frames")["measured"].get<std::string>().find(
+                ", 0 more in part; 0.0 % of the packets lost"),
             std::string::npos);
 }
 

@@ -1,5 +1,4 @@
-// Octurn's Kinect driver end to end: an emulated USB bus, unmodified libfreenect on it, and the
-// program's sensor on top.
+// Octurn's Kinect driver end to end: an emulated USB bus, and the program's sensor on top.
 
 #include <OpenNI.h>
 #include <gtest/gtest.h>

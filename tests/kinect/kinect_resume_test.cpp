@@ -30,8 +30,8 @@ const Fault silent{"silent", [](KinectOnDesk& desk) { desk->silent = true; },
                    [](KinectOnDesk& desk) { desk->silent = false; }, "sensor-silent"};
 const Fault unplugged{"unplugged", [](KinectOnDesk& desk) { desk.unplug(); },
                       [](KinectOnDesk& desk) { desk.plug_in(); }, "sensor-missing"};
-const Fault damaged{"damaged", [](KinectOnDesk& desk) { desk->lost_packets = 5; },
-                    [](KinectOnDesk& desk) { desk->lost_packets = 0; }, "sensor-silent"};
+const Fault damaged{"damaged", [](KinectOnDesk& desk) { desk->random_loss = 0.3; },
+                    [](KinectOnDesk& desk) { desk->random_loss = 0; }, "sensor-silent"};
 
 /// A daemon's Kinect that fails in a scan.
 class FailingKinect {

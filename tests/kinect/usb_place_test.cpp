@@ -1,6 +1,7 @@
+#include "kinect/usb_place.hpp"
+
 #include <gtest/gtest.h>
 
-#include "kinect/kinect_serial.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

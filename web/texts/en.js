@@ -346,6 +346,7 @@ export const texts = {
   'refusal.sensor-other.begun_with': 'This scan was begun with another sensor: {begun_with}.',
   'refusal.sensor-other.camera.height_px.told_height_px.told_width_px.width_px': '{camera}: its pictures have {width_px} × {height_px} pixels, and the settings say {told_width_px} × {told_height_px}.',
   'refusal.sensor-other.first_pose_with': 'The first side was scanned with another sensor: {first_pose_with}.',
+  'refusal.sensor-silent.lost_share.silent_ms': 'No frame of the sensor was usable for {silent_ms}: {lost_share} of its packets were lost on USB.',
   'refusal.sensor-silent.silent_ms': 'The sensor has sent no frame for {silent_ms}.',
   'cure.calibrate': 'Calibrate',
   'cure.space': 'Change the scanned space',

@@ -6,7 +6,6 @@
 
 #include "depth_driver.hpp"
 #include "kinect/kinect.hpp"
-#include "kinect/kinect_serial.hpp"
 #include "kinect/kinect_stream.hpp"
 #include "octurn/error.hpp"
 #include "property.hpp"
@@ -29,15 +28,15 @@ int index_in(std::string_view uri) {
 
 class Device final : public DepthDevice {
  public:
-  explicit Device(int index) : serial_(kinect_serial(index)), kinect_(index) {}
+  explicit Device(int index) : kinect_(index) {}
 
   OniBool isPropertySupported(int property) override {
     switch (property) {
       case ONI_DEVICE_PROPERTY_ERROR_STATE:
-      case damaged_frames_property:
+      case packet_counts_property:
         return TRUE;
       case ONI_DEVICE_PROPERTY_SERIAL_NUMBER:
-        return serial_.empty() ? FALSE : TRUE;
+        return kinect_.serial().empty() ? FALSE : TRUE;
       case tilt_property:
         return kinect_.tilt() ? TRUE : FALSE;
       case near_mode_property:
@@ -56,11 +55,11 @@ class Device final : public DepthDevice {
       const std::optional<Tilt> tilt = kinect_.tilt();
       return tilt ? give_property(*tilt, data, size) : ONI_STATUS_NOT_SUPPORTED;
     }
-    if (property == damaged_frames_property) {
-      return give_property(kinect_.damaged_frames(), data, size);
+    if (property == packet_counts_property) {
+      return give_property(kinect_.packet_counts(), data, size);
     }
-    if (property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER && !serial_.empty()) {
-      return give_text(serial_, data, size);
+    if (property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER && !kinect_.serial().empty()) {
+      return give_text(kinect_.serial(), data, size);
     }
     return ONI_STATUS_NOT_SUPPORTED;
   }
@@ -82,7 +81,6 @@ class Device final : public DepthDevice {
     return std::make_unique<KinectStream>(kinect_);
   }
 
-  std::string serial_;
   Kinect kinect_;
 };
 

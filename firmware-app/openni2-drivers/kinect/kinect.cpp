@@ -1,51 +1,80 @@
 #include "kinect/kinect.hpp"
 
-#include <libfreenect_registration.h>
-#include <sys/time.h>
-
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <thread>
+#include <vector>
 
-#include "kinect/freenect_log.hpp"
+#include "kinect/usb_place.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
 namespace {
 
 using std::chrono::steady_clock;
+using namespace std::chrono_literals;
 
 constexpr std::size_t pixels = std::size_t{640} * 480;
-constexpr int frame_bytes = static_cast<int>(pixels) * 11 / 8;
-constexpr int packet_bytes = 1748;  // payload of every packet but the last; the header has 12 more
-constexpr int packets = (frame_bytes + packet_bytes - 1) / packet_bytes;
+constexpr std::uint8_t depth_endpoint = 0x82;
 
-constexpr auto tilt_interval = std::chrono::seconds(1);
-constexpr timeval patience = {.tv_sec = 0, .tv_usec = 20'000};  // a stop request waits no longer
+/// Model 1414, whose motor answers without firmware.
+constexpr std::uint16_t release_of_1414 = 0x010B;
 
-/// Whether the result of handling USB events says that the device is lost. A signal that interrupts
-/// the wait, as when the program is stopped and continued, loses nothing.
-bool is_loss(int result) {
-  constexpr int interrupted = -10;  // LIBUSB_ERROR_INTERRUPTED, which libfreenect passes on
-  return result < 0 && result != interrupted;
+constexpr auto opening_patience = 4s;
+constexpr auto motor_patience = 500ms;
+// A stop request may come while the stream starts: together with the end of the transfers, 2 s.
+constexpr auto starting_patience = 1s;
+constexpr auto stopping_patience = 500ms;
+
+/// The cameras of all Kinects, by bus and address.
+std::vector<UsbPart> cameras_among(const std::vector<UsbPart>& parts) {
+  std::vector<UsbPart> cameras;
+  std::ranges::copy_if(parts, std::back_inserter(cameras), &UsbPart::is_camera);
+  return cameras;
 }
 
-int bytes_of_packet(int number) {
-  return number + 1 < packets ? packet_bytes : frame_bytes - number * packet_bytes;
+UsbPart camera_of(int index) {
+  const std::vector<UsbPart> cameras = cameras_among(usb_parts());
+  if (static_cast<std::size_t>(index) >= cameras.size()) {
+    throw Error(ErrorCode::sensor_missing, "kinect: none is plugged in");
+  }
+  return cameras[static_cast<std::size_t>(index)];
 }
 
-bool is_sound(const KinectParameters& parameters) {
-  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0; };
-  return is_positive(parameters.baseline_cm) && is_positive(parameters.reference_distance_cm) &&
-         is_positive(parameters.reference_pixel_cm) && is_positive(parameters.shift);
+/// Opens another part of a camera's Kinect, which is on the same hub; null if that fails: depth
+/// works without it.
+std::unique_ptr<UsbDevice> open_beside(const UsbPart& camera,
+                                       bool (UsbPart::*is_wanted)() const) try {
+  for (const UsbPart& part : usb_parts()) {
+    if ((part.*is_wanted)() && part.bus == camera.bus && part.hub == camera.hub) {
+      return std::make_unique<UsbDevice>(part);
+    }
+  }
+  return nullptr;
+} catch (const Error&) {
+  return nullptr;
 }
 
-/// The accelerometer's axes are x to the left (seen from behind), y up and z forward. At rest its
-/// reading points up. A model without firmware for it reads 0 g on all axes: it has no tilt.
-std::optional<Tilt> to_tilt(const freenect_raw_tilt_state& state) {
-  constexpr double counts_per_g = FREENECT_COUNTS_PER_G;
-  const double left = state.accelerometer_x;
-  const double up = state.accelerometer_y;
-  const double forward = state.accelerometer_z;
+std::string serial_of(const UsbDevice& camera, const UsbPart& part, int index) {
+  std::string serial = camera.serial();
+  if (serial.empty()) {
+    const auto audio = open_beside(part, &UsbPart::is_audio);
+    serial = audio ? audio->serial() : std::string();
+  }
+  return serial.empty() ? usb_place(index) : serial;
+}
+
+/// The accelerometer's axes are x to the left (seen from behind), y up and z forward; its counts
+/// are big-endian from the third byte on. At rest its reading points up.
+std::optional<Tilt> to_tilt(std::span<const std::uint8_t> state) {
+  constexpr double counts_per_g = 819;  // KXSD9, at 2 g
+  const auto counts = [&](std::size_t axis) {
+    return static_cast<double>(
+        static_cast<std::int16_t>(state[2 + 2 * axis] << 8U | state[3 + 2 * axis]));
+  };
+  const double left = counts(0);
+  const double up = counts(1);
+  const double forward = counts(2);
   if (std::hypot(left, up, forward) < counts_per_g / 2) {
     return std::nullopt;
   }
@@ -54,129 +83,111 @@ std::optional<Tilt> to_tilt(const freenect_raw_tilt_state& state) {
 
 }  // namespace
 
-Kinect::Context Kinect::make_context(int subdevices) {
-  freenect_context* context = nullptr;
-  if (freenect_init(&context, nullptr) < 0) {
-    throw Error(ErrorCode::sensor_missing, "kinect: this machine's USB cannot be used");
-  }
-  freenect_set_log_callback(context, discard_log);
-  freenect_select_subdevices(context, static_cast<freenect_device_flags>(subdevices));
-  return Context(context);
-}
+int Kinect::count() { return static_cast<int>(cameras_among(usb_parts()).size()); }
 
-int Kinect::count() { return freenect_num_devices(make_context(FREENECT_DEVICE_CAMERA).get()); }
-
-/// A model whose motor needs firmware is opened without it: depth works all the same.
-Kinect::Kinect(int index) {
-  has_accelerometer_ = open(index, FREENECT_DEVICE_CAMERA | FREENECT_DEVICE_MOTOR);
-  if (!has_accelerometer_ && !open(index, FREENECT_DEVICE_CAMERA)) {
-    throw Error(ErrorCode::sensor_missing, freenect_num_devices(context_.get()) > index
-                                               ? "kinect: it is plugged in but cannot be opened"
-                                               : "kinect: none is plugged in");
-  }
-  freenect_set_user(device_, this);
-  // Nothing may be thrown through libfreenect, which is C.
-  freenect_set_depth_callback(
-      device_, [](freenect_device* device, void* readings, std::uint32_t /*time*/) noexcept {
-        static_cast<Kinect*>(freenect_get_user(device))
-            ->take_frame(static_cast<const std::uint16_t*>(readings));
-      });
-  freenect_set_depth_chunk_callback(device_, [](void* frame, void* data, int number, int bytes,
-                                                void* kinect) noexcept {
-    static_cast<Kinect*>(kinect)->take_packet(static_cast<std::byte*>(frame), data, number, bytes);
-  });
-  read_parameters();
-  read_tilt();
-  has_near_mode_ = freenect_set_flag(device_, FREENECT_NEAR_MODE, FREENECT_OFF) == 0;
-}
-
-Kinect::~Kinect() = default;
-
-bool Kinect::open(int index, int subdevices) {
-  context_ = make_context(subdevices);
-  return freenect_open_device(context_.get(), &device_, index) == 0;
-}
-
-void Kinect::read_parameters() {
-  freenect_registration registration = freenect_copy_registration(device_);
-  const freenect_zero_plane_info& plane = registration.zero_plane_info;
-  parameters_ = {.baseline_cm = static_cast<double>(plane.dcmos_emitter_dist),
-                 .reference_distance_cm = static_cast<double>(plane.reference_distance),
-                 .reference_pixel_cm = static_cast<double>(plane.reference_pixel_size),
-                 .shift = registration.const_shift};
-  freenect_destroy_registration(&registration);
-  if (!is_sound(parameters_)) {
-    throw Error(ErrorCode::sensor_failed, "kinect: its factory parameters make no sense");
+Kinect::Kinect(int index)
+    : commands_(
+          {.write = [this](auto data, auto timeout) { return camera_->write(0, data, timeout); },
+           .read = [this](auto data, auto timeout) { return camera_->read(0, data, timeout); }}) {
+  const UsbPart camera = camera_of(index);
+  camera_ = std::make_unique<UsbDevice>(camera);
+  parameters_ = commands_.parameters(steady_clock::now() + opening_patience);
+  serial_ = serial_of(*camera_, camera, index);
+  has_near_mode_ = camera.is_for_windows();
+  if (camera.release == release_of_1414) {
+    motor_ = open_beside(camera, &UsbPart::is_motor);
   }
 }
 
-void Kinect::read_tilt() {
-  if (!has_accelerometer_ || freenect_update_tilt_state(device_) < 0) {
-    return;
+/// A motor that did not answer in time is not asked again: each question would take as long.
+std::optional<Tilt> Kinect::tilt() {
+  constexpr std::uint8_t state_request = 0x32;
+  std::array<std::uint8_t, 10> state = {};
+  const std::lock_guard lock(motor_mutex_);
+  try {
+    const int count = motor_ ? motor_->read(state_request, state, motor_patience) : 0;
+    if (count == LIBUSB_ERROR_TIMEOUT) {
+      motor_.reset();
+    }
+    return count == static_cast<int>(state.size()) ? to_tilt(state) : std::nullopt;
+  } catch (const Error&) {
+    motor_.reset();
+    return std::nullopt;
   }
-  const std::optional<Tilt> tilt = to_tilt(*freenect_get_tilt_state(device_));
-  const std::lock_guard lock(tilt_mutex_);
-  tilt_ = tilt;
 }
 
-std::optional<Tilt> Kinect::tilt() const {
-  const std::lock_guard lock(tilt_mutex_);
-  return tilt_;
-}
-
-bool Kinect::set_near_mode(bool on) {
+bool Kinect::set_near_mode(bool on) try {
   const std::unique_lock lock(usb_, std::try_to_lock);
-  return lock.owns_lock() &&
-         freenect_set_flag(device_, FREENECT_NEAR_MODE, on ? FREENECT_ON : FREENECT_OFF) == 0;
+  if (!lock.owns_lock()) {
+    return false;
+  }
+  // As libfreenect does it: the projector's brightness, a pause, and the range.
+  const auto deadline = steady_clock::now() + opening_patience;
+  commands_.write_register(0x15, on ? 0x07 : 0x1E, deadline);
+  std::this_thread::sleep_for(100ms);
+  commands_.write_register(0x02EF, on ? 0 : 0x0190, deadline);
+  return true;
+} catch (const Error&) {
+  return false;
+}
+
+/// Starts the depth camera: 640 x 480, 30 Hz, 11 bits, not mirrored, projector always on.
+void Kinect::start_depth() {
+  struct Register {
+    std::uint16_t address = 0;
+    std::uint16_t value = 0;
+  };
+  constexpr std::array<Register, 7> registers{
+      {{0x105, 0}, {0x06, 0}, {0x12, 3}, {0x13, 1}, {0x14, 30}, {0x06, 2}, {0x17, 0}}};
+  const auto deadline = steady_clock::now() + starting_patience;
+  for (const auto& [address, value] : registers) {
+    commands_.write_register(address, value, deadline);
+  }
 }
 
 void Kinect::stream(const std::stop_token& stop,
                     const std::function<void(const RawFrame&)>& on_frame) {
   const std::lock_guard lock(usb_);
-  on_frame_ = &on_frame;
-  incoming_.packets_in_order = -1;
-  if (freenect_start_depth(device_) < 0) {
+  std::vector<std::uint16_t> readings(pixels);
+  PacketFrames frames(depth_packets, [&](const ReceivedFrame& frame) {
+    if (count_packets(frame)) {
+      unpack_depth(frame, readings);
+      on_frame({.readings = readings, .time = frame.begin});
+    }
+  });
+  try {
+    camera_->begin_stream(depth_endpoint, [&](std::span<const std::uint8_t> packet) {
+      frames.take(packet, steady_clock::now());
+    });
+    start_depth();
+    while (!stop.stop_requested() && camera_->handle_events()) {
+    }
+    is_lost_ = !stop.stop_requested();
+    commands_.write_register(0x06, 0, steady_clock::now() + stopping_patience);
+  } catch (const Error&) {
     is_lost_ = true;
-    return;
   }
-  auto tilt_due = steady_clock::now() + tilt_interval;
-  while (!stop.stop_requested()) {
-    timeval longest = patience;
-    if (is_loss(freenect_process_events_timeout(context_.get(), &longest))) {
-      is_lost_ = true;
-      break;
-    }
-    if (steady_clock::now() >= tilt_due) {
-      read_tilt();
-      tilt_due = steady_clock::now() + tilt_interval;
-    }
+  if (!camera_->end_stream()) {
+    is_lost_ = true;
   }
-  freenect_stop_depth(device_);
 }
 
-/// Copies a packet to its place in the frame, as libfreenect does by default, and checks that none
-/// was lost before it. libfreenect itself hands over incomplete frames, whose gaps show an earlier
-/// frame. It reports losses only in its log, and misses two kinds: those in the first two frames,
-/// and those that reach from the end of one frame into the next.
-void Kinect::take_packet(std::byte* frame, const void* data, int number, int bytes) {
-  std::memcpy(frame + static_cast<std::ptrdiff_t>(number) * packet_bytes, data,
-              static_cast<std::size_t>(bytes));
-  if (number == 0) {
-    incoming_.packets_in_order = 0;
-    incoming_.begin = steady_clock::now();
-  }
-  const bool follows = number == incoming_.packets_in_order && bytes == bytes_of_packet(number);
-  incoming_.packets_in_order = follows ? number + 1 : -1;
+/// @return whether enough of its packets arrived: 80 %
+bool Kinect::count_packets(const ReceivedFrame& frame) {
+  const auto lost = static_cast<int>(frame.lost.size());
+  const bool is_enough = 5 * lost <= depth_packets.packets();
+  const std::lock_guard lock(counts_mutex_);
+  ++(lost == 0   ? counts_.whole_frames
+     : is_enough ? counts_.partial_frames
+                 : counts_.dropped_frames);
+  counts_.packets += depth_packets.packets();
+  counts_.lost_packets += lost;
+  return is_enough;
 }
 
-/// A frame that lost its end is dropped here, too: libfreenect has then taken the first packet of
-/// the next frame already, which makes the count wrong.
-void Kinect::take_frame(const std::uint16_t* readings) {
-  if (incoming_.packets_in_order == packets) {
-    (*on_frame_)({.readings = std::span(readings, pixels), .time = incoming_.begin});
-  } else {
-    ++damaged_frames_;
-  }
+PacketCounts Kinect::packet_counts() const {
+  const std::lock_guard lock(counts_mutex_);
+  return counts_;
 }
 
 }  // namespace octurn

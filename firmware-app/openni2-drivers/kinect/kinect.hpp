@@ -1,7 +1,5 @@
 #pragma once
 
-#include <libfreenect.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -12,85 +10,79 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 
+#include "kinect/camera_commands.hpp"
 #include "kinect/depth_table.hpp"
+#include "kinect/packet_frames.hpp"
+#include "kinect/usb_device.hpp"
+#include "rig/packet_counts.hpp"
 #include "rig/tilt.hpp"
 
 namespace octurn {
 
-/// A frame of 640 x 480 raw readings, and the arrival of its first packet. The exposure ended
-/// before that.
+/// A frame of 640 x 480 raw readings, `lost_reading` where its packet was lost, and the arrival of
+/// its first packet. The exposure ended before that.
 struct RawFrame {
   std::span<const std::uint16_t> readings = {};
   std::chrono::steady_clock::time_point time = {};
 };
 
-/// A Kinect v1 on USB, by libfreenect. Its colour camera is never started: a Raspberry Pi has no
-/// bandwidth for both.
+/// A Kinect v1 on USB. Its colour camera is never started: a Raspberry Pi has no bandwidth for
+/// both. Its audio part is left alone: a reset, which models 1473 and for Windows need before their
+/// accelerometer answers, makes some of them vanish.
 class Kinect {
  public:
+  /// Takes at most 5 s.
   /// @param index  among the Kinects that are plugged in
-  /// @throws Error "sensor-missing"
+  /// @throws Error "sensor-missing"; "sensor-failed" if it does not answer
   explicit Kinect(int index);
-  ~Kinect();
   Kinect(const Kinect&) = delete;
   Kinect& operator=(const Kinect&) = delete;
 
   /// The number of Kinects that are plugged in.
   static int count();
 
+  /// Identifies this Kinect among others: the serial number of its camera or, if that has none, of
+  /// its microphones; else its USB port.
+  const std::string& serial() const { return serial_; }
+
   const KinectParameters& parameters() const { return parameters_; }
 
-  /// The tilt by its accelerometer, which is read once a second while the stream runs. Nothing if
-  /// the model has no accelerometer that can be read.
-  std::optional<Tilt> tilt() const;
+  /// Asks its accelerometer for the tilt; takes at most 500 ms. Nothing if the model has no
+  /// accelerometer that can be read, or it does not answer.
+  std::optional<Tilt> tilt();
 
   bool has_near_mode() const { return has_near_mode_; }
 
   /// @return false if the depth stream runs, which does not allow a change, or the device refuses
   bool set_near_mode(bool on);
 
-  /// Runs the depth stream until a stop is requested or the device is gone.
-  /// @param on_frame  receives each complete frame; a frame with a lost packet is dropped
+  /// Runs the depth stream until a stop is requested or the device is gone; then returns within 2
+  /// s.
+  /// @param on_frame  receives each frame of which at least 80 % of the packets arrived
   void stream(const std::stop_token& stop, const std::function<void(const RawFrame&)>& on_frame);
 
-  /// The number of frames that were dropped because they had lost packets.
-  int damaged_frames() const { return damaged_frames_; }
+  PacketCounts packet_counts() const;
 
-  /// Whether it was unplugged.
+  /// Whether it was unplugged, or hangs.
   bool is_lost() const { return is_lost_; }
 
  private:
-  struct End {
-    void operator()(freenect_context* context) const { freenect_shutdown(context); }
-  };
-  using Context = std::unique_ptr<freenect_context, End>;
+  void start_depth();
+  bool count_packets(const ReceivedFrame& frame);
 
-  /// The frame that is being received, packet by packet.
-  struct Incoming {
-    int packets_in_order = 0;  // -1 once one was missing
-    std::chrono::steady_clock::time_point begin = {};
-  };
-
-  static Context make_context(int subdevices);
-  bool open(int index, int subdevices);
-  void read_parameters();
-  void read_tilt();
-  void take_packet(std::byte* frame, const void* data, int number, int bytes);
-  void take_frame(const std::uint16_t* readings);
-
-  std::mutex usb_;   // guards libfreenect's device; held while a stream runs
-  Context context_;  // closes the device when it ends
-  freenect_device* device_ = nullptr;
+  std::mutex usb_;  // guards camera_ and commands_; held while a stream runs
+  std::unique_ptr<UsbDevice> camera_;
+  CameraCommands commands_;
+  std::mutex motor_mutex_;            // guards motor_
+  std::unique_ptr<UsbDevice> motor_;  // null if it cannot be asked
+  std::string serial_ = {};
   KinectParameters parameters_ = {};
   bool has_near_mode_ = false;
-  bool has_accelerometer_ = false;
-  mutable std::mutex tilt_mutex_;  // guards tilt_
-  std::optional<Tilt> tilt_ = {};
   std::atomic<bool> is_lost_ = false;
-  std::atomic<int> damaged_frames_ = 0;
-  const std::function<void(const RawFrame&)>* on_frame_ = nullptr;  // while a stream runs
-  Incoming incoming_ = {};
+  mutable std::mutex counts_mutex_;  // guards counts_
+  PacketCounts counts_ = {};
 };
 
 }  // namespace octurn

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rig/kinect_device.hpp"
+
 namespace octurn {
 
 KinectStream::KinectStream(Kinect& kinect)
@@ -25,7 +27,7 @@ void KinectStream::stop() { thread_ = {}; }
 void KinectStream::convert(const RawFrame& frame) {
   deliver(++frames_, frame.time, [&](std::span<OniDepthPixel> depth) {
     std::ranges::transform(frame.readings, depth.begin(), [this](std::uint16_t reading) {
-      return table_[reading & std::size_t{no_kinect_reading}];
+      return reading == lost_reading ? lost_depth : table_[reading];
     });
   });
 }

@@ -1,10 +1,10 @@
+#include "kinect/usb_place.hpp"
+
 #include <algorithm>
 #include <fstream>
 #include <system_error>
 #include <tuple>
 #include <vector>
-
-#include "kinect/kinect_serial.hpp"
 
 namespace octurn {
 namespace {

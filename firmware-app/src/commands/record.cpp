@@ -56,13 +56,14 @@ void record(const RecordArguments& arguments) {
     if (!turntable.move_to(position, stop)) {
       throw_stopped("no recording was written");
     }
+    const std::optional<Tilt> tilt = sensor.tilt();
     const Clock::time_point settled = Clock::now();
     for (int frame = 0; frame < frames; ++frame) {
       const TimedFrame timed = settled_frame(sensor, settled, stop);
       begin = begin.value_or(timed.time);
       writer.write(timed.frame, {.time = timed.time - *begin,
                                  .angle = radians_from_degrees(angle_deg_at(position, steps)),
-                                 .tilt = sensor.tilt()});
+                                 .tilt = tilt});
     }
   }
   writer.commit();

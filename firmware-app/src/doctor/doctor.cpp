@@ -7,6 +7,7 @@
 #include "doctor/machine_checks.hpp"
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
+#include "doctor/system_files.hpp"
 #include "store/earlier_scans.hpp"
 #include "store/scan_estimate.hpp"
 #include "turntable/pulse_train.hpp"
@@ -100,7 +101,8 @@ DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
 
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =
-      check_sensor(reading, input.config.scan.clip, unscaled_pose(input.config.scan));
+      check_sensor(reading, input.config.scan.clip, unscaled_pose(input.config.scan),
+                   first_line(input.root / "proc/device-tree/model").value_or(""));
   if (!input.rig.laser && is_on_usb(input.rig.sensor_uri)) {
     findings.push_back(check_usb(input.root));
   }

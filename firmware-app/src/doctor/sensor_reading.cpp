@@ -14,14 +14,14 @@ constexpr std::size_t kept_frames = 10;  // as a scan takes at each stop
 /// @return nothing if `stop` is requested first
 std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& stop) {
   SensorSample sample{.name = sensor.name(), .intrinsics = sensor.intrinsics()};
-  std::optional<int> damaged_before;
+  std::optional<PacketCounts> before;
   for (int count = 0; count < first_frames + timed_frames; ++count) {
     std::optional<TimedFrame> timed = sensor.read(stop);
     if (!timed) {
       return std::nullopt;
     }
     if (count < first_frames) {
-      damaged_before = sensor.damaged_frames();
+      before = sensor.packet_counts();
       continue;
     }
     sample.times.push_back(timed->time);
@@ -29,8 +29,8 @@ std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& s
       sample.frames.push_back(std::move(timed->frame));
     }
   }
-  if (const auto damaged = sensor.damaged_frames(); damaged && damaged_before) {
-    sample.damaged = *damaged - *damaged_before;
+  if (const auto after = sensor.packet_counts(); after && before) {
+    sample.packets = *after - *before;
   }
   sample.tilt = sensor.tilt();
   return sample;

@@ -9,6 +9,7 @@
 
 #include "capture/rig.hpp"
 #include "octurn/snapshot.hpp"
+#include "rig/packet_counts.hpp"
 #include "rig/tilt.hpp"
 #include "store/job.hpp"
 
@@ -19,8 +20,8 @@ struct SensorSample {
   std::string name = {};
   Intrinsics intrinsics = {};
   std::vector<std::chrono::steady_clock::time_point> times = {};  ///< of each frame
-  std::optional<int> damaged = {};  ///< damaged frames; nothing if the sensor does not count them
-  std::vector<DepthFrame> frames = {};  ///< the last ones, of a scene that stands still
+  std::optional<PacketCounts> packets = {};  ///< nothing if the sensor does not count them
+  std::vector<DepthFrame> frames = {};       ///< the last ones, of a scene that stands still
   std::optional<Tilt> tilt = {};
 };
 

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "octurn/snapshot.hpp"
+#include "rig/packet_counts.hpp"
 #include "rig/tilt.hpp"
 
 namespace octurn {
@@ -15,6 +18,7 @@ namespace octurn {
 struct TimedFrame {
   DepthFrame frame = {};
   std::chrono::steady_clock::time_point time = {};
+  std::vector<std::size_t> lost = {};  ///< pixels that were lost on the way; they have no reading
 };
 
 /// A depth camera: a Kinect v1, a simulated one, any sensor that OpenNI2 supports, or a recording
@@ -39,12 +43,12 @@ class DepthSensor {
   ///               if the device is gone
   virtual std::optional<TimedFrame> read(const std::stop_token& stop) = 0;
 
-  /// The attitude from the accelerometer; nothing if the sensor has none that can be read.
+  /// The attitude from the accelerometer; nothing if the sensor has none that can be read. A
+  /// Kinect is asked for it over USB, which takes up to 500 ms: not while frames are taken.
   virtual std::optional<Tilt> tilt() const = 0;
 
-  /// The number of damaged frames that were dropped since it was opened; nothing if it does not
-  /// count them.
-  virtual std::optional<int> damaged_frames() const = 0;
+  /// What has arrived of its packets since it was opened; nothing if it does not count them.
+  virtual std::optional<PacketCounts> packet_counts() const = 0;
 
   /// Sets the platform's angle in a simulated sensor or a recording. A recording restarts with its
   /// first frame of that angle. Other sensors ignore it.

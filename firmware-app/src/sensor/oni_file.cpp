@@ -30,7 +30,7 @@ class OniFile final : public DepthSensor {
   std::string serial() const override { return {}; }
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override { return std::nullopt; }
-  std::optional<int> damaged_frames() const override { return std::nullopt; }
+  std::optional<PacketCounts> packet_counts() const override { return std::nullopt; }
   void show_angle(double /*angle*/) override {}
 
  private:

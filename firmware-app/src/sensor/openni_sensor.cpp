@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "log.hpp"
 #include "octurn/error.hpp"
@@ -69,6 +70,18 @@ std::optional<Value> property_of(const openni::Device& device, int property) {
                                                                           : std::nullopt;
 }
 
+/// Makes pixels without readings of those that the Kinect's driver marked as lost, and lists them.
+std::vector<std::size_t> take_lost(DepthFrame& frame) {
+  std::vector<std::size_t> lost;
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    if (frame.depth[i] == lost_depth) {
+      frame.depth[i] = 0;
+      lost.push_back(i);
+    }
+  }
+  return lost;
+}
+
 class OpenNiSensor final : public DepthSensor {
  public:
   explicit OpenNiSensor(const std::string& uri) {
@@ -78,6 +91,7 @@ class OpenNiSensor final : public DepthSensor {
     name_ = device_.getDeviceInfo().getName();
     has_steady_stamps_ = has_octurns_driver(device_.getDeviceInfo().getUri());
     is_simulated_ = device_.isPropertySupported(platform_angle_property);
+    counts_packets_ = device_.isPropertySupported(packet_counts_property);
   }
 
   const std::string& name() const override { return name_; }
@@ -85,7 +99,7 @@ class OpenNiSensor final : public DepthSensor {
   std::string serial() const override;
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
-  std::optional<int> damaged_frames() const override;
+  std::optional<PacketCounts> packet_counts() const override;
   void show_angle(double angle) override { simulate(platform_angle_property, angle); }
   void show_wall(std::optional<double> distance) override {
     simulate(wall_property, distance.value_or(0));
@@ -105,6 +119,7 @@ class OpenNiSensor final : public DepthSensor {
   Intrinsics intrinsics_ = {};
   bool has_steady_stamps_ = false;  // other drivers stamp frames by clocks of their own
   bool is_simulated_ = false;
+  bool counts_packets_ = false;  // and marks pixels that were lost
 };
 
 void OpenNiSensor::open_stream(const std::string& uri) {
@@ -125,10 +140,14 @@ bool OpenNiSensor::is_lost() const {
 
 TimedFrame OpenNiSensor::take_frame() {
   const openni::VideoFrameRef frame = read_frame(stream_);
-  return {.frame = to_depth_frame(frame),
-          .time = has_steady_stamps_
-                      ? steady_clock::time_point(std::chrono::microseconds(frame.getTimestamp()))
-                      : steady_clock::now()};
+  TimedFrame taken{.frame = to_depth_frame(frame),
+                   .time = has_steady_stamps_ ? steady_clock::time_point(
+                                                    std::chrono::microseconds(frame.getTimestamp()))
+                                              : steady_clock::now()};
+  if (counts_packets_) {
+    taken.lost = take_lost(taken.frame);
+  }
+  return taken;
 }
 
 /// A simulated sensor's own clock; for others, the steady clock.
@@ -140,6 +159,7 @@ std::chrono::duration<double> OpenNiSensor::sensor_time() const {
 
 std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
   const auto begin = sensor_time();
+  const auto counted = packet_counts();
   while (!stop.stop_requested()) {
     // Measured before the wait: a frame that has arrived is read, however late this thread wakes.
     const auto silence = sensor_time() - begin;
@@ -150,7 +170,7 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
       throw Error(ErrorCode::sensor_lost, "sensor: " + name() + " is gone", missing_sensor_hint);
     }
     if (silence > longest_silence) {
-      throw silence_error(longest_silence);
+      throw silence_error(longest_silence, lost_share(counted, packet_counts()));
     }
   }
   return std::nullopt;
@@ -170,8 +190,8 @@ std::string OpenNiSensor::serial() const {
   return device_.getDeviceInfo().getUri();
 }
 
-std::optional<int> OpenNiSensor::damaged_frames() const {
-  return property_of<int>(device_, damaged_frames_property);
+std::optional<PacketCounts> OpenNiSensor::packet_counts() const {
+  return property_of<PacketCounts>(device_, packet_counts_property);
 }
 
 void OpenNiSensor::simulate(int property, double value) {

@@ -66,11 +66,19 @@ DepthFrame to_depth_frame(const openni::VideoFrameRef& frame) {
   return copy;
 }
 
-Error silence_error(std::chrono::milliseconds silence) {
+Error silence_error(std::chrono::milliseconds silence, double lost_share) {
+  const auto silent_ms = static_cast<double>(silence.count());
+  if (lost_share > 0.1) {  // else it sent next to nothing
+    return Error(
+        ErrorCode::sensor_silent,
+        "sensor: no usable frame for " + std::to_string(silence.count()) + " ms: " +
+            std::to_string(std::lround(100 * lost_share)) + " % of its packets were lost on USB",
+        "Plug the sensor directly into another USB port, and check its power supply and cable.",
+        {{"lost_share", lost_share}, {"silent_ms", silent_ms}});
+  }
   return Error(ErrorCode::sensor_silent,
                "sensor: no frame for " + std::to_string(silence.count()) + " ms",
-               "Unplug the sensor, plug it in again, and retry.",
-               {{"silent_ms", static_cast<double>(silence.count())}});
+               "Unplug the sensor, plug it in again, and retry.", {{"silent_ms", silent_ms}});
 }
 
 }  // namespace octurn

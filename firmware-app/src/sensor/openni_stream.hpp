@@ -26,6 +26,7 @@ openni::VideoFrameRef read_frame(openni::VideoStream& stream);
 DepthFrame to_depth_frame(const openni::VideoFrameRef& frame);
 
 /// The error "sensor-silent" of a sensor that has sent no frame for so long.
-Error silence_error(std::chrono::milliseconds silence);
+/// @param lost_share  of its packets meanwhile, which were lost on the way
+Error silence_error(std::chrono::milliseconds silence, double lost_share = 0);
 
 }  // namespace octurn

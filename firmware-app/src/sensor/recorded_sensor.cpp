@@ -55,7 +55,7 @@ class RecordedSensor final : public DepthSensor {
 
   std::optional<Tilt> tilt() const override { return tilt_; }
 
-  std::optional<int> damaged_frames() const override { return std::nullopt; }
+  std::optional<PacketCounts> packet_counts() const override { return std::nullopt; }
 
   void show_angle(double angle) override {
     angle_ = angle;

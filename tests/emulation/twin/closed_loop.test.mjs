@@ -1,5 +1,5 @@
 // A scan on an emulated Raspberry Pi 3, with real software down to the hardware: Octurn's stepper on the chip's GPIO lines, whose
-// pulses turn an emulated platform, and Octurn's Kinect driver on libfreenect, libusb and the kernel's USB, whose emulated Kinect sees
+// pulses turn an emulated platform, and Octurn's Kinect driver on libusb and the kernel's USB, whose emulated Kinect sees
 // that platform. The model is compared with the object.
 
 import assert from 'node:assert/strict';

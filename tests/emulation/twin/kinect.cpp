@@ -1,6 +1,6 @@
 // Emulates a Kinect v1 on the USB of the machine on which it runs: it attaches the device to the
 // kernel's vhci_hcd by USB/IP and renders its view at a platform angle that a peer reports. Kernel,
-// libusb, libfreenect and Octurn's driver above it are the real ones. Needs root, and the kernel
+// libusb and Octurn's driver above it are the real ones. Needs root, and the kernel
 // module vhci-hcd.
 //
 // Before each frame it sends the line "look" to ADDRESS PORT and waits for "angle RADIANS", the

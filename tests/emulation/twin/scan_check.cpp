@@ -1,5 +1,5 @@
 // Runs on the emulated Pi: Octurn's own stepper makes a turn of stops on the chip's GPIO lines, and
-// at each stop Octurn's own Kinect driver takes a frame through libfreenect, libusb and the kernel.
+// at each stop Octurn's own Kinect driver takes a frame through libusb and the kernel.
 //
 // usage: scan_check STOPS FILE: writes the depth images to FILE, one after the other: 640 x 480
 // values in units of 0.1 mm, little-endian 16 bits. If the Kinect is gone, it waits for it.
@@ -50,7 +50,11 @@ class Watch {
   }
 
  private:
+  /// Passes over frames that lost packets.
   void keep(const RawFrame& frame) {
+    if (std::ranges::find(frame.readings, lost_reading) != frame.readings.end()) {
+      return;
+    }
     const std::lock_guard lock(mutex_);
     depth_.clear();
     for (const std::uint16_t reading : frame.readings) {
@@ -140,7 +144,7 @@ class Eye {
     return depth;
   }
 
-  const Kinect& kinect() const { return *kinect_; }
+  Kinect& kinect() { return *kinect_; }
 
  private:
   std::unique_ptr<Kinect> kinect_ = open_kinect();
@@ -163,7 +167,7 @@ void scan(int stops, const char* file) {
   }
   const std::chrono::duration<double> seconds = Clock::now() - begin;
   std::cout << "seconds " << seconds.count() << ", late pulses " << stepper.late().count
-            << ", damaged frames " << eye.kinect().damaged_frames() << ", tilt "
+            << ", damaged frames " << eye.kinect().packet_counts().partial_frames << ", tilt "
             << (eye.kinect().tilt() ? "told" : "not told") << std::endl;
   const std::vector<Clock::duration> late = pulses.lateness();
   const auto us = [&](std::size_t share) {

@@ -49,7 +49,25 @@ bool Camera::command(std::span<const std::uint8_t> message) {
   reply_[1] = 'B';
   put16(reply_, 2, static_cast<std::uint16_t>(body.size() / 2));
   reply_.insert(reply_.end(), body.begin(), body.end());
+  not_ready_ = kinect_.not_ready;
   return true;
+}
+
+std::vector<std::uint8_t> Camera::take_reply() {
+  if (not_ready_ > 0) {
+    --not_ready_;
+    return {};
+  }
+  if (kinect_.stale_replies > 0) {
+    --kinect_.stale_replies;
+    return reply_before_;
+  }
+  reply_before_ = reply_;
+  if (kinect_.short_replies > 0) {
+    --kinect_.short_replies;
+    reply_.resize(reply_.size() / 2);
+  }
+  return std::exchange(reply_, {});
 }
 
 std::vector<std::uint8_t> Camera::answer(std::uint16_t command,
@@ -143,8 +161,14 @@ void Camera::begin_frame() {
   packed_ = packed(frames_(frame_));
 }
 
-/// Whether a packet of this frame is among those that this frame or the previous one loses.
-bool Camera::is_lost(int packet) const {
+/// Whether a packet of this frame is among those that this frame or the previous one loses, or is
+/// lost by chance or in a burst.
+bool Camera::is_lost(int packet) {
+  constexpr int burst_period = 7283;  // a second has 7260: each burst hits frames elsewhere
+  const bool in_burst = ++packets_ % burst_period < kinect_.burst;
+  if (in_burst || std::uniform_real_distribution()(random_) < kinect_.random_loss) {
+    return true;
+  }
   const auto loses = [this](int frame, int number) {
     return frame >= 0 && frame % kinect_.loss_period == 0 && number >= kinect_.first_lost &&
            number < kinect_.first_lost + kinect_.lost_packets;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <random>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,8 +30,8 @@ class Camera {
   /// Accepts a command. @return false if the message is no command
   bool command(std::span<const std::uint8_t> message);
 
-  /// Moves out the reply to the last command.
-  std::vector<std::uint8_t> take_reply() { return std::exchange(reply_, {}); }
+  /// Moves out the reply to the last command, or what the faulty firmware sends in its place.
+  std::vector<std::uint8_t> take_reply();
 
   /// Writes the depth endpoint's packet of the next microframe.
   /// @return bytes written to `packet`, 0 if that microframe has no packet
@@ -40,17 +41,21 @@ class Camera {
   std::vector<std::uint8_t> answer(std::uint16_t command, std::span<const std::uint8_t> body);
   void write_register(std::uint16_t address, std::uint16_t value);
   void begin_frame();
-  bool is_lost(int packet) const;
+  bool is_lost(int packet);
 
   EmulatedKinect& kinect_;
   Frames frames_;
   std::map<std::uint16_t, std::uint16_t> registers_ = {};
   std::vector<std::uint8_t> reply_ = {};
+  std::vector<std::uint8_t> reply_before_ = {};
+  int not_ready_ = 0;                      // times that the reply is still asked for in vain
   std::vector<std::uint8_t> packed_ = {};  // the frame that is being sent, 11 bits a reading
   int frame_ = -1;                         // counted since the stream began
   int microframe_ = 0;                     // counted within the frame
   bool frame_is_damaged_ = false;
   std::uint8_t sequence_ = 0;
+  int packets_ = 0;  // sent or lost
+  std::minstd_rand random_ = {};
 };
 
 /// Repeats a sequence of frames. @param frames  readings of one or more whole frames

@@ -33,7 +33,19 @@ struct EmulatedKinect {
   std::atomic<int> loss_period = 1;
   std::atomic<int> first_lost = 0;
   std::atomic<int> lost_packets = 0;
-  std::atomic<int> cut_packet = -1;  // this packet of every `loss_period`-th frame is truncated
+  std::atomic<int> cut_packet = -1;     // this packet of every `loss_period`-th frame is truncated
+  std::atomic<double> random_loss = 0;  // share of packets that are lost, each by itself
+  std::atomic<int> burst = 0;           // packets that are lost together, about once a second
+
+  // Faults of control transfers. Those counted by number end by themselves.
+  std::atomic<int> not_ready = 0;  // times that each reply of the camera is asked for in vain
+  std::atomic<int> short_replies = 0;
+  std::atomic<int> stale_replies = 0;  // the reply before is repeated
+  std::atomic<int> stalls = 0;
+  std::atomic<bool> camera_hangs = false;  // answers no control transfer
+  std::atomic<bool> motor_hangs = false;
+  std::atomic<bool> keeps_transfers = false;  // does not give back cancelled ones
+  std::atomic<int> audio_resets = 0;          // after which a real one vanishes for 2 s
 
   std::atomic<int> frames_sent = 0;
   std::atomic<int> frames_damaged = 0;

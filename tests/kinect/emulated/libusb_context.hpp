@@ -25,7 +25,7 @@ struct libusb_device_handle {
   int plugged_times = 0;  // the device's count when the handle was opened
 };
 
-/// A program's view of the bus. libfreenect uses each from one thread at a time.
+/// A program's view of the bus. The driver uses each from one thread at a time.
 struct libusb_context {
   /// The Kinect of the folder in the environment variable.
   struct Bus {

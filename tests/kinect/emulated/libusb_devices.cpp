@@ -1,16 +1,17 @@
-// A replacement of libusb-1.0, as far as libfreenect and OpenNI2's drivers use it. Its bus has one
+// A replacement of libusb-1.0, as far as Octurn's and OpenNI2's drivers use it. Its bus has one
 // emulated Kinect or nothing. A program that loads it first (LD_LIBRARY_PATH) sees that bus instead
 // of the machine's; all layers above are the real ones.
-
 //
 // This file has the devices and their control transfers.
 
 #include <libusb.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <thread>
 
 #include "kinect/emulated/libusb_context.hpp"
 
@@ -21,6 +22,24 @@ using octurn::KinectPart;
 namespace {
 
 constexpr int stalled = LIBUSB_ERROR_PIPE;  // the answer to an unsupported request
+
+/// Whether a device answers no control transfer.
+bool hangs(const libusb_device_handle& handle) {
+  const EmulatedKinect& kinect = handle.device->context->bus->kinect;
+  const KinectPart part = handle.device->part;
+  return (part == KinectPart::camera && kinect.camera_hangs) ||
+         (part == KinectPart::motor && kinect.motor_hangs);
+}
+
+/// Waits for a device that hangs. @param timeout  milliseconds; 0: for ever, as libusb does
+int wait_in_vain(const libusb_device_handle& handle, unsigned timeout) {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + std::chrono::milliseconds(timeout);
+  while (hangs(handle) && (timeout == 0 || steady_clock::now() < deadline)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return LIBUSB_ERROR_TIMEOUT;
+}
 
 }  // namespace
 
@@ -135,15 +154,22 @@ int libusb_set_interface_alt_setting(libusb_device_handle* /*handle*/, int /*num
                                      int /*setting*/) {
   return 0;
 }
-int libusb_reset_device(libusb_device_handle* /*handle*/) { return 0; }
+int libusb_reset_device(libusb_device_handle* handle) {
+  EmulatedKinect& kinect = handle->device->context->bus->kinect;
+  kinect.audio_resets += handle->device->part == KinectPart::audio ? 1 : 0;
+  return 0;
+}
 
 int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
                             std::uint16_t value, std::uint16_t index, unsigned char* data,
-                            std::uint16_t length, unsigned /*timeout*/) {
+                            std::uint16_t length, unsigned timeout) {
   if (is_dead(*handle)) {
     return LIBUSB_ERROR_NO_DEVICE;
   }
   auto& bus = *handle->device->context->bus;
+  if (hangs(*handle)) {
+    return wait_in_vain(*handle, timeout);
+  }
   const auto transferred = octurn::vendor_request(
       handle->device->part,
       {.type = type, .request = request, .value = value, .index = index, .length = length},

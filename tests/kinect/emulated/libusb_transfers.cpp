@@ -61,7 +61,8 @@ bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status s
 /// program that a busy machine delays: losses are up to the tests.
 /// @return whether any transfer ended
 bool handle_events(libusb_context& context) {
-  if (give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
+  const bool keeps = context.bus && context.bus->kinect.keeps_transfers;
+  if (!keeps && give_back(context.cancelled, LIBUSB_TRANSFER_CANCELLED)) {
     return true;
   }
   if (context.waiting.empty()) {

@@ -115,13 +115,17 @@ std::uint16_t usb_release(KinectModel model) {
 }
 
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
-                                          const EmulatedKinect& kinect, Camera& camera,
+                                          EmulatedKinect& kinect, Camera& camera,
                                           std::span<std::uint8_t> data) {
   if (part == KinectPart::motor && setup.is_in() && setup.request == 0x32) {
     return reply_of_motor(kinect, data);
   }
   if (part != KinectPart::camera) {
     return setup.is_in() ? std::nullopt : std::optional(std::size_t{0});
+  }
+  if (kinect.stalls > 0) {
+    --kinect.stalls;
+    return std::nullopt;
   }
   if (!setup.is_in()) {
     return camera.command(data) ? std::optional(data.size()) : std::nullopt;

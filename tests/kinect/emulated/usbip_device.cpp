@@ -32,7 +32,7 @@ constexpr std::uint32_t not_isochronous = 0xFFFFFFFF;
 constexpr std::uint32_t stalled = 0U - EPIPE;
 constexpr std::uint32_t was_unlinked = 0U - ECONNRESET;
 
-// Far above what libfreenect asks for: 16 packets of 1920 bytes.
+// Far above what the driver asks for: 16 packets of 1920 bytes.
 constexpr std::uint32_t max_buffer_bytes = 1U << 20U;
 constexpr std::uint32_t max_packets = 1024;
 

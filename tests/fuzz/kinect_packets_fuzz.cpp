@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "kinect/packet_frames.hpp"
+
+// The input is a list of packets: two bytes for its length, little-endian, then the packet.
+// Whatever they are, a frame lacks packets in rising order, and never all of them; and every
+// reading that a lost packet had a bit of is lost. The first byte chooses between depth and a
+// stream of few, short packets, which an input can fill.
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace octurn;
+  std::span<const std::uint8_t> input(data, size);
+  if (input.empty()) {
+    return 0;
+  }
+  const bool is_depth = (input[0] & 1U) != 0;
+  const PacketFormat format =
+      is_depth ? depth_packets
+               : PacketFormat{.stream = 0x70, .frame_bytes = 22, .payload_bytes = 4};
+  input = input.subspan(1);
+  PacketFrames frames(format, [&](const ReceivedFrame& frame) {
+    const auto packets = static_cast<std::size_t>(format.packets());
+    const bool rising =
+        std::ranges::adjacent_find(frame.lost, std::greater_equal()) == frame.lost.end();
+    if (frame.bytes.size() != format.frame_bytes || frame.lost.size() >= packets || !rising) {
+      std::abort();
+    }
+    if (is_depth) {
+      std::vector<std::uint16_t> readings(std::size_t{640} * 480);
+      unpack_depth(frame, readings);
+      const auto lost = static_cast<std::size_t>(std::ranges::count(readings, lost_reading));
+      if (lost + 450 < frame.lost.size() * 1271 || lost > frame.lost.size() * 1273) {
+        std::abort();
+      }
+    }
+  });
+  while (input.size() >= 2) {
+    const std::size_t told = input[0] | std::size_t{input[1]} << 8U;
+    const std::size_t bytes = std::min(told, input.size() - 2);
+    frames.take(input.subspan(2, bytes), {});
+    input = input.subspan(2 + bytes);
+  }
+  return 0;
+}

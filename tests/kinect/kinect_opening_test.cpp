@@ -1,0 +1,55 @@
+// Opening a Kinect whose firmware is slow or faulty.
+
+#include <gtest/gtest.h>
+
+#include "kinect/plain_frames.hpp"
+#include "support/thrown_error.hpp"
+
+namespace octurn {
+namespace {
+
+/// Opens an emulated Kinect after a change, and expects depth.
+template <typename Change>
+void expect_depth(Change change) {
+  KinectOnDesk desk({frame_of(700)});
+  change(desk.kinect());
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
+  EXPECT_EQ(desk->audio_resets, 0);
+}
+
+TEST(KinectOpening, WaitsForRepliesThatAreNotReady) {
+  for (const int times : {1, 5, 20}) {
+    expect_depth([&](EmulatedKinect& kinect) { kinect.not_ready = times; });
+  }
+}
+
+TEST(KinectOpening, SurvivesAShortReplyAStaleOneAndAStall) {
+  expect_depth([](EmulatedKinect& kinect) { kinect.short_replies = 1; });
+  expect_depth([](EmulatedKinect& kinect) { kinect.stale_replies = 1; });
+  expect_depth([](EmulatedKinect& kinect) { kinect.stalls = 1; });
+}
+
+// The audio part of these models would have to be reset for it, and vanishes then.
+TEST(KinectOpening, LeavesTheAudioPartAlone) {
+  expect_depth([](EmulatedKinect& kinect) { kinect.model = KinectModel::k1473; });
+  expect_depth([](EmulatedKinect& kinect) { kinect.model = KinectModel::for_windows; });
+}
+
+TEST(KinectOpening, GoesOnWithoutAMotorThatNeverAnswers) {
+  KinectOnDesk desk({frame_of(700)});
+  desk->motor_hangs = true;
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_FALSE(sensor->tilt().has_value());
+  EXPECT_GT(next_frame(*sensor).depth[0], 0);
+}
+
+TEST(KinectOpening, SaysThatTheCameraDoesNotAnswer) {
+  KinectOnDesk desk({frame_of(700)});
+  desk->camera_hangs = true;
+  const Error error = error_thrown_by([] { open_sensor("kinect://"); });
+  EXPECT_NE(std::string(error.what()).find("does not answer"), std::string::npos) << error.what();
+}
+
+}  // namespace
+}  // namespace octurn

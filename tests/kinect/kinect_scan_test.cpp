@@ -57,6 +57,53 @@ TEST(KinectScan, MakesAClosedModel) {
   expect_same_depths(read_snapshot(stored, kept, kept.shots[1]).frame, seen);
 }
 
+/// A way of losing packets.
+struct Wire {
+  const char* name;
+  double random_loss;
+  int burst;
+};
+
+std::ostream& operator<<(std::ostream& out, const Wire& wire) { return out << wire.name; }
+
+class LossyKinectScan : public ::testing::TestWithParam<Wire> {};
+
+// Pixels that a frame lost are taken from others of the stop: no reading may be missing.
+TEST_P(LossyKinectScan, MakesTheSameModelAsOnAWireThatIsWell) {
+  KinectOnDesk desk({readings_of(simulated_frame())});
+  const TemporaryFolder folder;
+  const auto scan = [&](const std::string& name) {
+    Program program(
+        command("scan", folder.path() / (name + ".stl"), "kinect://",
+                {"--snapshots", "8", "--leaf-size-mm", "4", "--data", folder.path() / name}));
+    EXPECT_EQ(program.wait(), 0) << program.errors();
+    return content_of(folder.path() / (name + ".stl"));
+  };
+  const std::string whole = scan("whole");
+  desk->random_loss = GetParam().random_loss;
+  desk->burst = GetParam().burst;
+  EXPECT_TRUE(scan("lossy") == whole);
+
+  const auto lost_share_of = [&](const char* name) {
+    const fs::path scans = folder.path() / name / "scans";
+    double sum = 0;
+    for (const Shot& shot : read_scan(fs::directory_iterator(scans)->path()).shots) {
+      sum += shot.lost_share / 8;
+    }
+    return sum;
+  };
+  EXPECT_EQ(lost_share_of("whole"), 0);
+  const double expected = GetParam().random_loss + GetParam().burst / 7283.0;
+  // A stop has some 500 packets, and a burst comes only about once a second.
+  EXPECT_NEAR(lost_share_of("lossy"), expected, GetParam().burst > 0 ? 0.1 : expected / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, LossyKinectScan,
+                         ::testing::Values(Wire{"1 %", 0.01, 0}, Wire{"2 %", 0.02, 0},
+                                           Wire{"5 %", 0.05, 0}, Wire{"bursts of 6", 0, 6},
+                                           Wire{"bursts of 20", 0, 20},
+                                           Wire{"bursts of 100", 0, 100}));
+
 TEST(KinectScan, PausesWhenTheKinectIsUnpluggedAndGoesOnWhenItIsBack) {
   KinectOnDesk desk({readings_of(simulated_frame())});
   const TemporaryFolder folder;

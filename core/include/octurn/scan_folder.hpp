@@ -40,6 +40,8 @@ struct Shot {
   std::vector<std::string> pictures = {};
   double angle = 0.0;  ///< of the platform, radians, counter-clockwise seen from above
   int pose = 0;        ///< index in the scan's poses
+  /// Of the sensor's packets, those that were lost on USB while the snapshot was taken; 0 to 1.
+  double lost_share = 0;
   /// Optical frame to the object's frame, metres; if present, it replaces angle and calibration.
   std::optional<Eigen::Isometry3d> object_from_sensor = {};
 };

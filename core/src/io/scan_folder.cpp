@@ -31,6 +31,9 @@ Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCam
   } else {
     shot.file = file_inside(keys.at("file"), "a file in the scan's folder");
   }
+  if (const auto lost = keys.value("lost_packets_percent")) {
+    shot.lost_share = lost->number(0, 100) / 100;
+  }
   if (version == 1) {
     shot.angle = radians_from_degrees(keys.at("angle_deg").number());
     return shot;
@@ -151,6 +154,9 @@ json shot_json(const Shot& shot, const std::optional<LaserCamera>& laser) {
   }
   if (shot.pose != 0) {
     value["pose"] = shot.pose;
+  }
+  if (shot.lost_share > 0) {
+    value["lost_packets_percent"] = 100 * shot.lost_share;
   }
   return value;
 }

@@ -24,6 +24,7 @@ DepthSensor& Rig::sensor() {
   if (!sensor_) {
     sensor_ = options_.open_sensor(options_.sensor_uri);
     sensor_since_ = std::chrono::steady_clock::now();
+    counted_ = PacketCounts();
     sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
     sensor_->set_object_pose(object_pose_);
   }
@@ -63,6 +64,11 @@ Camera& Rig::camera() {
 Lasers& Rig::lasers() {
   camera();
   return *lasers_;
+}
+
+double Rig::take_lost_share() {
+  const std::optional<PacketCounts> before = std::exchange(counted_, sensor().packet_counts());
+  return lost_share(before, counted_);
 }
 
 void Rig::close_sensor() {

@@ -79,6 +79,10 @@ class Rig {
   /// again.
   void close_sensor();
 
+  /// The share of the sensor's packets that were lost since the last call, or since the sensor was
+  /// opened; 0 if it does not count them.
+  double take_lost_share();
+
   /// When the sensor was opened, and began to warm up; nullopt while it is closed.
   std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
     return sensor_ || camera_ ? std::optional(sensor_since_) : std::nullopt;
@@ -108,6 +112,7 @@ class Rig {
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;
   std::unique_ptr<DepthSensor> sensor_;
+  std::optional<PacketCounts> counted_ = {};  // the sensor's, when its losses were last taken
   std::unique_ptr<Camera> camera_;
   std::optional<Lasers> lasers_;  // as long as the camera is open
   std::chrono::steady_clock::time_point sensor_since_ = {};

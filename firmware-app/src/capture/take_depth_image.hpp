@@ -21,7 +21,8 @@ struct Stop {
 bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanObserver& observer);
 
 /// Turns the platform to a stop and takes its depth image: frames, exposed after the platform stood
-/// still, are merged by the settings' filter.
+/// still, are merged by the settings' filter. Pixels that a frame lost on the way to this machine
+/// are taken from the others; if all frames lost the same ones, up to 10 more are taken.
 ///
 /// @return nullopt if stopped first
 /// @throws Error "sensor-...", "turntable-..."

@@ -32,8 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto wait_interval = std::chrono::milliseconds(500);
 
-/// Rounds an angle as scan.json does, which has degrees: a model built from the folder later has
-/// the same bytes.
+/// Rounds an angle as scan.json does, in degrees: a later build from the folder has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
 
 /// One attempt at a scan, from its next stop to its model.
@@ -113,7 +112,8 @@ bool Run::take_depth(const Stop& at, double angle) {
   const std::ptrdiff_t readings = readings_in(*frame);
   first_readings_ = done() == 0 ? readings : first_readings_;
   expect_coverage(readings, first_readings_, scan_.sensor_name);
-  store_snapshot(folder_, scan_, {.file = shot_file(done()), .angle = angle}, *frame);
+  const Shot shot{.file = shot_file(done()), .angle = angle, .lost_share = rig_.take_lost_share()};
+  store_snapshot(folder_, scan_, shot, *frame);
   observer_.on_progress(Phase::capturing, done());
   add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
                         .intrinsics = scan_.intrinsics,

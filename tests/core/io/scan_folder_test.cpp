@@ -122,6 +122,18 @@ TEST(WriteScan, KeepsTheSensorsSerialNumber) {
   EXPECT_EQ(read_scan(folder.path()).sensor_serial, "A00361");
 }
 
+TEST(WriteScan, KeepsTheShareOfLostPackets) {
+  const TemporaryFolder folder;
+  Scan scan = write_contract_scan(folder.path());
+  scan.shots[1].lost_share = 0.02;
+
+  write_scan(folder.path(), scan);
+
+  const Scan read = read_scan(folder.path());
+  EXPECT_EQ(read.shots[0].lost_share, 0);
+  EXPECT_DOUBLE_EQ(read.shots[1].lost_share, 0.02);
+}
+
 TEST(ReadSnapshot, SaysWhichFileIsMissing) {
   const TemporaryFolder folder;
   const Scan scan = write_contract_scan(folder.path());

@@ -1,6 +1,5 @@
 #include "doctor/turn_checks.hpp"
 
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -33,10 +32,10 @@ double plain_ratio(double ratio) {
 }
 
 /// The driver's actual microsteps, if they explain a turn of `share` whole turns.
-std::optional<int> other_microsteps(int microsteps, double share) {
-  for (const int other : std::array{1, 2, 4, 8, 16}) {
-    const double explained = static_cast<double>(microsteps) / other;
-    if (other != microsteps && std::abs(share / explained - 1) < power_share) {
+std::optional<int> other_microsteps(const StepperSettings& settings, double share) {
+  for (const auto& [other, levels] : microsteppings(settings.driver)) {
+    const double explained = static_cast<double>(settings.microsteps) / other;
+    if (other != settings.microsteps && std::abs(share / explained - 1) < power_share) {
       return other;
     }
   }
@@ -61,11 +60,11 @@ TurnFinding check_whole_turn(double turn_deg, const StepperSettings& settings) {
     return {.finding = whole_turn.ok(measured)};
   }
   const double ratio = plain_ratio(settings.gear_ratio / share);
-  if (const auto microsteps = other_microsteps(settings.microsteps, share)) {
+  if (const auto microsteps = other_microsteps(settings, share)) {
     return {
         .finding = whole_turn.fault(
             measured, "Set microsteps to " + std::to_string(*microsteps) +
-                          ": MS1 to MS3 of the driver say so. Or, if they do not, gear_ratio to " +
+                          ": the levels at the driver say so. Or, if they do not, gear_ratio to " +
                           rounded(ratio, 3) + "."),
         .set = {{"microsteps", *microsteps}}};
   }

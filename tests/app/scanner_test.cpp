@@ -155,6 +155,7 @@ TEST_F(ScannerTest, CallsAScanInterruptedWhoseEndCannotBeSavedAndResumesIt) {
   EXPECT_TRUE(scanner.cancel(job->id));
   const Job shown = *scanner.wait_until_done(patience).job;
   EXPECT_EQ(shown.state, JobState::interrupted);
+  EXPECT_EQ(shown.failure->code, ErrorCode::write_failed);  // and not that it was switched off
   EXPECT_EQ(scanner.find(job->id).state, JobState::interrupted);
   EXPECT_EQ(shown.snapshots_done, static_cast<int>(read_scan(store_.folder(job->id)).shots.size()));
   EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "write-failed");

@@ -11,7 +11,7 @@
 #include "http/http_server.hpp"
 #include "log.hpp"
 #include "process_memory.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "service_manager.hpp"
 #include "signal_stop.hpp"
@@ -133,6 +133,9 @@ Outcome serve_once(Machine& machine, ConfigStore& settings) {
   Config config = settings.config();
   if (config.http.port == 0) {
     config.http.port = machine.port;
+  }
+  if (config.http.port == machine.port) {
+    config.http.bind_patience = std::chrono::seconds(10);  // it was this program's until now
   }
   const bool is_safe = machine.start != nullptr && machine.start->is_safe_mode();
   RigOptions rig = rig_options(machine.arguments.rig, config);

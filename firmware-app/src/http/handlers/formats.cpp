@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "build/colour_model.hpp"
 #include "http/file_response.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/handlers/models.hpp"
@@ -19,7 +20,6 @@
 #include "mesh/mesh_formats.hpp"
 #include "mesh/thumbnail.hpp"
 #include "octurn/file.hpp"
-#include "scan/colour_model.hpp"
 
 namespace octurn {
 namespace {

@@ -16,7 +16,7 @@
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
-#include "scan/model_pipe.hpp"
+#include "run/model_pipe.hpp"
 
 namespace octurn {
 namespace {

@@ -19,6 +19,7 @@ constexpr double max_speed = 3600;
 constexpr double max_acceleration = 1e6;
 constexpr double max_pulse_rate = 5000;  // a second: beyond that Linux does not wake up in time
 constexpr int min_steps = 4;             // in a turn: fewer are no turntable
+constexpr int full_steps_per_period = 4;
 constexpr int max_steps = 16'000'000;
 constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames
@@ -208,6 +209,7 @@ Motion to_motion(const StepperSettings& settings) {
   const double steps = settings.full_steps * settings.microsteps * settings.gear_ratio;
   const double steps_per_deg = steps / 360;
   return {.steps_per_turn = static_cast<int>(std::lround(steps)),
+          .steps_per_period = full_steps_per_period * settings.microsteps,
           .start_steps_per_second =
               std::min(settings.start_speed_deg_per_second * steps_per_deg, max_pulse_rate),
           .top_steps_per_second =

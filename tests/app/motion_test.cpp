@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "app/quick_motion.hpp"
-#include "turntable/stepper_settings.hpp"
 
 namespace octurn {
 namespace {
@@ -72,69 +69,6 @@ TEST(SpeedProfile, StartsAgainAfterAStandstill) {
   EXPECT_NEAR(profile.next_step(), first, 1e-12);
 }
 
-/// A platform on the shaft of a stepper: the rotor follows the field by T sin(N (field - rotor)),
-/// N = 50 pole pairs of a motor of 1.8 degrees, and lags or loses a period of the field, 360 / N
-/// degrees (Acarnley, Stepping Motors, chapter 4).
-struct LoadedMotor {
-  double holding_torque = 0.2;  ///< N m
-  double inertia = 0.005;       ///< kg m^2; a disc of 28 cm of birch ply, 12 mm thick
-  double friction = 0.02;       ///< N m
-  double damping = 1e-3;        ///< N m s
-
-  /// Moves by `steps` of the profile, and waits until the platform stands.
-  /// @param stop_after  step after which it is asked to stop; 0: never
-  /// @return how far the platform is from where the pulses count it, degrees
-  double lost_deg(const Motion& motion, int steps, int stop_after = 0) const {
-    constexpr double dt = 2e-5;
-    constexpr double settling = 4;
-    const double step = 2 * std::numbers::pi / motion.steps_per_turn;
-    SpeedProfile profile(motion, steps);
-    double field = 0;
-    double rotor = 0;
-    double speed = 0;
-    double pulse = profile.next_step();
-    int made = 0;
-    bool is_moving = true;
-    for (double time = 0; is_moving || time < pulse + settling; time += dt) {
-      if (is_moving && time >= pulse) {
-        field += step;
-        const bool stops = stop_after > 0 && ++made >= stop_after;
-        is_moving = profile.steps_left() > 0 && (!stops || profile.brake());
-        pulse += is_moving ? profile.next_step() : 0;
-      }
-      const double torque = holding_torque * std::sin(50 * (field - rotor)) - damping * speed -
-                            friction * std::tanh(speed / 0.01);
-      speed += torque / inertia * dt;
-      rotor += speed * dt;
-    }
-    return (field - rotor) * 180 / std::numbers::pi;
-  }
-};
-
-constexpr double kept = 1;  // degree; friction holds the platform a little beside its place
-
-TEST(SpeedProfile, LosesNothingByDefaultWithAPlatformOnTheShaft) {
-  for (const double inertia : {0.0001, 0.002, 0.005}) {
-    const LoadedMotor motor{.inertia = inertia};
-    for (const int steps : {1, 4, 22, 100, 800}) {
-      EXPECT_NEAR(motor.lost_deg(to_motion({}), steps), 0, kept) << inertia << ", " << steps;
-    }
-  }
-}
-
-TEST(SpeedProfile, LosesNothingWhereAMoveIsStopped) {
-  for (const double inertia : {0.002, 0.005}) {
-    for (const int stop_after : {1, 5, 30, 200, 400, 790}) {
-      EXPECT_NEAR(LoadedMotor{.inertia = inertia}.lost_deg(to_motion({}), 800, stop_after), 0, kept)
-          << inertia << ", " << stop_after;
-    }
-  }
-}
-
-TEST(SpeedProfile, LosesStepsWhereItIsTooQuickForThePlatform) {
-  EXPECT_GT(std::abs(LoadedMotor{}.lost_deg(quick_motion, 22)), 7) << "a period of the field";
-}
-
 TEST(SpeedProfile, BrakesAsItGainedSpeed) {
   SpeedProfile profile(quick_motion, 800);
   double speed = 0;
@@ -151,6 +85,14 @@ TEST(SpeedProfile, BrakesAsItGainedSpeed) {
     speed = next;
   }
   EXPECT_NEAR(speed, 200, 6);
+}
+
+TEST(Motion, AtHalfThePaceTakesTwiceAsLongEverywhere) {
+  const Motion paced = at_pace(quick_motion, 0.5);
+  for (const int steps : {1, 22, 800}) {
+    EXPECT_NEAR(move_time(paced, steps), 2 * move_time(quick_motion, steps), 1e-9) << steps;
+  }
+  EXPECT_EQ(paced.steps_per_turn, quick_motion.steps_per_turn);
 }
 
 TEST(SpeedProfile, EndsAtOnceWhileItIsSlow) {

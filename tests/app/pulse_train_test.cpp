@@ -72,6 +72,16 @@ TEST(PulseTrain, TakesTheTimeOfItsRamps) {
   EXPECT_EQ(line.late.count, 0);
 }
 
+TEST(PulseTrain, DoubtsAMoveWhosePulseCameAnEighthOfAPeriodLate) {
+  // At 200 steps/s an eighth of a period, 2 of 16 quarter steps, takes 10 ms.
+  const Motion steady = {.start_steps_per_second = 200, .top_steps_per_second = 200};
+  const auto late_by = [](Duration delay) {
+    return [delay](std::size_t change) { return change == 40 ? delay : Duration(0); };
+  };
+  EXPECT_FALSE(changes_of(steady, 100, late_by(9ms)).late.may_have_lost_steps);
+  EXPECT_TRUE(changes_of(steady, 100, late_by(11ms)).late.may_have_lost_steps);
+}
+
 TEST(PulseTrain, KeepsEachLevelLongEnoughForTheDriver) {
   const Motion fast = {.start_steps_per_second = 5000, .top_steps_per_second = 5000};
   std::mt19937 random(1);

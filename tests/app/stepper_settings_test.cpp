@@ -54,18 +54,51 @@ TEST(StepperSettings, AreQuarterStepsOfACommonMotorWhereNothingIsSaid) {
   EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H ");
 }
 
-TEST(StepperSettings, SetMicrostepsAsTheDatasheetHasThem) {
+/// The levels of the driver's inputs, in the order of its datasheet's table.
+std::string microstep_levels(StepperDriver driver, int microsteps, int inputs) {
+  const std::vector<std::string> names = {"a", "b", "c"};
+  const StepperSettings settings{.lines = {.microsteps = {names.begin(), names.begin() + inputs}},
+                                 .driver = driver,
+                                 .microsteps = microsteps};
+  std::string levels;
+  for (const NamedLine& line : to_gpio_lines(settings)) {
+    levels += line.name.size() == 1 ? (line.high ? "H" : "L") : "";
+  }
+  return levels;
+}
+
+TEST(StepperSettings, SetMicrostepsAsTheDatasheetsHaveThem) {
+  using Table = std::vector<std::pair<int, std::string>>;
   // A4988 datasheet, table 1: MS1, MS2, MS3.
   for (const auto& [microsteps, levels] :
-       std::vector<std::pair<int, std::string>>{{1, "a=L b=L c=L "},
-                                                {2, "a=H b=L c=L "},
-                                                {4, "a=L b=H c=L "},
-                                                {8, "a=H b=H c=L "},
-                                                {16, "a=H b=H c=H "}}) {
-    const StepperSettings settings{.lines = {.microsteps = {"a", "b", "c"}},
-                                   .microsteps = microsteps};
-    EXPECT_EQ(levels_of(settings), "GPIO17=L GPIO27=L GPIO5=H " + levels);
+       Table{{1, "LLL"}, {2, "HLL"}, {4, "LHL"}, {8, "HHL"}, {16, "HHH"}}) {
+    EXPECT_EQ(microstep_levels(StepperDriver::a4988, microsteps, 3), levels);
   }
+  // DRV8825 datasheet, table 1: MODE0, MODE1, MODE2.
+  for (const auto& [microsteps, levels] :
+       Table{{1, "LLL"}, {2, "HLL"}, {4, "LHL"}, {8, "HHL"}, {16, "LLH"}, {32, "HLH"}}) {
+    EXPECT_EQ(microstep_levels(StepperDriver::drv8825, microsteps, 3), levels);
+  }
+  // TMC2209 datasheet, section 3.3: MS1, MS2.
+  for (const auto& [microsteps, levels] : Table{{8, "LL"}, {16, "HH"}, {32, "HL"}, {64, "LH"}}) {
+    EXPECT_EQ(microstep_levels(StepperDriver::tmc2209, microsteps, 2), levels);
+  }
+}
+
+TEST(StepperSettings, KnowWhichMicrostepsADriverMakes) {
+  EXPECT_EQ(
+      to_motion(stepper_settings_from({{"driver", "DRV8825"}, {"microsteps", 32}})).steps_per_turn,
+      6400);
+  const json tmc2209 = {{"driver", "TMC2209"}, {"microsteps", 64}, {"microstep_lines", {"a", "b"}}};
+  EXPECT_EQ(to_motion(stepper_settings_from(tmc2209)).steps_per_turn, 12800);
+  const Error error = error_thrown_by([] { stepper_settings_from({{"driver", "TMC2209"}}); });
+  EXPECT_NE(std::string(error.what()).find("8, 16, 32, 64"), std::string::npos) << error.what();
+}
+
+TEST(StepperSettings, TurnA28BYJ48ByItsHalfSteps) {
+  EXPECT_EQ(
+      to_motion(stepper_settings_from({{"full_steps", 4096}, {"microsteps", 1}})).steps_per_turn,
+      4096);
 }
 
 TEST(StepperSettings, RoundATurnToWholeSteps) {
@@ -111,6 +144,7 @@ TEST(StepperSettings, NameTheKeyThatIsWrong) {
       {"enable_line", "GPIO27"}, {"microstep_lines", {"GPIO22"}},
       {"microstep_lines", "a"},  {"microstep_lines", {"GPIO22", "GPIO23", "GPIO22"}},
       {"microsteps", 3},         {"microsteps", 32},
+      {"full_steps", 4097},      {"driver", "L298"},
       {"full_steps", 0},         {"gear_ratio", 0},
       {"gear_ratio", 0.001},     {"reversed", 1},
       {"speed_deg_per_s", 0},    {"start_speed_deg_per_s", 91},

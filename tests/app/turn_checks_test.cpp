@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace octurn {
 namespace {
 
@@ -61,6 +63,50 @@ TEST(CheckTurn, TakesUpMoreThanThePlay) {
 TEST(CheckTurn, TellsOfLostSteps) {
   EXPECT_EQ(finding_of("turn-return", {.turn_deg = 360, .return_deg = -3}).finding.state,
             State::fault);
+}
+
+TEST(CheckTurn, BlamesNeitherGearNorPlayForLostSteps) {
+  // A motor that slipped by 40 degrees looks like another gear, and like play.
+  const TurnMeasurement turn = {.turn_deg = 290, .play_deg = 7.2, .return_deg = -43.2};
+  EXPECT_EQ(finding_of("turn-whole", turn).set, json::object());
+  EXPECT_EQ(finding_of("turn-play", turn).set, json::object());
+  const Finding back = finding_of("turn-return", turn).finding;
+  EXPECT_NE(back.advice.find("start_speed_deg_per_s"), std::string::npos) << back.advice;
+}
+
+TEST(CheckTurn, WithdrawsAnAdviceOnPlayThatCannotHelp) {
+  const TurnFinding play = finding_of("turn-play", {.turn_deg = 360, .play_deg = 1.8},
+                                      {.take_up_steps = 13});  // more than three times the play
+  EXPECT_EQ(play.finding.state, State::warning);
+  EXPECT_EQ(play.set, json::object());
+}
+
+TEST(CheckTurn, SaysForHowLongThePlatformSwings) {
+  const TurnMeasurement turn = {.turn_deg = 360, .swings_for_s = 0.5};
+  EXPECT_EQ(finding_of("turn-still", turn).finding.measured, "swings for 0.8 s after a move");
+  EXPECT_EQ(finding_of("turn-still", turn).finding.state, State::ok);
+  EXPECT_EQ(finding_of("turn-still", {.turn_deg = 360, .swings_for_s = 2}).finding.state,
+            State::warning);
+}
+
+TEST(CheckMotion, IsContentWithTwiceTheTorqueThatIsNeeded) {
+  EXPECT_EQ(check_motion({.fastest = 2.83}, {}).finding.state, State::ok);
+  EXPECT_EQ(check_motion({.fastest = 1.42, .lost_at = 2}, {}).finding.state, State::ok);
+}
+
+TEST(CheckMotion, ProposesSpeedsWithAMarginOtherwise) {
+  const TurnFinding motion = check_motion({.fastest = 0.5, .lost_at = 0.707}, {});
+  EXPECT_EQ(motion.finding.state, State::warning);
+  EXPECT_NEAR(motion.set["speed_deg_per_s"].get<double>(), 90 * 0.5 / std::sqrt(2), 1e-9);
+  EXPECT_NEAR(motion.set["start_speed_deg_per_s"].get<double>(), 18 * 0.5 / std::sqrt(2), 1e-9);
+  EXPECT_NEAR(motion.set["acceleration_deg_per_s2"].get<double>(), 67.5 * 0.25 / 2, 1e-9);
+  EXPECT_NO_THROW(stepper_settings_from(motion.set));
+}
+
+TEST(CheckMotion, SaysWhatToChangeWhereNothingWorks) {
+  const Finding motion = check_motion({.lost_at = 0.25}, {}).finding;
+  EXPECT_EQ(motion.state, State::fault);
+  EXPECT_NE(motion.advice.find("gear"), std::string::npos);
 }
 
 TEST(CheckTurn, TellsOfAPlatformThatStandsStill) {

@@ -6,9 +6,30 @@
 #include "capture/plan.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
-#include "turntable/simulated_turntable.hpp"
+#include "sensor/wrapped_sensor.hpp"
 
 namespace octurn {
+namespace {
+
+/// A sensor of a platform that goes on swinging while frames are read.
+class SensorOfPlatform final : public WrappedSensor {
+ public:
+  SensorOfPlatform(std::unique_ptr<DepthSensor> sensor, SimulatedTurntable* const& turntable)
+      : WrappedSensor(std::move(sensor)), turntable_(turntable) {}
+
+  std::optional<TimedFrame> read(const std::stop_token& stop) override {
+    constexpr std::chrono::duration<double> frame_time(1 / 30.0);
+    if (turntable_ != nullptr) {
+      turntable_->swing(frame_time);
+    }
+    return WrappedSensor::read(stop);
+  }
+
+ private:
+  SimulatedTurntable* const& turntable_;
+};
+
+}  // namespace
 
 Rig::Rig(RigOptions options)
     : options_(std::move(options)), closed_angle_deg_(options_.platform_angle_deg) {}
@@ -22,10 +43,11 @@ DepthSensor& Rig::sensor() {
                 "tests of a turn need a depth sensor.");
   }
   if (!sensor_) {
-    sensor_ = options_.open_sensor(options_.sensor_uri);
+    sensor_ =
+        std::make_unique<SensorOfPlatform>(options_.open_sensor(options_.sensor_uri), simulated_);
     sensor_since_ = std::chrono::steady_clock::now();
     counted_ = PacketCounts();
-    sensor_->show_angle(radians_from_degrees(platform_angle_deg()));
+    show_platform();
     sensor_->set_object_pose(object_pose_);
   }
   return *sensor_;
@@ -55,7 +77,7 @@ Camera& Rig::camera() {
     lasers_.emplace(lines_of(*options_.laser).size(), std::move(opened.set_line));
     camera_ = std::move(opened.camera);
     sensor_since_ = std::chrono::steady_clock::now();
-    camera_->show_angle(radians_from_degrees(platform_angle_deg()));
+    show_platform();
     camera_->set_object_pose(object_pose_);
   }
   return *camera_;
@@ -97,17 +119,12 @@ Turntable& Rig::turntable() {
         std::make_unique<Stepper>(*options_.stepper, options_.open_lines(*options_.stepper),
                                   position_at(closed_angle_deg_, steps));
   } else {
-    const auto show = [this](double angle) {
-      if (sensor_) {
-        sensor_->show_angle(angle);
-      }
-      if (camera_) {
-        camera_->show_angle(angle);
-      }
-    };
     const Motion motion;
-    turntable_ = std::make_unique<SimulatedTurntable>(
-        show, options_.speed, motion, position_at(closed_angle_deg_, motion.steps_per_turn));
+    auto simulated = std::make_unique<SimulatedTurntable>(
+        [this](double angle) { show(angle); }, options_.speed, motion,
+        position_at(closed_angle_deg_, motion.steps_per_turn), options_.load);
+    simulated_ = simulated.get();
+    turntable_ = std::move(simulated);
   }
   return *turntable_;
 }
@@ -121,7 +138,22 @@ void Rig::release_turntable() {
 void Rig::close_turntable() {
   closed_angle_deg_ = platform_angle_deg();
   closed_late_pulses_ = late_pulses();
+  simulated_ = nullptr;
   turntable_.reset();
+}
+
+void Rig::show_platform() {
+  show(simulated_ != nullptr ? simulated_->angle() : radians_from_degrees(platform_angle_deg()));
+}
+
+/// @param angle  of the platform, radians
+void Rig::show(double angle) {
+  if (sensor_) {
+    sensor_->show_angle(angle);
+  }
+  if (camera_) {
+    camera_->show_angle(angle);
+  }
 }
 
 double Rig::platform_angle_deg() const {

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "camera/lasers.hpp"
+#include "capture/platform_swing.hpp"
 #include "octurn/lens.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "settings/laser_settings.hpp"
+#include "turntable/simulated_turntable.hpp"
 #include "turntable/stepper.hpp"
 #include "turntable/stepper_settings.hpp"
 #include "turntable/turntable.hpp"
@@ -28,13 +30,21 @@ struct Retries {
   std::chrono::duration<double> interval = std::chrono::seconds(2);
 };
 
+/// A depth image of the platform at a position.
+struct SeenStop {
+  DepthFrame image = {};  ///< empty: none was taken
+  std::int64_t position = 0;
+};
+
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< device URI of OpenNI2
   double speed = 1.0;                           ///< of a simulated rig, relative to real time
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
-  double platform_angle_deg = 0;                ///< initial angle
-  Retries retries = {};                         ///< by the clock of a simulated rig
+  /// What a simulated turntable turns; nothing: it has no weight, and follows each pulse at once.
+  std::optional<PlatformLoad> load = PlatformLoad{};
+  double platform_angle_deg = 0;  ///< initial angle
+  Retries retries = {};           ///< by the clock of a simulated rig
   /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
   /// Functions that open the devices; tests replace them.
@@ -99,6 +109,16 @@ class Rig {
   /// with the platform's angle unchanged.
   void close_turntable();
 
+  /// Shows a recording the platform's angle, and a simulated sensor or camera where the platform
+  /// is.
+  void show_platform();
+
+  /// How long the platform swings after a move.
+  Settling& settling() { return settling_; }
+
+  /// What was seen at the last stop of a scan.
+  SeenStop& seen_stop() { return seen_stop_; }
+
   /// The platform's angle, degrees in [0, 360), counter-clockwise seen from above.
   double platform_angle_deg() const;
 
@@ -106,11 +126,16 @@ class Rig {
   int late_pulses() const;
 
  private:
+  void show(double angle);
+
   RigOptions options_;
   int object_pose_ = 0;
   double closed_angle_deg_;     // the platform's angle when the turntable was closed
   int closed_late_pulses_ = 0;  // of the turntables closed so far
   std::unique_ptr<Turntable> turntable_;
+  Settling settling_;
+  SeenStop seen_stop_;
+  SimulatedTurntable* simulated_ = nullptr;  // `turntable_`, if it is simulated
   std::unique_ptr<DepthSensor> sensor_;
   std::optional<PacketCounts> counted_ = {};  // the sensor's, when its losses were last taken
   std::unique_ptr<Camera> camera_;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "octurn/error.hpp"
-#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -142,11 +141,11 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
 std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
                                           const ScanObserver& observer, const KeepPicture& keep) {
   rig.turntable();  // whose faults are told before the camera's
-  Camera& camera = rig.camera();
+  rig.camera();
   if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;
   }
-  camera.show_angle(radians_from_degrees(rig.platform_angle_deg()));
+  rig.show_platform();
   return take_pictures_here(rig, stop, observer, keep);
 }
 

@@ -89,11 +89,11 @@ std::vector<Finding> check_motion(const DoctorInput& input, const std::stop_toke
   try {
     Rig rig(input.rig);
     const ScanSettings& scan = input.config.scan;
-    const TurnMeasurement measured =
-        measure_turn(rig, scan.platform_from_sensor, scan.clip, stop, [](double) {});
+    std::vector<TurnFinding> turned = test_turn(
+        rig, input.config.turntable, scan.platform_from_sensor, scan.clip, stop, [](double) {});
     rig.release_turntable();
     std::vector<Finding> findings;
-    for (TurnFinding& one : check_turn(measured, input.config.turntable)) {
+    for (TurnFinding& one : turned) {
       findings.push_back(std::move(one.finding));
     }
     return findings;

@@ -7,16 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "capture/take_depth_image.hpp"
 #include "octurn/error.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int frames_at_look = 6;
-constexpr int max_stale_frames = 100;
+constexpr double frames_per_second = 30;
 
 // Commanded moves, tried in turn until the platform is seen to move: enough for gears of 1, 4 and
 // 12 times the configured gear ratio.
@@ -37,7 +36,6 @@ constexpr double approach_deg = 15;  // more than the backlash of any gears
 // Minimum angle between two compared frames: the sensor's fixed-pattern error is the same in both,
 // and biases smaller angles towards 0.
 constexpr double apart_deg = 8;
-constexpr double min_sharpness = 0.08;
 constexpr int looks = 2 * few_moves + more_moves + closing_looks + 3 * play_rounds + 2;
 
 double median(std::vector<double> values) {
@@ -59,7 +57,7 @@ AngleRange around(double deg, double half_width_deg) {
 /// frames ("looks") taken there.
 class TurnMeter {
  public:
-  TurnMeter(Rig& rig, View view, const std::stop_token& stop,
+  TurnMeter(Rig& rig, PlatformLook view, const std::stop_token& stop,
             const std::function<void(double)>& on_progress)
       : rig_(rig),
         view_(std::move(view)),
@@ -82,7 +80,7 @@ class TurnMeter {
   double measure_return(double rate);
 
   Rig& rig_;
-  View view_;
+  PlatformLook view_;
   const std::stop_token& stop_;
   const std::function<void(double)>& on_progress_;
   std::int64_t start_;
@@ -90,6 +88,7 @@ class TurnMeter {
   DepthFrame first_look_ = {};
   std::vector<double> sharpness_ = {};
   int looks_done_ = 0;
+  int swings_for_ = 0;  // frames, at most
 };
 
 void TurnMeter::move_to(double commanded_deg) {
@@ -103,23 +102,12 @@ void TurnMeter::move_to(double commanded_deg) {
 
 /// Returns the mean of `frames_at_look` frames of the platform at rest.
 DepthFrame TurnMeter::look() {
-  DepthSensor& sensor = rig_.sensor();
-  const Clock::time_point settled = Clock::now();
-  std::vector<DepthFrame> frames;
-  for (int taken = 0; frames.size() < frames_at_look; ++taken) {
-    std::optional<TimedFrame> timed = sensor.read(stop_);
-    if (!timed) {
-      throw Stopped{};
-    }
-    if (timed->time > settled) {
-      frames.push_back(std::move(timed->frame));
-    } else if (taken > max_stale_frames) {
-      throw Error(
-          ErrorCode::sensor_failed,
-          sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
-          "Unplug the sensor, and plug it in again.");
-    }
+  const std::vector<DepthFrame> frames =
+      read_still_frames(rig_, view_, frames_at_look, stop_, [](const DepthFrame&) {});
+  if (frames.empty()) {
+    throw Stopped{};
   }
+  swings_for_ = std::max(swings_for_, rig_.settling().frames());
   on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));
   return merge_frames(frames, DepthFilter::average);
 }
@@ -239,7 +227,8 @@ TurnMeasurement TurnMeter::measure() {
   const double play_deg = measure_play(whole_rate);
   return {.turn_deg = 360 * whole_rate,
           .play_deg = std::max(play_deg, 0.0),
-          .return_deg = measure_return(whole_rate)};
+          .return_deg = measure_return(whole_rate),
+          .swings_for_s = swings_for_ / frames_per_second};
 }
 
 }  // namespace
@@ -247,9 +236,9 @@ TurnMeasurement TurnMeter::measure() {
 TurnMeasurement measure_turn(Rig& rig, const Eigen::Isometry3d& platform_from_sensor,
                              const Box& clip, const std::stop_token& stop,
                              const std::function<void(double done)>& on_progress) {
-  const View view{.intrinsics = rig.sensor().intrinsics(),
-                  .platform_from_sensor = platform_from_sensor,
-                  .clip = clip};
+  const PlatformLook view{.intrinsics = rig.sensor().intrinsics(),
+                          .platform_from_sensor = platform_from_sensor,
+                          .clip = clip};
   return TurnMeter(rig, view, stop, on_progress).measure();
 }
 

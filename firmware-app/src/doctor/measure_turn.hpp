@@ -4,15 +4,16 @@
 #include <stop_token>
 
 #include "capture/rig.hpp"
-#include "doctor/seen_rotation.hpp"
+#include "capture/seen_rotation.hpp"
 
 namespace octurn {
 
 /// Motion of the platform, measured from depth frames of an object on it.
 struct TurnMeasurement {
-  double turn_deg = 0;    ///< per commanded full turn, counter-clockwise; 0: it does not move
-  double play_deg = 0;    ///< backlash: by how much a move backwards falls short
-  double return_deg = 0;  ///< offset from the starting angle after all moves
+  double turn_deg = 0;      ///< per commanded full turn, counter-clockwise; 0: it does not move
+  double play_deg = 0;      ///< backlash: by how much a move backwards falls short
+  double return_deg = 0;    ///< offset from the starting angle after all moves
+  double swings_for_s = 0;  ///< how long the platform swings beyond `settle_time`
 };
 
 /// Measures one turn of the platform. Small moves give size and direction of a move, a whole turn

@@ -92,10 +92,10 @@ void TurntableRunner::run_test(Rig& rig, const Config& config, const std::stop_t
     state_.test->done = done;
   };
   try {
-    const TurnMeasurement turn =
-        measure_turn(rig, config.scan.platform_from_sensor, config.scan.clip, stop, show);
+    std::vector<TurnFinding> findings = test_turn(
+        rig, config.turntable, config.scan.platform_from_sensor, config.scan.clip, stop, show);
     const std::lock_guard lock(mutex_);
-    state_.test->findings = check_turn(turn, config.turntable);
+    state_.test->findings = std::move(findings);
     state_.test->state = TurnTest::State::done;
   } catch (const Stopped&) {
     const std::lock_guard lock(mutex_);

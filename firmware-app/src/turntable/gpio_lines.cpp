@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 3> header_labels = {"pinctrl-bcm2835", "pinctrl-bcm2711",
                                                       "pinctrl-rp1"};
 
+constexpr unsigned first_header_line = 2;
+constexpr unsigned last_header_line = 27;
+
 std::vector<fs::path> chip_devices() {
   std::vector<fs::path> devices;
   for (const fs::directory_entry& entry : fs::directory_iterator("/dev")) {
@@ -48,8 +51,13 @@ GpioChip header_chip() {
               "Run this on a Raspberry Pi whose kernel knows its GPIO chip, or add --simulate.");
 }
 
+std::optional<unsigned> find_line(const GpioChip& header, const std::string& name) {
+  const std::optional<unsigned> offset = header_offset(name);
+  return offset ? offset : header.find_offset(name);
+}
+
 unsigned free_line(const GpioChip& chip, const std::string& name) {
-  const std::optional<unsigned> offset = chip.find_offset(name);
+  const std::optional<unsigned> offset = find_line(chip, name);
   if (!offset) {
     throw Error(ErrorCode::turntable_failed, "the GPIO header has no line " + name,
                 "Correct the lines in octurn.json; they are called GPIO2 to GPIO27.");
@@ -64,12 +72,26 @@ unsigned free_line(const GpioChip& chip, const std::string& name) {
 
 }  // namespace
 
+std::optional<unsigned> header_offset(std::string_view name) {
+  constexpr std::string_view prefix = "GPIO";
+  if (!name.starts_with(prefix)) {
+    return std::nullopt;
+  }
+  name.remove_prefix(prefix.size());
+  for (unsigned number = first_header_line; number <= last_header_line; ++number) {
+    if (name == std::to_string(number)) {
+      return number;
+    }
+  }
+  return std::nullopt;
+}
+
 HeaderUse read_header_use(const std::vector<NamedLine>& lines) {
   const GpioChip chip = header_chip();
   try {
     HeaderUse use{.label = chip.label()};
     for (const NamedLine& line : lines) {
-      const std::optional<unsigned> offset = chip.find_offset(line.name);
+      const std::optional<unsigned> offset = find_line(chip, line.name);
       use.lines.push_back({.name = line.name,
                            .exists = offset.has_value(),
                            .user = offset ? chip.find_user(*offset) : std::nullopt});

@@ -2,15 +2,16 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "turntable/gpio_chip.hpp"
 
 namespace octurn {
 
-/// A line of the GPIO header by the kernel's name for it, and its initial level.
+/// A line of the GPIO header, and its initial level.
 struct NamedLine {
-  std::string name = {};  ///< "GPIO17", the pins' names in the Pi's documentation
+  std::string name = {};  ///< as in the Pi's documentation, "GPIO17", or the kernel's own
   bool high = false;
 };
 
@@ -26,6 +27,11 @@ struct HeaderUse {
   std::string label = {};
   std::vector<LineUse> lines = {};
 };
+
+/// The offset of GPIO2 to GPIO27 on the header's chip, which is their number. Device trees name
+/// some of them by what they may also be used for, and not alike: GPIO2 is SDA1 to Debian's kernel.
+/// @return nothing for any other name
+std::optional<unsigned> header_offset(std::string_view name);
 
 /// Reads the use of lines of the header without requesting any.
 /// @throws Error "turntable-missing"  if this machine has no such header

@@ -37,6 +37,18 @@ void SpeedProfile::slowed_to(double step_time) {
   speed_ = std::clamp(1 / step_time, start_, speed_);
 }
 
+bool may_lose_steps(const Motion& motion, double late, double step_time) {
+  return 8 * late > motion.steps_per_period * step_time;
+}
+
+Motion at_pace(const Motion& motion, double pace) {
+  Motion paced = motion;
+  paced.start_steps_per_second *= pace;
+  paced.top_steps_per_second *= pace;
+  paced.ramp_steps_per_second2 *= pace * pace;
+  return paced;
+}
+
 double move_time(const Motion& motion, std::int64_t steps) {
   SpeedProfile profile(motion, steps);
   double time = 0;

@@ -15,7 +15,7 @@ constexpr auto shortest_level = 20us;
 }  // namespace
 
 PulseTrain::PulseTrain(const Motion& motion, std::int64_t steps, Time start)
-    : profile_(motion, steps), risen_(start) {
+    : motion_(motion), profile_(motion, steps), risen_(start) {
   plan_rise(start);
 }
 
@@ -28,6 +28,9 @@ void PulseTrain::done(Time time) {
   if (delay > late_after) {
     ++late_.count;
     late_.longest = std::max(late_.longest, delay);
+    late_.may_have_lost_steps = late_.may_have_lost_steps ||
+                                may_lose_steps(motion_, duration<double>(delay).count(),
+                                               duration<double>(planned_rise_ - risen_).count());
     profile_.slowed_to(duration<double>(time - risen_).count());
   }
   risen_ = time;

@@ -16,13 +16,14 @@ inline constexpr std::chrono::microseconds late_after(500);
 struct LatePulses {
   int count = 0;
   std::chrono::steady_clock::duration longest = {};
+  bool may_have_lost_steps = false;
 };
 
 /// The pulses of one move on the STEP line of an A4988, which steps on a rising edge.
 ///
 /// Each edge is scheduled from the time of the last one, so that a delay is never caught up: pulses
-/// too close together lose steps, late ones do not. The motor regains the lost speed along the
-/// ramp.
+/// too close together lose steps. The motor regains the lost speed along the ramp. A heavy platform
+/// runs on meanwhile, and may lose steps, too.
 class PulseTrain {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -48,6 +49,7 @@ class PulseTrain {
  private:
   void plan_rise(Time low_since);
 
+  Motion motion_;
   SpeedProfile profile_;
   Time risen_ = {};         // the last rising edge, or the start
   Time planned_rise_ = {};  // the next rising edge, without delays

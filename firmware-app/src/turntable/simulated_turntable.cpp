@@ -12,41 +12,148 @@ namespace octurn {
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
+namespace {
+
+constexpr double tick_time = 0.01;  // real seconds
+
+}  // namespace
+
+/// The pulses of a move. Times are simulated seconds since its beginning.
+struct SimulatedTurntable::Move {
+  SpeedProfile profile;
+  int direction = 1;
+  double now = 0;
+  double next_pulse = 0;
+  double end = 0;
+  Late late = {};
+  std::int64_t planned = 0;  // pulses
+  bool is_over = false;
+
+  /// @return false if it may end at once
+  bool brake() {
+    const bool goes_on = now > 0 && profile.brake();
+    plan_end();
+    return goes_on;
+  }
+
+  void plan_end() {
+    end = next_pulse;
+    for (SpeedProfile rest = profile; rest.steps_left() > 0;) {
+      end += rest.next_step();
+    }
+  }
+};
+
 SimulatedTurntable::SimulatedTurntable(std::function<void(double)> turned, double speed,
-                                       Motion motion, std::int64_t position)
-    : turned_(std::move(turned)), speed_(speed), motion_(motion), position_(position) {}
+                                       Motion motion, std::int64_t position,
+                                       const std::optional<PlatformLoad>& load)
+    : turned_(std::move(turned)),
+      speed_(speed),
+      configured_(motion),
+      motion_(motion),
+      position_(position) {
+  if (load) {
+    platform_.emplace(*load, field());
+  }
+}
 
 bool SimulatedTurntable::move_to(std::int64_t position, std::stop_token stop) {
-  const double tick = 0.01 * speed_;  // simulated seconds in 10 ms
-  const int direction = position < position_ ? -1 : 1;
   const std::int64_t steps = std::abs(position - position_);
-  SpeedProfile profile(motion_, steps);
-  double next_step = steps > 0 ? profile.next_step() : 0;  // simulated seconds since the beginning
-  const double end = move_time(motion_, steps);
+  Move move{.profile = SpeedProfile(motion_, steps),
+            .direction = position < position_ ? -1 : 1,
+            .end = move_time(motion_, steps),
+            .late = late_,
+            .is_over = steps == 0};
+  may_have_lost_steps_ = false;
+  if (steps > 0) {
+    plan_pulse(move);
+  }
+  late_ = {};
   const auto begin = steady_clock::now();
-  for (double time = tick; position_ != position; time += tick) {
-    if (!sleep_until(stop, begin + real_time(std::min(time, end)))) {
+  for (double time = 0; !move.is_over;) {
+    if (stop.stop_requested() && !move.brake()) {
+      break;
+    }
+    time = std::min(time + tick_time * speed_, move.end);
+    // A stop request brakes, which takes its time.
+    if (!sleep_until(stop, begin + real_time(time))) {
+      if (!move.brake()) {
+        break;
+      }
+      sleep_until({}, begin + real_time(time));
+    }
+    make_pulses(move, time);
+    turned_(angle());
+  }
+  turned_(angle());  // also if there was nothing to move
+  return settle(stop) && position_ == position;
+}
+
+void SimulatedTurntable::swing(duration<double> time) {
+  if (platform_ && !platform_->is_at_rest()) {
+    platform_->advance(time.count());
+    turned_(angle());
+  }
+}
+
+double SimulatedTurntable::angle() const { return platform_ ? platform_->angle() : field(); }
+
+double SimulatedTurntable::field() const {
+  return 2 * std::numbers::pi * static_cast<double>(base_ + position_) / motion_.steps_per_turn;
+}
+
+void SimulatedTurntable::plan_pulse(Move& move) {
+  const double step_time = move.profile.next_step();
+  move.next_pulse += step_time;
+  if (++move.planned == move.late.pulse) {
+    move.next_pulse += move.late.by;
+    move.profile.slowed_to(step_time + move.late.by);
+    move.plan_end();
+    ++late_pulses_;
+    may_have_lost_steps_ = may_lose_steps(motion_, move.late.by, step_time);
+  }
+}
+
+/// @param until  simulated seconds since the beginning of the move
+void SimulatedTurntable::make_pulses(Move& move, double until) {
+  const auto pass = [&](double time) {
+    if (platform_) {
+      platform_->advance(time - move.now);
+    }
+    move.now = time;
+  };
+  while (!move.is_over && move.next_pulse <= until) {
+    pass(move.next_pulse);
+    position_ += move.direction;
+    if (platform_) {
+      platform_->set_field(field());
+    }
+    move.is_over = move.profile.steps_left() == 0;
+    if (!move.is_over) {
+      plan_pulse(move);
+    }
+  }
+  pass(until);
+}
+
+/// @return false if stopped first
+bool SimulatedTurntable::settle(const std::stop_token& stop) {
+  const double settling = duration<double>(motion_.settle_time).count();
+  const auto begin = steady_clock::now();
+  for (double time = 0; time < settling;) {
+    const double passed = std::min(tick_time * speed_, settling - time);
+    time += passed;
+    if (!sleep_until(stop, begin + real_time(time))) {
       return false;
     }
-    std::int64_t reached = position_;
-    while (reached != position && next_step <= std::min(time, end)) {
-      reached += direction;
-      next_step += profile.steps_left() > 0 ? profile.next_step() : 0;
-    }
-    stand_at(reached);
+    swing(duration<double>(passed));
   }
-  stand_at(position);  // reports the angle also if there was nothing to move
-  return sleep_for(stop, real_time(duration<double>(motion_.settle_time).count()));
+  return !stop.stop_requested();
 }
 
 /// @param seconds  simulated
 steady_clock::duration SimulatedTurntable::real_time(double seconds) const {
   return std::chrono::ceil<steady_clock::duration>(duration<double>(seconds / speed_));
-}
-
-void SimulatedTurntable::stand_at(std::int64_t position) {
-  position_ = position;
-  turned_(2 * std::numbers::pi * static_cast<double>(position) / motion_.steps_per_turn);
 }
 
 }  // namespace octurn

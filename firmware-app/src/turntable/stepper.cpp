@@ -56,6 +56,11 @@ bool Stepper::move_to(std::int64_t position, std::stop_token stop) {
   return order.arrived && sleep_for(order.stop, motion_.settle_time);
 }
 
+void Stepper::set_pace(double pace) {
+  const std::lock_guard lock(mutex_);
+  motion_ = at_pace(to_motion(settings_), pace);
+}
+
 void Stepper::release() {
   const std::lock_guard lock(mutex_);
   switch_off();
@@ -92,6 +97,7 @@ void Stepper::work(const std::stop_token& end) {
 }
 
 void Stepper::carry_out(Order& order) {
+  may_have_lost_steps_ = false;
   try {
     switch_on(order.stop);
     order.arrived = true;
@@ -129,6 +135,7 @@ bool Stepper::turn_to(std::int64_t position, const std::stop_token& stop) {
       ++made;
     }
   }
+  may_have_lost_steps_ = may_have_lost_steps_ || train.late().may_have_lost_steps;
   report(train.late(), made);
   return position_ == position;
 }

@@ -50,8 +50,12 @@ class Stepper final : public Turntable {
 
   int steps_per_turn() const override { return motion_.steps_per_turn; }
   bool move_to(std::int64_t position, std::stop_token stop) override;
+  void set_pace(double pace) override;
   std::int64_t position() const override { return position_; }
   int late_pulses() const override { return late().count; }
+  bool may_have_lost_steps() const override { return may_have_lost_steps_; }
+  int steps_per_period() const override { return motion_.steps_per_period; }
+  void set_position(std::int64_t position) override { position_ = position; }
   void release() override;
 
   /// The late pulses of all moves so far.
@@ -77,6 +81,7 @@ class Stepper final : public Turntable {
   Motion motion_;
   SetLine set_line_;
   std::atomic<std::int64_t> position_;
+  std::atomic<bool> may_have_lost_steps_ = false;  // in the last move
   mutable std::mutex mutex_;  // guards the members that follow; held during a move
   std::condition_variable_any wake_;
   Order* order_ = nullptr;

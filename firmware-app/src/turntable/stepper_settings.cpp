@@ -12,24 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-/// Levels of MS1, MS2 and MS3 (A4988 datasheet, table 1).
-struct Microstepping {
-  int microsteps;
-  std::array<bool, 3> levels;
-};
-constexpr std::array<Microstepping, 5> microsteppings = {{{1, {false, false, false}},
-                                                          {2, {true, false, false}},
-                                                          {4, {false, true, false}},
-                                                          {8, {true, true, false}},
-                                                          {16, {true, true, true}}}};
-
-constexpr int max_full_steps = 1000;
+constexpr int max_full_steps = 4096;  // a 28BYJ-48's half steps, gears included
 constexpr double max_ratio = 1000;
 constexpr double min_speed = 2;  // degrees a second; slower, a full step takes a second
 constexpr double max_speed = 3600;
 constexpr double max_acceleration = 1e6;
 constexpr double max_pulse_rate = 5000;  // a second: beyond that Linux does not wake up in time
 constexpr int min_steps = 4;             // in a turn: fewer are no turntable
+constexpr int full_steps_per_period = 4;
 constexpr int max_steps = 16'000'000;
 constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames
@@ -40,11 +30,24 @@ constexpr std::array<const char*, 6> line_keys = {"step_line",       "direction_
                                                   "enable_line",     "microstep_lines",
                                                   "microstep_lines", "microstep_lines"};
 
-void check_lines(const JsonObject& keys, const StepperSettings& settings) {
-  if (!settings.lines.microsteps.empty() && settings.lines.microsteps.size() != 3) {
-    keys.refuse("microstep_lines", settings.lines.microsteps,
-                "the names of three lines, or of none");
+void check_microsteps(const JsonObject& keys, const StepperSettings& settings) {
+  const std::vector<Microstepping> all = microsteppings(settings.driver);
+  if (std::ranges::find(all, settings.microsteps, &Microstepping::microsteps) == all.end()) {
+    std::string allowed = "for a driver " + std::string(to_string(settings.driver)) + " one of";
+    for (const Microstepping& one : all) {
+      allowed += (&one == &all.front() ? " " : ", ") + std::to_string(one.microsteps);
+    }
+    keys.refuse("microsteps", settings.microsteps, allowed);
   }
+  const std::size_t inputs = all.front().levels.size();
+  if (!settings.lines.microsteps.empty() && settings.lines.microsteps.size() != inputs) {
+    keys.refuse(
+        "microstep_lines", settings.lines.microsteps,
+        "the names of " + std::string(inputs == 2 ? "two" : "three") + " lines, or of none");
+  }
+}
+
+void check_lines(const JsonObject& keys, const StepperSettings& settings) {
   const std::vector<NamedLine> lines = to_gpio_lines(settings);
   for (std::size_t line = 1; line < lines.size(); ++line) {
     const auto end = lines.begin() + static_cast<std::ptrdiff_t>(line);
@@ -80,8 +83,8 @@ std::vector<Field> line_fields(StepperLines& lines) {
   return {
       {.key = "step_line",
        .unit = "line",
-       .help = "to STEP of the A4988. Lines have the kernel's names, which are the Pi's own: "
-               "`GPIO2` to `GPIO27`",
+       .help = "to the driver's STEP. Lines have the names of the Pi's documentation, `GPIO2` to "
+               "`GPIO27`",
        .access = text(lines.step)},
       {.key = "direction_line", .unit = "line", .help = "to DIR", .access = text(lines.direction)},
       {.key = "enable_line",
@@ -91,20 +94,28 @@ std::vector<Field> line_fields(StepperLines& lines) {
        .access = text(lines.enable)},
       {.key = "microstep_lines",
        .unit = "lines",
-       .help = "to MS1, MS2 and MS3; empty if these are wired to fixed levels",
+       .help = "to MS1, MS2 and MS3 of an A4988, MODE0 to MODE2 of a DRV8825, MS1 and MS2 of a "
+               "TMC2209; empty if these are wired to fixed levels",
        .access = texts(lines.microsteps)},
   };
 }
 
 std::vector<Field> gear_fields(StepperSettings& s) {
   return {
+      {.key = "driver",
+       .help = "of the motor; which microsteps it makes, and by which levels",
+       .access = choice(s.driver,
+                        {StepperDriver::a4988, StepperDriver::drv8825, StepperDriver::tmc2209})},
       {.key = "microsteps",
        .unit = "in a full step",
-       .help = "must match MS1 to MS3 where these are wired to fixed levels",
-       .access = one_of(s.microsteps, {1, 2, 4, 8, 16})},
+       .help = "must match the levels where these are fixed. 1 to 16 with an A4988, to 32 with a "
+               "DRV8825, 8 to 64 with a TMC2209",
+       .access = one_of(s.microsteps, {1, 2, 4, 8, 16, 32, 64})},
       {.key = "full_steps",
        .unit = "in a turn of the motor",
-       .help = "a motor of 1.8 degrees has 200, one of 0.9 degrees 400",
+       .help =
+           "a motor of 1.8 degrees has 200, one of 0.9 degrees 400, a 28BYJ-48 2,048 by full and "
+           "4,096 by half steps",
        .access = whole(s.full_steps, 4, max_full_steps)},
       {.key = "gear_ratio",
        .unit = "motor turns in a platform turn",
@@ -162,6 +173,7 @@ std::vector<Field> fields(StepperSettings& settings) {
 }
 
 void check_stepper_settings(JsonObject& keys, StepperSettings& settings) {
+  check_microsteps(keys, settings);
   check_lines(keys, settings);
   const int steps = to_motion(settings).steps_per_turn;
   if (steps < min_steps) {
@@ -197,6 +209,7 @@ Motion to_motion(const StepperSettings& settings) {
   const double steps = settings.full_steps * settings.microsteps * settings.gear_ratio;
   const double steps_per_deg = steps / 360;
   return {.steps_per_turn = static_cast<int>(std::lround(steps)),
+          .steps_per_period = full_steps_per_period * settings.microsteps,
           .start_steps_per_second =
               std::min(settings.start_speed_deg_per_second * steps_per_deg, max_pulse_rate),
           .top_steps_per_second =
@@ -209,10 +222,12 @@ std::vector<NamedLine> to_gpio_lines(const StepperSettings& settings) {
   std::vector<NamedLine> lines = {{.name = settings.lines.step, .high = false},
                                   {.name = settings.lines.direction, .high = false},
                                   {.name = settings.lines.enable, .high = true}};
-  const auto* levels =
-      std::ranges::find(microsteppings, settings.microsteps, &Microstepping::microsteps);
+  const std::vector<Microstepping> all = microsteppings(settings.driver);
+  const auto levels = std::ranges::find(all, settings.microsteps, &Microstepping::microsteps);
   for (std::size_t line = 0; line < settings.lines.microsteps.size(); ++line) {
-    lines.push_back({.name = settings.lines.microsteps[line], .high = levels->levels[line]});
+    lines.push_back(
+        {.name = settings.lines.microsteps[line],
+         .high = levels != all.end() && line < levels->levels.size() && levels->levels[line]});
   }
   return lines;
 }

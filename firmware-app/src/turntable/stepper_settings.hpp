@@ -8,21 +8,23 @@
 #include "octurn/json_object.hpp"
 #include "turntable/gpio_lines.hpp"
 #include "turntable/motion.hpp"
+#include "turntable/stepper_driver.hpp"
 
 namespace octurn {
 
-/// The GPIO lines to the inputs of an A4988, by the kernel's names.
+/// The GPIO lines to the inputs of a driver.
 struct StepperLines {
   std::string step = "GPIO17";
   std::string direction = "GPIO27";
   std::string enable = "GPIO5";              ///< pulled up while the Pi boots, as GPIO0 to 8 are
-  std::vector<std::string> microsteps = {};  ///< MS1, MS2 and MS3; empty: wired to fixed levels
+  std::vector<std::string> microsteps = {};  ///< as in `Microstepping`; empty: fixed levels
 };
 
 /// The stepper's wiring, gear and motion; `fields` explains each of them.
 struct StepperSettings {
   StepperLines lines = {};
-  int microsteps = 4;     ///< in a full step: 1, 2, 4, 8 or 16
+  StepperDriver driver = StepperDriver::a4988;
+  int microsteps = 4;     ///< in a full step; the driver knows them
   int full_steps = 200;   ///< in a turn of the motor
   double gear_ratio = 1;  ///< turns of the motor for one of the platform
   bool reversed = false;  ///< DIR high turns the platform clockwise
@@ -56,7 +58,8 @@ void check_stepper_settings(JsonObject& keys, StepperSettings& settings);
 /// speed is at most 5,000 steps a second: beyond that Linux does not wake up in time.
 Motion to_motion(const StepperSettings& settings);
 
-/// The lines in the order of `Stepper::Line`, then MS1 to MS3, at levels that keep the motor off.
+/// The lines in the order of `Stepper::Line`, then those of the microsteps, at levels that keep the
+/// motor off.
 std::vector<NamedLine> to_gpio_lines(const StepperSettings& settings);
 
 }  // namespace octurn

@@ -10,12 +10,46 @@ const lines = {step: 17, direction: 27, enable: 5};
 /** Microsteps a turn: a 1.8 degree motor on the platform's shaft, in quarter steps. */
 export const stepsPerTurn = 800;
 
+const fullStepsPerTurn = 200;
+
 /** Microsteps of the coils' electrical period, four full steps. At power-up the driver starts at the period's home position (A4988,
  * table 2). */
 const stepsPerPeriod = 16;
 
 /** The levels by the board's resistors while nothing drives the lines. */
 const undriven = {[lines.step]: 0, [lines.direction]: 0, [lines.enable]: 1};
+
+/**
+ * A platform of some inertia on its motor's magnetic spring, as turntable/loaded_motor.hpp has it: it lags behind the field, swings, and
+ * loses whole periods where the torque T sin(50 (field - platform)) is too small. Angles in radians.
+ */
+class LoadedPlatform {
+  #load;
+  #speed = 0;  // radians a second
+  #owed = 0;   // seconds
+
+  angle;
+
+  constructor(load, angle) {
+    this.#load = load;
+    this.angle = angle;
+  }
+
+  /** @param {number} seconds @param {number | null} field angle of the coils' field; null: they have no current */
+  advance(seconds, field) {
+    const {holdingTorque, inertia, friction, damping} = this.#load;
+    const step = 1e-4;
+    for (this.#owed += seconds; this.#owed >= step; this.#owed -= step) {
+      const pull = field === null ? 0 : holdingTorque * Math.sin(fullStepsPerTurn / 4 * (field - this.angle));
+      const pushed = this.#speed + (pull - damping * this.#speed) / inertia * step;
+      this.#speed = Math.sign(pushed) * Math.max(0, Math.abs(pushed) - friction / inertia * step);
+      this.angle += this.#speed * step;
+    }
+  }
+}
+
+/** The documented parts: a NEMA 17 of 0.4 N m at half of its current, and 28 cm of 12 mm birch plywood. N m, kg m^2, N m, N m s. */
+export const documentedLoad = {holdingTorque: 0.2, inertia: 0.005, friction: 0.02, damping: 1e-3};
 
 /** An A4988, a motor, and the platform on it. */
 export class Turntable {
@@ -24,6 +58,9 @@ export class Turntable {
   #lossPeriod = Infinity;
   #isAtHome = false;  // whether the driver is at its home position, since power-up
   #actions = new Map();
+  #platform = null;
+  #now;
+  #time;
 
   /** The platform's position, microsteps, counter-clockwise. */
   position = 0;
@@ -37,13 +74,37 @@ export class Turntable {
   /** Whether the driver's ENABLE is disconnected, so that its pull-up keeps the motor off. */
   isEnableStuck = false;
 
+  /**
+   * @param {{load?: typeof documentedLoad | null, now?: () => number}} options load: the platform's inertia, and what moves it; null: it
+   * follows each pulse at once. An emulated Pi makes its pulses by a clock that runs unevenly, which costs such a platform steps. now: seconds
+   */
+  constructor({load = null, now = () => performance.now() / 1000} = {}) {
+    this.#now = now;
+    this.#time = now();
+    if (load) {
+      this.#platform = new LoadedPlatform(load, 0);
+    }
+  }
+
   get isOn() {
     return this.#levels[lines.enable] === 0 && !this.isEnableStuck;
   }
 
   /** Radians, counter-clockwise seen from above. */
   get angle() {
+    this.#pass();
+    return this.#platform?.angle ?? this.#field;
+  }
+
+  get #field() {
     return 2 * Math.PI * this.position / stepsPerTurn;
+  }
+
+  /** Lets the time pass for the platform that has gone by. */
+  #pass() {
+    const time = this.#now();
+    this.#platform?.advance(time - this.#time, this.isOn ? this.#field : null);
+    this.#time = time;
   }
 
   /** The angle if no step had been lost, radians. */
@@ -75,6 +136,7 @@ export class Turntable {
 
   /** Handles the change of a GPIO line. @param {number} line @param {0 | 1} level */
   change(line, level) {
+    this.#pass();
     const rises = level === 1 && this.#levels[line] === 0;
     this.#levels[line] = level;
     if (this.isOn && this.#isAtHome) {

@@ -5,7 +5,7 @@ import {spawn} from 'node:child_process';
 import {once} from 'node:events';
 import {test} from 'node:test';
 
-import {GpioObserver, Turntable} from './turntable.mjs';
+import {documentedLoad, GpioObserver, Turntable} from './turntable.mjs';
 
 const step = 17;
 const direction = 27;
@@ -139,4 +139,41 @@ test('QEMU tells each change of the lines that are outputs', async () => {
     await once(qemu, 'exit');
     await observer.close();
   }
+});
+
+/** Makes the pulses of a move at the angles' pace: from and to `start` steps a second, `ramp` steps a second gained each second. */
+const turnBy = (turntable, clock, {start, top, ramp}, steps) => {
+  turntable.change(5, 0);
+  turntable.change(27, 1);
+  let speed = start;
+  for (let left = steps; left > 0; --left) {
+    speed = Math.min(Math.sqrt(speed ** 2 + 2 * ramp), top, Math.sqrt(start ** 2 + 2 * ramp * left));
+    clock.time += 1 / speed;
+    turntable.change(17, 1);
+    turntable.change(17, 0);
+  }
+  clock.time += 3;
+};
+
+test('a platform with inertia follows gentle speeds, and loses a period by quick ones', () => {
+  const moved = (speeds) => {
+    const clock = {time: 0};
+    const turntable = new Turntable({load: documentedLoad, now: () => clock.time});
+    turnBy(turntable, clock, speeds, 22);
+    return turntable.angle * 180 / Math.PI;
+  };
+  assert.ok(Math.abs(moved({start: 40, top: 200, ramp: 150}) - 9.9) < 0.2);
+  const quick = moved({start: 200, top: 800, ramp: 2000});
+  assert.ok(Math.abs(quick - 9.9) > 7, `moved by ${quick} degrees`);
+});
+
+test('a heavy platform swings after its last pulse', () => {
+  const clock = {time: 0};
+  const turntable = new Turntable({load: {...documentedLoad, friction: 0}, now: () => clock.time});
+  turnBy(turntable, clock, {start: 40, top: 200, ramp: 150}, 4);
+  const angles = Array.from({length: 30}, () => {
+    clock.time += 0.01;
+    return turntable.angle;
+  });
+  assert.ok(Math.max(...angles) - Math.min(...angles) > 0.001);
 });

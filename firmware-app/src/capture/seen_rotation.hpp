@@ -1,18 +1,11 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 
+#include "capture/platform_swing.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
-
-/// Geometry of a sensor that looks at an object on the platform.
-struct View {
-  Intrinsics intrinsics = {};
-  Eigen::Isometry3d platform_from_sensor = {};  ///< metres; errors of some millimetres are allowed
-  Box clip = {};                                ///< around the object, platform frame, metres
-};
 
 /// Search range of a rotation, in degrees counter-clockwise seen from above.
 struct AngleRange {
@@ -28,11 +21,14 @@ struct SeenRotation {
   double sharpness = 0;
 };
 
+/// Below this sharpness an object looks the same from all sides.
+inline constexpr double min_sharpness = 0.08;
+
 /// Measures the platform's rotation between two depth frames: transforms the points of each into
 /// the other, and minimizes the misfit of depths.
 ///
 /// @return nothing if either frame shows too little of an object
-std::optional<SeenRotation> seen_rotation(const View& view, const DepthFrame& from,
+std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthFrame& from,
                                           const DepthFrame& to, const AngleRange& range);
 
 }  // namespace octurn

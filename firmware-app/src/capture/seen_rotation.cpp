@@ -1,4 +1,4 @@
-#include "doctor/seen_rotation.hpp"
+#include "capture/seen_rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +54,7 @@ int mean_around(const DepthFrame& frame, int u, int v, int same_surface) {
 }
 
 /// A pixel's reading as a point in the platform frame, metres; NaN if there is no reading.
-Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v) {
+Eigen::Vector3d point_at(const PlatformLook& view, const DepthFrame& frame, int u, int v) {
   const Intrinsics& lens = view.intrinsics;
   const std::size_t pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
                             static_cast<std::size_t>(u);
@@ -66,7 +66,7 @@ Eigen::Vector3d point_at(const View& view, const DepthFrame& frame, int u, int v
 /// Smooths the sensor's depth quantisation: its steps stay in place while the object turns, and
 /// would bias the rotation towards 0. Each reading inside the clip box becomes the mean of those
 /// around it on the same surface.
-DepthFrame smoothed(const View& view, const DepthFrame& frame) {
+DepthFrame smoothed(const PlatformLook& view, const DepthFrame& frame) {
   const auto same_surface = static_cast<int>(max_step / view.intrinsics.depth_unit);
   DepthFrame smooth = frame;
   for (int v = 0; v < frame.height; ++v) {
@@ -82,7 +82,7 @@ DepthFrame smoothed(const View& view, const DepthFrame& frame) {
 }
 
 /// Points inside the clip box and above the platform, in the platform frame.
-Points points_in(const View& view, const DepthFrame& frame) {
+Points points_in(const PlatformLook& view, const DepthFrame& frame) {
   Points points;
   for (int v = 0; v < frame.height; v += pixel_step) {
     for (int u = 0; u < frame.width; u += pixel_step) {
@@ -111,8 +111,8 @@ double misfit(const Intrinsics& lens, const DepthFrame& frame, const Eigen::Vect
   return seen > 0 ? square / (square + half_fit * half_fit) : 1;
 }
 
-/// A motion of the platform: a rotation about the z axis of the platform frame of `View`, and a
-/// translation that makes it a rotation about the true axis.
+/// A motion of the platform: a rotation about the z axis of the platform frame of `PlatformLook`,
+/// and a translation that makes it a rotation about the true axis.
 struct PlanarMotion {
   double deg = 0;
   double x = 0;  ///< metres
@@ -128,7 +128,7 @@ Eigen::Isometry3d to_isometry(const PlanarMotion& motion) {
 }
 
 /// Mean misfit of moved points to a depth frame.
-double mean_misfit(const View& view, const Points& points, const DepthFrame& frame,
+double mean_misfit(const PlatformLook& view, const Points& points, const DepthFrame& frame,
                    const Eigen::Isometry3d& motion) {
   const Eigen::Isometry3d moved = view.platform_from_sensor.inverse() * motion;
   double sum = 0;
@@ -141,7 +141,7 @@ double mean_misfit(const View& view, const Points& points, const DepthFrame& fra
 /// Two depth frames, and their mutual misfit for a motion from the first to the second.
 class FramePair {
  public:
-  FramePair(const View& view, const DepthFrame& from, const DepthFrame& to)
+  FramePair(const PlatformLook& view, const DepthFrame& from, const DepthFrame& to)
       : view_(view),
         from_(smoothed(view, from)),
         to_(smoothed(view, to)),
@@ -160,7 +160,7 @@ class FramePair {
   }
 
  private:
-  const View& view_;
+  const PlatformLook& view_;
   DepthFrame from_;
   DepthFrame to_;
   Points points_from_;
@@ -210,7 +210,7 @@ Candidate refined(const FramePair& frames, Candidate best) {
 
 }  // namespace
 
-std::optional<SeenRotation> seen_rotation(const View& view, const DepthFrame& from,
+std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthFrame& from,
                                           const DepthFrame& to, const AngleRange& range) {
   const FramePair frames(view, from, to);
   if (!frames.see_an_object()) {

@@ -32,11 +32,10 @@ using UnknownMatrix = Eigen::Matrix<double, optics_unknowns, optics_unknowns>;
 using Optics = Eigen::Matrix<double, optics_count, 1>;
 using OpticsMotion = Eigen::Matrix<double, 3, optics_count>;
 
-constexpr std::array optics_schedule = {
-    ResidualLimits{.max_distance = 0.01, .cauchy_scale = 0.003},
-    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
-    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002},
-    ResidualLimits{.max_distance = 0.005, .cauchy_scale = 0.002}};
+// Most need three or four iterations, and a sensor whose principal point is far off up to eight.
+constexpr int max_optics_steps = 10;
+constexpr ResidualLimits first_limits{.max_distance = 0.01, .cauchy_scale = 0.003};
+constexpr ResidualLimits later_limits{.max_distance = 0.005, .cauchy_scale = 0.002};
 
 /// Sigmas of the sensor's own optics: the spread of published Kinects.
 const Optics unit_spread(0.015, 8, 8, 0.08);
@@ -52,7 +51,7 @@ constexpr double min_unevenness = 0.15;      // units of disparity
 constexpr double max_platform_residual = 6;  // the object's foot, or the rim
 constexpr double reading_height = 0.0025;    // metres above the platform, of the object's readings
 constexpr double max_focal_change = 0.2;     // of the focal length, in one iteration
-constexpr double settled_optics = 2e-4;      // radians, metres, and share of the focal length
+constexpr double settled_optics = 1e-5;      // metres, of the axis: `calibrate` wants no more
 
 /// A pixel whose readings at all stops are the platform's.
 struct PlatformPixel {
@@ -240,8 +239,8 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
   UnknownMatrix covariance = UnknownMatrix::Identity();
   Eigen::Matrix4d of_axis = Eigen::Matrix4d::Identity();  // with these optics
   UnknownVector step = UnknownVector::Zero();
-  for (const ResidualLimits& limits : optics_schedule) {
-    const auto sums = object_equations(views, state, limits, threads);
+  for (int i = 0; i < max_optics_steps; ++i) {
+    const auto sums = object_equations(views, state, i == 0 ? first_limits : later_limits, threads);
     if (sums.count < min_residuals) {
       return std::nullopt;
     }
@@ -259,7 +258,7 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
     of_axis = all.matrix.topLeftCorner<4, 4>().inverse();
     state.move(step);
     read_again(views, state);
-    if (step.head<4>().norm() < settled_optics && std::abs(step[optics_at]) < settled_optics) {
+    if (step.segment<2>(2).norm() < settled_optics) {
       break;
     }
   }

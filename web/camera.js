@@ -54,7 +54,7 @@ let steady = steadyHint();
 
 /** @param {Uint8Array} brightness @param {Seen | null} seen @param {Rig | null} rig */
 function showHint(brightness, seen, rig) {
-  const isIdle = element('stage').dataset.scanning === 'no' && element('stage').dataset.live === 'yes';
+  const isIdle = element('stage').dataset.hints === 'yes' && element('stage').dataset.live === 'yes';
   const moved = seen && before ? movedShare(brightness, before.brightness, seen, before.seen) : 0;
   before = seen && {brightness, seen};
   if (!isIdle) {

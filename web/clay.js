@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial,
+  MeshStandardMaterial, ShadowMaterial,
 } from './three.js';
 
 const clay = 0xd8d2c4;
@@ -11,16 +11,17 @@ const filledColour = new Color(0xd9913f);
 export const ringStep = 50;   // millimetres between the platform's rings
 
 /**
- * Flat-shaded clay that can show its triangles. Each triangle has three vertices of its own, in order, so a vertex's index gives its
+ * Clay that can show its triangles, shaded flat where the geometry has no normals. Each triangle has three vertices of its own, in order, so a vertex's index gives its
  * corner. A pixel's distance to the nearest edge comes from interpolated barycentric coordinates, without further buffers.
  * @param {Object} shown
  * @param {{value: number}} shown.edges  opacity of the edges, 0 to 1
  * @param {{value: number}} shown.filled  opacity of the colour of filled-in surface, 0 to 1
  * @param {{value: number}} shown.painted  1: the corners' colours are shown; 0: clay
  * @param {{value: number}} shown.top  millimetres; higher parts are cut off
+ * @param {boolean} shown.isSmooth  whether the geometry has normals
  */
-export function clayMaterial({edges, filled, painted, top}) {
-  const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: true, side: DoubleSide});
+export function clayMaterial({edges, filled, painted, top, isSmooth}) {
+  const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: !isSmooth, side: DoubleSide});
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, {
       edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour}, painted, top,
@@ -58,15 +59,32 @@ ${shader.fragmentShader}`
   return material;
 }
 
-/** Lights that move with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
-export function lightsBeside(camera) {
-  const key = new DirectionalLight(0xfff6e8, 2.1);
-  key.position.set(-0.5, 0.8, 1);
-  const rim = new DirectionalLight(0x7fe3dd, 1.1);
-  rim.position.set(1, 0.35, -0.8);
-  for (const light of [key, rim]) {
-    light.target = camera;
-    camera.add(light);
+/** A light that moves with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
+export function lightBeside(camera) {
+  const light = new DirectionalLight(0xfff6e8, 0.9);
+  light.position.set(-0.5, 0.8, 1);
+  light.target = camera;
+  camera.add(light);
+}
+
+/** A light from above whose soft shadow lies on the platform. */
+export class LightAbove {
+  light = new DirectionalLight(0xffffff, 0.8);
+
+  constructor() {
+    this.light.castShadow = true;
+    this.light.shadow.mapSize.set(1024, 1024);
+    this.light.shadow.radius = 7;
+    this.light.shadow.bias = -0.002;
+  }
+
+  /** Aims it at an object on the platform. @param {number} radius  around the axis, millimetres @param {number} height  millimetres */
+  aim(radius, height) {
+    const reach = Math.hypot(radius, height);
+    this.light.position.set(-0.35 * reach, -0.25 * reach, 3 * reach);
+    const {camera} = this.light.shadow;
+    Object.assign(camera, {left: -1.5 * reach, right: 1.5 * reach, top: 1.5 * reach, bottom: -1.5 * reach, near: reach, far: 4 * reach});
+    camera.updateProjectionMatrix();
   }
 }
 
@@ -92,6 +110,8 @@ export function platform(radius) {
   const disc = new Mesh(new CircleGeometry(radius, 96),
       new MeshBasicMaterial({color: 0x5fb8b5, transparent: true, opacity: 0.07, depthWrite: false, side: 2}));
   const grid = new LineSegments(lines, new LineBasicMaterial({color: 0x7fc4c4, transparent: true, opacity: 0.28}));
-  grid.add(disc);
+  const shadow = new Mesh(new CircleGeometry(radius, 96), new ShadowMaterial({opacity: 0.32, depthWrite: false}));
+  shadow.receiveShadow = true;
+  grid.add(disc, shadow);
   return grid;
 }

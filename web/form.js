@@ -6,6 +6,7 @@ import * as format from './format.js';
 import {offerLeaves} from './leaf_choices.js';
 import {fromKept, presetOf, presets, toKept} from './presets.js';
 import {explain, formOf, settingsOf, stepText} from './settings.js';
+import {note, noted} from './storage.js';
 import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Settings} Settings */
@@ -156,12 +157,12 @@ function watchForEstimates(defaults) {
 export function prepareForm(defaults) {
   offerLeaves(element('leaves'), defaults.leaf_size_mm);
   offerPresets(defaults);
-  fill(fromKept(localStorage.getItem(memory), defaults));
+  fill(fromKept(noted(memory), defaults));
   const form = element('form');
   let timer = 0;
   const seeChange = () => {
     showPreset(defaults);
-    localStorage.setItem(memory, toKept(chosenSettings()));
+    note(memory, toKept(chosenSettings()));
     clearTimeout(timer);
     timer = setTimeout(tellEstimate, quietTime);
   };

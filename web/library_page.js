@@ -34,7 +34,10 @@ export function prepare() {
     if (what === 'rename') {
       rename(id);
     } else if (what === 'delete') {
-      remove(id);
+      const card = event.target.closest('.scan');
+      const next = card.nextElementSibling ?? card.previousElementSibling;
+      remove(id).then(() => card.isConnected ||
+        (next?.isConnected ? /** @type {HTMLElement} */ (next.querySelector('.scan-name')) : element('library-query')).focus());
     }
   });
   prepareBin({restore: (id) => restore([id]), empty: emptyBin});

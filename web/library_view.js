@@ -8,9 +8,14 @@ import {text} from './texts.js';
 /** @param {HTMLElement} frame @param {string} url  empty: no picture */
 function showPicture(frame, url) {
   const image = part(frame, 'img');
-  show(image, url !== '');
-  show(part(frame, 'svg'), url === '');
-  if (url !== '' && image.getAttribute('src') !== url) {
+  const isThere = url !== '' && image.dataset.failed !== url;
+  show(image, isThere);
+  show(part(frame, 'svg'), !isThere);
+  if (isThere && image.getAttribute('src') !== url) {
+    image.onerror = () => {
+      image.dataset.failed = url;
+      showPicture(frame, url);
+    };
     image.src = url;
   }
 }

@@ -43,7 +43,7 @@ async function look() {
     seeWarnings(status);
     bin.seeRevision(status.scans_revision);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
-    const defaults = state.defaults ?? await api.defaults();
+    const {defaults, formats} = state.defaults ? {defaults: state.defaults, formats: state.formats} : await api.configured();
     const builds = await missingBuilds(states.withStatus(state, status)).catch(() => null);  // fails if the scan was deleted
     if (before !== asked || state.isPending) {
       return;
@@ -51,11 +51,15 @@ async function look() {
     if (!state.defaults) {
       prepareForm(defaults);
     }
-    const news = states.withDefaults(states.withStatus(state, status), defaults);
+    const news = states.withDefaults(states.withStatus(state, status), defaults, formats);
     const listed = scans ? states.withScans(news, scans) : news;
     change(builds && builds.scan === listed.selected ? states.withBuilds(listed, builds.scan, builds.list) : listed);
-  } catch {
-    change(states.withoutAnswer(state));
+  } catch (error) {
+    if (error instanceof api.Problem) {
+      change(states.withoutAnswer(state));
+    } else {
+      reportError(error);  // of the page, and no sign that the scanner is silent
+    }
   }
 }
 
@@ -79,6 +83,9 @@ async function watch() {
 function follow() {
   const isScan = here() === 'scan';
   change(isScan ? states.withSelected(state, location.hash.slice(1) || null) : state);
+  if (isScan && location.hash && state.listed !== null && state.selected === null) {
+    history.replaceState(null, '', location.pathname);  // of no scan, or of the one that runs
+  }
   showPlace();
 }
 

@@ -1,7 +1,7 @@
 find_program(NPM npm REQUIRED)
 
-# Installs what package-lock.json of the current folder pins into `folder`/node_modules, once for each change of the lock.
-# Sets `stamp` to the file that tells so.
+# Installs what package-lock.json of the current folder pins into `folder`/node_modules, once for each change of the
+# lock. Sets `stamp` to the file that tells so.
 function(octurn_npm_packages folder stamp)
   set(installed ${folder}/node_modules/.package-lock.json)
   add_custom_command(

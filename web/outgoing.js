@@ -1,4 +1,4 @@
-// "Printers" and "Tell other programs" in the settings: the receivers of models, and of webhooks.
+// "Printers" and "Notify other programs" in the settings: the receivers of models, and of webhooks.
 
 import {Problem, json, sending, withoutAnswer} from './api.js';
 import {element, list, part, setText, show} from './dom.js';

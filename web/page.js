@@ -23,15 +23,29 @@ export function change(next) {
   renderStage(screen.stage);
 }
 
+/** @type {Set<string>} */
+const pending = new Set();
+let last = Promise.resolve();
+
 /**
- * Runs a user's action, one at a time, and shows the reason if it fails.
+ * Runs a user's action after those before it, and shows the reason if it fails. The same action is not begun twice at a time, as
+ * by a double click.
  * @param {string} failure  key of the failure's text
  * @param {() => Promise<(state: states.State) => states.State>} action  resolves to the change of state
+ * @param {string} [subject]  what it is done to
  */
-export async function act(failure, action) {
-  if (state.isPending) {
+export async function act(failure, action, subject = '') {
+  const name = `${failure} ${subject}`;
+  if (pending.has(name)) {
     return;
   }
+  pending.add(name);
+  last = last.then(() => run(failure, action)).finally(() => pending.delete(name));
+  await last;
+}
+
+/** @param {string} failure @param {() => Promise<(state: states.State) => states.State>} action */
+async function run(failure, action) {
   change(states.withPending(state));
   try {
     const apply = await action();

@@ -68,16 +68,20 @@ function markCurrent(links, name) {
 }
 
 let shown = first;
+let libraryScroll = 0;  // pixels from the top, when it was left
 
-/** Shows the place in the address, and scrolls to the top if it changed. */
+/** Shows the place in the address. If it changed, scrolls to the top, but in the library to where it was left. */
 export function showPlace() {
   const place = here();
-  if (place !== shown) {
-    shown = place;
-    window.scrollTo(0, 0);
+  if (shown === 'library' && place !== shown) {
+    libraryScroll = window.scrollY;
   }
   for (const main of document.querySelectorAll('main')) {
     show(main, main.dataset.place === place);
+  }
+  if (place !== shown) {
+    shown = place;
+    window.scrollTo(0, place === 'library' ? libraryScroll : 0);
   }
   markCurrent('.places', tabOf(location.hash.slice(1)));
   markCurrent('.parts', place);

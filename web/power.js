@@ -1,4 +1,4 @@
-// "The scanner itself" in the settings: restart, shutdown, and the program's log.
+// "Power" in the settings: restart, shutdown, and the program's log.
 
 import {Problem, json, sending, status} from './api.js';
 import {element, setText, show} from './dom.js';

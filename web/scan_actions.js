@@ -20,7 +20,7 @@ export const pause = () => act('failure.pause', async () => {
   if (id) {
     await api.pause(id);
   }
-  return (now) => now;
+  return (now) => states.withStopping(now, id ?? null);
 });
 
 /** @param {File} file */
@@ -35,7 +35,7 @@ export const cancel = () => act('failure.end', async () => {
   if (id) {
     await api.cancel(id);
   }
-  return (now) => now;
+  return (now) => states.withStopping(now, id ?? null);
 });
 
 export const resume = () => act('failure.resume', async () => {
@@ -68,7 +68,7 @@ export async function remove(id) {
       await api.remove(scan.id);
       bin.offerUndo(nameOf(scan), () => restore([scan.id]));
       return (now) => states.withoutScan(now, scan.id);
-    });
+    }, scan.id);
   }
 }
 
@@ -79,10 +79,16 @@ export async function removeChosen() {
     return;
   }
   await act('failure.delete-all', async () => {
-    for (const id of ids) {
-      await api.remove(id);
+    /** @type {string[]} */
+    const removed = [];
+    try {
+      for (const id of ids) {
+        await api.remove(id);
+        removed.push(id);
+      }
+    } finally {
+      removed.length > 0 && bin.offerUndo(text('count.scans', {count: removed.length}), () => restore(removed));
     }
-    bin.offerUndo(text('count.scans', {count: ids.length}), () => restore(ids));
     return (now) => states.withLibrary(ids.reduce(states.withoutScan, now), {chosen: null});
   });
 }
@@ -94,7 +100,7 @@ export const restore = (ids) => act(ids.length > 1 ? 'failure.restore-all' : 'fa
   }
   const scans = await api.scans();
   return (now) => states.withScans(now, scans);
-});
+}, ids.join());
 
 export async function emptyBin() {
   if (await askEmptyBin()) {

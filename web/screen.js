@@ -6,7 +6,7 @@ import {found, pictureOf} from './library.js';
 import {isPartOfAnother, posesOf} from './poses.js';
 import {isBuilding, phaseText, progressOf} from './progress.js';
 import {actionOf, badgeOf, verdictOf} from './quality.js';
-import {isAway, running, scanOf} from './state.js';
+import {isAway, running, scanOf, unfinished} from './state.js';
 import {text, translated} from './texts.js';
 import {refusalText} from './wording.js';
 
@@ -119,10 +119,11 @@ function verdictShown(state, {model, calibration}) {
 
 /**
  * Further downloads: the shown model in other formats, and the raw scan.
+ * @param {string[]} endings  of the formats
  * @param {Scan} scan  as shown
  */
-function formatsOf({id, model, state, snapshots_done, has_colours}) {
-  const others = model ? ['3mf', 'ply', 'glb'].map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
+function formatsOf(endings, {id, model, state, snapshots_done, has_colours}) {
+  const others = model ? endings.filter((ending) => ending !== 'stl').map((ending) => ({format: ending.toUpperCase(), url: model.url.replace(/stl$/, ending)})) : [];
   const models = [
     ...others.map(({format: name, url}) => ({name, title: text('scan.format', {format: name}), url})),
     ...(has_colours ? others : []).map(({format: name, url}) =>
@@ -143,7 +144,7 @@ const detailsOf = (state, scan) => ({
   canResume: scan.can_resume ?? (scan.state === 'paused' || scan.state === 'interrupted'),
   canEnd: scan.state === 'paused' || scan.state === 'interrupted',
   download: downloadOf(scan),
-  formats: formatsOf(scan),
+  formats: formatsOf(state.formats, scan),
   unbuilt: unbuiltOf(state, scan),
 });
 
@@ -190,6 +191,12 @@ function deviceOf(role, device, isAway) {
     text: isAway ? text('device.away') : state,
     message: isReady ? '' : format.sentence(device.message || text('device.trouble', {device: name, state})),
   };
+}
+
+/** What the form says of a scan that is not finished. @param {State} state */
+function unfinishedOf(state) {
+  const scan = unfinished(state);
+  return scan && {id: scan.id, text: text('form.unfinished', {name: nameOf(scan), taken: taken(scan)})};
 }
 
 /** @param {State} state */
@@ -244,7 +251,8 @@ export function screenOf(state) {
     isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
     devices,
     panel,
-    progress: scan && {...progressOf(scan), ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
+    unfinished: unfinishedOf(state),
+    progress: scan && {...progressOf(scan), ...(state.stopping === scan.id ? {text: text('phase.stopping')} : {}), isStopping: state.stopping === scan.id, ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
     details: shown && detailsOf(state, shown),
     builds: chosen && buildsOf(state, chosen),
     poses: chosen && posesOf(state, chosen),
@@ -268,6 +276,7 @@ export function screenOf(state) {
       isReachable: !away,
       isLive: state.status?.sensor.state === 'ready' && !away,
       isScanning: scan !== null,
+      hasHints: scan === null && !(panel === 'details' && shown && detailsOf(state, shown).canResume),  // on how the next scan may fail
     },
     ...libraryOf(state),
     footer: state.status ? {version: `Octurn ${state.status.version}`, disk: text('foot.free', {bytes: format.bytes(state.status.disk_free_bytes)})} : null,

@@ -16,12 +16,12 @@ const details = [
 ];
 
 /**
- * The leaf sizes to choose from: the named ones from four times to half the scanner's default, and the default itself.
+ * The leaf sizes to choose from: the named ones from four times to half the preset or to 0.5 mm, and the preset itself.
  * @param {number} preset  millimetres
  * @returns {Detail[]} coarse to fine
  */
 export function leafChoices(preset) {
-  const near = details.filter(({mm}) => mm <= 4 * preset && mm > preset / 4);
+  const near = details.filter(({mm}) => mm <= 4 * preset && mm > Math.min(preset, 1) / 4);
   return near.some(({mm}) => mm === preset) ? near : [...near, {mm: preset, name: 'preset'}].sort((a, b) => b.mm - a.mm);
 }
 

@@ -209,7 +209,7 @@ export function renderStage(stage) {
   due = stage;
   element('stage').dataset.reachable = stage.isReachable ? 'yes' : 'no';
   element('stage').dataset.live = stage.isLive ? 'yes' : 'no';
-  element('stage').dataset.scanning = stage.isScanning ? 'yes' : 'no';
+  element('stage').dataset.hints = stage.hasHints ? 'yes' : 'no';
   element('stage').dataset.shows = stage.shows;
   show(element('stage-choice'), stage.hasChoice);
   pressed('show-model', stage.shows === 'model');

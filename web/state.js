@@ -15,12 +15,14 @@ import {initial as library} from './library.js';
  * @property {Scan[]} scans  newest first
  * @property {string | null} listed  mark of the status to which `scans` belongs
  * @property {Settings | null} defaults
+ * @property {string[]} formats  of models, such as "stl"
  * @property {string | null} selected  the scan in view; null for the form or the running scan
  * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan in view
  * @property {number | null} shownBuild  the build in view; null for the scan's model
  * @property {string | null} shownReason  the verdict's reason whose places are shown
  * @property {import('./library.js').Library} library
  * @property {'camera' | 'model'} stage  content of the large picture if there is a choice
+ * @property {string | null} stopping  the running scan that this page has asked to pause or to end
  * @property {boolean} isPending  whether a request is waiting for its response
  * @property {{title: string, detail: string, hint: string} | null} problem  why the last request failed
  */
@@ -32,12 +34,14 @@ export const initial = {
   scans: [],
   listed: null,
   defaults: null,
+  formats: [],
   selected: null,
   builds: null,
   shownBuild: null,
   shownReason: null,
   library,
   stage: 'camera',
+  stopping: null,
   isPending: false,
   problem: null,
 };
@@ -71,7 +75,8 @@ const merged = (scans, scan) => scans.some(({id}) => id === scan.id) ?
 export function withStatus(state, status) {
   const before = running(state);
   const ended = before !== null && before.id !== status.scan?.id;
-  const news = {...state, status, failures: 0, scans: status.scan ? merged(state.scans, status.scan) : state.scans};
+  const stopping = state.stopping === status.scan?.id ? state.stopping : null;
+  const news = {...state, status, stopping, failures: 0, scans: status.scan ? merged(state.scans, status.scan) : state.scans};
   const shown = before?.pose_of?.scan ?? before?.id ?? null;
   const renewed = ended && before.pose_of ? {...news, builds: null, shownBuild: null} : news;
   if (status.scan && state.selected === status.scan.id) {
@@ -79,6 +84,10 @@ export function withStatus(state, status) {
   }
   return ended && state.selected === null ? {...renewed, selected: shown, stage: 'model'} : renewed;
 }
+
+/** A scan that waits to be continued or ended. @param {State} state */
+export const unfinished = (state) => state.scans.find(({state: condition, pose_of}) =>
+  (condition === 'paused' || condition === 'interrupted') && !pose_of) ?? null;
 
 /** @param {State} state @returns {State} */
 export const withoutAnswer = (state) => ({...state, failures: state.failures + 1});
@@ -103,13 +112,13 @@ export const withoutScan = (state, id) => ({
   selected: state.selected === id ? null : state.selected,
 });
 
-/** @param {State} state @param {Settings} defaults @returns {State} */
-export const withDefaults = (state, defaults) => ({...state, defaults});
+/** @param {State} state @param {Settings} defaults @param {string[]} formats  of models @returns {State} */
+export const withDefaults = (state, defaults, formats) => ({...state, defaults, formats});
 
-/** @param {State} state @param {string | null} selected @returns {State} */
+/** Selects a scan; none if the list does not have it. @param {State} state @param {string | null} selected @returns {State} */
 export const withSelected = (state, selected) => ({
   ...state,
-  selected: selected === running(state)?.id ? null : selected,
+  selected: selected === running(state)?.id || (state.listed !== null && !scanOf(state, selected)) ? null : selected,
   shownBuild: selected === state.selected ? state.shownBuild : null,
   shownReason: null,
   stage: 'model',
@@ -125,8 +134,8 @@ export const withBuild = (state, build) => ({
 });
 
 /** Whether builds of the scan in view were added or ended since they were read. @param {State} state */
-export const areBuildsStale = ({selected, builds, status}) =>
-  selected !== null && (builds?.scan !== selected || builds.mark !== markOfBuilds(status));
+export const areBuildsStale = ({selected, builds, status, scans, listed}) =>
+  selected !== null && (listed === null || scans.some(({id}) => id === selected)) && (builds?.scan !== selected || builds.mark !== markOfBuilds(status));
 
 /**
  * A build that ends while its scan is in view is shown.
@@ -147,6 +156,9 @@ export const withReason = (state, reason) => ({...state, shownReason: state.show
 
 /** @param {State} state @param {Partial<State['library']>} changes @returns {State} */
 export const withLibrary = (state, changes) => ({...state, library: {...state.library, ...changes}});
+
+/** @param {State} state @param {string | null} stopping @returns {State} */
+export const withStopping = (state, stopping) => ({...state, stopping});
 
 /** @param {State} state @param {State['stage']} stage @returns {State} */
 export const withStage = (state, stage) => ({...state, stage});

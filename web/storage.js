@@ -1,19 +1,33 @@
-// Notes that this browser keeps, if its storage is allowed.
+// Notes that this browser keeps, if its storage is allowed. Without storage, a note holds until the page is closed.
 
-/** @param {string} key */
-export function noted(key) {
+/** @typedef {'localStorage' | 'sessionStorage'} Kind */
+
+/** @type {Map<string, string>} */
+const held = new Map();
+
+/** @param {string} key @param {Kind} [kind] @returns {string | null} */
+export function noted(key, kind = 'localStorage') {
   try {
-    return localStorage.getItem(key);
+    return globalThis[kind].getItem(key);
   } catch {
-    return null;
+    return held.get(key) ?? null;
   }
 }
 
-/** Without storage, a note holds until the page is closed. @param {string} key @param {string} [value] */
-export function note(key, value = 'yes') {
+/** @param {string} key @param {string} [value] @param {Kind} [kind] */
+export function note(key, value = 'yes', kind = 'localStorage') {
   try {
-    localStorage.setItem(key, value);
+    globalThis[kind].setItem(key, value);
   } catch {
-    // the page's own state has it
+    held.set(key, value);
+  }
+}
+
+/** @param {string} key @param {Kind} [kind] */
+export function forget(key, kind = 'localStorage') {
+  try {
+    globalThis[kind].removeItem(key);
+  } catch {
+    held.delete(key);
   }
 }

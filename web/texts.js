@@ -2,7 +2,7 @@
 // translations of the scanner's sentences by their English originals. HTML gives keys in data-text, and in data-text-label, -title and
 // -placeholder for the attributes of these names.
 
-import {noted} from './storage.js';
+import {forget, note, noted} from './storage.js';
 
 /** @typedef {Record<string, string | Partial<Record<Intl.LDMLPluralRule, string>>>} Texts */
 
@@ -34,7 +34,7 @@ export const chosenLanguage = () => noted(memory);
 
 /** @param {string | null} language  null: the browser's preference */
 export function chooseLanguage(language) {
-  language === null ? localStorage.removeItem(memory) : localStorage.setItem(memory, language);
+  language === null ? forget(memory) : note(memory, language);
   location.reload();
 }
 

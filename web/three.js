@@ -9,18 +9,20 @@ export {
   FloatType,
   Fog,
   Group,
-  HemisphereLight,
   LineBasicMaterial,
   LineSegments,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
   MeshStandardMaterial,
+  NeutralToneMapping,
+  PMREMGenerator,
   PerspectiveCamera,
   Points,
   PointsMaterial,
   Scene,
   ShaderMaterial,
+  ShadowMaterial,
   Sphere,
   SphereGeometry,
   Vector3,
@@ -28,4 +30,5 @@ export {
   WebGLRenderer,
 } from 'three';
 export {ConvexHull} from 'three/addons/math/ConvexHull.js';
+export {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
 export {OrbitControls} from 'three/addons/controls/OrbitControls.js';

@@ -3,6 +3,7 @@
 import * as api from './api.js';
 import {element, part, setText, show} from './dom.js';
 import {bytes, sentence} from './format.js';
+import {forget, note, noted} from './storage.js';
 import {text} from './texts.js';
 
 /** @typedef {import('./api.js').Update} Update */
@@ -138,7 +139,7 @@ function change(news) {
   state = {...state, ...news};
   const phase = phaseOf(state);
   if (phase && phase !== 'sending' && !state.isFollowed) {
-    sessionStorage.setItem(mark, 'seen');
+    note(mark, 'seen', 'sessionStorage');
     state.isFollowed = true;
   }
   render();
@@ -147,7 +148,7 @@ function change(news) {
 /** @param {Update} update */
 export function showUpdate(update) {
   if (update.state === 'kept') {
-    sessionStorage.removeItem(mark);
+    forget(mark, 'sessionStorage');
   }
   change({update, isAway: false});
 }
@@ -188,7 +189,7 @@ async function install() {
 }
 
 export function prepareUpdate() {
-  state.isFollowed = sessionStorage.getItem(mark) !== null;
+  state.isFollowed = noted(mark, 'sessionStorage') !== null;
   element('update-file').addEventListener('change', () => change({failure: ''}));
   element('update-install').addEventListener('click', install);
   element('update-cancel').addEventListener('click', () => upload?.abort());

@@ -175,12 +175,17 @@ export function render(screen) {
   if (screen.details) {
     showDetails(screen.details);
   }
+  show(element('unfinished'), screen.unfinished !== null);
+  if (screen.unfinished) {
+    setText(part(element('unfinished'), 'span'), screen.unfinished.text);
+    part(element('unfinished'), 'a').href = `#${screen.unfinished.id}`;
+  }
   renderScanPage(screen);
   showPanel(screen.panel);
   renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
-    element(id).setAttribute('aria-disabled', String(screen.isBusy));  // unlike disabled, it keeps the focus
+    element(id).setAttribute('aria-disabled', String(screen.isBusy || Boolean(screen.progress?.isStopping)));  // unlike disabled, it keeps the focus
   }
   if (screen.footer) {
     setText(element('version'), screen.footer.version);

@@ -168,7 +168,7 @@ void add_missing(Judgement& judgement, MissingPart missing) {
       {.code = "part-missing",
        .detail = "a part of the object, " + mm_text(missing.length, text_digits) +
                  " long, was seen by several stops and is not in the model",
-       .hint = "Flatten the sensor, calibrate the rig, and scan with more stops or finer.",
+       .hint = "Make the sensor's map, calibrate the rig, and scan with more stops or finer.",
        .parameters = {{"length_mm", mm_from_metres(missing.length)}},
        .places = std::move(missing.places)});
 }

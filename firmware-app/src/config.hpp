@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "http_options.hpp"
-#include "scan/laser_settings.hpp"
-#include "scan/scan_settings.hpp"
+#include "settings/laser_settings.hpp"
+#include "settings/scan_settings.hpp"
 #include "turntable/stepper_settings.hpp"
 
 namespace octurn {

@@ -10,7 +10,10 @@ namespace octurn {
 struct HttpOptions {
   std::string address = "0.0.0.0";           ///< to listen on; the default is every IPv4 interface
   int port = 8080;                           ///< 0: any free port
-  std::filesystem::path password_file = {};  ///< the page's users; empty: no authentication
+  std::filesystem::path password_file = {};  ///< with the page's password; empty: there is none
+  std::filesystem::path own_password_file = {};  ///< overrides it while it exists
+  /// How long the port may be taken by another program, as between two servers of this one.
+  std::chrono::milliseconds bind_patience{0};
   std::chrono::milliseconds request_timeout =
       std::chrono::seconds(10);  ///< timeout of a stalled client
 };

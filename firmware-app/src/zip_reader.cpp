@@ -68,15 +68,20 @@ void for_each_entry(unzFile zip, const std::function<void(const Entry& entry)>& 
   }
 }
 
-void check_entries(unzFile zip, const IsAllowedName& is_allowed, const ZipLimits& limits) {
-  std::set<std::string> names;
+void check_entries(unzFile zip, const ToTarget& to_target, const ZipLimits& limits) {
+  std::set<std::string> targets;
+  std::uint64_t files = 0;
   std::uint64_t left = limits.all_bytes;
   for_each_entry(zip, [&](const Entry& entry) {
-    if (names.size() == limits.files) {
+    if (files++ == limits.files) {
       refuse("has more than " + std::to_string(limits.files) + " files");
     }
-    if (!is_allowed(entry.name) || !names.insert(entry.name).second) {
-      refuse("has a file that belongs to no scan, or one twice");
+    const std::optional<std::string> target = to_target(entry.name);
+    if (!target) {
+      return;
+    }
+    if (!targets.insert(*target).second) {
+      refuse("has " + *target + " twice");
     }
     if (entry.bytes > std::min(left, limits.file_bytes)) {
       refuse("holds more than a scan can have");
@@ -112,21 +117,37 @@ std::uint64_t unpack_here(unzFile zip, const fs::path& target, std::uint64_t max
 
 }  // namespace
 
-void check_zip(const fs::path& archive, const IsAllowedName& is_allowed, const ZipLimits& limits) {
-  check_entries(open_archive(archive).get(), is_allowed, limits);
+std::vector<std::string> list_zip(const fs::path& archive, const ZipLimits& limits) {
+  const OpenZip zip = open_archive(archive);
+  std::vector<std::string> names;
+  for_each_entry(zip.get(), [&](const Entry& entry) {
+    if (names.size() == limits.files) {
+      refuse("has more than " + std::to_string(limits.files) + " files");
+    }
+    names.push_back(entry.name);
+  });
+  return names;
 }
 
-void unpack_zip(const fs::path& archive, const fs::path& folder, const IsAllowedName& is_allowed,
+void check_zip(const fs::path& archive, const ToTarget& to_target, const ZipLimits& limits) {
+  check_entries(open_archive(archive).get(), to_target, limits);
+}
+
+void unpack_zip(const fs::path& archive, const fs::path& folder, const ToTarget& to_target,
                 const ZipLimits& limits, const std::stop_token& stop) {
   const OpenZip zip = open_archive(archive);
-  check_entries(zip.get(), is_allowed, limits);
+  check_entries(zip.get(), to_target, limits);
   std::uint64_t left = limits.all_bytes;
   for_each_entry(zip.get(), [&](const Entry& entry) {
     throw_if_stopped(stop);
-    const fs::path target = folder / entry.name;
+    const std::optional<std::string> name = to_target(entry.name);
+    if (!name) {
+      return;
+    }
+    const fs::path target = folder / *name;
     std::error_code error;
     if (fs::exists(target, error)) {
-      refuse("has a file that belongs to no scan, or one twice");
+      refuse("has " + *name + " twice");
     }
     fs::create_directories(target.parent_path(), error);
     left -= unpack_here(zip.get(), target, std::min(left, limits.file_bytes), stop);

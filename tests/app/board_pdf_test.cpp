@@ -1,4 +1,4 @@
-#include "scan/board_pdf.hpp"
+#include "calibration/board_pdf.hpp"
 
 #include <gtest/gtest.h>
 

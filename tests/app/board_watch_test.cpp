@@ -1,10 +1,10 @@
 // The advice for a person who holds a board, and the choice of pictures. The board is simulated.
 
-#include "scan/board_watch.hpp"
+#include "calibration/board_watch.hpp"
 
 #include <gtest/gtest.h>
 
-#include "scan/laser_settings.hpp"
+#include "settings/laser_settings.hpp"
 #include "simulator/waved_board.hpp"
 
 namespace octurn {

@@ -5,7 +5,7 @@
 #include <barrier>
 #include <thread>
 
-#include "scan/calibration_store.hpp"
+#include "calibration/calibration_store.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -1,4 +1,4 @@
-#include "scan/calibration_store.hpp"
+#include "calibration/calibration_store.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,27 @@ class ColouredFormats : public testing::Test {
   // Colours of the vertices in the order of the vertex table: o, y, x, z.
   std::vector<Rgb> colours_ = {{0, 0, 0}, {255, 255, 255}, {200, 16, 1}, {188, 188, 188}};
 };
+
+TEST_F(ColouredFormats, TheObjHasThemBehindEachPlaceAsShares) {
+  write_obj(stl(), "Scan", file("Scan.obj"), colours_);
+  std::istringstream obj(content_of(file("Scan.obj")));
+  std::size_t vertices = 0;
+  for (std::string line; std::getline(obj, line);) {
+    if (!line.starts_with("v ")) {
+      continue;
+    }
+    std::istringstream words(line.substr(1));
+    std::array<double, 6> numbers{};
+    for (double& number : numbers) {
+      ASSERT_TRUE(words >> number) << line;
+    }
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(numbers.at(3 + channel) * 255, colours_.at(vertices).at(channel), 0.02) << line;
+    }
+    ++vertices;
+  }
+  EXPECT_EQ(vertices, colours_.size());
+}
 
 TEST_F(ColouredFormats, ThePlyHasThemBehindEachPlace) {
   write_ply(stl(), file("Scan.ply"), colours_);

@@ -1,4 +1,4 @@
-#include "scan/command_slot.hpp"
+#include "run/command_slot.hpp"
 
 #include <gtest/gtest.h>
 

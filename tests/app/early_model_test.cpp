@@ -1,4 +1,4 @@
-#include "scan/early_model.hpp"
+#include "build/early_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "app/simulated_frames.hpp"
+#include "capture/plan.hpp"
+#include "capture/rig.hpp"
+#include "latest.hpp"
 #include "octurn/error.hpp"
-#include "scan/latest.hpp"
-#include "scan/plan.hpp"
-#include "scan/rig.hpp"
 #include "sensor/depth_sensor.hpp"
 
 namespace octurn {

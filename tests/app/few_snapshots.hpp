@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scan/scan_settings.hpp"
+#include "settings/scan_settings.hpp"
 
 namespace octurn {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "config.hpp"
-#include "scan/scan_settings.hpp"
+#include "settings/scan_settings.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -1,4 +1,4 @@
-#include "scan/fitting_reconstruction.hpp"
+#include "build/fitting_reconstruction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "app/few_snapshots.hpp"
 #include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/run_scan.hpp"
+#include "run/run_scan.hpp"
 #include "support/ball_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

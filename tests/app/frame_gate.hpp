@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/wrapped_sensor.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 
 namespace octurn {
 

@@ -30,7 +30,7 @@ TEST(GuessLimit, ForgetsInTimeAndForgivesWhoIsRight) {
     guesses.count_wrong("10.0.0.1", start);
     guesses.count_wrong("10.0.0.2", start);
   }
-  guesses.forgive("10.0.0.1");
+  guesses.forgive("10.0.0.1", start);
   EXPECT_EQ(guesses.to_wait("10.0.0.1", start), 0s);
   EXPECT_EQ(guesses.to_wait("10.0.0.2", start), 10s);
   guesses.count_wrong("10.0.0.3", start + 100s);
@@ -55,8 +55,23 @@ TEST(GuessLimit, KeepsIpv4ApartWhereAServerListensOnBoth) {
   EXPECT_EQ(guesses.to_wait("::ffff:10.0.0.2", start), 0s);
 }
 
+TEST(GuessLimit, LimitsTheGuessesOfAllAddressesButLocksOutNobodyWhoKnewThePassword) {
+  GuessLimit guesses;
+  guesses.forgive("10.0.0.1", start);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(guesses.to_wait("10.0.1." + std::to_string(i), start), 0s) << i;
+    guesses.count_wrong("10.0.1." + std::to_string(i), start);
+  }
+  EXPECT_EQ(guesses.to_wait("10.0.2.1", start), 1s);
+  EXPECT_EQ(guesses.to_wait("10.0.0.1", start), 0s);
+  EXPECT_EQ(guesses.to_wait("10.0.2.1", start + 1s), 0s);
+  guesses.count_wrong("10.0.0.1", start + 1s);
+  EXPECT_EQ(guesses.to_wait("10.0.2.1", start + 1s), 0s) << "a known one's are its own";
+}
+
 TEST(GuessLimit, RemembersWhoOwesMostOfAFlood) {
   GuessLimit guesses;
+  guesses.forgive("10.0.0.1", start);  // so that its own guesses count, and not those of all
   for (int i = 0; i < 10; ++i) {
     guesses.count_wrong("10.0.0.1", start);
   }

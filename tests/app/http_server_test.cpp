@@ -1,5 +1,6 @@
 #include "http/http_server.hpp"
 
+#include <civetweb.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -7,11 +8,16 @@
 
 #include <array>
 #include <chrono>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
+#include "log.hpp"
 #include "support/http_client.hpp"
+#include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -236,6 +242,43 @@ TEST(HttpServer, SaysThatThePortIsTaken) {
   EXPECT_EQ(error.code(), ErrorCode::listen_failed);
   EXPECT_NE(std::string(error.what()).find(std::to_string(first.port())), std::string::npos);
   EXPECT_NE(error.hint().find("--port"), std::string::npos);
+}
+
+TEST(HttpServer, WaitsForAPortThatIsFreedSoon) {
+  std::optional<HttpServer> first(std::in_place, patient, echo);
+  const int port = first->port();
+  std::future<int> second = std::async(std::launch::async, [port] {
+    return HttpServer({.address = "127.0.0.1", .port = port, .bind_patience = patience}, echo)
+        .port();
+  });
+  while (log::recent().find("trying again") == std::string::npos) {
+    ASSERT_EQ(second.wait_for(1ms), std::future_status::timeout) << "it listens on a taken port";
+  }
+  first.reset();
+  EXPECT_EQ(second.get(), port);
+}
+
+TEST(HttpServer, SaysWhyItCannotListenOnIPv6) {
+  if (mg_check_feature(8) == 0) {
+    const Error error = error_thrown_by([] { HttpServer({.address = "::1", .port = 0}, echo); });
+    EXPECT_EQ(error.code(), ErrorCode::listen_failed);
+    EXPECT_NE(std::string(error.what()).find("IPv6"), std::string::npos) << error.what();
+  } else {
+    HttpServer({.address = "::1", .port = 0}, echo);
+  }
+}
+
+TEST(HttpServer, ReadsNoRequestAfterOneWhoseLengthIsInDoubt) {
+  const HttpServer server(patient, echo);
+  for (const char* const lengths :
+       {"Content-Length: 0x5\r\n", "Content-Length: 0\r\nContent-Length: 44\r\n"}) {
+    const Reply reply = reply_to(
+        server.port(), std::string("GET /first HTTP/1.1\r\nHost: localhost\r\n"
+                                   "Connection: keep-alive\r\n") +
+                           lengths + "\r\nGET /second HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(reply.header("Connection"), "close") << lengths;
+    EXPECT_EQ(reply.body.find("second"), std::string::npos) << reply.body;
+  }
 }
 
 /// Lowers this process's limit of open files to a number of free ones, for its lifetime.

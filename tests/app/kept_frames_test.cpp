@@ -1,4 +1,4 @@
-#include "scan/kept_frames.hpp"
+#include "store/kept_frames.hpp"
 
 #include <gtest/gtest.h>
 

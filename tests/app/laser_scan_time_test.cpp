@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "app/simulated_laser_rig.hpp"
+#include "capture/plan.hpp"
+#include "capture/take_pictures.hpp"
 #include "config.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/plan.hpp"
-#include "scan/run_scan.hpp"
-#include "scan/take_pictures.hpp"
+#include "run/run_scan.hpp"
 #include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 

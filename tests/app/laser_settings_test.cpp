@@ -1,4 +1,4 @@
-#include "scan/laser_settings.hpp"
+#include "settings/laser_settings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "app/simulated_frames.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/run_scan.hpp"
+#include "run/run_scan.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -1,4 +1,4 @@
-#include "scan/latest.hpp"
+#include "latest.hpp"
 
 #include <gtest/gtest.h>
 

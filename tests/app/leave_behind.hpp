@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "scan/scan_store.hpp"
+#include "store/scan_store.hpp"
 
 namespace octurn {
 

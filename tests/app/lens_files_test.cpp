@@ -1,4 +1,4 @@
-#include "scan/lens_files.hpp"
+#include "calibration/lens_files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The preview of a scan by laser line while its platform turns.
 
-#include "scan/line_preview.hpp"
+#include "capture/line_preview.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "app/simulated_laser_rig.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/run_scan.hpp"
+#include "run/run_scan.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -151,5 +151,40 @@ TEST_F(LoginTest, TakesFilesThatApachesProgramWrote) {
   EXPECT_EQ(answer(proof_of("b", nonce())), 200);
 }
 
+TEST(LoginFiles, AreInForceWhileTheyExist) {
+  const TemporaryFolder folder;
+  const std::filesystem::path own = folder.path() / "own";
+  Login login({}, own);
+  EXPECT_FALSE(login.refusal({}, start));
+  write_password_file(own, "open sesame");
+  EXPECT_TRUE(login.refusal({}, start));
+  std::filesystem::remove(own);
+  EXPECT_FALSE(login.refusal({}, start));
+  std::filesystem::create_symlink("nowhere", own);  // it cannot be read, and admits nobody
+  EXPECT_TRUE(login.refusal({}, start));
+}
+
+TEST(LoginFiles, ThePagesOverridesTheConfiguredOne) {
+  const TemporaryFolder folder;
+  const std::filesystem::path own = folder.path() / "own";
+  const std::filesystem::path configured = folder.path() / "configured";
+  write_password_file(configured, "open sesame");
+  Login login(configured, own);
+  const auto admits = [&](const std::string& password) {
+    const auto challenge = login.refusal({}, start);
+    const std::string nonce = quoted_field(challenge->headers.back().second, "nonce");
+    LoginAttempt attempt;
+    const std::string proof = proof_of(password, nonce);
+    attempt.authorization = proof;
+    return !login.refusal(attempt, start);
+  };
+  EXPECT_TRUE(admits("open sesame"));
+  write_password_file(own, "another one");
+  EXPECT_FALSE(admits("open sesame"));
+  EXPECT_TRUE(admits("another one"));
+  std::filesystem::remove(own);
+  EXPECT_TRUE(admits("open sesame"));
+}
+
 }  // namespace
 }  // namespace octurn

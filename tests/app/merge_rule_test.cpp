@@ -1,8 +1,8 @@
 // The page and the shell merge two scans by one rule.
 
 #include "app/scanner_fixture.hpp"
+#include "build/merged_scan.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/merged_scan.hpp"
 #include "support/wrong_pose.hpp"
 
 namespace octurn {

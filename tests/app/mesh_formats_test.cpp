@@ -128,6 +128,42 @@ TEST_F(MeshFormats, WriteThePlyOfAnStl) {
   expect_same(triangles);
 }
 
+TEST_F(MeshFormats, WriteTheObjOfAnStl) {
+  write_obj(stl(), "Hase\n1", file("Scan.obj"));
+  std::istringstream obj(content_of(file("Scan.obj")));
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::string> others;
+  for (std::string line; std::getline(obj, line);) {
+    std::istringstream words(line.substr(1));
+    if (line.starts_with("v ")) {
+      Vertex& vertex = vertices.emplace_back();
+      words >> vertex[0] >> vertex[1] >> vertex[2];
+    } else if (line.starts_with("f ")) {
+      std::array<std::size_t, 3> corners{};
+      words >> corners[0] >> corners[1] >> corners[2];
+      triangles.push_back(
+          {vertices.at(corners[0] - 1), vertices.at(corners[1] - 1), vertices.at(corners[2] - 1)});
+    } else {
+      others.push_back(line);
+    }
+  }
+  EXPECT_EQ(others, (std::vector<std::string>{"# millimetres, Z up", "o Hase 1"}));
+  expect_same(triangles);
+}
+
+TEST_F(MeshFormats, AreFoundByTheEndingsOfTheirFiles) {
+  EXPECT_EQ(mesh_file_names("Scan"), "Scan.3mf, Scan.ply, Scan.glb or Scan.obj");
+  for (const MeshFormat& format : mesh_formats()) {
+    ASSERT_EQ(find_mesh_format(format.extension), &format);
+    const fs::path written = file("Scan").replace_extension(format.extension);
+    const FacetFile facets = stl();
+    format.write({.facets = facets, .name = "Hase"}, written);
+    EXPECT_GT(fs::file_size(written), 1000U) << format.extension;
+  }
+  EXPECT_EQ(find_mesh_format(".stl"), nullptr);
+}
+
 TEST_F(MeshFormats, WriteTheGlbOfAnStl) {
   write_glb(stl(), "Hase \"1\"", file("Scan.glb"));
   const std::string glb = content_of(file("Scan.glb"));

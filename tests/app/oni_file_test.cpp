@@ -10,7 +10,7 @@
 #include "app/few_snapshots.hpp"
 #include "rig/misaligned_pose.hpp"
 #include "rig/simulation.hpp"
-#include "scan/run_scan.hpp"
+#include "run/run_scan.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"

@@ -1,4 +1,4 @@
-#include "scan/plan.hpp"
+#include "capture/plan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scan/quality_json.hpp"
+#include "store/quality_json.hpp"
 
 #include <gtest/gtest.h>
 

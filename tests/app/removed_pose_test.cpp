@@ -7,7 +7,7 @@
 #include <string>
 
 #include "octurn/file.hpp"
-#include "scan/scan_store.hpp"
+#include "store/scan_store.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -1,4 +1,4 @@
-#include "scan/run_scan.hpp"
+#include "run/run_scan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ TEST(SameOrigin, AnswersUnderNamesThatNobodyElseCanOwn) {
   for (const char* const host :
        {"localhost", "localhost:8080", "127.0.0.1:8080", "192.168.1.5", "[::1]:8080", "[fe80::1]",
         "octurn", "octurn.local", "OCTURN.LOCAL:80", "octurn.lan", "scanner.example",
-        "octurn.home.arpa"}) {
+        "octurn.home.arpa", "octurn.local.", "octurn.local.:8080"}) {
     EXPECT_EQ(code(get(host)), "") << host;
   }
 }
@@ -32,10 +32,21 @@ TEST(SameOrigin, AnswersUnderNamesThatNobodyElseCanOwn) {
 TEST(SameOrigin, RefusesNamesThatAnotherSiteMayPointHere) {
   for (const char* const host :
        {"evil.example", "127.0.0.1.evil.example", "octurn.local.evil.example", "xscanner.example",
-        "evillocal.example:8080", "", ":8080", ".local", "1.2.3.4.5", "[evil.example]"}) {
+        "evillocal.example:8080", "", ":8080", ".local", "1.2.3.4.5", "[evil.example]",
+        "[::1]evil.example", "[::1", "1.2.3.4:evil.example", "a@b"}) {
     EXPECT_EQ(code(get(host)), "wrong-host") << host;
   }
   EXPECT_EQ(code({}), "wrong-host");
+}
+
+TEST(SameOrigin, LetsNoOtherSiteReadTheApiWhereTheBrowserSaysSo) {
+  const auto from = [](const char* site, const char* path) {
+    return code(Request{.path = path, .headers = {{"Host", "octurn"}, {"Sec-Fetch-Site", site}}});
+  };
+  EXPECT_EQ(from("cross-site", "/api/v1/scans/x/scan.zip"), "wrong-origin");
+  EXPECT_EQ(from("cross-site", "/"), "") << "a link to the page";
+  EXPECT_EQ(from("same-origin", "/api/v1/status"), "");
+  EXPECT_EQ(from("none", "/api/v1/status"), "") << "typed in";
 }
 
 TEST(SameOrigin, LetsItsOwnPageChangeThings) {
@@ -67,6 +78,16 @@ TEST(SameOrigin, TakesAnUploadWhereOneIsExpected) {
   const Request upload = post({{"Content-Type", "application/octet-stream"}});
   EXPECT_EQ(code(upload), "wrong-content-type");
   EXPECT_EQ(refusal(upload, ours, upload_type), std::nullopt);
+  Request scan = post({{"Content-Type", "application/zip"}});
+  EXPECT_NE(refusal(scan, ours, upload_type), std::nullopt) << "an update is no archive";
+  scan.path = import_path;
+  EXPECT_EQ(refusal(scan, ours, upload_type), std::nullopt);
+  scan = post({});
+  scan.path = import_path;
+  EXPECT_EQ(refusal(scan, ours, upload_type), std::nullopt);
+  scan = post({{"Origin", "http://evil.example"}});
+  scan.path = import_path;
+  EXPECT_NE(refusal(scan, ours, upload_type), std::nullopt);
   EXPECT_NE(refusal(post({{"Content-Type", "application/json"}}), ours, upload_type), std::nullopt);
 }
 

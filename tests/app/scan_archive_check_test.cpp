@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -62,12 +63,43 @@ TEST_F(ScanArchiveCheck, RefusesAListOfFilesThatDeclaresTooMuchBeforeItUnpacksAn
                                         {"job.json", std::string(1000, ' ')}};
   put(data_.path() / "scan.zip", make_zip(files, {}));
   const auto check = [&](const ZipLimits& limits) {
-    check_zip(data_.path() / "scan.zip", is_scan_file, limits);
+    check_zip(
+        data_.path() / "scan.zip", [](std::string_view name) { return std::string(name); }, limits);
   };
   EXPECT_NO_THROW(check({.files = 2, .file_bytes = 1000, .all_bytes = 2000}));
   EXPECT_EQ(code_thrown_by([&] { check({.files = 1}); }), "bad-request");
   EXPECT_EQ(code_thrown_by([&] { check({.file_bytes = 999}); }), "bad-request");
   EXPECT_EQ(code_thrown_by([&] { check({.all_bytes = 1999}); }), "bad-request");
+}
+
+TEST_F(ScanArchiveCheck, ReadsWhatWasUnpackedAndPackedAgain) {
+  const std::vector<ArchivedFile> files = files_of(one_image_scan(2));
+  std::vector<ArchivedFile> packed{{"My scan/", ""},
+                                   {"My scan/.DS_Store", "x"},
+                                   {"__MACOSX/My scan/._scan.json", "x"},
+                                   {"__MACOSX/scan.json", "x"},
+                                   {"My scan/snapshots/", ""},
+                                   {"My scan/snapshots/notes.pdf", "x"},
+                                   {"receipt.pdf", "x"}};
+  for (const ArchivedFile& file : files) {
+    packed.push_back({"My scan/" + file.name, file.content});
+  }
+  ScanStore store(data_.path());
+  const Job job = import(store, packed);
+  EXPECT_EQ(job.snapshots_done, 2);
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(store.folder(job.id))) {
+    names.insert(entry.path().lexically_relative(store.folder(job.id)).string());
+  }
+  EXPECT_EQ(names,
+            (std::set<std::string>{"job.json", "scan.json", "snapshots", "snapshots/000.png"}));
+}
+
+TEST_F(ScanArchiveCheck, NamesTheFileInPlaceOfAScan) {
+  const Error error = refusal({{"scan.zip", "x"}});
+  EXPECT_EQ(error.code(), ErrorCode::bad_request);
+  EXPECT_NE(std::string(error.what()).find("no scan.json, but scan.zip"), std::string::npos)
+      << error.what();
 }
 
 TEST_F(ScanArchiveCheck, RefusesImagesThatTakeTooMuchMemoryBeforeItDecodesThem) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "scan/job_file.hpp"
-#include "scan/scan_store.hpp"
+#include "store/job_file.hpp"
+#include "store/scan_store.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -8,10 +8,10 @@
 
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
+#include "build/colour_model.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/colour_model.hpp"
-#include "scan/stored_scan.hpp"
+#include "store/stored_scan.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

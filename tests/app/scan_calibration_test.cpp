@@ -10,8 +10,8 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "rig/misaligned_pose.hpp"
-#include "scan/run_scan.hpp"
-#include "scan/stored_scan.hpp"
+#include "run/run_scan.hpp"
+#include "store/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/wrong_pose.hpp"
 

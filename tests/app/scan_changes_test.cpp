@@ -4,7 +4,7 @@
 
 #include "app/leave_behind.hpp"
 #include "app/scanner_fixture.hpp"
-#include "scan/job_file.hpp"
+#include "store/job_file.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

@@ -1,4 +1,4 @@
-#include "scan/scan_estimate.hpp"
+#include "store/scan_estimate.hpp"
 
 #include <gtest/gtest.h>
 

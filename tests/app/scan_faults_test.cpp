@@ -8,8 +8,8 @@
 #include "app/faulty_rig.hpp"
 #include "app/scanner_fixture.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/job_file.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
+#include "store/job_file.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

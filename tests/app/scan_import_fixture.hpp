@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "scan/job_file.hpp"
-#include "scan/scan_archive.hpp"
-#include "scan/scan_store.hpp"
+#include "store/job_file.hpp"
+#include "store/scan_archive.hpp"
+#include "store/scan_store.hpp"
 #include "support/archive.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

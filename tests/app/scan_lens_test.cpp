@@ -10,7 +10,7 @@
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

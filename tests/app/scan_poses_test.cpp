@@ -5,11 +5,11 @@
 #include <thread>
 
 #include "app/scanner_fixture.hpp"
+#include "build/pose_points.hpp"
 #include "octurn/file.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/build_file.hpp"
-#include "scan/pose_choice.hpp"
-#include "scan/pose_points.hpp"
+#include "store/build_file.hpp"
+#include "store/pose_choice.hpp"
 
 namespace octurn {
 namespace {

@@ -1,4 +1,4 @@
-#include "scan/scan_settings.hpp"
+#include "settings/scan_settings.hpp"
 
 #include <gtest/gtest.h>
 

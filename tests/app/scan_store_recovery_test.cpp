@@ -7,8 +7,8 @@
 #include "app/leave_behind.hpp"
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/job_file.hpp"
-#include "scan/scan_store.hpp"
+#include "store/job_file.hpp"
+#include "store/scan_store.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -204,10 +204,11 @@ TEST(ScanStore, TakesAScanAsInterruptedThatCouldNotBeSaved) {
   const TemporaryFolder folder;
   ScanStore store(folder.path());
   const Job job = store.create({});
-  const Job interrupted = store.interrupt(job.id);
+  const Job interrupted = store.interrupt(job.id, interruption());
   EXPECT_EQ(interrupted.state, JobState::interrupted);
   EXPECT_EQ(store.find(job.id)->failure->code, ErrorCode::interrupted);
-  EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa"); }), "no-such-scan");
+  EXPECT_EQ(code_thrown_by([&] { store.interrupt("20261121-081500-aaaa", interruption()); }),
+            "no-such-scan");
 }
 
 }  // namespace

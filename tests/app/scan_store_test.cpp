@@ -1,11 +1,11 @@
-#include "scan/scan_store.hpp"
+#include "store/scan_store.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "app/leave_behind.hpp"
-#include "scan/job_file.hpp"
+#include "store/job_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "app/few_snapshots.hpp"
 #include "app/frame_gate.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "support/patience.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -136,6 +136,20 @@ TEST_F(ScannerTest, ShowsTheNameOfAScanThatRuns) {
   EXPECT_EQ(scanner.status().job->label.notes, "of clay");
 }
 
+TEST_F(ScannerTest, FinishesNoScanWhoseFolderIsRemovedMeanwhile) {
+  Scanner scanner(gate_.before(rig()), {}, store_);
+  gate_.hold(scanner, 2);
+  const auto job = scanner.start(few_snapshots());
+  wait_for_snapshots(scanner, 2);
+  std::filesystem::remove_all(store_.folder(job->id));
+  gate_.let_go();
+  const Job ended = *scanner.wait_until_done(patience).job;
+  EXPECT_EQ(ended.state, JobState::interrupted);
+  ASSERT_TRUE(ended.failure);
+  EXPECT_EQ(ended.failure->code, ErrorCode::write_failed) << ended.failure->detail;
+  EXPECT_FALSE(std::filesystem::exists(store_.folder(job->id)));
+}
+
 /// Replaces a file by a folder, which no file can replace. The running scan may save the file again
 /// between the two steps.
 void bar_from_being_saved(const std::filesystem::path& file) {
@@ -155,6 +169,7 @@ TEST_F(ScannerTest, CallsAScanInterruptedWhoseEndCannotBeSavedAndResumesIt) {
   EXPECT_TRUE(scanner.cancel(job->id));
   const Job shown = *scanner.wait_until_done(patience).job;
   EXPECT_EQ(shown.state, JobState::interrupted);
+  EXPECT_EQ(shown.failure->code, ErrorCode::write_failed);  // and not that it was switched off
   EXPECT_EQ(scanner.find(job->id).state, JobState::interrupted);
   EXPECT_EQ(shown.snapshots_done, static_cast<int>(read_scan(store_.folder(job->id)).shots.size()));
   EXPECT_EQ(code_thrown_by([&] { scanner.resume(job->id); }), "write-failed");

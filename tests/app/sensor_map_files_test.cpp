@@ -1,4 +1,4 @@
-#include "scan/sensor_map_files.hpp"
+#include "calibration/sensor_map_files.hpp"
 
 #include <gtest/gtest.h>
 

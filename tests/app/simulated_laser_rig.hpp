@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/lens_files.hpp"
 #include "camera/simulated_camera.hpp"
+#include "capture/rig.hpp"
 #include "octurn/error.hpp"
 #include "rig/nominal_laser_rig.hpp"
-#include "scan/lens_files.hpp"
-#include "scan/rig.hpp"
 
 namespace octurn {
 

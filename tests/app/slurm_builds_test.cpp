@@ -1,7 +1,7 @@
 // Builds by Slurm, whose programs are replaced by scripts. Tests with a real Slurm are in
 // tests/cluster.
 
-#include "scan/slurm_builds.hpp"
+#include "cluster/slurm_builds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <string>
 
 #include "app/slurm_scripts.hpp"
-#include "scan/external_build.hpp"
-#include "scan/scanner.hpp"
+#include "cluster/external_build.hpp"
+#include "run/scanner.hpp"
 #include "support/archive.hpp"
 #include "support/patience.hpp"
 #include "support/small_scan.hpp"

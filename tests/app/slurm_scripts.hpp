@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "scan/slurm_builds.hpp"
+#include "cluster/slurm_builds.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

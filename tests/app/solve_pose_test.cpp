@@ -1,4 +1,4 @@
-#include "scan/solve_pose.hpp"
+#include "calibration/solve_pose.hpp"
 
 #include <gtest/gtest.h>
 

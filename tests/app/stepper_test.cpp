@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "capture/plan.hpp"
 #include "octurn/error.hpp"
-#include "scan/plan.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scan/picture_writer.hpp"
-#include "scan/stored_scan.hpp"
+#include "capture/picture_writer.hpp"
+#include "store/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace octurn {

@@ -1,4 +1,4 @@
-#include "scan/take_pictures.hpp"
+#include "capture/take_pictures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scan/time_left.hpp"
+#include "run/time_left.hpp"
 
 #include <gtest/gtest.h>
 

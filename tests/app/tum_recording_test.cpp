@@ -1,4 +1,4 @@
-#include "scan/tum_recording.hpp"
+#include "store/tum_recording.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "scan/wall_views.hpp"
+#include "capture/wall_views.hpp"
 
 #include <gtest/gtest.h>
 
 #include <optional>
 
+#include "calibration/sensor_map_files.hpp"
 #include "octurn/png.hpp"
-#include "scan/sensor_map_files.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "support/temporary_folder.hpp"
 

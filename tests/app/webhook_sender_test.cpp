@@ -59,6 +59,28 @@ class Receiver {
                      [this](const Request& request) { return take(request); }};
 };
 
+TEST(WebhookSender, LetsNoWebhookWaitForASilentOne) {
+  std::promise<void> released;
+  const std::shared_future<void> release = released.get_future().share();
+  const HttpServer silent({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+    release.wait();
+    return Response{.status = 200};
+  });
+  const Receiver quick({200});
+  TemporaryFolder folder;
+  AddressBook book(folder.path() / "addresses.json");
+  const std::string first =
+      book.add(Webhook{.url = "http://127.0.0.1:" + std::to_string(silent.port())}).id;
+  const std::string second = book.add(Webhook{.url = quick.url()}).id;
+  WebhookSender sender(
+      book, [] { return std::vector<WebhookEvent>{}; }, brisk);
+  sender.queue(first, {.name = "test", .body = "{}"});
+  sender.queue(second, {.name = "test", .body = "{}"});
+  EXPECT_EQ(quick.wait_for(1).size(), 1U);
+  EXPECT_EQ(sender.state(first)->outcome, WebhookState::Outcome::waiting);
+  released.set_value();
+}
+
 /// A sender with an address book that has one webhook.
 class Sender {
  public:

@@ -46,7 +46,7 @@ async function straighten(scanner, browser, screen, colorScheme) {
 
   const rows = page.locator('#build-rows > li');
   assert.equal(await rows.count(), 2);
-  assert.match(await rows.nth(1).innerText(), /Build 1[\s\S]*The scan’s model/);
+  assert.match(await rows.nth(1).innerText(), /Build 1[\s\S]*In use/);
   await page.locator('#tools').waitFor();
   await picture(page, `straight-${screen}`);
   assert.deepEqual(await complaints(page), []);
@@ -77,8 +77,8 @@ async function buildAgain(scanner, {page, faults, made, rows}, screen) {
   assert.ok(builds[2].model.size_mm[2] < 70);
   await page.locator('#tools').waitFor();
 
-  await rows.nth(2).getByRole('button', {name: 'Use this one'}).click();
-  await rows.nth(2).getByText('The scan’s model').waitFor();
+  await rows.nth(2).getByRole('button', {name: 'Use this model'}).click();
+  await rows.nth(2).getByText('In use').waitFor();
   assert.equal((await ask(scanner, `scans/${made.id}`)).build, 2);
   await rows.nth(1).getByRole('button', {name: 'Delete: Build 1'}).click();
   await page.getByRole('button', {name: 'Delete', exact: true}).click();

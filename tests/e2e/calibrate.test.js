@@ -84,7 +84,7 @@ test('the sensor is flattened on the page, and the next scan sees evenly', async
   const first = await scan(scanner, draft);
   assert.ok(hasFinding(first));
   const {page, faults} = await openPage(await openBrowser(t), `${scanner.url}#${first.id}`);
-  await page.locator('#verdict-more').getByRole('link', {name: 'Flatten the sensor'}).click();
+  await page.locator('#verdict-more').getByRole('link', {name: 'Correct the sensor’s unevenness'}).click();
 
   const look = page.getByRole('button', {name: 'Look at the wall'});
   await page.getByText('Not done for this sensor.').waitFor();
@@ -95,7 +95,7 @@ test('the sensor is flattened on the page, and the next scan sees evenly', async
   }
   assert.equal((await ask(scanner, 'calibration')).run, null);
   await look.click();
-  await page.getByText('The sensor is flattened').waitFor();
+  await page.getByText('The sensor’s unevenness is corrected').waitFor();
   await page.getByRole('img', {name: 'Where the sensor sees too near, and where too far'}).waitFor();
   await picture(page, 'flattened');
   assert.deepEqual(await complaints(page), []);

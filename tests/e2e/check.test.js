@@ -16,7 +16,7 @@ async function checkByKeyboard(scanner, browser) {
   await page.getByRole('progressbar', {name: 'Checking'}).waitFor();
   await line(page, 'Sensor').waitFor();
   assert.ok(await page.getByRole('progressbar', {name: 'Checking'}).isHidden());
-  assert.match(await line(page, 'Sensor').innerText(), /In order\s+Kinect v1 \(simulated\), 640 x 480/);
+  assert.match(await line(page, 'Sensor').innerText(), /OK\s+Kinect v1 \(simulated\), 640 x 480/);
   assert.match(await line(page, 'Depth noise').innerText(), /\d\.\d\d mm on the platform/);
   assert.ok(await button(page).evaluate((one) => one === document.activeElement));
   assert.deepEqual(faults, []);

@@ -126,9 +126,9 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await page.getByRole('button', {name: 'Cut the model open'}).click();
   await page.locator('#cut-height').waitFor({state: 'hidden'});
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
-  await page.getByText('Click the side that it shall lie on.').waitFor();
+  await page.getByText('Click the side it should rest on.').waitFor();
   await clickModel(page, 0.5);  // on the chest
-  await page.getByText('Click the side that it shall lie on.').waitFor({state: 'hidden'});
+  await page.getByText('Click the side it should rest on.').waitFor({state: 'hidden'});
   const halfHeight = async () => {
     await page.getByRole('button', {name: 'Cut the model open'}).click();
     return parseFloat(await page.locator('#cut-at').innerText());

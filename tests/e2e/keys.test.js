@@ -16,7 +16,7 @@ const password = 'open sesame';
 async function makeKey(page, name, access) {
   const card = page.locator('#keys-card');
   await card.getByLabel('Name').fill(name);
-  await card.getByLabel('It may').selectOption(access);
+  await card.getByLabel('Access').selectOption(access);
   await card.getByRole('button', {name: 'Make a key'}).click();
   await card.getByText(name, {exact: true}).waitFor();
   return card.getByLabel('The new key').inputValue();

@@ -33,7 +33,7 @@ test('the lens is found from a board, kept, used by a scan, and taken back', asy
   const {page, faults} = await openPage(browser, scanner.url);
   await goTo(page, 'Calibrate');
   await page.getByRole('heading', {name: 'The camera’s lens'}).waitFor();
-  await page.getByText('As the settings tell it; not found for this camera yet.').waitFor();
+  await page.getByText('As configured; not calibrated for this camera yet.').waitFor();
   await picture(page, 'lens-before');
   const board = await fetch(await page.getByRole('link', {name: 'A4'}).evaluate((link) => link.href));
   assert.equal(board.headers.get('content-type'), 'application/pdf');
@@ -43,7 +43,7 @@ test('the lens is found from a board, kept, used by a scan, and taken back', asy
   await page.getByText(/[3-9] of 12 pictures taken/).waitFor();
   await picture(page, 'lens-looking');
   assert.deepEqual(await complaints(page), []);
-  await page.getByText('The lens is known').waitFor();
+  await page.getByText('Lens calibrated').waitFor();
   await picture(page, 'lens-found');
   assert.deepEqual(await complaints(page), []);
   const {run} = await ask(scanner, 'calibration');
@@ -57,7 +57,7 @@ test('the lens is found from a board, kept, used by a scan, and taken back', asy
   expectTruth(await lensOfNewestScan(scanner));
 
   await page.getByRole('button', {name: 'Back to the settings’ lens'}).click();
-  await page.getByText('As the settings tell it; not found for this camera yet.').waitFor();
+  await page.getByText('As configured; not calibrated for this camera yet.').waitFor();
   assert.deepEqual(faults, []);
 });
 

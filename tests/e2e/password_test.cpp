@@ -33,7 +33,7 @@ TEST(PasswordCommand, WritesAFileThatOnlyItsOwnerReads) {
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   const std::string first = content_of(file);
   EXPECT_EQ(first.find("sesame"), std::string::npos);
-  ASSERT_EQ(give_password(file, "another"), 0);
+  ASSERT_EQ(give_password(file, "another one"), 0);
   EXPECT_NE(content_of(file), first);
   EXPECT_EQ(content_of(file).size(), first.size());
 }
@@ -44,8 +44,9 @@ TEST(PasswordCommand, RefusesNoPasswordAndKeepsTheOneThereIs) {
   ASSERT_EQ(give_password(file, "open sesame"), 0);
   const std::string first = content_of(file);
   EXPECT_EQ(give_password(file, ""), 1);
+  EXPECT_EQ(give_password(file, "sevenxx"), 1);
   EXPECT_EQ(content_of(file), first);
-  EXPECT_EQ(give_password(folder.path() / "nowhere" / "password", "a"), 1);
+  EXPECT_EQ(give_password(folder.path() / "nowhere" / "password", "open sesame"), 1);
 }
 
 TEST(Serve, ShowsNothingWithoutThePassword) {
@@ -119,9 +120,9 @@ TEST(Serve, SlowsGuessesOfThePasswordDown) {
 
 TEST(Serve, TakesANewPasswordAtOnce) {
   const LockedDaemon locked;
-  locked.give("another");
+  locked.give("another one");
   EXPECT_EQ(locked.answer("/", proof_of("open sesame", locked.nonce)), 401);
-  EXPECT_EQ(locked.answer("/", proof_of("another", locked.nonce, {.uses = 2})), 200);
+  EXPECT_EQ(locked.answer("/", proof_of("another one", locked.nonce, {.uses = 2})), 200);
 }
 
 TEST(Serve, DoesNotStartWithoutTheFileOfItsPassword) {

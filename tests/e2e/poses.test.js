@@ -121,7 +121,7 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await text.filter({hasText: /^Fit 1 of \d, as in the model: \d+% of this side/}).waitFor();
   await picture(page, 'fit');
   assert.deepEqual(await complaints(page), []);
-  await page.getByRole('button', {name: 'Looks wrong'}).click();
+  await page.getByRole('button', {name: 'Show another fit'}).click();
   await text.filter({hasText: /^Fit 2 of \d, another way/}).waitFor();
   await page.getByRole('button', {name: 'Set three pairs'}).click();
   await text.filter({hasText: /^Pair 1 of 3/}).waitFor();

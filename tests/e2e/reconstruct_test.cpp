@@ -177,6 +177,16 @@ TEST_F(ReconstructCommand, RefusesAnOutputThatCannotBeBeforeItReadsTheScan) {
   expect_failure(with_output((folder_.path() / "out").string()), 1, "out");
 }
 
+TEST_F(ReconstructCommand, ReplacesNoFileOfItsScan) {
+  for (const char* const file : {"scan.json", "snapshots/001.png", "snapshots/../scan.json"}) {
+    std::vector<std::string> words = command();
+    words[4] = (scan_ / file).string();
+    const std::string before = content_of(words[4]);
+    expect_failure(words, 2, "must not be a file of the scan");
+    EXPECT_TRUE(content_of(words[4]) == before);
+  }
+}
+
 TEST_F(ReconstructCommand, EndsWith1WhereItsReportCannotBeWritten) {
   const std::string line = octurn_program() + " reconstruct " + scan_.string() + " -o " +
                            output_.string() + " --json > /dev/full";

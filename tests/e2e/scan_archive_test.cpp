@@ -1,6 +1,6 @@
 // Export of a scan as an archive, and its import by another Octurn.
 
-#include "scan/scan_archive.hpp"
+#include "store/scan_archive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,6 +42,12 @@ TEST(ScanArchive, MakesTheSameModelOnAnotherOcturn) {
   ASSERT_EQ(archive.status, 200);
   EXPECT_EQ(archive.header("Content-Type"), "application/zip");
   EXPECT_TRUE(first.get(scan + "/scan.zip").body == archive.body) << "the same bytes again";
+
+  // Where the data folder takes no archive, as on a full disk, another one does.
+  const std::string id = scan.substr(scan.rfind('/') + 1);
+  std::filesystem::create_directories(here.path() / "data" / "scans" / (".export-" + id + ".zip") /
+                                      "taken");
+  EXPECT_TRUE(first.get(scan + "/scan.zip").body == archive.body);
 
   const Daemon second(there.path(), {"--sensor", "nowhere"});  // it needs no rig
   const Reply imported = import(second, archive.body);

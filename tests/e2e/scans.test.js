@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {basename} from 'node:path';
 import {test} from 'node:test';
 
-import {goTo, openBrowser, openPage, picture} from './browser.js';
+import {emptyPage, goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, scanFolders, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
@@ -123,4 +123,35 @@ test('where the browser has no WebGL, the page says so and the model can still b
   const download = page.getByRole('link', {name: 'Download STL'}).first();
   const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
   assert.equal(arrived.suggestedFilename(), 'Scan.stl');
+});
+
+test('quick clicks all count, and a page whose storage is blocked works', async (t) => {
+  const scanner = await startScanner(t);
+  await scan(scanner, draft);
+  await scan(scanner, draft);
+  const page = await emptyPage(await openBrowser(t));
+  await page.addInitScript(() => {
+    for (const kind of ['localStorage', 'sessionStorage']) {
+      Object.defineProperty(globalThis, kind, {get: () => {
+        throw new DOMException('denied', 'SecurityError');
+      }});
+    }
+  });
+  await page.goto(scanner.url);
+  await page.getByRole('button', {name: 'Start scan'}).waitFor();
+  await goTo(page, 'Library');
+  const rows = page.locator('#rows > li');
+  await rows.nth(1).waitFor();
+  let answer = () => {};
+  const asked = new Promise((resolve) => {
+    answer = resolve;
+  });
+  await page.route('**/api/v1/scans/*', async (route) => {
+    await asked;  // as on a slow network: the first answer comes after the second click
+    await route.continue();
+  });
+  await rows.nth(0).getByRole('button', {name: /^Delete/}).click();
+  await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
+  answer();
+  await page.getByText('No scans yet').waitFor();
 });

@@ -178,7 +178,7 @@ test('a test of the turntable tells what is set wrongly, and sets it', async (t)
   const {page, faults} = await openSettings(browser, scanner);
   await page.getByRole('button', {name: '10 degrees counter-clockwise'}).click();
   await page.getByRole('button', {name: 'Test a turn'}).and(page.locator('[aria-disabled=false]')).click();
-  await page.getByText('The turntable does not do what it is told.').waitFor();
+  await page.getByText('The turntable does not turn as configured.').waitFor();
   await picture(page, 'settings-turn');
   await page.getByRole('button', {name: /^Set Gear ratio to 1\.(5|49|50)/}).click();
   await page.getByRole('button', {name: 'Set Turn the other way to on'}).click();

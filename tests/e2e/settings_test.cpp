@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "support/daemon.hpp"
+#include "support/digest_client.hpp"
 
 namespace octurn {
 namespace {
@@ -186,14 +187,24 @@ TEST(Settings, GiveThePageAPassword) {
     return request(daemon.port(), "PUT", settings_path + "/password", body);
   };
   EXPECT_EQ(set(R"({"password": ""})").status, 400);
+  EXPECT_EQ(set(R"({"password": "sevenxx"})").status, 400);
+  EXPECT_EQ(set(R"({"password": "open\u0000sesame"})").status, 400);
   EXPECT_EQ(set(R"({"password": 5})").status, 400);
   EXPECT_EQ(set("{}").status, 400);
   EXPECT_EQ(parsed(daemon.get(settings_path))["password"], "everybody");
   const Reply reply = set(R"({"password": "open sesame"})");
   ASSERT_EQ(reply.status, 200) << reply.body;
   EXPECT_EQ(parsed(reply)["password"], "page");
-  EXPECT_EQ(wait_for(daemon, [](const Reply& one) { return one.status == 401; }).status, 401);
+  const Reply locked = daemon.get("/api/v1/status");
+  ASSERT_EQ(locked.status, 401);  // at once, without a restart
   EXPECT_EQ(content_of(folder.path() / "data" / "page-password").find("sesame"), std::string::npos);
+  const std::string nonce = quoted_field(locked.header("WWW-Authenticate"), "nonce");
+  const std::string proof =
+      proof_of("open sesame", nonce, {.method = "PUT", .target = settings_path + "/password"});
+  const Reply removed = request(daemon.port(), "PUT", settings_path + "/password",
+                                R"({"password": null})", {{"Authorization", proof}});
+  EXPECT_EQ(removed.status, 200) << removed.body;
+  EXPECT_EQ(daemon.get("/api/v1/status").status, 200);
 }
 
 }  // namespace

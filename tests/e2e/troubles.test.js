@@ -51,7 +51,7 @@ const stopped = (scanner) => ({
 const failing = (scanner) => ({
   trying: async (page) => {
     await ask(scanner, 'scans', 'POST', longScan);
-    await page.locator('#left').getByText(/^gives up in/).waitFor();
+    await page.locator('#left').getByText(/^pauses in/).waitFor();
     await page.locator('#trying').waitFor();
   },
   'given-up': async (page) => {

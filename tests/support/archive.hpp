@@ -14,7 +14,7 @@
 
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
-#include "scan/scan_archive.hpp"
+#include "store/scan_archive.hpp"
 #include "support/temporary_folder.hpp"
 #include "zip_archive.hpp"
 

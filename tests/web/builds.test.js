@@ -63,7 +63,7 @@ test('another model is shown with its own facts and verdict, and can be download
   assert.equal(stage.model.url, '/api/v1/scans/done/builds/1/Scan.stl');
   assert.equal(factsOf(state).Triangles, '5');
   assert.equal(factsOf(state).Detail, '2 mm, solid');
-  assert.match(factsOf(state).Pose, /^Found by this scan/);
+  assert.match(factsOf(state).Pose, /^Corrected by this scan/);
   assert.equal(screenOf(withList([own, straight])).stage.model.url, '/api/v1/scans/done/builds/0/Scan.stl');
 });
 
@@ -84,7 +84,8 @@ test('the list is stale when a build came or ended, and what ended comes into vi
   const after = states.withStatus(states.withBuilds(during, 'done', [own, going]), {...status, build: {...going, state: 'finished'}});
   assert.ok(states.areBuildsStale(after));
   assert.equal(states.withBuilds(after, 'done', [own, straight]).shownBuild, 1);
-  assert.ok(states.areBuildsStale(states.withSelected(before, 'other')));
+  const other = states.withScan(before, {...finished, id: 'other'});
+  assert.ok(states.areBuildsStale(states.withSelected(other, 'other')));
 });
 
 test('a build that was begun here comes into view, however quick it was', () => {

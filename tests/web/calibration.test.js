@@ -40,19 +40,19 @@ test('progress is of the kind that runs, grows, and never ends before the end', 
 test('an accepted turn says what was wrong and how well it is now', () => {
   const outcome = after({state: 'done', report: turnReport});
   assert.equal(outcome.title, 'The axis was 18.4 mm and 2.01° off');
-  assert.match(outcome.detail, /agree to 0\.52 mm, before they were 6\.84 mm apart/);
+  assert.match(outcome.detail, /agree to 0\.52 mm; before, they were 6\.84 mm apart/);
 });
 
 test('a turn that confirms the pose says that nothing was changed', () => {
   const outcome = after({state: 'done', report: {...turnReport, shift_mm: 0.04, tilt_deg: 0.01}});
-  assert.match(outcome.title, /stands where it was thought/);
+  assert.match(outcome.title, /Confirmed/);
   assert.match(outcome.detail, /Nothing was changed/);
 });
 
 test('a turn of a rig with lasers tells of their planes, too', () => {
   const outcome = after({state: 'done', report: {...turnReport, shift_mm: 0.01, tilt_deg: 0, confirms_told: false}});
   assert.equal(outcome.title, 'Camera and lasers were measured');
-  assert.match(outcome.detail, /before they were/);
+  assert.match(outcome.detail, /before, they were/);
   assert.match(after({state: 'done', report: {...turnReport, confirms_told: true}}).detail, /Nothing was changed/);
 });
 
@@ -81,7 +81,7 @@ test('a cancelled turn is no fault, a failed one is', () => {
 test('figures are rounded to what they can mean', () => {
   const figures = Object.fromEntries(texts.figuresOf(turnReport).map(({label, text}) => [label, text]));
   assert.deepEqual(figures, {
-    'Axis moved': '18.4 mm', 'Axis tilted': '2.01°', 'Known to': '±0.03 mm, ±0.01°', 'Looks disagree': '6.84 mm → 0.52 mm'});
+    'Axis moved': '18.4 mm', 'Axis tilted': '2.01°', 'Known to': '±0.03 mm, ±0.01°', 'Views disagree by': '6.84 mm → 0.52 mm'});
 });
 
 test('each stop has a bar, and one that a finding names is marked', () => {
@@ -147,9 +147,9 @@ const looked = (changes) => texts.outcomeOf({...calibration, run: {...run, kind:
 
 test('a look at a wall says what it took out, and asks for a second one once', () => {
   const first = looked({state: 'done', report: wallReport});
-  assert.equal(first.title, 'The sensor is flattened');
+  assert.equal(first.title, 'The sensor’s unevenness is corrected');
   assert.match(first.detail, /0\.81 steps .* within 0\.21/);
-  assert.match(first.hint, /second look/);
+  assert.match(first.hint, /second view/);
   assert.equal(looked({state: 'done', report: {...wallReport, walls: [{distance_m: 0.9}, {distance_m: 0.65}]}}).hint, '');
   assert.equal(texts.outcomeOf({...calibration, run: {...run, kind: 'wall', state: 'done', report: wallReport}}, 'turn'), null);
 });

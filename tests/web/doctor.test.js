@@ -8,7 +8,7 @@ const finding = (check, state, more = {}) => ({check, name: check, state, measur
 test('faults come first, then warnings, what is in order, and what is not known', () => {
   const {lines} = shownOf({findings: [finding('a', 'ok'), finding('b', 'unknown'), finding('c', 'warning'), finding('d', 'fault'), finding('e', 'ok')]});
   assert.deepEqual(lines.map(({key}) => key), ['d', 'c', 'a', 'e', 'b']);
-  assert.deepEqual(lines.map(({stateName}) => stateName), ['Fault', 'Warning', 'In order', 'In order', 'Not known']);
+  assert.deepEqual(lines.map(({stateName}) => stateName), ['Fault', 'Warning', 'OK', 'OK', 'Not known']);
 });
 
 test('the summary counts faults and warnings', () => {

@@ -14,7 +14,7 @@ const run = {kind: 'lens', state: 'running', phase: 'looking', stop: 3, stops: 1
 const during = (changes) => ({...calibration, lens: {told, kept: null}, run: {...run, ...changes}});
 
 test('a lens is the settings\' until one is kept', () => {
-  assert.match(keptText(during({})), /settings tell it/);
+  assert.match(keptText(during({})), /As configured/);
   const kept = {...lens, serial: 'usb-1', at: '2026-11-26T05:00:00Z', rms_px: 0.07};
   assert.match(keptText({...calibration, lens: {told, kept}}), /for camera usb-1; corners lie within 0\.07 pixels/);
 });
@@ -48,7 +48,7 @@ test('a lens that was found says how exactly, and waits to be kept', () => {
   assert.match(lensOutcomeOf(found).detail, /From 14 pictures; .* 0\.07 pixels .*, 0\.03 mm at 30 cm/);
   const figures = lensFiguresOf(report, told);
   assert.equal(figures.length, 6);
-  assert.deepEqual([figures[0].text, figures[0].told], ['690.59 ± 0.04', 'told 682.40']);
+  assert.deepEqual([figures[0].text, figures[0].told], ['690.59 ± 0.04', 'configured 682.40']);
 });
 
 test('a lens that is refused, cancelled or failed is not to be kept', () => {

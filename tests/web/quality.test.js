@@ -7,8 +7,8 @@ import {finished} from './examples.js';
 const judged = (verdict, reasons = [], changes = {}) => ({...finished.model, quality: {verdict, reasons}, ...changes});
 
 test('a good model is ready to slice only if it is closed', () => {
-  assert.match(verdictOf(judged('good')).text, /ready to slice/);
-  assert.doesNotMatch(verdictOf(judged('good', [], {watertight: false})).text, /ready/);
+  assert.match(verdictOf(judged('good')).text, /Ready to slice/);
+  assert.doesNotMatch(verdictOf(judged('good', [], {watertight: false})).text, /ready/i);
 });
 
 test('each verdict has its tone, and is never told by colour alone', () => {
@@ -29,7 +29,7 @@ test('a good model of an uneven sensor leads to the wall, and stays good', () =>
   const findings = [{code: 'no-map', detail: 'the flat platform looks uneven', hint: 'flatten the sensor'}, {code: 'slip', detail: '', hint: ''}];
   const {tone, reasons} = verdictOf(judged('good'), findings);
   assert.equal(tone, 'good');
-  assert.deepEqual(reasons.map(({detail, action}) => [detail, action.text]), [['The flat platform looks uneven.', 'Flatten the sensor']]);
+  assert.deepEqual(reasons.map(({detail, action}) => [detail, action.text]), [['The flat platform looks uneven.', 'Correct the sensor’s unevenness']]);
 });
 
 test('a rig that could be better is told beside a good model', () => {

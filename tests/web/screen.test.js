@@ -5,7 +5,7 @@ import {screenOf} from '../../web/screen.js';
 import * as states from '../../web/state.js';
 import {finished, running, status} from './examples.js';
 
-const idle = states.withStatus(states.initial, status);
+const idle = states.withDefaults(states.withStatus(states.initial, status), null, ['stl', '3mf', 'ply', 'glb', 'obj']);
 const scanning = (changes) => states.withStatus(states.initial, {...status, scan: {...running, ...changes}});
 const looking = (scan) => states.withSelected(states.withScans(idle, [scan]), scan.id);
 
@@ -26,7 +26,7 @@ test('the panel is the form, the progress or a scan, as things are', () => {
 
 test('progress tells the stop, the share and the time left', () => {
   const {progress, title} = screenOf(scanning({}));
-  assert.equal(progress.text, 'Looking at stop 10 of 36');
+  assert.equal(progress.text, 'Capturing, stop 10 of 36');
   assert.equal(progress.left, 'about 45 s left');
   assert.equal(progress.percent, 24);
   assert.equal(title, '9/36 · Octurn');
@@ -41,7 +41,7 @@ test('the last stop is not the end: the model is still to be built', () => {
 });
 
 test('after the last snapshot the scanner looks once more at the first stop', () => {
-  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Looking once more at the first stop');
+  assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Checking the first stop again');
 });
 
 test('what was left out of a model is told, but for crumbs', () => {
@@ -141,16 +141,16 @@ test('a model cannot be asked for while a scan runs, and its offer says so', () 
   assert.equal(screenOf(state).details.unbuilt.isBusy, true);
 });
 
-test('a finished scan is downloaded in four formats and as it was taken, one without a model only so', () => {
+test('a finished scan is downloaded in the formats that the scanner has, and as it was taken, one without a model only so', () => {
   const names = (scan) => screenOf(looking(scan)).details.formats.map(({url}) => url.split('/').at(-1));
-  assert.deepEqual(names(finished), ['Scan.3mf', 'Scan.ply', 'Scan.glb', 'scan.zip']);
+  assert.deepEqual(names(finished), ['Scan.3mf', 'Scan.ply', 'Scan.glb', 'Scan.obj', 'scan.zip']);
   assert.deepEqual(names({...running, state: 'cancelled'}), ['scan.zip']);
 });
 
 test('a scan whose pictures have colours is downloaded with them, too, but as STL', () => {
   const {details, stage} = screenOf(looking({...finished, has_colours: true}));
   const coloured = details.formats.filter(({url}) => url.includes('colour'));
-  assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['Scan.3mf?colour=true', 'Scan.ply?colour=true', 'Scan.glb?colour=true']);
+  assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['3mf', 'ply', 'glb', 'obj'].map((ending) => `Scan.${ending}?colour=true`));
   assert.equal(coloured[1].name, 'PLY in colour');
   assert.equal(new Set(details.formats.map(({name}) => name)).size, details.formats.length);
   assert.equal(stage.hasColours, true);
@@ -160,7 +160,7 @@ test('a scan whose pictures have colours is downloaded with them, too, but as ST
 test('a build that is looked at is downloaded in all formats, and not the scan\'s own model', () => {
   const url = '/api/v1/scans/done/builds/2/Scan.stl';
   const {formats} = screenOf(looking({...finished, model: {...finished.model, url}})).details;
-  assert.deepEqual(formats.slice(0, 3).map((format) => format.url), ['3mf', 'ply', 'glb'].map((ending) => url.replace(/stl$/, ending)));
+  assert.deepEqual(formats.slice(0, 4).map((format) => format.url), ['3mf', 'ply', 'glb', 'obj'].map((ending) => url.replace(/stl$/, ending)));
 });
 
 test('a scan has one name, in its row, its heading and the title', () => {
@@ -175,7 +175,7 @@ test('while a device is tried again the progress says which, and at what stop', 
   const {progress} = screenOf(scanning({error, seconds_until_pause: 20.3}));
   assert.equal(progress.text, 'Trying stop 10 of 36 again');
   assert.equal(progress.trouble, 'No frame for 2000 ms.');
-  assert.equal(progress.left, 'gives up in 21 s');
+  assert.equal(progress.left, 'pauses in 21 s');
   assert.equal(screenOf(scanning({error})).announcement, 'Trying stop 10 of 36 again.');
   assert.equal(screenOf(scanning({})).progress.trouble, '');
 });
@@ -192,7 +192,7 @@ test('a model is judged where it is shown and where it is listed', () => {
   assert.deepEqual(details.verdict.reasons.map(({detail, hint, action}) => [detail, hint, action.href]),
       [['The stops disagree by 4.2 mm.', 'Calibrate the rig.', '#calibrate']]);
   assert.deepEqual(rows[0].badge, {tone: 'bad', text: 'Not good'});
-  assert.equal(announcement, 'The model of Owl is ready. Not a good model.');
+  assert.equal(announcement, 'The model of Owl is ready. Not ready to print.');
 });
 
 test('a model that was never judged is finished, and no more', () => {
@@ -218,8 +218,8 @@ test('solving the pose and building again are told, after the turn', () => {
 test('a scan says what became of the pose', () => {
   const pose = (calibration) => screenOf(looking({...finished, calibration})).details.facts.find(({label}) => label === 'Pose')?.text;
   assert.equal(pose(null), undefined);
-  assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Found by this scan, looks agree to 0.52 mm');
+  assert.equal(pose({accepted: true, reason: '', solved: {after_mm: 0.517}}), 'Corrected by this scan; views agree to 0.52 mm');
   assert.equal(pose({accepted: true, confirms_told: true, reason: '', solved: {after_mm: 0.517}}),
-      'As it was, confirmed by this scan, looks agree to 0.52 mm');
-  assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'As it was: two stops are too few');
+      'Confirmed by this scan; views agree to 0.52 mm');
+  assert.equal(pose({accepted: false, reason: 'two stops are too few', solved: null}), 'Unchanged: two stops are too few');
 });

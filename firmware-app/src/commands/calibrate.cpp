@@ -6,18 +6,18 @@
 #include <sstream>
 #include <vector>
 
+#include "calibration/solve_pose.hpp"
 #include "commands/commands.hpp"
 #include "commands/follow_calibration.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
-#include "scan/calibration_json.hpp"
-#include "scan/scan_settings.hpp"
-#include "scan/scanner.hpp"
-#include "scan/solve_pose.hpp"
+#include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
+#include "settings/scan_settings.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
+#include "store/calibration_json.hpp"
 
 namespace octurn {
 namespace {

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "calibration/board_pdf.hpp"
+#include "calibration/lens_files.hpp"
 #include "commands/commands.hpp"
 #include "commands/follow_calibration.hpp"
 #include "octurn/error.hpp"
@@ -13,12 +15,10 @@
 #include "octurn/lens.hpp"
 #include "octurn/png.hpp"
 #include "progress_bar.hpp"
-#include "scan/board_pdf.hpp"
-#include "scan/data_folder.hpp"
-#include "scan/lens_files.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
+#include "store/data_folder.hpp"
 
 namespace octurn {
 namespace {

@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "calibration/sensor_map_json.hpp"
 #include "commands/commands.hpp"
 #include "octurn/error.hpp"
 #include "octurn/sensor_map.hpp"
-#include "scan/sensor_map_json.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 #include "utc.hpp"

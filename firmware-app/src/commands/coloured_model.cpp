@@ -10,12 +10,12 @@
 namespace octurn {
 namespace {
 
-MeshFormat to_format(const std::filesystem::path& file) {
-  const auto format = to_mesh_format(file.extension().string());
-  if (!format) {
+const MeshFormat& to_format(const std::filesystem::path& file) {
+  const MeshFormat* const format = find_mesh_format(file.extension().string());
+  if (format == nullptr) {
     throw Error(
         ErrorCode::bad_settings,
-        file.string() + ": a model with colours is a file that ends with .ply, .glb or .3mf",
+        file.string() + ": a model with colours is a file that ends with " + mesh_file_names(""),
         "An STL has no colours.");
   }
   return *format;
@@ -42,7 +42,7 @@ void ColouredModel::write(const std::filesystem::path& folder, const Scan& scan,
                           const std::stop_token& stop) const {
   const FacetFile facets(stl_);
   const std::vector<Rgb> colours = model_colours(facets, folder, scan, stop);
-  write_mesh(format_, facets, file_.stem().string(), "", file_, colours);
+  format_.write({.facets = facets, .name = file_.stem().string(), .colours = colours}, file_);
 }
 
 }  // namespace octurn

@@ -32,7 +32,7 @@ class ColouredModel {
  private:
   std::filesystem::path file_;
   std::filesystem::path stl_;
-  MeshFormat format_;
+  const MeshFormat& format_;
 };
 
 }  // namespace octurn

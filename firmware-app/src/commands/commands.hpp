@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "capture/calibration_turn.hpp"
+#include "capture/rig.hpp"
 #include "config.hpp"
 #include "config/config_store.hpp"
-#include "scan/calibration_turn.hpp"
-#include "scan/rig.hpp"
 
 namespace octurn {
 

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "calibration/calibration_store.hpp"
 #include "commands/commands.hpp"
 #include "doctor/diagnostics.hpp"
 #include "doctor/turn_checks.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/snapshot.hpp"
-#include "scan/calibration_store.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 #include "zip_archive.hpp"

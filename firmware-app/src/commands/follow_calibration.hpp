@@ -3,7 +3,7 @@
 #include <stop_token>
 
 #include "progress_bar.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 
 namespace octurn {
 

@@ -10,9 +10,9 @@
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
 #include "progress_bar.hpp"
-#include "scan/tum_recording.hpp"
 #include "sensor/new_folder.hpp"
 #include "signal_stop.hpp"
+#include "store/tum_recording.hpp"
 
 namespace octurn {
 namespace {

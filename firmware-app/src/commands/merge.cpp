@@ -4,14 +4,14 @@
 #include <sstream>
 #include <string>
 
+#include "build/merged_scan.hpp"
 #include "commands/commands.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
-#include "scan/merged_scan.hpp"
-#include "scan/pose_of_json.hpp"
-#include "scan/scan_settings.hpp"
+#include "settings/scan_settings.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
+#include "store/pose_of_json.hpp"
 
 namespace octurn {
 namespace {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands/options.hpp"
+#include "mesh/mesh_formats.hpp"
 
 namespace octurn {
 namespace {
@@ -60,7 +61,8 @@ void add_reconstruct(CLI::App& program, TileArguments& arguments) {
   command
       .add_flag("--colour", arguments.model.colour,
                 "of a scan by laser line: the model with the colours of its pictures, to a FILE "
-                "that ends with .ply, .glb or .3mf")
+                "that ends with " +
+                    mesh_file_names(""))
       ->excludes(plan)
       ->excludes(tile);
   command

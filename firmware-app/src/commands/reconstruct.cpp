@@ -17,11 +17,11 @@
 #include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
-#include "scan/checked_snapshots.hpp"
-#include "scan/quality_json.hpp"
 #include "settings/field.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
+#include "store/checked_snapshots.hpp"
+#include "store/quality_json.hpp"
 
 namespace octurn {
 namespace {

@@ -3,11 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "calibration/solve_pose.hpp"
+#include "capture/last_look.hpp"
 #include "commands/options.hpp"
 #include "process_memory.hpp"
-#include "scan/last_look.hpp"
-#include "scan/solve_pose.hpp"
 #include "settings/field.hpp"
+#include "store/scan_archive.hpp"
 
 namespace octurn {
 namespace {
@@ -77,10 +78,21 @@ Scan read_scan_of(const ReconstructArguments& arguments) {
   return scan;
 }
 
+/// Checks that the model does not replace a file of its scan.
+void expect_no_input(const std::filesystem::path& output, const std::filesystem::path& scan) {
+  const auto inside = std::filesystem::weakly_canonical(output).lexically_relative(
+      std::filesystem::weakly_canonical(scan));
+  if (is_scan_file(inside.generic_string())) {
+    throw Error(ErrorCode::bad_settings,
+                "--output is " + output.string() + ": must not be a file of the scan itself");
+  }
+}
+
 }  // namespace
 
 ReconstructInput read_input(const ReconstructArguments& arguments, const std::stop_token& stop) {
   if (!arguments.output.empty()) {
+    expect_no_input(arguments.output, arguments.folder);
     expect_writable(arguments.output);
   }
   Scan told = read_scan_of(arguments);

@@ -9,7 +9,7 @@
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "progress_bar.hpp"
-#include "scan/scan_settings.hpp"
+#include "settings/scan_settings.hpp"
 
 namespace octurn {
 

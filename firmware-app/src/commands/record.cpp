@@ -1,10 +1,10 @@
 #include <chrono>
 
+#include "capture/plan.hpp"
 #include "commands/commands.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
-#include "scan/plan.hpp"
 #include "sensor/recording.hpp"
 #include "signal_stop.hpp"
 

@@ -1,12 +1,12 @@
 #include <functional>
 #include <memory>
 
+#include "calibration/lens_files.hpp"
 #include "camera/simulated_camera.hpp"
 #include "commands/commands.hpp"
 #include "octurn/units.hpp"
 #include "rig/nominal_laser_rig.hpp"
 #include "rig/simulation.hpp"
-#include "scan/lens_files.hpp"
 #include "sensor/simulated_mechanism.hpp"
 
 namespace octurn {

@@ -9,7 +9,7 @@
 #include "octurn/file.hpp"
 #include "process_memory.hpp"
 #include "progress_bar.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "settings/field.hpp"
 #include "signal_stop.hpp"

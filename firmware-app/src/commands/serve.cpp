@@ -11,7 +11,7 @@
 #include "http/http_server.hpp"
 #include "log.hpp"
 #include "process_memory.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "service_manager.hpp"
 #include "signal_stop.hpp"
@@ -128,12 +128,21 @@ RigOptions closed(RigOptions rig) {
   return rig;
 }
 
+/// Listens where the server before did, unless the settings choose another port.
+/// @param port  of the server before; 0: there was none
+void keep_port(HttpOptions& options, int port) {
+  if (options.port == 0) {
+    options.port = port;
+  }
+  if (port != 0 && options.port == port) {
+    options.bind_patience = std::chrono::seconds(10);  // it was this program's until now
+  }
+}
+
 /// Serves with the settings as they are now, until a signal or until they need a restart.
 Outcome serve_once(Machine& machine, ConfigStore& settings) {
   Config config = settings.config();
-  if (config.http.port == 0) {
-    config.http.port = machine.port;
-  }
+  keep_port(config.http, machine.port);
   const bool is_safe = machine.start != nullptr && machine.start->is_safe_mode();
   RigOptions rig = rig_options(machine.arguments.rig, config);
   if (is_safe) {

@@ -74,9 +74,7 @@ ConfigStore::ConfigStore(ConfigLayers layers)
 /// The configuration with the page's settings between octurn.json and the command line.
 Config ConfigStore::wanted(const json& values) const {
   Config config = with_options(with_page_settings(layers_.file, values), layers_.given);
-  if (const auto own = own_password_file(config); std::filesystem::exists(own)) {
-    config.http.password_file = own;
-  }
+  config.http.own_password_file = own_password_file(config);
   return config;
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "doctor/system_files.hpp"
-#include "scan/job_file.hpp"
 #include "sensor/depth_sensor.hpp"
+#include "store/job_file.hpp"
 #include "turntable/gpio_chip.hpp"
 #include "version.hpp"
 

@@ -8,8 +8,8 @@
 #include "appliance/appliance.hpp"
 #include "config.hpp"
 #include "doctor/finding.hpp"
-#include "scan/job.hpp"
-#include "scan/status_board.hpp"
+#include "run/status_board.hpp"
+#include "store/job.hpp"
 #include "zip_archive.hpp"
 
 namespace octurn {

@@ -3,12 +3,12 @@
 #include <system_error>
 #include <utility>
 
+#include "calibration/calibration_store.hpp"
 #include "doctor/machine_checks.hpp"
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
-#include "scan/calibration_store.hpp"
-#include "scan/earlier_scans.hpp"
-#include "scan/scan_estimate.hpp"
+#include "store/earlier_scans.hpp"
+#include "store/scan_estimate.hpp"
 #include "turntable/pulse_train.hpp"
 #include "turntable/real_time.hpp"
 

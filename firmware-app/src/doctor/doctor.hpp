@@ -11,7 +11,7 @@
 #include "doctor/finding.hpp"
 #include "doctor/sensor_reading.hpp"
 #include "doctor/turntable_checks.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 
 namespace octurn {
 

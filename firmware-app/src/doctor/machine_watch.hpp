@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "doctor/finding.hpp"
-#include "scan/latest.hpp"
+#include "latest.hpp"
 
 namespace octurn {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <stop_token>
 
+#include "capture/rig.hpp"
 #include "doctor/seen_rotation.hpp"
-#include "scan/rig.hpp"
 
 namespace octurn {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "doctor/system_files.hpp"
-#include "scan/scan_store.hpp"
+#include "store/scan_store.hpp"
 #include "turntable/real_time.hpp"
 
 namespace octurn {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "scan/take_pictures.hpp"
+#include "capture/take_pictures.hpp"
 
 namespace octurn {
 namespace {

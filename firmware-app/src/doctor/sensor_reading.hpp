@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "capture/rig.hpp"
 #include "octurn/snapshot.hpp"
 #include "rig/tilt.hpp"
-#include "scan/job.hpp"
-#include "scan/rig.hpp"
+#include "store/job.hpp"
 
 namespace octurn {
 

@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "doctor/finding.hpp"
-#include "scan/job.hpp"
+#include "store/job.hpp"
 #include "turntable/gpio_lines.hpp"
 #include "turntable/wake_ups.hpp"
 

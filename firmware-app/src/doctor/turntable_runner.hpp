@@ -10,7 +10,7 @@
 #include "config.hpp"
 #include "doctor/turn_checks.hpp"
 #include "failure.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 
 namespace octurn {
 

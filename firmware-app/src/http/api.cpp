@@ -33,7 +33,8 @@ std::string_view take_part(std::string_view& path) {
   return part;
 }
 
-/// Matches a path with a route's, where `{id}` and `{number}` match any one segment each.
+/// Matches a path with a route's, where `{id}` and `{number}` match any one segment each, and
+/// `Scan.{format}` a model's file that is no STL.
 std::optional<PathParts> match(std::string_view route, std::string_view path) {
   if (std::ranges::count(route, '/') != std::ranges::count(path, '/')) {
     return std::nullopt;
@@ -46,7 +47,8 @@ std::optional<PathParts> match(std::string_view route, std::string_view path) {
       parts.id = given;
     } else if (wanted == "{number}") {
       parts.number = given;
-    } else if (wanted != given) {
+    } else if (wanted == "Scan.{format}" ? !given.starts_with("Scan.") || given == "Scan.stl"
+                                         : wanted != given) {
       return std::nullopt;
     }
   }

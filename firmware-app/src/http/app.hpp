@@ -12,7 +12,7 @@
 #include "outgoing/address_book.hpp"
 #include "outgoing/printer_uploads.hpp"
 #include "outgoing/webhook_sender.hpp"
-#include "scan/scanner.hpp"
+#include "run/scanner.hpp"
 
 namespace octurn {
 

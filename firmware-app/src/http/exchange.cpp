@@ -54,10 +54,11 @@ bool asks_to_keep(const mg_request_info& info) {
   const std::string_view method = info.request_method;
   const auto headers =
       std::span(info.http_headers).first(static_cast<std::size_t>(info.num_headers));
-  const bool has_body =
-      info.content_length > 0 || std::ranges::any_of(headers, [](const mg_header& header) {
-        return same_token(header.name, "Transfer-Encoding");
-      });
+  // civetweb takes a length that is no number for 0, and the first of two.
+  const bool has_body = std::ranges::any_of(headers, [](const mg_header& header) {
+    return same_token(header.name, "Transfer-Encoding") ||
+           (same_token(header.name, "Content-Length") && std::string_view(header.value) != "0");
+  });
   return (method == "GET" || method == "HEAD") && !has_body &&
          std::string_view(info.http_version) == "1.1" &&
          std::ranges::any_of(headers, [](const mg_header& header) {

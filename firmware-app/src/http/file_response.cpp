@@ -100,7 +100,8 @@ std::string attachment(std::string_view name) {
 
 Response file_response(const Request& request, const std::filesystem::path& file,
                        const std::string& content_type, const std::string& name) {
-  FileDescriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  FileDescriptor descriptor(
+      ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));  // a FIFO would wait
   struct ::stat info {};
   if (!descriptor.is_open() || ::fstat(descriptor.number(), &info) != 0 || !S_ISREG(info.st_mode)) {
     throw Error(ErrorCode::no_model, "the file of this model is missing",

@@ -8,7 +8,7 @@
 namespace octurn {
 namespace {
 
-// More than a home network has. Beyond it, the client whose guesses expire first is forgotten.
+// More than a home network has. Beyond it, the client with the earliest time is forgotten.
 constexpr std::size_t max_clients = 1000;
 
 /// The key of a client: an IPv4 address, or the /64 network of an IPv6 address.
@@ -24,28 +24,47 @@ std::string to_client(const std::string& address) {
   return {bytes.data(), bytes.size() / 2};
 }
 
+/// Makes room for a client that is not among `clients` yet.
+void drop_oldest_before(std::map<std::string, GuessLimit::Time>& clients,
+                        const std::string& client) {
+  if (clients.size() >= max_clients && !clients.contains(client)) {
+    clients.erase(
+        std::ranges::min_element(clients, {}, [](const auto& entry) { return entry.second; }));
+  }
+}
+
 }  // namespace
 
 std::chrono::seconds GuessLimit::to_wait(const std::string& address, Time now) const {
-  const auto found = expiry_.find(to_client(address));
-  if (found == expiry_.end()) {
-    return std::chrono::seconds(0);
-  }
-  const auto wait = found->second - now - (free_guesses - 1) * guess_price;
-  return std::max(std::chrono::seconds(0), std::chrono::ceil<std::chrono::seconds>(wait));
+  const std::string client = to_client(address);
+  const auto wait = [now](Time expiry, int free, std::chrono::seconds price) {
+    return std::max(std::chrono::seconds(0),
+                    std::chrono::ceil<std::chrono::seconds>(expiry - now - (free - 1) * price));
+  };
+  const auto found = expiry_.find(client);
+  const auto own = found == expiry_.end() ? std::chrono::seconds(0)
+                                          : wait(found->second, free_guesses, guess_price);
+  return known_.contains(client)
+             ? own
+             : std::max(own, wait(expiry_of_all_, free_guesses_of_all, guess_price_of_all));
 }
 
 void GuessLimit::count_wrong(const std::string& address, Time now) {
   std::erase_if(expiry_, [&](const auto& entry) { return entry.second <= now; });
   const std::string client = to_client(address);
-  if (expiry_.size() >= max_clients && !expiry_.contains(client)) {
-    expiry_.erase(
-        std::ranges::min_element(expiry_, {}, [](const auto& entry) { return entry.second; }));
-  }
+  drop_oldest_before(expiry_, client);
   const auto [entry, fresh] = expiry_.try_emplace(client, now);
   entry->second += guess_price;
+  if (!known_.contains(client)) {
+    expiry_of_all_ = std::max(expiry_of_all_, now) + guess_price_of_all;
+  }
 }
 
-void GuessLimit::forgive(const std::string& address) { expiry_.erase(to_client(address)); }
+void GuessLimit::forgive(const std::string& address, Time now) {
+  const std::string client = to_client(address);
+  expiry_.erase(client);
+  drop_oldest_before(known_, client);
+  known_.insert_or_assign(client, now);
+}
 
 }  // namespace octurn

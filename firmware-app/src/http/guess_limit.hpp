@@ -7,7 +7,9 @@
 namespace octurn {
 
 /// Slows down the guessing of passwords: an address has ten wrong guesses at once, and then one in
-/// ten seconds. A right one resets this.
+/// ten seconds. A right one resets this. All addresses together have a hundred, and then one a
+/// second; those that knew the password before are not among them, so that others' guesses lock
+/// none of them out.
 ///
 /// Not thread-safe. The time is a parameter, so that tests need no clock.
 class GuessLimit {
@@ -16,6 +18,8 @@ class GuessLimit {
 
   static constexpr int free_guesses = 10;
   static constexpr std::chrono::seconds guess_price{10};
+  static constexpr int free_guesses_of_all = 100;
+  static constexpr std::chrono::seconds guess_price_of_all{1};
 
   /// How long a client has to wait before its next guess; 0: it may guess.
   std::chrono::seconds to_wait(const std::string& address, Time now) const;
@@ -24,10 +28,12 @@ class GuessLimit {
   void count_wrong(const std::string& address, Time now);
 
   /// Forgets a client's wrong guesses after a right one.
-  void forgive(const std::string& address);
+  void forgive(const std::string& address, Time now);
 
  private:
   std::map<std::string, Time> expiry_ = {};  // when all wrong guesses of a client expire (GCRA)
+  Time expiry_of_all_ = {};                  // the same for all unknown clients
+  std::map<std::string, Time> known_ = {};   // clients that knew the password, and when
 };
 
 }  // namespace octurn

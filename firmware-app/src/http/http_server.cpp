@@ -8,6 +8,7 @@
 #include <future>
 #include <latch>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -26,7 +27,7 @@ namespace octurn {
 /// namespace.
 struct HttpService {
   HttpServer::Answer answer = {};
-  std::optional<Login> login = {};  // if the page has a password
+  std::optional<Login> login = {};  // set before the server starts
   const AccessKeys* keys = nullptr;
   HttpServer::Gate gate = {};
   std::latch started{1};  // released once `guard` exists, or the server has failed to start
@@ -70,9 +71,6 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
   if (const auto key = key_in(request); key && service.keys != nullptr) {
     return refuse_key(*service.keys, request, *key);
   }
-  if (!service.login) {
-    return std::nullopt;
-  }
   const mg_request_info& info = *mg_get_request_info(&connection);
   const auto text = [](const char* part) { return std::string(part != nullptr ? part : ""); };
   return service.login->refusal({.method = request.method,
@@ -85,7 +83,7 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
 
 /// The answer to a request whose head is read.
 Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answer& answer) {
-  if (is_of_type(request.header("Content-Type").value_or(""), upload_type)) {
+  if (is_upload(request)) {
     request.upload = exchange.upload();
     return answer(request);
   }
@@ -207,7 +205,12 @@ class HttpServer::Server {
     const bool v6 = options.address.find(':') != std::string::npos;
     const std::string address = v6 ? "[" + options.address + "]" : options.address;
     address_ = reaching(options.address);
-    context_ = start_civetweb(address + ":" + std::to_string(options.port), options, service_);
+    if (v6 && mg_check_feature(8) == 0) {
+      throw Error(ErrorCode::listen_failed,
+                  "cannot listen on " + options.address + ": civetweb was built without IPv6",
+                  "Choose an IPv4 address; 0.0.0.0 stands for all.");
+    }
+    context_ = start_when_port_is_free(address + ":" + std::to_string(options.port), options);
     defer_accept(port(), std::chrono::ceil<std::chrono::seconds>(options.request_timeout));
     service_.guard.emplace(port(), ConnectionLimits{.max_connections = threads - spare_threads,
                                                     .patience = options.request_timeout});
@@ -242,6 +245,23 @@ class HttpServer::Server {
     mg_exit_library();
   }
 
+  mg_context* start_when_port_is_free(const std::string& listening, const HttpOptions& options) {
+    const auto deadline = std::chrono::steady_clock::now() + options.bind_patience;
+    for (bool is_first = true;; is_first = false) {
+      try {
+        return start_civetweb(listening, options, service_);
+      } catch (const Error& error) {
+        if (std::chrono::steady_clock::now() >= deadline) {
+          throw;
+        }
+        if (is_first) {
+          log::warning("http", std::string(error.what()) + "; trying again");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    }
+  }
+
   static void accept_at_once(int port) {
     try {
       defer_accept(port, std::chrono::seconds(0));
@@ -257,7 +277,9 @@ class HttpServer::Server {
 
 HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKeys* keys, Gate gate)
     : server_(std::make_unique<Server>()) {
-  if (!options.password_file.empty() && ::access(options.password_file.c_str(), R_OK) != 0) {
+  const bool is_overridden = ::access(options.own_password_file.c_str(), F_OK) == 0;
+  if (!options.password_file.empty() && !is_overridden &&
+      ::access(options.password_file.c_str(), R_OK) != 0) {
     throw Error(ErrorCode::bad_password_file, options.password_file.string() + ": cannot be read",
                 "`octurn password` makes it; the user that this program runs as must own it.");
   }
@@ -265,9 +287,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
   service.answer = std::move(answer);
   service.keys = keys;
   service.gate = std::move(gate);
-  if (!options.password_file.empty()) {
-    service.login.emplace(options.password_file);
-  }
+  service.login.emplace(options.password_file, options.own_password_file);
   server_->start(options);
 }
 

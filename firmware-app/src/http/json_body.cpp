@@ -6,7 +6,7 @@
 
 #include "http/entity_tags.hpp"
 #include "octurn/json_object.hpp"
-#include "scan/scan_label.hpp"
+#include "store/scan_label.hpp"
 
 namespace octurn {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 #include "http/password_file.hpp"
@@ -59,8 +60,19 @@ Response refuse_guess(std::chrono::seconds wait) {
 
 }  // namespace
 
-Login::Login(std::filesystem::path password_file)
-    : password_file_(std::move(password_file)), secret_(random_digits(secret_bytes)) {}
+Login::Login(std::filesystem::path password_file, std::filesystem::path own_file)
+    : password_file_(std::move(password_file)),
+      own_file_(std::move(own_file)),
+      secret_(random_digits(secret_bytes)) {}
+
+/// The file of the password; empty: there is none. One that cannot be looked at is in force.
+std::filesystem::path Login::file_in_force() const {
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(own_file_, error);
+  return own_file_.empty() || status.type() == std::filesystem::file_type::not_found
+             ? password_file_
+             : own_file_;
+}
 
 /// The secret is on both sides, as MD5 of a secret and a text is open to length extension.
 std::string Login::sign(const std::string& text) const {
@@ -108,7 +120,11 @@ Response Login::challenge(Freshness proof, std::int64_t now) {
 }
 
 std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
-  const std::optional<std::string> hash = read_password_hash(password_file_);
+  const std::filesystem::path file = file_in_force();
+  if (file.empty()) {
+    return std::nullopt;
+  }
+  const std::optional<std::string> hash = read_password_hash(file);
   const std::int64_t current = to_period(now);
   const std::lock_guard lock(mutex_);
   const auto proof = parse_digest(attempt.authorization.value_or(""));
@@ -132,7 +148,7 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   if (!is_fresh(proof->nonce, current) || !is_first_use(*proof, current)) {
     return challenge(Freshness::stale, current);
   }
-  guesses_.forgive(attempt.address);
+  guesses_.forgive(attempt.address, now);
   return std::nullopt;
 }
 

@@ -36,17 +36,21 @@ class Login {
   /// Nonces are valid in their period and in the next one.
   static constexpr std::chrono::minutes period{5};
 
-  /// @param password_file  of `write_password_file`; read at each request, so that a new password
-  ///                       is valid at once. If it is missing or malformed, nobody is admitted.
-  explicit Login(std::filesystem::path password_file);
+  /// The files are of `write_password_file`, and looked for at each request: a password is valid as
+  /// soon as it is set, and removed. If a file is malformed, or `password_file` is missing, nobody
+  /// is admitted.
+  /// @param password_file  that a person configured; empty: none
+  /// @param own_file       that the page writes; overrides the other while it exists; empty: none
+  explicit Login(std::filesystem::path password_file, std::filesystem::path own_file = {});
 
-  /// Nothing if the request is admitted; else its answer: 401 with a challenge, or 429 after too
-  /// many wrong guesses.
+  /// Nothing if the request is admitted, as all are without a password; else its answer: 401 with a
+  /// challenge, or 429 after too many wrong guesses.
   std::optional<Response> refusal(const LoginAttempt& attempt, Time now);
 
  private:
   enum class Freshness { fresh, stale };
 
+  std::filesystem::path file_in_force() const;
   bool is_fresh(const std::string& nonce, std::int64_t now);
   bool is_first_use(const DigestProof& proof, std::int64_t now);
   std::string make_nonce(std::int64_t now);
@@ -54,6 +58,7 @@ class Login {
   Response challenge(Freshness proof, std::int64_t now);
 
   const std::filesystem::path password_file_;
+  const std::filesystem::path own_file_;
   std::mutex mutex_ = {};  // guards what follows
   std::string secret_;     // key that signs nonces
   std::uint64_t nonces_ = 0;

@@ -38,6 +38,9 @@ inline bool is_of_type(std::string_view content_type, std::string_view type) {
   return same_token(content_type, type);
 }
 
+inline constexpr std::string_view zip_type = "application/zip";
+inline constexpr std::string_view import_path = "/api/v1/scans/import";
+
 /// A body that is too large for memory and is read in parts.
 struct ByteSource {
   std::optional<std::uint64_t> length = {};  ///< as announced
@@ -45,7 +48,7 @@ struct ByteSource {
   std::function<std::size_t(std::span<std::byte>)> read = {};
 };
 
-/// A request. Its body is complete, or, if it is of upload_type, still to be read.
+/// A request. Its body is complete, or, of an upload, still to be read.
 struct Request {
   std::string method = "GET";
   std::string path = "/";   ///< decoded, without the query
@@ -63,6 +66,14 @@ struct Request {
 
   bool is_read() const { return method == "GET" || method == "HEAD"; }
 };
+
+/// Whether the body of a request is read in parts, as uploads are. A scan's archive may also come
+/// with its own type, or with none.
+inline bool is_upload(const Request& request) {
+  const std::string_view type = request.header("Content-Type").value_or("");
+  return is_of_type(type, upload_type) ||
+         (request.path == import_path && (type.empty() || is_of_type(type, zip_type)));
+}
 
 /// A part of an open file, sent as it is read.
 struct FileSlice {

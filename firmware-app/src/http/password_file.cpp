@@ -11,7 +11,9 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t hash_digits = 32;
-constexpr std::size_t max_password_bytes = 4096;  // this program writes a single line
+constexpr std::size_t max_file_bytes = 4096;  // this program writes a single line
+constexpr std::size_t min_password_bytes = 8;
+constexpr std::size_t max_password_bytes = 100;
 
 std::string line_begin() { return std::string(page_user) + ":" + page_realm + ":"; }
 
@@ -23,18 +25,22 @@ bool is_hash(std::string_view text) {
 }  // namespace
 
 void write_password_file(const std::filesystem::path& file, const std::string& password) {
-  constexpr std::size_t most = 100;
-  if (password.empty() || password.size() > most) {
+  if (password.size() < min_password_bytes || password.size() > max_password_bytes) {
     throw Error(ErrorCode::bad_password,
                 "the password has " + std::to_string(password.size()) + " bytes",
-                "It needs one at least, and at most " + std::to_string(most) + ".");
+                "It needs " + std::to_string(min_password_bytes) + " to " +
+                    std::to_string(max_password_bytes) + ".");
+  }
+  if (password.find('\0') != std::string::npos) {  // what follows it would not count
+    throw Error(ErrorCode::bad_password, "the password contains the character U+0000",
+                "Use letters, digits and signs.");
   }
   write_file(file, line_begin() + digest_hash(page_user, page_realm, password) + "\n", 0600);
 }
 
 std::optional<std::string> read_password_hash(const std::filesystem::path& file) try {
   const std::string begin = line_begin();
-  std::istringstream lines(read_regular_file(file, max_password_bytes).value_or(""));
+  std::istringstream lines(read_regular_file(file, max_file_bytes).value_or(""));
   for (std::string line; std::getline(lines, line);) {
     if (line.ends_with('\r')) {
       line.pop_back();

@@ -13,7 +13,8 @@ inline constexpr const char* page_realm = "Octurn";
 inline constexpr const char* page_user = "octurn";
 
 /// Writes the file, which only its owner can read, with a new password.
-/// @throws Error "bad-password" if it is empty or longer than 100 bytes; "write-failed"
+/// @throws Error "bad-password" if it does not have 8 to 100 bytes, or contains U+0000;
+/// "write-failed"
 void write_password_file(const std::filesystem::path& file, const std::string& password);
 
 /// The `digest_hash` of the password. Nothing if the file cannot be read, or does not have the

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "http/json_body.hpp"
-#include "scan/parameters_json.hpp"
+#include "store/parameters_json.hpp"
 
 namespace octurn {
 namespace {

@@ -31,7 +31,6 @@ struct Route {
 
 // The paths whose bodies are uploads.
 inline constexpr std::string_view update_path = "/api/v1/update";
-inline constexpr std::string_view import_path = "/api/v1/scans/import";
 
 std::span<const Route> scan_routes();
 std::span<const Route> other_routes();

@@ -13,12 +13,22 @@ namespace {
 constexpr std::array<std::string_view, 6> local_domains{".local",    ".localhost",   ".home.arpa",
                                                         ".internal", ".localdomain", ".lan"};
 
-/// "scanner.local" of "scanner.local:8080", "::1" of "[::1]:8080".
+/// "scanner.local" of "scanner.local:8080" and of "scanner.local.", "::1" of "[::1]:8080"; empty if
+/// what follows is no port.
 std::string to_host_name(std::string_view host) {
-  if (host.starts_with('[')) {
-    return std::string(host.substr(1, host.find(']') - 1));
+  const bool is_bracketed = host.starts_with('[');
+  const std::size_t end = is_bracketed ? host.find(']') : host.find(':');
+  std::string_view name = host.substr(0, end);
+  std::string_view rest = end == std::string_view::npos ? "" : host.substr(end);
+  if (is_bracketed && !rest.empty()) {
+    name.remove_prefix(1);
+    rest.remove_prefix(1);
   }
-  return std::string(host.substr(0, host.find(':')));
+  if (!rest.empty() &&
+      (rest.front() != ':' || rest.find_first_not_of("0123456789", 1) != std::string_view::npos)) {
+    return "";
+  }
+  return std::string(name.ends_with('.') ? name.substr(0, name.size() - 1) : name);
 }
 
 bool is_address(const std::string& name) {
@@ -33,7 +43,7 @@ bool ends_with_domain(std::string_view name, std::string_view domain) {
 }
 
 bool is_ours(const std::string& name, std::span<const std::string> host_names) {
-  return is_address(name) || (!name.empty() && name.find('.') == std::string::npos) ||
+  return is_address(name) || (!name.empty() && name.find_first_of(".@[") == std::string::npos) ||
          std::ranges::any_of(local_domains,
                              [&](auto domain) { return ends_with_domain(name, domain); }) ||
          std::ranges::any_of(host_names, [&](const auto& ours) { return same_token(name, ours); });
@@ -61,6 +71,12 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                        "Open the page by the scanner's address, or add the name to host_names "
                        "in octurn.json."};
   }
+  if (request.is_read() && request.path.starts_with("/api/") &&
+      request.header("Sec-Fetch-Site") == "cross-site") {
+    return Failure{.code = ErrorCode::wrong_origin,
+                   .detail = "the request comes from a page of another site",
+                   .hint = "Use the scanner's own page."};
+  }
   if (request.is_read()) {
     return std::nullopt;
   }
@@ -69,8 +85,10 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                    .detail = "the request comes from " + std::string(*origin),
                    .hint = "Use the scanner's own page."};
   }
-  if (request.method != "DELETE" &&
-      !is_of_type(request.header("Content-Type").value_or(""), body_type)) {
+  const bool has_type = body_type == upload_type
+                            ? is_upload(request)
+                            : is_of_type(request.header("Content-Type").value_or(""), body_type);
+  if (request.method != "DELETE" && !has_type) {
     return Failure{.code = ErrorCode::wrong_content_type,
                    .detail = request.method + " needs Content-Type: " + std::string(body_type),
                    .hint = "Send the body in that format, and name it in the header Content-Type."};

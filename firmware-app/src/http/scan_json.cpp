@@ -5,11 +5,11 @@
 #include <string>
 #include <utility>
 
-#include "scan/calibration_json.hpp"
-#include "scan/failure_json.hpp"
-#include "scan/json_numbers.hpp"
-#include "scan/model_json.hpp"
-#include "scan/pose_of_json.hpp"
+#include "store/calibration_json.hpp"
+#include "store/failure_json.hpp"
+#include "store/json_numbers.hpp"
+#include "store/model_json.hpp"
+#include "store/pose_of_json.hpp"
 
 namespace octurn {
 namespace {

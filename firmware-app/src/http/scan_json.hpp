@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "scan/build_run.hpp"
-#include "scan/job.hpp"
+#include "store/build_run.hpp"
+#include "store/job.hpp"
 
 namespace octurn {
 

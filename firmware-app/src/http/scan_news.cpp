@@ -46,6 +46,14 @@ std::string to_event_name(JobState state) {
   return "";
 }
 
+/// A scan whose outcome could not be saved, such as on a full disk, waits for a person like one
+/// that is paused.
+JobState to_reported_state(const Job& job) {
+  const bool waits = job.state == JobState::interrupted && job.failure &&
+                     job.failure->code != ErrorCode::interrupted;
+  return waits ? JobState::paused : job.state;
+}
+
 }  // namespace
 
 std::vector<ScanEvent> changes(const ScanStates& before, const ScanStates& now,
@@ -70,7 +78,7 @@ std::vector<ScanEvent> ScanNews::next_scans(const App& app) {
   }
   ScanStates now;
   for (const Job& job : all_scans(app)) {
-    now.emplace(job.id, job.state);
+    now.emplace(job.id, to_reported_state(job));
   }
   std::vector<ScanEvent> events;
   if (mark_) {

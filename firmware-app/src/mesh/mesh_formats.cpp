@@ -6,43 +6,41 @@
 namespace octurn {
 namespace {
 
-struct Names {
-  MeshFormat format;
-  std::string_view extension;
-  std::string_view media_type;
-};
-
 constexpr std::array formats{
-    Names{MeshFormat::ply, ".ply", "application/octet-stream"},  // no media type is registered
-    Names{MeshFormat::glb, ".glb", "model/gltf-binary"},
-    Names{MeshFormat::threemf, ".3mf", "model/3mf"},
+    MeshFormat{".3mf", "model/3mf", true,
+               [](const MeshModel& model, const std::filesystem::path& target) {
+                 write_3mf(model.facets, model.name, model.thumbnail, target, model.colours);
+               }},
+    MeshFormat{".ply", "application/octet-stream", false,  // no media type is registered
+               [](const MeshModel& model, const std::filesystem::path& target) {
+                 write_ply(model.facets, target, model.colours);
+               }},
+    MeshFormat{".glb", "model/gltf-binary", false,
+               [](const MeshModel& model, const std::filesystem::path& target) {
+                 write_glb(model.facets, model.name, target, model.colours);
+               }},
+    MeshFormat{".obj", "model/obj", false,
+               [](const MeshModel& model, const std::filesystem::path& target) {
+                 write_obj(model.facets, model.name, target, model.colours);
+               }},
 };
 
 }  // namespace
 
-std::optional<MeshFormat> to_mesh_format(std::string_view extension) {
-  const auto* const found = std::ranges::find(formats, extension, &Names::extension);
-  return found == formats.end() ? std::nullopt : std::optional(found->format);
+std::span<const MeshFormat> mesh_formats() { return formats; }
+
+const MeshFormat* find_mesh_format(std::string_view extension) {
+  const auto* const found = std::ranges::find(formats, extension, &MeshFormat::extension);
+  return found == formats.end() ? nullptr : found;
 }
 
-std::string_view media_type(MeshFormat format) {
-  return std::ranges::find(formats, format, &Names::format)->media_type;
-}
-
-void write_mesh(MeshFormat format, const FacetFile& facets, const std::string& name,
-                const std::string& thumbnail, const std::filesystem::path& target,
-                std::span<const Rgb> colours) {
-  switch (format) {
-    case MeshFormat::ply:
-      write_ply(facets, target, colours);
-      break;
-    case MeshFormat::glb:
-      write_glb(facets, name, target, colours);
-      break;
-    case MeshFormat::threemf:
-      write_3mf(facets, name, thumbnail, target, colours);
-      break;
+std::string mesh_file_names(const std::string& stem) {
+  std::string names;
+  for (const MeshFormat& format : formats) {
+    names += (names.empty() ? "" : &format == &formats.back() ? " or " : ", ") + stem;
+    names += format.extension;
   }
+  return names;
 }
 
 }  // namespace octurn

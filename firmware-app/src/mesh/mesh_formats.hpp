@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,14 +10,29 @@
 
 namespace octurn {
 
-/// A format for models besides STL.
-enum class MeshFormat { ply, glb, threemf };
+/// A model to be written to a file.
+struct MeshModel {
+  const FacetFile& facets;
+  std::string name = {};
+  std::string thumbnail = {};         ///< a PNG; empty: none
+  std::span<const Rgb> colours = {};  ///< of the VertexTable's vertices; empty: none
+};
 
-/// The format of files with that extension, such as ".ply".
-std::optional<MeshFormat> to_mesh_format(std::string_view extension);
+/// A format for models besides STL: a row of the table from which routes, messages and the page
+/// take what they offer.
+struct MeshFormat {
+  std::string_view extension;  ///< such as ".ply"
+  std::string_view media_type;
+  bool has_thumbnail;  ///< whether its files hold a picture
+  void (*write)(const MeshModel& model, const std::filesystem::path& target);
+};
+std::span<const MeshFormat> mesh_formats();
 
-/// The media type of a format.
-std::string_view media_type(MeshFormat format);
+/// The format of files with that extension; null if there is none.
+const MeshFormat* find_mesh_format(std::string_view extension);
+
+/// The names of files in all formats, for a message: "Scan.3mf, Scan.ply or Scan.glb".
+std::string mesh_file_names(const std::string& stem);
 
 // Each writer writes the facets of a model in order, with bit-identical coordinates, to a file that
 // appears whole or not at all. Memory is that of a VertexTable and one block of facets. `colours`
@@ -42,9 +56,9 @@ void write_glb(const FacetFile& facets, const std::string& name,
 void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
                const std::filesystem::path& target, std::span<const Rgb> colours = {});
 
-/// Calls the writer of that format.
-void write_mesh(MeshFormat format, const FacetFile& facets, const std::string& name,
-                const std::string& thumbnail, const std::filesystem::path& target,
-                std::span<const Rgb> colours = {});
+/// Wavefront OBJ, millimetres, Z up, as text with all digits of the coordinates. Colours follow the
+/// coordinates of a vertex, as MeshLab and Blender read them.
+void write_obj(const FacetFile& facets, const std::string& name,
+               const std::filesystem::path& target, std::span<const Rgb> colours = {});
 
 }  // namespace octurn

@@ -14,14 +14,20 @@ namespace {
 
 constexpr std::string_view content_types =
     R"(<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/><Default Extension="png" ContentType="image/png"/></Types>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
+    R"(<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>)"
+    R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>)"
+    R"(<Default Extension="png" ContentType="image/png"/></Types>
 )";
 
 constexpr std::string_view relationships_begin =
     R"(<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>)";
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+    R"(<Relationship Target="/3D/3dmodel.model" Id="model" )"
+    R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>)";
 constexpr std::string_view thumbnail_relationship =
-    R"(<Relationship Target="/Metadata/thumbnail.png" Id="thumbnail" Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>)";
+    R"(<Relationship Target="/Metadata/thumbnail.png" Id="thumbnail" )"
+    R"(Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>)";
 
 constexpr std::size_t part_bytes = std::size_t{64} << 10U;
 

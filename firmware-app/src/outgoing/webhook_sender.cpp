@@ -66,21 +66,29 @@ std::optional<WebhookState> WebhookSender::state(std::string_view id) const {
 }
 
 void WebhookSender::run(const std::stop_token& stop) {
+  UnderWay under_way;
   while (!stop.stop_requested()) {
     try {
+      std::erase_if(under_way, [](const auto& one) {
+        return one.second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+      });
       forget_removed();
       spread(poll_());
-      if (auto due = take_due()) {
-        attempt(std::move(*due), stop);
+      if (auto due = take_due(under_way)) {
+        const std::string webhook = due->webhook;
+        under_way[webhook] = std::async(std::launch::async, [this, stop, taken = *std::move(due)] {
+          attempt(taken, stop);
+          added_.notify_all();
+        });
         continue;
       }
     } catch (const std::exception& error) {
       log::error("outgoing", std::string("cannot send events to the webhooks: ") + error.what());
     }
     std::unique_lock lock(mutex_);
-    added_.wait_for(lock, stop, limits_.poll_interval, [this] {
-      return std::ranges::any_of(
-          waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });
+    added_.wait_for(lock, stop, limits_.poll_interval, [&] {
+      return std::ranges::any_of(waiting_,
+                                 [&](const Delivery& one) { return is_due(one, under_way); });
     });
   }
 }
@@ -130,10 +138,15 @@ void WebhookSender::forget_removed() {
   std::erase_if(waiting_, [&](const Delivery& delivery) { return is_removed(delivery.webhook); });
 }
 
-std::optional<WebhookSender::Delivery> WebhookSender::take_due() {
+/// Whether the time of a delivery has come, and no other one to its webhook is under way.
+bool WebhookSender::is_due(const Delivery& delivery, const UnderWay& under_way) const {
+  return delivery.due <= Clock::now() && !under_way.contains(delivery.webhook);
+}
+
+std::optional<WebhookSender::Delivery> WebhookSender::take_due(const UnderWay& under_way) {
   const std::lock_guard lock(mutex_);
-  const auto due = std::ranges::find_if(
-      waiting_, [now = Clock::now()](const Delivery& one) { return one.due <= now; });
+  const auto due =
+      std::ranges::find_if(waiting_, [&](const Delivery& one) { return is_due(one, under_way); });
   if (due == waiting_.end()) {
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <future>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -44,7 +45,8 @@ struct WebhookState {
 
 std::string_view to_string(WebhookState::Outcome outcome);
 
-/// Delivers events to the webhooks of an address book on its own thread, so that no caller waits.
+/// Delivers events to the webhooks of an address book on threads of its own, so that no caller
+/// waits, nor any webhook for another one that is silent. Each gets its events one after the other.
 /// Deliveries that still wait at its destruction are lost. Thread-safe.
 class WebhookSender {
  public:
@@ -74,7 +76,10 @@ class WebhookSender {
   void spread(const std::vector<WebhookEvent>& events);
   void add(Delivery delivery);
   void forget_removed();
-  std::optional<Delivery> take_due();
+  using UnderWay = std::map<std::string, std::future<void>, std::less<>>;  // by a webhook's id
+
+  bool is_due(const Delivery& delivery, const UnderWay& under_way) const;
+  std::optional<Delivery> take_due(const UnderWay& under_way);
   void attempt(Delivery delivery, const std::stop_token& stop);
   void set_state(const Delivery& delivery, WebhookState::Outcome outcome, std::string trouble);
 

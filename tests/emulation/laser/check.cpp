@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "capture/plan.hpp"
+#include "capture/take_pictures.hpp"
 #include "octurn/error.hpp"
-#include "scan/plan.hpp"
-#include "scan/take_pictures.hpp"
 #include "signal_stop.hpp"
 
 namespace octurn {

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <future>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <semaphore>
 #include <string>
@@ -14,7 +13,7 @@
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/error.hpp"
-#include "scan/scan_archive.hpp"
+#include "store/scan_archive.hpp"
 
 namespace octurn {
 namespace {
@@ -23,10 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t max_archive_bytes = std::uint64_t{1} << 30U;
 
-// One archive is packed at a time, and one request waits. Each takes a thread of the server, on a
-// Pi for minutes.
-std::mutex packing;
-std::counting_semaphore<> packing_places{2};
+// One archive is packed at a time, and no request waits for it: on a Pi that takes minutes, and
+// each would occupy a thread of the server, where nobody cuts its connection.
+std::counting_semaphore<> packing_places{1};
 
 std::counting_semaphore<> import_places{2};  // uploads may take hours
 
@@ -47,6 +45,11 @@ class Scratch {
   fs::path path_;
 };
 
+bool is_of_disk(ErrorCode code) {
+  return code == ErrorCode::disk_full || code == ErrorCode::write_failed ||
+         code == ErrorCode::data_failed;
+}
+
 }  // namespace
 
 Response send_archive(App& app, const Request& request, std::string_view id) {
@@ -57,12 +60,23 @@ Response send_archive(App& app, const Request& request, std::string_view id) {
   if (job.snapshots_done == 0) {
     throw Error(ErrorCode::no_model, "this scan has no snapshots", "Start a new scan.");
   }
-  const Place place(&packing_places, "archives are being packed for others");
-  const std::lock_guard lock(packing);
-  const Scratch archive(app.store.data() / "scans" / (".export-" + job.id + ".zip"));
-  std::async(std::launch::async, write_scan_archive, app.store.folder(id), archive.path()).get();
-  return file_response(request, archive.path(), "application/zip",
-                       download_name(job, ".zip"));  // its open descriptor outlives the removal
+  const Place place(&packing_places, "an archive is being packed for others");
+  const std::string name = ".export-" + job.id + ".zip";
+  const auto packed_in = [&](const fs::path& folder) {
+    const Scratch archive(folder / name);
+    std::async(std::launch::async, write_scan_archive, app.store.folder(id), archive.path()).get();
+    return file_response(request, archive.path(), "application/zip",
+                         download_name(job, ".zip"));  // its open descriptor outlives the removal
+  };
+  try {
+    return packed_in(app.store.data() / "scans");
+  } catch (const Error& error) {
+    if (!is_of_disk(error.code())) {
+      throw;
+    }
+  }
+  // The disk is full or read-only, which is when somebody wants to save the scans.
+  return packed_in(fs::temp_directory_path());
 }
 
 Response import_scan(App& app, const Request& request) {

@@ -6,17 +6,17 @@
 #include <optional>
 #include <string>
 
+#include "calibration/board_pdf.hpp"
+#include "calibration/lens_files.hpp"
+#include "calibration/sensor_map_json.hpp"
+#include "capture/depth_scale.hpp"
+#include "capture/wall_views.hpp"
 #include "http/handlers/appliance.hpp"
 #include "http/json_body.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
-#include "scan/board_pdf.hpp"
-#include "scan/depth_scale.hpp"
-#include "scan/lens_files.hpp"
-#include "scan/pose_json.hpp"
-#include "scan/sensor_map_json.hpp"
-#include "scan/wall_views.hpp"
 #include "sensor/pixel_ray.hpp"
+#include "settings/pose_json.hpp"
 
 namespace octurn {
 namespace {

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "build/colour_model.hpp"
 #include "http/file_response.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/handlers/models.hpp"
@@ -19,7 +20,6 @@
 #include "mesh/mesh_formats.hpp"
 #include "mesh/thumbnail.hpp"
 #include "octurn/file.hpp"
-#include "scan/colour_model.hpp"
 
 namespace octurn {
 namespace {
@@ -90,17 +90,21 @@ enum class Paint { clay, colours };
 /// scan's name or the colours.
 fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
                     const std::string& extension, Paint paint = Paint::clay) {
-  const MeshFormat format = to_mesh_format(extension).value();
+  const MeshFormat& format = *find_mesh_format(extension);
   const bool is_coloured = paint == Paint::colours;
   fs::path file = model.parent_path() / ((is_coloured ? "Scan-colour" : "Scan") + extension);
   auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
   source = is_coloured ? std::max(source, written(colours_file(model))) : source;
-  const fs::path thumbnail = format == MeshFormat::threemf ? fresh_thumbnail(model) : fs::path();
+  const fs::path thumbnail = format.has_thumbnail ? fresh_thumbnail(model) : fs::path();
   keep_fresh(file, source, [&] {
-    const auto png =
-        read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing for formats other than 3MF
-    write_mesh(format, FacetFile(model), download_name(job, ""), png.value_or(""), file,
-               is_coloured ? read_colours(model) : std::vector<Rgb>());
+    const FacetFile facets(model);
+    const auto png = read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing without a path
+    const std::vector<Rgb> colours = is_coloured ? read_colours(model) : std::vector<Rgb>();
+    format.write({.facets = facets,
+                  .name = download_name(job, ""),
+                  .thumbnail = png.value_or(""),
+                  .colours = colours},
+                 file);
   });
   return file;
 }
@@ -143,22 +147,26 @@ void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
 /// @param suffix  of the file name under which a browser saves the model, before the extension
 Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
                         int build, std::string suffix) {
-  const std::string extension = fs::path(request.path).extension().string();  // one of the routes'
+  const std::string extension = fs::path(request.path).extension().string();
+  const MeshFormat* const format = find_mesh_format(extension);
+  if (format == nullptr) {
+    throw Error(ErrorCode::not_found, "there is no " + fs::path(request.path).filename().string(),
+                "Ask for Scan.stl, " + mesh_file_names("Scan") + ".");
+  }
   const Paint paint = wanted_paint(request);
   if (paint == Paint::colours) {
     keep_colours(app, job, model, build);
     suffix += "-colour";
   }
   return file_response(request, fresh_mesh(app, job, model, extension, paint),
-                       std::string(media_type(to_mesh_format(extension).value())),
-                       download_name(job, suffix + extension));
+                       std::string(format->media_type), download_name(job, suffix + extension));
 }
 
 }  // namespace
 
 fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
   fs::path model = find_model(app, job);
-  return to_mesh_format(extension) ? fresh_mesh(app, job, model, extension) : model;
+  return find_mesh_format(extension) != nullptr ? fresh_mesh(app, job, model, extension) : model;
 }
 
 Response send_mesh(App& app, const Request& request, std::string_view id) {

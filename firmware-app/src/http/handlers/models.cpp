@@ -15,8 +15,9 @@
 #include "http/file_response.hpp"
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
+#include "mesh/mesh_formats.hpp"
 #include "octurn/json_object.hpp"
-#include "scan/model_pipe.hpp"
+#include "run/model_pipe.hpp"
 
 namespace octurn {
 namespace {
@@ -104,7 +105,7 @@ void refuse_colours(const Request& request) {
   if (std::ranges::find(request.parameters, "colour", &Headers::value_type::first) !=
       request.parameters.end()) {
     throw Error(ErrorCode::bad_settings, "an STL has no colours",
-                "Ask for Scan.ply, Scan.glb or Scan.3mf.");
+                "Ask for " + mesh_file_names("Scan") + ".");
   }
 }
 

@@ -4,14 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "build/pose_points.hpp"
 #include "http/file_response.hpp"
 #include "http/handlers/appliance.hpp"
 #include "http/handlers/builds.hpp"
 #include "http/json_body.hpp"
 #include "http/scan_json.hpp"
 #include "http/scan_view.hpp"
-#include "scan/pose_choice.hpp"
-#include "scan/pose_points.hpp"
+#include "store/pose_choice.hpp"
 
 namespace octurn {
 namespace {

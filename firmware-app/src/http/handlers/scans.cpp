@@ -8,9 +8,9 @@
 #include "http/json_body.hpp"
 #include "http/scan_view.hpp"
 #include "octurn/json_object.hpp"
-#include "scan/earlier_scans.hpp"
-#include "scan/scan_label.hpp"
 #include "settings/field.hpp"
+#include "store/earlier_scans.hpp"
+#include "store/scan_label.hpp"
 
 namespace octurn {
 namespace {

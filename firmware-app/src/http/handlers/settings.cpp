@@ -8,6 +8,7 @@
 #include "http/json_body.hpp"
 #include "http/password_file.hpp"
 #include "log.hpp"
+#include "mesh/mesh_formats.hpp"
 #include "octurn/json_object.hpp"
 #include "settings/field.hpp"
 #include "utc.hpp"
@@ -44,6 +45,15 @@ json settings_in(const json& backup) {
   return settings;
 }
 
+/// The formats in which a model can be had, as extensions without the dot.
+json model_formats() {
+  json names = json::array({"stl"});
+  for (const MeshFormat& format : mesh_formats()) {
+    names.push_back(format.extension.substr(1));
+  }
+  return names;
+}
+
 }  // namespace
 
 Response send_settings(App& app) {
@@ -58,7 +68,8 @@ Response send_settings(App& app) {
                         {"settings_schema", config_schema()},
                         {"restart_needed", app.settings.restart_needed()},
                         {"trouble", app.settings.trouble()},
-                        {"password", password_state(app)}});
+                        {"password", password_state(app)},
+                        {"model_formats", model_formats()}});
 }
 
 Response change_settings(App& app, const Request& request) {

@@ -6,7 +6,7 @@
 # set_name: sets the host name to $name. Fails, with the reason in $wrong_name, if it is invalid.
 set_name() {
   [ -n "$name" ] || return 0
-  name=$(echo "$name" | tr '[:upper:]' '[:lower:]')
+  name=$(printf '%s\n' "$name" | tr '[:upper:]' '[:lower:]')
   case $name in
     *[!a-z0-9-]* | -* | *-) good= ;;
     *) good=yes ;;
@@ -16,9 +16,9 @@ set_name() {
     wrong_name="name = $name: a name has letters, digits and hyphens between them, at most 63"
     return 1
   fi
-  echo "$name" >"$root/etc/hostname"
+  printf '%s\n' "$name" >"$root/etc/hostname"
   chmod 644 "$root/etc/hostname"
-  [ -n "$root" ] || echo "$name" >/proc/sys/kernel/hostname
+  [ -n "$root" ] || printf '%s\n' "$name" >/proc/sys/kernel/hostname
 }
 
 # set_time_zone: sets the time zone to $time_zone. Fails, with the reason in $wrong_zone, if there is no such zone.

@@ -1,0 +1,248 @@
+#include "build/merged_scan.hpp"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "build/solve_rigs.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "store/stored_scan.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Metres, around a turn's points in its clip box: without shrinking, boxes that are rotated against
+// each other span much empty space, which costs more than the object.
+constexpr double clip_margin = 0.020;
+constexpr double min_height = 0.004;  // metres: lower readings may be the platform's
+
+/// Extracts one pose of a scan, as a scan of one turn.
+Scan to_turn(const Scan& scan, int number) {
+  const ScanPose& pose = scan.poses[static_cast<std::size_t>(number)];
+  Scan turn = scan;
+  turn.poses.clear();
+  turn.shots.clear();
+  turn.platform_from_sensor = pose.platform_from_sensor;
+  turn.solved = pose.solved;
+  turn.clip = pose.clip;
+  for (Shot shot : scan.shots) {
+    if (shot.pose == number) {
+      shot.pose = 0;
+      turn.shots.push_back(std::move(shot));
+    }
+  }
+  return turn;
+}
+
+void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
+  const Scan scan = read_scan(folder);
+  const auto refuse = [&](const std::string& what, const std::string& hint) {
+    throw Error(ErrorCode::scan_malformed, folder.string() + ": " + what, hint);
+  };
+  if (!turns.empty() && !have_same_sensor(turns.front().scan, scan)) {
+    refuse("is of another sensor than " + turns.front().folder.string(),
+           "Merge scans of one sensor.");
+  }
+  if (is_one_turn(scan)) {
+    turns.push_back({.folder = folder, .scan = scan, .object_from_platform = {}});
+    return;
+  }
+  if (scan.poses.empty()) {
+    refuse("is no turn of the platform: its snapshots have poses of their own",
+           "Merge scans of the turntable.");
+  }
+  const bool is_first = turns.empty();
+  for (std::size_t i = 0; i < scan.poses.size(); ++i) {
+    StoredTurn turn{.folder = folder, .scan = to_turn(scan, static_cast<int>(i))};
+    if (!is_one_turn(turn.scan) || turn.scan.shots.empty()) {
+      refuse("pose " + std::to_string(i) + " is no turn of the platform",
+             "Merge scans of the turntable.");
+    }
+    if (is_first) {
+      turn.object_from_platform = scan.poses[i].object_from_platform;
+    }
+    turns.push_back(std::move(turn));
+  }
+}
+
+/// Makes a hard link to a file; copies it where that fails.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_hard_link(fs::canonical(from), to, error);
+  if (error) {
+    fs::copy_file(from, to);
+  }
+}
+
+/// Bounding box of one stop's object points in a turn's clip box: metres, platform frame at angle
+/// 0. Every other row and column is enough.
+Eigen::AlignedBox3d make_extent(const DepthFrame& frame, const Intrinsics& lens,
+                                const Eigen::Isometry3d& pose, const Box& clip) {
+  Eigen::AlignedBox3d extent;
+  for (int v = 0; v < frame.height; v += 2) {
+    const auto row = frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
+    for (int u = 0; u < frame.width; u += 2) {
+      if (row[u] > 0) {
+        const Eigen::Vector3d ray((u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, 1);
+        const Eigen::Vector3d point = pose * (ray * (row[u] * lens.depth_unit));
+        if (point.z() > min_height && contains(clip, point)) {
+          extent.extend(point);
+        }
+      }
+    }
+  }
+  return extent;
+}
+
+/// Shrinks the sides and the top of a turn's clip box to the points in it, plus a margin.
+Box shrunk_clip(const StoredTurn& turn) {
+  const Box& clip = turn.scan.clip;
+  Eigen::AlignedBox3d extent;
+  for (const auto& of_stop : turn.extents) {
+    extent.extend(of_stop);
+  }
+  if (extent.isEmpty()) {
+    return clip;
+  }
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(clip_margin);
+  Box box{.min = clip.min.cwiseMax(extent.min() - margin),
+          .max = clip.max.cwiseMin(extent.max() + margin)};
+  box.min.z() = clip.min.z();
+  return box;
+}
+
+/// Links a stop's images into a folder, as the stop of index `number`.
+Shot link_shot(const Shot& shot, const StoredTurn& turn, const fs::path& folder, int number) {
+  Shot there = shot;
+  if (turn.scan.laser) {
+    there.pictures = picture_files(number, *turn.scan.laser);
+    for (std::size_t i = 0; i < shot.pictures.size(); ++i) {
+      link_or_copy(turn.folder / shot.pictures[i], folder / there.pictures[i]);
+    }
+  } else {
+    there.file = shot_file(number);
+    link_or_copy(turn.folder / shot.file, folder / there.file);
+  }
+  return there;
+}
+
+/// Returns a turn's solved pose. Planes that differ from the merged scan's count as solved, too: a
+/// scan has one set of configured planes.
+std::optional<SolvedPose> solved_in(const Scan& merged, const Scan& turn) {
+  const auto same_plane = [](const Laser& a, const Laser& b) {
+    return a.normal == b.normal && a.distance == b.distance;
+  };
+  if (turn.solved || !turn.laser ||
+      std::ranges::equal(turn.laser->lasers, merged.laser->lasers, same_plane)) {
+    return turn.solved;
+  }
+  return SolvedPose{.platform_from_sensor = turn.platform_from_sensor,
+                    .lasers = turn.laser->lasers};
+}
+
+/// Links the snapshots of all turns into a folder. @return the merged scan
+Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
+            const Registration& registration) {
+  Scan merged = turns.front().scan;
+  merged.shots.clear();
+  fs::create_directories(folder / "snapshots");
+  if (merged.sensor_map) {
+    link_or_copy(turns.front().folder / sensor_map_file, folder / sensor_map_file);
+  }
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const Scan& scan = turns[i].scan;
+    merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
+                            .platform_from_sensor = scan.platform_from_sensor,
+                            .solved = solved_in(merged, scan),
+                            .clip = shrunk_clip(turns[i])});
+    for (const Shot& shot : scan.shots) {
+      merged.shots.push_back(
+          link_shot(shot, turns[i], folder, static_cast<int>(merged.shots.size())));
+      merged.shots.back().pose = static_cast<int>(i);
+    }
+  }
+  return merged;
+}
+
+/// Makes the registration input of a depth sensor's turn.
+RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop) {
+  RegistrationTurn one{.intrinsics = model_intrinsics(turn.scan, turn.scan.shots.front()),
+                       .platform_from_sensor = model_pose(turn.scan),
+                       .clip = turn.scan.clip};
+  for (const Shot& shot : turn.scan.shots) {
+    one.angles.push_back(shot.angle);
+  }
+  one.read = [&turn, stored = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t i) {
+    auto kept = turn.kept ? turn.kept->find(i) : std::nullopt;
+    return kept ? *std::move(kept) : stored.read(i).frame;
+  };
+  return one;
+}
+
+}  // namespace
+
+std::vector<StoredTurn> read_turns(const std::vector<fs::path>& folders) {
+  std::vector<StoredTurn> turns;
+  for (const fs::path& folder : folders) {
+    append_turns(turns, folder);
+  }
+  return turns;
+}
+
+Registration register_turns(std::vector<StoredTurn>& turns, int threads,
+                            const std::stop_token& stop) {
+  solve_rigs(turns, threads, stop);
+  std::vector<RegistrationTurn> seen;
+  for (StoredTurn& turn : turns) {
+    RegistrationTurn one =
+        turn.scan.laser ? laser_turn(turn.folder, turn.scan, stop) : depth_turn(turn, stop);
+    one.object_from_platform = turn.object_from_platform;
+    one.prior_object_from_platform = turn.prior_object_from_platform;
+    turn.extents.assign(one.angles.size(), {});
+    one.read = [&turn, lens = one.intrinsics, angles = one.angles,
+                read = std::move(one.read)](std::size_t i) {
+      DepthFrame frame = read(i);
+      turn.extents[i] = make_extent(
+          frame, lens, object_from_sensor(model_pose(turn.scan), angles[i]), turn.scan.clip);
+      return frame;
+    };
+    seen.push_back(std::move(one));
+  }
+  Registration registration = register_turns(seen, threads, stop);
+  for (StoredTurn& turn : turns) {
+    turn.kept.reset();  // the model that follows needs the memory
+  }
+  return registration;
+}
+
+void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& turns,
+                       const Registration& registration) {
+  const fs::path target = fs::absolute(folder / "").parent_path();
+  fs::path temporary;
+  for (int attempt = 0; temporary.empty() || fs::exists(temporary); ++attempt) {
+    temporary = temporary_name(target, attempt);
+  }
+  try {
+    write_scan(temporary, gather(temporary, turns, registration));
+    sync_folder(temporary / "snapshots");
+    sync_folder(temporary);
+    fs::rename(temporary, target);
+    sync_folder(target.parent_path());
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    const bool is_full = error.code() == std::errc::no_space_on_device;
+    throw Error(is_full ? ErrorCode::disk_full : ErrorCode::write_failed,
+                target.string() + ": " + error.code().message(), {}, {{"path", target.string()}});
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace octurn

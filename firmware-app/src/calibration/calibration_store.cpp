@@ -1,0 +1,196 @@
+#include "calibration/calibration_store.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "utc.hpp"
+
+namespace octurn {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t max_records_bytes = std::size_t{1} << 20U;  // 100 times the usual size
+
+fs::path file_in(const fs::path& data, SensorKind kind) {
+  return data / (kind == SensorKind::depth ? "calibration.json" : "laser-calibration.json");
+}
+fs::path copy_in(const fs::path& data, SensorKind kind) {
+  return file_in(data, kind).replace_extension(".last.json");
+}
+
+std::vector<PoseRecord> records_from(const json& document) {
+  JsonObject root(document, ErrorCode::platform_malformed, "");
+  if (const JsonValue format = root.at("format"); format.text() != "octurn-calibration") {
+    format.refuse("\"octurn-calibration\"");
+  }
+  if (const JsonValue version = root.at("version"); version.number() != 1) {
+    version.refuse("1, which this program reads");
+  }
+  std::vector<PoseRecord> records;
+  for (const JsonValue& record : root.at("poses").elements()) {
+    records.push_back(to_record(record));
+  }
+  return records;
+}
+
+/// Returns no records if the file does not exist. @throws Error "platform-malformed", "read-failed"
+std::vector<PoseRecord> read_records(const fs::path& file) {
+  const auto text = read_regular_file(file, max_records_bytes);
+  try {
+    return text ? records_from(parse_json(*text, ErrorCode::platform_malformed, "it"))
+                : std::vector<PoseRecord>{};
+  } catch (const Error& error) {
+    throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
+  }
+}
+
+std::vector<PoseRecord> last_good_records(const fs::path& data, SensorKind kind) {
+  for (const fs::path& file : {file_in(data, kind), copy_in(data, kind)}) {
+    try {
+      return read_records(file);
+    } catch (const Error& error) {
+      log::warning("calibration", error.what());
+    }
+  }
+  return {};
+}
+
+bool is_told(const PoseRecord& record) {
+  return record.origin == PoseOrigin::drawing || record.origin == PoseOrigin::settings;
+}
+
+/// Whether a record applies to that camera. An empty serial number, on either side, matches all.
+bool is_of(const PoseRecord& record, std::string_view camera) {
+  return camera.empty() || record.camera.empty() || record.camera == camera;
+}
+
+/// Drops each camera's oldest records beyond `max_history`. @param records  newest first
+std::vector<PoseRecord> newest_of_each(const std::vector<PoseRecord>& records) {
+  std::map<std::string, std::size_t> count;
+  std::vector<PoseRecord> kept;
+  std::ranges::copy_if(records, std::back_inserter(kept), [&](const PoseRecord& record) {
+    return count[record.camera]++ <= CalibrationStore::max_history;
+  });
+  return kept;
+}
+
+}  // namespace
+
+CalibrationStore::CalibrationStore(fs::path data, SensorKind kind)
+    : data_(std::move(data)), kind_(kind), records_(last_good_records(data_, kind)) {}
+
+/// Returns the record of the settings' pose.
+PoseRecord CalibrationStore::to_record(const ScanSettings& told) const {
+  const Eigen::Isometry3d drawing =
+      kind_ == SensorKind::depth ? nominal_platform_from_sensor() : nominal_platform_from_camera();
+  const bool is_drawing = told.platform_from_sensor.isApprox(drawing, 1e-12);
+  return {.platform_from_sensor = told.platform_from_sensor,
+          .origin = is_drawing ? PoseOrigin::drawing : PoseOrigin::settings,
+          .scale = told.depth_scale};
+}
+
+std::vector<PoseRecord> CalibrationStore::records() const {
+  const std::lock_guard lock(mutex_);
+  return records_;
+}
+
+std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& told,
+                                                  std::string_view camera) const {
+  std::vector<PoseRecord> all = records();
+  std::erase_if(all, [&](const PoseRecord& record) { return !is_of(record, camera); });
+  if (all.empty()) {
+    return {to_record(told)};
+  }
+  if (PoseRecord& first = all.front(); is_told(first)) {
+    const std::string at = std::move(first.at);
+    first = to_record(told);
+    first.at = at;
+  }
+  return all;
+}
+
+ScanSettings CalibrationStore::in_force(ScanSettings told, std::string_view camera) const {
+  const PoseRecord now = records(told, camera).front();
+  told.platform_from_sensor = now.platform_from_sensor;
+  told.depth_scale = now.scale;
+  return told;
+}
+
+void CalibrationStore::set(const PoseRecord& record) {
+  const std::lock_guard writing(writing_);
+  add(record);
+}
+
+/// `writing_` is held.
+void CalibrationStore::add(const PoseRecord& record) {
+  std::vector<PoseRecord> all = records();
+  all.insert(all.begin(), record);
+  write(std::move(all));
+}
+
+void CalibrationStore::change(const PoseChange& change, const ScanSettings& told,
+                              std::string_view camera) {
+  const std::lock_guard writing(writing_);  // from reading the record to writing its change
+  PoseRecord record = change.is_settings_pose ? to_record(told) : records(told, camera).front();
+  record.at = utc_text(std::chrono::system_clock::now(), rfc3339);
+  if (change.platform_from_sensor || change.scale) {
+    const double scale = change.scale.value_or(record.scale);
+    record.platform_from_sensor.translation() *= scale / record.scale;
+    record.scale = scale;
+    record.origin = PoseOrigin::page;
+    record.figures.reset();
+  }
+  if (change.platform_from_sensor) {
+    record.platform_from_sensor = *change.platform_from_sensor;
+  }
+  add(record);
+}
+
+void CalibrationStore::undo(std::string_view camera) {
+  const std::lock_guard writing(writing_);
+  std::vector<PoseRecord> all = records();
+  const auto now =
+      std::ranges::find_if(all, [&](const PoseRecord& record) { return is_of(record, camera); });
+  if (now == all.end()) {
+    throw Error(ErrorCode::not_found, "there is no earlier pose of the sensor",
+                "The settings' pose is in force.");
+  }
+  all.erase(now);
+  write(std::move(all));
+}
+
+/// `writing_` is held.
+void CalibrationStore::write(std::vector<PoseRecord> records) {
+  records = newest_of_each(records);
+  json poses = json::array();
+  for (const PoseRecord& record : records) {
+    poses.push_back(to_json(record));
+  }
+  const std::string text =
+      json{{"format", "octurn-calibration"}, {"version", 1}, {"poses", poses}}.dump(1) + "\n";
+  write_file(file_in(data_, kind_), text);
+  write_file(copy_in(data_, kind_), text);
+  const std::lock_guard lock(mutex_);
+  records_ = std::move(records);
+}
+
+std::optional<std::string> find_damaged_calibration(const fs::path& data) {
+  try {
+    read_records(file_in(data, SensorKind::depth));
+    read_records(file_in(data, SensorKind::laser_line));
+    return std::nullopt;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibration/pose_record.hpp"
+#include "settings/laser_settings.hpp"
+#include "settings/scan_settings.hpp"
+
+namespace octurn {
+
+/// A user's change of the pose in force. Absent members change nothing.
+struct PoseChange {
+  bool is_settings_pose = false;  ///< resets pose and depth scale to the settings'
+  std::optional<Eigen::Isometry3d> platform_from_sensor = {};
+  /// Factor of the sensor's depths. Without a new pose, the old one's translation is scaled along,
+  /// so that the platform stays at the same pixels.
+  std::optional<double> scale = {};
+};
+
+/// The sensor's pose in force, which overrides that of the settings, and the earlier poses. They
+/// are stored in `DATA/calibration.json`; `calibration.last.json` is a copy, read if that file is
+/// damaged. A rig with lasers uses `laser-calibration.json` and its copy. Each of its records
+/// belongs to one camera, or to any camera if a user entered the pose. Thread-safe.
+class CalibrationStore {
+ public:
+  static constexpr std::size_t max_history = 10;  ///< earlier records kept per camera
+
+  /// Reads the file. If it is damaged, logs that and reads the copy.
+  /// @param data  the data folder, which this process has locked
+  explicit CalibrationStore(std::filesystem::path data, SensorKind kind = SensorKind::depth);
+
+  /// Returns the record in force, then the earlier ones, newest first. Does not access the disk.
+  /// @param told    settings whose pose is in force if there is no record
+  /// @param camera  serial number of the camera whose records are returned; empty: all cameras
+  std::vector<PoseRecord> records(const ScanSettings& told, std::string_view camera = {}) const;
+
+  /// Returns settings for a new scan: `told` with the pose and the depth scale in force. Does not
+  /// access the disk.
+  /// @param camera  as above
+  ScanSettings in_force(ScanSettings told, std::string_view camera = {}) const;
+
+  /// Puts a pose into force. @throws Error "disk-full", "write-failed"
+  void set(const PoseRecord& record);
+
+  /// Applies a user's change. @param told, camera  as above
+  void change(const PoseChange& change, const ScanSettings& told, std::string_view camera = {});
+
+  /// Restores the pose before the one in force. @param camera  as above
+  /// @throws Error "not-found"  if there is none; and as `set`
+  void undo(std::string_view camera = {});
+
+ private:
+  std::vector<PoseRecord> records() const;
+  PoseRecord to_record(const ScanSettings& told) const;
+  void add(const PoseRecord& record);
+  void write(std::vector<PoseRecord> records);
+
+  std::filesystem::path data_;
+  SensorKind kind_;
+  std::mutex writing_;        // serialises changes of the records; locked before mutex_
+  mutable std::mutex mutex_;  // guards records_; never held during disk access
+  std::vector<PoseRecord> records_;
+};
+
+/// Returns what is wrong with a data folder's calibration files; nullopt if they are intact or
+/// absent.
+std::optional<std::string> find_damaged_calibration(const std::filesystem::path& data);
+
+}  // namespace octurn

@@ -1,0 +1,142 @@
+#include "capture/calibration_turn.hpp"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "calibration/lens_files.hpp"
+#include "calibration/sensor_map_json.hpp"
+#include "capture/depth_scale.hpp"
+#include "capture/plan.hpp"
+#include "capture/take_depth_image.hpp"
+#include "octurn/snapshot.hpp"
+#include "octurn/units.hpp"
+#include "sensor/pixel_ray.hpp"
+#include "store/calibration_json.hpp"
+#include "store/failure_json.hpp"
+
+namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+/// Adds the points of one depth image that lie in the slice.
+void add_frame(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
+               const Eigen::Isometry3d& object_from_sensor) {
+  for (int v = 0; v < frame.height; ++v) {
+    for (int u = 0; u < frame.width; ++u) {
+      const double z =
+          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(u)] *
+          lens.depth_unit;
+      if (!(z > 0)) {
+        continue;
+      }
+      add_to_slice(slice, object_from_sensor * (z * pixel_ray(lens, u, v)));
+    }
+  }
+}
+
+/// @param optics  that replace the sensor's own, if any
+Slice slice_of_frames(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor,
+                      const std::optional<SolvedOptics>& optics) {
+  Slice slice;
+  for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+    const Eigen::Isometry3d pose = object_from_sensor(platform_from_sensor, turn.angles[stop]);
+    if (optics) {
+      add_frame(slice, rectified(turn.read(stop), turn.intrinsics, optics->value),
+                rectified(turn.intrinsics, optics->value), pose);
+    } else {
+      add_frame(slice, turn.read(stop), turn.intrinsics, pose);
+    }
+  }
+  return thinned(slice);
+}
+
+json to_json(const Slice& slice) {
+  json points = json::array();
+  for (const Eigen::Vector2d& point : slice) {
+    points.push_back({std::round(mm_from_metres(point.x()) * 100) / 100,
+                      std::round(mm_from_metres(point.y()) * 100) / 100});
+  }
+  return points;
+}
+
+json to_json(const TurnReport& report) {
+  const bool has_lasers = !report.lasers.empty();
+  json object = has_lasers ? to_json(report.calibration, report.angles, report.lasers)
+                           : to_json(report.calibration, report.angles);
+  if (has_lasers) {
+    object["confirms_told"] = report.calibration.accepted && !report.replaces_told;
+  }
+  object["slice_mm"] = {{"before", to_json(report.before)}, {"after", to_json(report.after)}};
+  return object;
+}
+
+json report_json(const CalibrationRun& run) {
+  return run.report ? to_json(*run.report)
+         : run.wall ? to_json(*run.wall)
+         : run.lens ? to_json(*run.lens)
+                    : json();
+}
+
+}  // namespace
+
+json to_json(const CalibrationRun& run) {
+  constexpr std::array<std::string_view, 3> kinds{"turn", "wall", "lens"};
+  constexpr std::array<std::string_view, 5> states{"running", "done", "refused", "failed",
+                                                   "cancelled"};
+  constexpr std::array<std::string_view, 3> phases{"turning", "solving", "looking"};
+  return {{"kind", kinds[static_cast<std::size_t>(run.kind)]},
+          {"state", states[static_cast<std::size_t>(run.state)]},
+          {"phase", phases[static_cast<std::size_t>(run.phase)]},
+          {"stop", run.stop},
+          {"stops", run.stops},
+          {"report", report_json(run)},
+          {"look", run.look ? to_json(*run.look) : json()},
+          {"error", run.failure ? to_json(*run.failure) : json()}};
+}
+
+std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
+                                       int threads, Rig& rig, const std::stop_token& stop,
+                                       const ScanObserver& observer) {
+  Turntable& turntable = rig.turntable();
+  const int steps = turntable.steps_per_turn();
+  CalibrationTurn turn{.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
+                       .platform_from_sensor = settings.platform_from_sensor,
+                       .has_sensor_map = map != nullptr};
+  std::vector<DepthFrame> frames;
+  for (const std::int64_t position :
+       stop_positions(turntable.position(), steps, settings.snapshots)) {
+    std::optional<DepthFrame> frame =
+        take_depth_image(rig, {.index = static_cast<int>(frames.size()), .position = position},
+                         settings, stop, observer);
+    if (!frame) {
+      return std::nullopt;
+    }
+    frames.push_back(map != nullptr ? corrected(*std::move(frame), *map, turn.intrinsics.depth_unit)
+                                    : *std::move(frame));
+    turn.angles.push_back(radians_from_degrees(angle_deg_at(position, steps)));
+  }
+  observer.on_progress(Phase::calibrating, settings.snapshots);
+  turn.read = [&](std::size_t index) {
+    throw_if_stopped(stop);
+    return frames[index];
+  };
+  try {
+    TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
+    report.replaces_told = report.calibration.accepted && !report.calibration.confirms_told();
+    report.before = slice_of_frames(turn, turn.platform_from_sensor, {});
+    if (report.calibration.accepted) {
+      report.after = slice_of_frames(
+          turn, report.calibration.platform_from_sensor,
+          report.calibration.optics_differ ? report.calibration.optics : std::nullopt);
+    }
+    return report;
+  } catch (const Stopped&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace octurn

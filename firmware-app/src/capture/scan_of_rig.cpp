@@ -1,0 +1,67 @@
+#include "capture/scan_of_rig.hpp"
+
+#include <cstddef>
+
+#include "capture/depth_scale.hpp"
+#include "octurn/error.hpp"
+#include "store/checked_snapshots.hpp"
+#include "store/stored_scan.hpp"
+
+namespace octurn {
+
+Scan scan_of_rig(const Rig& rig, const ScanSettings& settings) {
+  const LaserSettings* const told = rig.laser();
+  return told == nullptr ? Scan{}
+                         : Scan{.intrinsics = told->lens,
+                                .laser = laser_camera(*told),
+                                .platform_from_sensor = told->platform_from_sensor,
+                                .clip = settings.clip};
+}
+
+ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,
+                                   const Limits& limits) {
+  const auto snapshots = static_cast<std::size_t>(settings.snapshots);
+  ReconstructOptions options = checked_options(settings, limits, snapshots);
+  if (!scan.shots.empty()) {
+    options.clip = scan.clip;  // exact: a resumed scan's settings were stored in millimetres
+  }
+  Scan whole = scan;
+  whole.shots.resize(snapshots);
+  fit_to_sensor(options, whole);
+  return options;
+}
+
+void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
+                Rig& rig) {
+  if (scan.laser) {
+    scan.sensor_name = rig.camera().name();
+    scan.sensor_serial = rig.camera().serial();
+    return;
+  }
+  scan = {.sensor_name = rig.sensor().name(),
+          .sensor_serial = rig.sensor().serial(),
+          .intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
+          .platform_from_sensor = settings.platform_from_sensor,
+          .clip = settings.clip};
+  if (const auto map = folder / sensor_map_file; std::filesystem::exists(map)) {
+    use_sensor_map(scan, map);
+  }
+}
+
+bool has_sensor_of(const Scan& scan, const ScanSettings& settings, Rig& rig) {
+  Scan of_rig = scan_of_rig(rig, settings);
+  if (!of_rig.laser) {
+    of_rig.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale);
+  }
+  return have_same_sensor(of_rig, scan);
+}
+
+void expect_same_rig(const Scan& scan, const ScanSettings& settings, Rig& rig) {
+  if (!has_sensor_of(scan, settings, rig)) {
+    throw Error(ErrorCode::sensor_other,
+                "this scan was begun with another sensor: " + scan.sensor_name,
+                "Plug in the one that it was begun with.", {{"begun_with", scan.sensor_name}});
+  }
+}
+
+}  // namespace octurn

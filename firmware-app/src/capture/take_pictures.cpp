@@ -1,0 +1,153 @@
+#include "capture/take_pictures.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "octurn/error.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Pictures begun before a laser was switched that a camera may still hand out: a second of them, at
+// 30 Hz.
+constexpr int max_stale_pictures = 30;
+
+// Light that hides lines: a quarter of the picture is nearly as bright as a camera tells.
+constexpr std::uint8_t white = 240;
+constexpr double max_white_share = 0.25;
+
+// A line: in one of 30 rows a pixel that is brighter by ten times a camera's noise.
+constexpr int line_levels = 24;
+constexpr int rows_per_line_row = 30;
+
+/// `Camera::read`, or the same with colours.
+using Read = std::optional<TimedPicture> (Camera::*)(const std::stop_token& stop);
+
+/// Takes a picture whose exposure began after `switched`; nothing if stopped first.
+std::optional<TimedPicture> read_picture(Camera& camera, Read read, Clock::time_point switched,
+                                         const std::stop_token& stop,
+                                         const ScanObserver& observer) {
+  for (int stale = 0; stale <= max_stale_pictures; ++stale) {
+    std::optional<TimedPicture> timed = (camera.*read)(stop);
+    if (!timed || timed->begin >= switched) {
+      if (timed) {
+        observer.on_picture(timed->picture);
+      }
+      return timed;
+    }
+  }
+  throw Error(ErrorCode::sensor_failed,
+              camera.name() +
+                  ": its pictures arrive too late; they are from before the platform stopped or a "
+                  "laser was switched",
+              "Unplug the camera, and plug it in again.");
+}
+
+void expect_size_for_scan(const Picture& picture, const Intrinsics& lens,
+                          const std::string& camera) {
+  if (picture.width != lens.width || picture.height != lens.height) {
+    throw Error(ErrorCode::sensor_other,
+                camera + ": its pictures have " + std::to_string(picture.width) + " x " +
+                    std::to_string(picture.height) + " pixels, where the settings say " +
+                    std::to_string(lens.width) + " x " + std::to_string(lens.height),
+                "Plug in the camera that the settings are of, or correct laser.width and the "
+                "other keys of its lens.",
+                {{"camera", camera},
+                 {"width_px", static_cast<double>(picture.width)},
+                 {"height_px", static_cast<double>(picture.height)},
+                 {"told_width_px", static_cast<double>(lens.width)},
+                 {"told_height_px", static_cast<double>(lens.height)}});
+  }
+}
+
+}  // namespace
+
+void expect_dark_room(const Picture& dark, const std::string& camera) {
+  const auto bright =
+      std::ranges::count_if(dark.samples, [](std::uint8_t level) { return level >= white; });
+  const double share = static_cast<double>(bright) / static_cast<double>(dark.samples.size());
+  if (share > max_white_share) {
+    throw Error(ErrorCode::sensor_blind,
+                camera + ": " + std::to_string(std::lround(100 * share)) +
+                    " % of its picture without a laser is white: no line can be seen on that",
+                "Darken the room, keep sunlight and lamps off the object, or expose for less long.",
+                {{"white_share", share}});
+  }
+}
+
+void expect_line(const Picture& dark, const Picture& lit, const std::string& laser) {
+  const auto width = static_cast<std::size_t>(lit.width);
+  int rows = 0;
+  for (std::size_t first = 0; first < lit.samples.size(); first += width) {
+    int brighter = 0;
+    for (std::size_t pixel = first; pixel < first + width; ++pixel) {
+      brighter = std::max(
+          brighter, static_cast<int>(lit.samples[pixel]) - static_cast<int>(dark.samples[pixel]));
+    }
+    rows += brighter >= line_levels ? 1 : 0;
+  }
+  if (rows * rows_per_line_row < lit.height) {
+    throw Error(ErrorCode::sensor_blind,
+                "laser " + laser + ": its picture shows no line, in " + std::to_string(rows) +
+                    " of " + std::to_string(lit.height) + " rows there is more light",
+                "Look at the laser without looking into it: its plug, its wires, what stands "
+                "before it, and whether it is the one that its line is set for.",
+                {{"laser", laser}});
+  }
+}
+
+std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                               const ScanObserver& observer,
+                                               const KeepPicture& keep) {
+  Camera& camera = rig.camera();
+  StopPictures taken;
+  std::vector<Picture>& pictures = taken.pictures;
+  const auto take = [&](Read read) {
+    std::optional<TimedPicture> timed = read_picture(camera, read, camera.now(), stop, observer);
+    if (timed) {
+      expect_size_for_scan(timed->picture, rig.laser()->lens, camera.name());
+      pictures.push_back(std::move(timed->picture));
+    }
+    return timed;
+  };
+  auto dark = take(&Camera::read_in_colour);
+  if (!dark) {
+    return std::nullopt;
+  }
+  taken.colours = std::move(dark->colours);
+  expect_dark_room(pictures.front(), camera.name());
+  keep(pictures.front(), taken.colours);
+  Lasers& lasers = rig.lasers();
+  const std::vector<LaserLine> lines = lines_of(*rig.laser());
+  for (std::size_t laser = 0; laser < lasers.count(); ++laser) {
+    {
+      const Lasers::Light light = lasers.light(laser);
+      if (!take(&Camera::read)) {
+        return std::nullopt;
+      }
+    }
+    expect_line(pictures.front(), pictures.back(), lines[laser].laser.name);
+    keep(pictures.back(), {});
+  }
+  return taken;
+}
+
+std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
+                                          const ScanObserver& observer, const KeepPicture& keep) {
+  rig.turntable();  // whose faults are told before the camera's
+  Camera& camera = rig.camera();
+  if (!turn_to(rig, at, stop, observer)) {
+    return std::nullopt;
+  }
+  camera.show_angle(radians_from_degrees(rig.platform_angle_deg()));
+  return take_pictures_here(rig, stop, observer, keep);
+}
+
+}  // namespace octurn

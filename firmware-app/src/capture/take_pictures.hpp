@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "capture/rig.hpp"
+#include "capture/scan_observer.hpp"
+#include "capture/take_depth_image.hpp"
+#include "octurn/png.hpp"
+
+namespace octurn {
+
+/// What a camera sees at a stop.
+struct StopPictures {
+  std::vector<Picture> pictures = {};  ///< one without a laser, then one with each, in their order
+  std::vector<Rgb> colours = {};       ///< the first one's; empty if the camera has none
+};
+
+/// Given each picture as soon as it was taken, with its colours if the camera has any.
+using KeepPicture = std::function<void(const Picture& picture, const std::vector<Rgb>& colours)>;
+
+/// Keeps none.
+inline void keep_no_picture(const Picture& /*picture*/, const std::vector<Rgb>& /*colours*/) {}
+
+/// Turns to a stop and takes its pictures: one without a laser, then one with each, in their order.
+/// Each is exposed as a whole after the platform stood still and the laser was switched.
+///
+/// @param keep  called while all lasers are off
+/// @return nothing if stopped first: then, as after every error, all lasers are off
+/// @throws Error "sensor-blind"  if the room is too bright, or a laser's line is not seen; and
+///               "sensor-...", "turntable-..."
+std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
+                                          const ScanObserver& observer,
+                                          const KeepPicture& keep = keep_no_picture);
+
+/// The same where the platform stands.
+std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& stop,
+                                               const ScanObserver& observer,
+                                               const KeepPicture& keep = keep_no_picture);
+
+/// A picture without a laser has to be dark enough to show lines.
+/// @throws Error "sensor-blind"
+void expect_dark_room(const Picture& dark, const std::string& camera);
+
+/// A laser that works shows on something in any picture: on the object, the platform, or what lies
+/// around them.
+/// @param laser  its name
+/// @throws Error "sensor-blind"
+void expect_line(const Picture& dark, const Picture& lit, const std::string& laser);
+
+}  // namespace octurn

@@ -1,0 +1,298 @@
+#include "run/run_scan.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "build/early_model.hpp"
+#include "build/fitting_reconstruction.hpp"
+#include "calibration/solve_pose.hpp"
+#include "capture/coverage.hpp"
+#include "capture/last_look.hpp"
+#include "capture/line_preview.hpp"
+#include "capture/plan.hpp"
+#include "capture/scan_of_rig.hpp"
+#include "capture/take_depth_image.hpp"
+#include "capture/take_stop.hpp"
+#include "octurn/quality.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
+#include "octurn/units.hpp"
+#include "store/checked_snapshots.hpp"
+#include "store/stored_scan.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto wait_interval = std::chrono::milliseconds(500);
+
+/// Rounds an angle as scan.json does, which has degrees: a model built from the folder later has
+/// the same bytes.
+double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
+
+/// One attempt at a scan, from its next stop to its model.
+class Run {
+ public:
+  Run(const ScanSettings& settings, const Limits& limits, const std::filesystem::path& folder,
+      Rig& rig, const std::stop_token& stop, const ScanObserver& observer)
+      : settings_(settings),
+        folder_(folder),
+        rig_(rig),
+        stop_(stop),
+        observer_(observer),
+        scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder)
+                                                            : scan_of_rig(rig, settings)),
+        reconstruction_(options_of_scan(scan_, settings, limits)),
+        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
+
+  bool has_all_snapshots() const { return done() == settings_.snapshots; }
+  /// @return false if stopped first; so do `take_depth` and `take_lines`
+  bool take_snapshots();
+  std::vector<CalibrationFinding> calibrate();
+  std::optional<Model> build(Clock::time_point captured,
+                             const std::vector<CalibrationFinding>& findings);
+
+ private:
+  int done() const { return static_cast<int>(scan_.shots.size()); }
+  std::optional<ModelReport> write();
+  bool take_depth(const Stop& at, double angle);
+  bool take_lines(const Stop& at, double angle, LinePreview& preview);
+  void resume();
+  SnapshotSource checked();
+  void add_stored();
+  void rebuild();
+  template <typename Tell>
+  bool wait_for_added(Tell tell);
+  template <typename Add>
+  void add(Add add_to);
+
+  const ScanSettings& settings_;
+  const std::filesystem::path& folder_;
+  Rig& rig_;
+  const std::stop_token& stop_;
+  const ScanObserver& observer_;
+  Scan scan_;
+  std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
+  FittingReconstruction reconstruction_;
+  PoseChecks check_;          // of the snapshots added to the reconstruction
+  int added_ = 0;             // snapshots added to the reconstruction
+  std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
+  EarlyModel early_;          // with the configured pose, while another is solved
+};
+
+bool Run::take_snapshots() {
+  const int steps = rig_.turntable().steps_per_turn();
+  if (done() == 0) {
+    begin_scan(scan_, settings_, folder_, rig_);
+  } else {
+    resume();
+  }
+  LinePreview preview(folder_, reconstruction_.options(), settings_.snapshots, stop_, observer_);
+  for (const std::int64_t position :
+       stop_positions(rig_.turntable().position(), steps, settings_.snapshots, done())) {
+    const Stop at{.index = done(), .position = position};
+    const double angle = radians_from_degrees(angle_deg_at(position, steps));
+    if (!(scan_.laser ? take_lines(at, angle, preview) : take_depth(at, angle))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Run::take_depth(const Stop& at, double angle) {
+  std::optional<DepthFrame> frame = take_depth_image(rig_, at, settings_, stop_, observer_);
+  if (!frame) {
+    return false;
+  }
+  const std::ptrdiff_t readings = readings_in(*frame);
+  first_readings_ = done() == 0 ? readings : first_readings_;
+  expect_coverage(readings, first_readings_, scan_.sensor_name);
+  const Shot shot{.file = shot_file(done()), .angle = angle};
+  store_snapshot(folder_, scan_, shot, *frame);
+  observer_.on_progress(Phase::capturing, done());
+  add([added = make_snapshot(*std::move(frame), scan_, {.angle = stored_angle(angle)}),
+       index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
+    check_.add(index, added);
+    reconstruction.add(added, stop_);
+  });
+  return true;
+}
+
+/// Adds lines to the preview only: the model's first surface ends at the last stop's lines.
+bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
+  if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
+    return false;
+  }
+  preview.add(scan_);
+  return true;
+}
+
+/// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
+void Run::resume() {
+  expect_same_rig(scan_, settings_, rig_);
+  if (!scan_.laser) {
+    first_readings_ = readings_in(checked().read(0).frame);
+    add_stored();
+  }
+}
+
+void Run::add_stored() {
+  add([stored = checked(), this](Reconstructor& reconstruction) {
+    reconstruction.add(stored, stop_);
+  });
+}
+
+/// Solves the sensor's pose from the snapshots. If it replaces the configured one, the
+/// reconstruction starts again.
+std::vector<CalibrationFinding> Run::calibrate() {
+  if (settings_.pose == PoseSource::told || scan_.solved) {
+    return {};
+  }
+  observer_.on_progress(Phase::calibrating, done());
+  if (added_ == done() && wait_for_added([] {}) && !stop_.stop_requested()) {
+    early_.begin(*reconstruction_, readable_snapshots(folder_, scan_, stop_), folder_ / "Scan.stl");
+  }
+  const ScanSolution solution =
+      solve_scan(folder_, scan_, readable_snapshots(folder_, scan_, stop_),
+                 reconstruction_.options().threads, stop_);
+  throw_if_stopped(stop_);
+  observer_.on_calibrated(solution);
+  if (solution.replaces_told) {
+    early_.give_up();
+    scan_.solved = solution.solved;
+    write_solved_pose(folder_, *scan_.solved);
+    reconstruction_.start_again();
+    added_ = 0;
+  }
+  return solution.report.findings;
+}
+
+SnapshotSource Run::checked() {
+  return checked_snapshots(readable_snapshots(folder_, scan_, stop_), check_);
+}
+
+/// Adds all stored snapshots again, with the pose of `scan_`.
+void Run::rebuild() {
+  observer_.on_progress(Phase::rebuilding, done());
+  const auto read = std::make_shared<std::atomic<int>>(0);
+  const SnapshotSource counted{.count = scan_.shots.size(),
+                               .read = [read, stored = checked()](std::size_t shot) {
+                                 ++*read;
+                                 return stored.read(shot);
+                               }};
+  do {
+    *read = 0;
+    add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
+  } while (!wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); }));
+  observer_.on_rebuilt(done());
+}
+
+/// @param tell  called every `wait_interval`
+/// @return false if memory was exceeded: the reconstruction is then coarser, and empty
+template <typename Tell>
+bool Run::wait_for_added(Tell tell) {
+  while (adding_.valid() && adding_.wait_for(wait_interval) != std::future_status::ready) {
+    tell();
+  }
+  try {
+    if (adding_.valid()) {
+      adding_.get();
+    }
+    return true;
+  } catch (const Error& error) {
+    reconstruction_.make_coarser(error);
+    added_ = 0;
+    return false;
+  }
+}
+
+template <typename Add>
+void Run::add(Add add_to) {
+  if (!wait_for_added([this] { observer_.on_wait(); })) {
+    add_stored();  // including the new snapshot
+    return;
+  }
+  added_ = done();
+  adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
+    add_to(*reconstruction_);
+    if (done < settings_.snapshots && !stop_.stop_requested()) {  // else the model follows
+      observer_.on_added(*reconstruction_, done);
+    }
+  });
+}
+
+/// Adds missing snapshots and writes the model; makes it coarser while it exceeds the memory.
+/// @return nullopt if stopped first
+std::optional<ModelReport> Run::write() {
+  for (;;) {
+    if (added_ < done()) {
+      rebuild();
+    }
+    observer_.on_progress(Phase::building, done());
+    if (!wait_for_added([] {})) {
+      continue;
+    }
+    if (stop_.stop_requested()) {
+      return std::nullopt;  // not all snapshots were added
+    }
+    try {
+      return early_.has_begun()
+                 ? early_.finish(stop_)
+                 : write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
+                               folder_ / "Scan.stl", stop_);
+    } catch (const Error& error) {
+      reconstruction_.make_coarser(error);
+      added_ = 0;
+    }
+  }
+}
+
+/// Writes the model and rates it. Where the volume does not fit into memory as a whole, the
+/// snapshots are read again for each part.
+/// @param captured  when the last snapshot was stored
+/// @param findings  of the calibration
+std::optional<Model> Run::build(Clock::time_point captured,
+                                const std::vector<CalibrationFinding>& findings) {
+  std::optional<ModelReport> report = write();
+  if (!report) {
+    return std::nullopt;
+  }
+  Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
+  reconstruction_.add_coarser_reason(quality);
+  report->places = {};  // dropped: every request for a job's state copies it
+  return Model{.report = *std::move(report),
+               .build_time = Clock::now() - captured,
+               .quality = std::move(quality)};
+}
+
+}  // namespace
+
+std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
+                              const std::filesystem::path& folder, Rig& rig,
+                              const std::stop_token& stop, const ScanObserver& observer) try {
+  Run run(settings, limits, folder, rig, stop, observer);
+  const bool is_unfinished = !run.has_all_snapshots();
+  if (is_unfinished && !run.take_snapshots()) {
+    return std::nullopt;
+  }
+  const bool retakes = is_unfinished && rig.laser() == nullptr;
+  const auto retaken =
+      retakes ? retake_first_stop(rig, settings, stop, observer) : std::optional<DepthFrame>();
+  const Clock::time_point captured = Clock::now();
+  std::vector<CalibrationFinding> findings = run.calibrate();
+  if (retaken) {
+    store_object_motion(folder, *retaken);
+  }
+  add_stored_move(folder, findings);
+  return run.build(captured, findings);
+} catch (const Stopped&) {
+  return std::nullopt;  // while snapshots were added, or the model was made
+}
+
+}  // namespace octurn

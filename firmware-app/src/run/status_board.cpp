@@ -1,0 +1,168 @@
+#include "run/status_board.hpp"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "log.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = Status::Clock;
+
+bool is_ready(const DeviceStatus& device) { return device.state == DeviceStatus::State::ready; }
+
+void set_failed(DeviceStatus& device, const Failure& failure) {
+  if (device.failure.detail != failure.detail) {
+    log::warning("scanner", failure.detail);
+  }
+  device.state = failure.is_absence() ? DeviceStatus::State::missing : DeviceStatus::State::failed;
+  device.failure = failure;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const DeviceStatus& device) {
+  constexpr std::array<std::string_view, 4> states{"unknown", "ready", "missing", "failed"};
+  return {{"state", states[static_cast<std::size_t>(device.state)]},
+          {"name", device.name},
+          {"simulated", device.simulated},
+          {"message", device.failure.detail}};
+}
+
+StatusBoard::StatusBoard(const RigOptions& rig) {
+  status_.update([&](Status& status) {
+    status.sensor.simulated = rig.laser ? !rig.stepper : is_simulated_sensor(rig.sensor_uri);
+    status.turntable.simulated = !rig.stepper;
+    status.turntable.name = status.turntable.simulated ? "simulated turntable" : "stepper";
+  });
+}
+
+Status StatusBoard::status() const {
+  Status status = *status_.get();
+  if (status.is_scanning()) {
+    const Clock::time_point now = Clock::now();
+    status.job->times.elapsed = now - status.job_started;
+    if (status.job_end) {
+      status.job->times.left = status.job_end->left(now);
+    }
+    if (status.job_gives_up) {
+      status.job->times.until_pause = std::max(*status.job_gives_up - now, Clock::duration::zero());
+    }
+  }
+  return status;
+}
+
+void StatusBoard::begin_scan(const Job& job, Clock::time_point started) {
+  status_.update([&](Status& status) {
+    status.job = job;
+    status.job_started = started;
+    status.job_end.reset();
+    status.job_gives_up.reset();
+  });
+  mesh_preview_.set({.id = job.id});
+}
+
+void StatusBoard::set_job(const Job& job, const std::optional<ExpectedEnd>& expected_end,
+                          const std::optional<Clock::time_point>& gives_up) {
+  status_.update([&](Status& status) {
+    if (status.job && status.job->id == job.id) {
+      ScanLabel label = std::move(status.job->label);
+      status.job = job;
+      status.job->label = std::move(label);
+      status.job_end = expected_end;
+      status.job_gives_up = gives_up;
+    }
+  });
+}
+
+void StatusBoard::label(std::string_view id, const LabelChange& change) {
+  status_.update([&](Status& status) {
+    if (status.job && status.job->id == id) {
+      status.job->label = changed(status.job->label, change);
+    }
+  });
+}
+
+void StatusBoard::set_sensor_ready(const std::string& name) {
+  if (const auto now = status_.get(); is_ready(now->sensor) && now->sensor.name == name) {
+    return;  // called for every frame: publishes changes only
+  }
+  status_.update([&](Status& status) {
+    if (!is_ready(status.sensor)) {
+      log::info("scanner", "sensor ready: " + name);
+    }
+    status.sensor.state = DeviceStatus::State::ready;
+    status.sensor.name = name;
+    status.sensor.failure = {};
+  });
+}
+
+void StatusBoard::set_turntable_ready() {
+  if (is_ready(status_.get()->turntable)) {
+    return;
+  }
+  status_.update([&](Status& status) {
+    log::info("scanner", "turntable ready: " + status.turntable.name);
+    status.turntable.state = DeviceStatus::State::ready;
+    status.turntable.failure = {};
+  });
+}
+
+void StatusBoard::set_sensor_failed(const Failure& failure) {
+  status_.update([&](Status& status) { set_failed(status.sensor, failure); });
+  // Published after the status, which is read by those who wait for a frame.
+  camera_frame_.set({.time = Clock::now(), .failure = failure});
+}
+
+void StatusBoard::set_turntable_failed(const Failure& failure) {
+  status_.update([&](Status& status) { set_failed(status.turntable, failure); });
+}
+
+void StatusBoard::set_camera_frame(DepthFrame frame, const Intrinsics& lens) {
+  camera_frame_.set({.time = Clock::now(), .frame = std::move(frame), .lens = lens});
+}
+
+void StatusBoard::set_camera_picture(Picture picture) {
+  camera_frame_.set({.time = Clock::now(), .picture = std::move(picture)});
+}
+
+void StatusBoard::set_sensor_closed() {
+  known_sensor_.update([](KnownSensor& sensor) { sensor.since.reset(); });
+}
+
+void StatusBoard::clear_sensor_map() {
+  known_sensor_.update([](KnownSensor& sensor) { sensor.map.reset(); });
+}
+
+void StatusBoard::set_lens(std::optional<KeptLens> lens) {
+  known_sensor_.update([&](KnownSensor& sensor) { sensor.lens = lens; });
+}
+
+void StatusBoard::forget_calibration_run() { calibration_run_.set(std::nullopt); }
+
+void StatusBoard::set_calibration_run(CalibrationRun run) {
+  const bool is_running = run.state == CalibrationRun::State::running;
+  calibration_run_.set(std::move(run));
+  status_.update([&](Status& status) { status.is_measuring = is_running; });
+}
+
+void StatusBoard::set_build_run(BuildRun run) {
+  const bool is_building = !run.has_ended();
+  build_run_.set(std::move(run));
+  status_.update([&](Status& status) { status.is_building = is_building; });
+}
+
+void StatusBoard::drop_waiting_build(const std::optional<Failure>& reason) {
+  std::optional<BuildRun> run = *build_run_.get();
+  if (run && run->state == BuildRun::State::waiting) {
+    run->state = BuildRun::State::cancelled;
+    run->phase = Phase::done;
+    run->failure = reason;
+    set_build_run(*std::move(run));
+  }
+}
+
+}  // namespace octurn

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "failure.hpp"
+#include "octurn/calibrate.hpp"
+#include "octurn/model.hpp"
+#include "octurn/quality.hpp"
+#include "octurn/register.hpp"
+#include "octurn/scan_folder.hpp"
+#include "settings/scan_settings.hpp"
+#include "store/build_settings.hpp"
+
+namespace octurn {
+
+using Seconds = std::chrono::duration<double>;
+
+enum class JobState {
+  running,
+  paused,  ///< by a person, or because a device failed for too long
+  finished,
+  cancelled,
+  failed,
+  interrupted,  ///< the daemon ended while it ran
+};
+
+/// The current step of a scan.
+enum class Phase {
+  starting,
+  turning,
+  capturing,
+  calibrating,  ///< solving the sensor's pose from the snapshots
+  rebuilding,   ///< adding the stored snapshots again, with the solved pose
+  registering,  ///< finding the object's pose after it was turned over
+  building,
+  done,
+};
+
+/// Whether a scan in that state waits to be resumed.
+bool is_resumable(JobState state);
+
+std::string_view to_string(JobState state);
+std::string_view to_string(Phase phase);
+
+/// The state or phase of that name; nullopt for other names.
+std::optional<JobState> job_state_named(std::string_view name);
+std::optional<Phase> phase_named(std::string_view name);
+
+/// The failure of a scan that was running when the daemon ended.
+Failure interruption();
+
+/// A finished model. `build_time` counts from the last stored snapshot.
+struct Model {
+  ModelReport report = {};
+  Seconds build_time = {};
+  std::optional<Quality> quality = {};  ///< nullopt: made by an earlier version
+};
+
+/// The sensor's pose as solved from a scan's own snapshots.
+struct ScanCalibration {
+  bool accepted = false;
+  bool confirms_told = false;             ///< the configured pose is right, and is kept
+  std::string reason = {};                ///< why the solved pose was refused, or empty
+  std::optional<SolvedPose> solved = {};  ///< if accepted
+  std::vector<CalibrationFinding> findings = {};
+  int rebuilt = 0;  ///< snapshots added again so far, with the solved pose
+};
+
+/// A model that was built from the stored snapshots, with other settings than the scan's.
+struct Build {
+  int number = 1;            ///< among the scan's builds, from 1
+  std::string created = {};  ///< UTC, as in ISO 8601
+  BuildSettings settings = {};
+  std::optional<ScanCalibration> calibration = {};  ///< if the pose was solved for it
+  Model model = {};
+  std::vector<std::string> poses = {};  ///< ids of the scans of other poses that it merges
+  int replaced = 0;  ///< if it merges poses: number of the build chosen before it
+};
+
+/// Whether a build merges the scan of another pose. @param pose  id of that scan
+bool has_pose(const Build& build, const std::string& pose);
+
+/// Result of registering a turn to the earlier ones.
+struct PoseRegistration {
+  bool accepted = false;
+  std::string reason = {};   ///< why it was refused, for people; empty if accepted
+  RegisteredPose pose = {};  ///< of the turn, if accepted
+  std::vector<RegistrationCandidate> candidates = {};  ///< for a person to choose from, best first
+  /// Index of the candidate that was refined; nullopt: refined from pairs of points, or refused.
+  std::optional<std::size_t> candidate = {};
+};
+
+/// Links a scan to an earlier scan of the same object in another pose.
+struct PoseOf {
+  std::string scan = {};                              ///< id of the earlier scan
+  std::optional<PoseRegistration> registration = {};  ///< once all snapshots are taken
+  /// Of a pose that was removed from the earlier scan: number of the build with it that was chosen;
+  /// 0 if none was.
+  std::optional<int> removed_build = {};
+};
+
+/// When a scan was begun, and how long it takes.
+struct JobTimes {
+  std::string created = {};  ///< UTC, as in ISO 8601
+  Seconds elapsed = {};
+  std::optional<Seconds> left = {};  ///< estimated remaining time
+  /// While a device fails at a stop of a running scan: time until the scan pauses.
+  std::optional<Seconds> until_pause = {};
+  int late_pulses = 0;  ///< motor pulses that came late, and slowed the turn
+};
+
+/// The builds of a scan.
+struct JobBuilds {
+  std::vector<Build> all = {};  ///< in order of their numbers
+  int chosen = 0;               ///< number of the build whose model is shown; 0: the scan's own
+  bool have_colours = false;    ///< models can get colours: laser-line pictures have them
+};
+
+/// A person's name and notes for a scan; empty if there are none.
+struct ScanLabel {
+  std::string name = {};
+  std::string notes = {};
+};
+
+/// One scan: its settings, state and results.
+struct Job {
+  std::string id = {};
+  ScanLabel label = {};
+  JobState state = JobState::running;
+  Phase phase = Phase::starting;
+  int snapshots_done = 0;
+  JobTimes times = {};
+  ScanSettings settings = {};
+  std::optional<Failure> failure = {};  ///< of a running scan: the fault that is being retried
+  std::optional<ScanCalibration> calibration = {};  ///< after the last stop, if solved
+  std::optional<Model> model = {};                  ///< made by the scan itself
+  JobBuilds builds = {};
+  std::optional<PoseOf> pose_of = {};  ///< of a scan of another pose
+};
+
+/// Returns the build of that number; null if there is none.
+const Build* find_build(const Job& job, int number);
+
+/// Returns the chosen build's model, else the scan's own; null if there is none.
+const Model* chosen_model(const Job& job);
+
+/// Returns a scan as its worker has it, with what others may have changed in the stored scan
+/// meanwhile: the label and the builds.
+Job with_stored_changes(Job working, const Job& stored);
+
+/// Marks a scan as interrupted, because the program ended or its outcome could not be saved: it can
+/// be resumed.
+/// @param snapshots  number of stored snapshots
+Job to_interrupted(Job job, int snapshots, const Failure& reason = interruption());
+
+}  // namespace octurn

@@ -13,7 +13,7 @@ import {refusalText} from './wording.js';
 
 const confirmed = {shift_mm: 0.1, tilt_deg: 0.05};  // smaller changes count as none: docs/calibration.md
 export const turnStops = 24;  // stops of a calibration turn
-export const scaleLimits = {min: 0.97, max: 1.03};
+export const scaleLimits = {min: 0.9, max: 1.1};
 
 /** @param {PoseRecord} pose */
 export const sourceOf = ({source, at}) => at ? text('pose.at', {source: text(`pose.${source}`), when: when(at)}) : text(`pose.${source}`);

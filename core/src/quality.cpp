@@ -76,7 +76,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
 
 void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
   for (const CalibrationFinding& finding : findings) {
-    if (finding.code == "moved") {
+    if (finding.code == "moved" || finding.code == "focal-length") {
       judgement.add(Verdict::look, {.code = finding.code,
                                     .detail = finding.detail,
                                     .hint = finding.hint,

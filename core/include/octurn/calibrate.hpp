@@ -24,6 +24,7 @@ struct CalibrationTurn {
   std::vector<double> angles = {};
   /// Whether the depth images were corrected by a `SensorMap`.
   bool has_sensor_map = false;
+  bool knows_optics = false;  ///< of the depth images: then they are not solved
   /// Reads the depth image of a stop. Called once for each, by several threads at once.
   std::function<DepthFrame(std::size_t stop)> read = {};
 };
@@ -58,9 +59,14 @@ struct CalibrationReport {
   /// little of the object was seen.
   std::vector<double> stop_offsets = {};
   std::vector<CalibrationFinding> findings = {};
+  /// What the turn tells of the optics; nothing if it tells none, or they were known.
+  std::optional<SolvedOptics> optics = {};
+  /// Whether they differ from the sensor's own by far more than their sigma. If accepted, the pose
+  /// holds only together with them.
+  bool optics_differ = false;
 
   /// Whether the told pose is within three sigma of the solved one, or within 0.1 mm and 0.05
-  /// degrees.
+  /// degrees, and the sensor's own optics hold.
   bool confirms_told() const;
 };
 

@@ -54,6 +54,7 @@ struct SolvedPose {
   double before = 0;  ///< metres: median distance between two stops' surfaces with the told pose
   double after = 0;   ///< the same with this pose
   std::vector<Laser> lasers = {};  ///< of a scan by laser line: solved planes, without `source`
+  std::optional<SolvedOptics> optics = {};  ///< of a depth sensor, if they replace what was known
 };
 
 /// One of several poses of the object on the platform, each with a turn of snapshots.
@@ -69,9 +70,10 @@ struct ScanPose {
 /// The content of `scan.json` (format "octurn-scan", version 1 or 2).
 struct Scan {
   std::string sensor_name = {};
-  std::string sensor_serial = {};         ///< empty if unknown
-  Intrinsics intrinsics = {};             ///< `depth_unit` is not used by laser line
-  std::optional<LaserCamera> laser = {};  ///< nothing: a depth sensor
+  std::string sensor_serial = {};           ///< empty if unknown
+  Intrinsics intrinsics = {};               ///< `depth_unit` is not used by laser line
+  std::optional<LaserCamera> laser = {};    ///< nothing: a depth sensor
+  std::optional<SensorOptics> optics = {};  ///< of a depth sensor, if known before the scan
   /// As the rig was told when the scan was taken; metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};
@@ -137,10 +139,20 @@ Scan read_scan(const std::filesystem::path& folder);
 /// @throws Error "scan-malformed"  if the file is not a map, or one of another size
 void use_sensor_map(Scan& scan, const std::filesystem::path& file);
 
-/// Applies the scan's sensor map, if it has one, to a depth image of its sensor.
-DepthFrame corrected(DepthFrame frame, const Scan& scan);
+/// The optics of a shot for models: solved, else known before the scan; nothing: the sensor's own.
+std::optional<SensorOptics> model_optics(const Scan& scan, const Shot& shot);
 
-/// Reads the depth image of one shot, and applies the sensor map. Its pose is `model_pose`.
+/// The pinhole camera of a shot's snapshot.
+Intrinsics model_intrinsics(const Scan& scan, const Shot& shot);
+
+/// Makes a shot's snapshot from its depth image: applies the sensor map and `model_optics`. Its
+/// pose is `model_pose`.
+///
+/// The map is one of the sensor's pixels: it goes before distortion, and the depth scale, which
+/// changes its errors by as little, is the depth unit's.
+Snapshot make_snapshot(DepthFrame frame, const Scan& scan, const Shot& shot);
+
+/// Reads the depth image of one shot, and makes its snapshot.
 ///
 /// @throws Error "scan-malformed"      if it is a scan by laser line, which has no depth images
 /// @throws Error "scan-missing"        if there is no such file

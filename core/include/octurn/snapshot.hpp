@@ -49,6 +49,39 @@ struct Intrinsics {
   bool operator==(const Intrinsics&) const = default;
 };
 
+/// The optics of one depth sensor as measured. They replace its data sheet's.
+///
+/// Distortion is Brown's on normalised coordinates: what a pinhole camera would see at x appears at
+/// x (1 + k1 r^2 + k2 r^4). The true inverse depth is (the sensor's + depth_offset_per_m) /
+/// depth_scale.
+struct SensorOptics {
+  double fx = 575.8;  ///< focal lengths, pixels
+  double fy = 575.8;
+  double cx = 320.0;  ///< principal point, pixels
+  double cy = 240.0;
+  double k1 = 0;
+  double k2 = 0;
+  double depth_scale = 1;
+  double depth_offset_per_m = 0;  ///< 1/m
+};
+
+/// Measured optics, and the standard deviation of each member.
+struct SolvedOptics {
+  SensorOptics value = {};
+  SensorOptics sigma = {};
+};
+
+/// The pinhole camera of depth images that were rectified for these optics.
+/// @param sensor  as the sensor tells
+Intrinsics rectified(Intrinsics sensor, const SensorOptics& optics);
+
+/// Takes distortion and depth offset out of a depth image: it is then one of the pinhole camera
+/// above, in whose depth unit the scale is. Depths are interpolated between neighbouring readings
+/// of one surface, so that rectified surfaces have no steps.
+/// @param sensor  as the sensor tells
+/// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
+DepthFrame rectified(DepthFrame frame, const Intrinsics& sensor, const SensorOptics& optics);
+
 /// How the frames of one still scene are merged into one depth image (Bennett 2014).
 enum class DepthFilter {
   basic,            ///< the first frame, unchanged

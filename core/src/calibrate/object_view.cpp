@@ -40,7 +40,7 @@ bool ObjectView::Mask::contains(const Vector3d& point) const {
 }
 
 ObjectView::ObjectView(const DepthFrame& frame, const Intrinsics& intrinsics, const Mask& mask)
-    : intrinsics_(intrinsics), mask_(mask) {
+    : camera_{.pinhole = intrinsics}, mask_(mask) {
   check_size(frame, intrinsics, "calibrate");
   window_ = find_object(frame, intrinsics, seen_pixels(intrinsics, to_corners(mask)),
                         [&](const Vector3d& point) { return mask.contains(point); });
@@ -85,8 +85,8 @@ std::optional<SurfaceReading> ObjectView::read(int u, int v) const {
       1 / static_cast<double>(farthest) - 1 / static_cast<double>(nearest) > max_depth_range) {
     return std::nullopt;
   }
-  const Vector3d ray = to_ray(intrinsics_, window_.left + u, window_.top + v);
-  const auto normal = fit_normal(sums, intrinsics_, ray, min_cosine);
+  const Vector3d ray = camera_.ray(window_.left + u, window_.top + v);
+  const auto normal = fit_normal(sums, camera_.pinhole, ray, min_cosine);
   if (!normal) {
     return std::nullopt;
   }
@@ -97,7 +97,7 @@ std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   if (!(point.z() > nearest_z)) {
     return std::nullopt;
   }
-  const Eigen::Vector2d pixel = project(intrinsics_, point);
+  const Eigen::Vector2d pixel = camera_.pixel(point);
   const double u = pixel.x() - window_.left;
   const double v = pixel.y() - window_.top;
   if (!(u > 0 && v > 0 && u < window_.width && v < window_.height)) {
@@ -106,9 +106,9 @@ std::optional<SurfaceReading> ObjectView::look_up(const Vector3d& point) const {
   return read(static_cast<int>(u + 0.5), static_cast<int>(v + 0.5));
 }
 
-void ObjectView::widen(double factor) {
-  intrinsics_.fx /= factor;
-  intrinsics_.fy /= factor;
+void ObjectView::set_camera(const DistortedCamera& camera, const Mask& mask) {
+  camera_ = camera;
+  mask_ = mask;
 }
 
 std::vector<SurfaceReading> ObjectView::readings(int step) const {

@@ -6,6 +6,7 @@
 
 #include "calibrate/platform_plane.hpp"
 #include "depth/object_window.hpp"
+#include "depth/pinhole.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -50,8 +51,8 @@ class ObjectView {
   /// @return nothing without a reading, near a depth edge, or at a grazing angle
   std::optional<SurfaceReading> look_up(const Eigen::Vector3d& point) const;
 
-  /// Divides the focal length by a factor: everything becomes wider, and no nearer.
-  void widen(double factor);
+  /// Reads the same image with other optics. @param camera  of the same size and depth unit
+  void set_camera(const DistortedCamera& camera, const Mask& mask);
 
   /// The object's readings at every `step`-th pixel.
   std::vector<SurfaceReading> readings(int step) const;
@@ -64,7 +65,7 @@ class ObjectView {
   }
   float at(int u, int v) const { return inverse_depth_[index(u, v)]; }
 
-  Intrinsics intrinsics_;
+  DistortedCamera camera_;
   Mask mask_;
   ObjectWindow window_ = {};
   std::vector<float> inverse_depth_ = {};  // 1/metres, row by row; 0 is no reading

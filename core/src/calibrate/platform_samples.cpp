@@ -4,12 +4,6 @@
 #include "depth/pinhole.hpp"
 
 namespace octurn {
-namespace {
-
-constexpr int platform_step = 4;  // pixels between readings that the plane is fitted to
-
-}  // namespace
-
 PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops) {
   PlatformSamples samples{
       .columns = static_cast<std::size_t>((lens.width + platform_step - 1) / platform_step),

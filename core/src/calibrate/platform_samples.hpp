@@ -10,6 +10,9 @@
 
 namespace octurn {
 
+/// Pixels between readings that the plane is fitted to.
+inline constexpr int platform_step = 4;
+
 /// A grid of every fourth pixel in both directions, with its rays and room for the depths of stops.
 PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops);
 

@@ -81,6 +81,7 @@ TurnViews TurnReader::read_views() {
   const double wanted =
       std::min(stop_readings_wanted, turn_readings_wanted / static_cast<double>(views.size()));
   const int step = std::clamp(static_cast<int>(std::sqrt(each / wanted)), 1, max_spacing);
+  seen.spacing = step;
   seen.correlation = uses + correlated_pixels / (step * step);
   for (const ObjectView& view : seen.views) {
     seen.readings.push_back(view.readings(step));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "io/radial_distortion.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -16,5 +17,28 @@ inline Eigen::Vector2d project(const Intrinsics& intrinsics, const Eigen::Vector
   return {point.x() / point.z() * intrinsics.fx + intrinsics.cx,
           point.y() / point.z() * intrinsics.fy + intrinsics.cy};
 }
+
+/// A camera with distortion, to solve its optics.
+struct DistortedCamera {
+  Intrinsics pinhole = {};
+  RadialDistortion distortion = {};
+
+  /// The ray of a pixel, as above.
+  Eigen::Vector3d ray(int u, int v) const {
+    Eigen::Vector3d seen = to_ray(pinhole, u, v);
+    if (distortion.k1 != 0) {
+      seen.head<2>() *= distortion.undistorting_factor(seen.head<2>().norm());
+    }
+    return seen;
+  }
+
+  /// The pixel of a point, as above.
+  Eigen::Vector2d pixel(Eigen::Vector3d point) const {
+    if (distortion.k1 != 0) {
+      point.head<2>() *= distortion.distorting_factor(point.head<2>().norm() / point.z());
+    }
+    return project(pinhole, point);
+  }
+};
 
 }  // namespace octurn

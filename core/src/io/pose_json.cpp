@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/laser_json.hpp"
+#include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 
@@ -29,12 +30,14 @@ SolvedPose solved_from(const JsonValue& solved) {
   JsonObject keys(solved);
   const auto metres = [&](std::string_view key) { return metres_from_mm(keys.at(key).number()); };
   const auto lasers = keys.value("lasers");
+  const auto optics = keys.value("optics");
   return {.platform_from_sensor = pose_from(keys.at("platform_from_sensor")),
           .position_sigma = metres("sigma_mm"),
           .direction_sigma = radians_from_degrees(keys.at("sigma_deg").number()),
           .before = metres("before_mm"),
           .after = metres("after_mm"),
-          .lasers = lasers ? lasers_from(*lasers) : std::vector<Laser>{}};
+          .lasers = lasers ? lasers_from(*lasers) : std::vector<Laser>{},
+          .optics = optics ? std::optional(solved_optics_from(*optics)) : std::nullopt};
 }
 
 ScanPose scan_pose_from(const JsonValue& value, const Scan& scan) {
@@ -114,6 +117,9 @@ json to_json(const SolvedPose& solved) {
              {"after_mm", mm_from_metres(solved.after)}};
   if (!solved.lasers.empty()) {
     value["lasers"] = to_json(solved.lasers);
+  }
+  if (solved.optics) {
+    value["optics"] = to_json(*solved.optics);
   }
   return value;
 }

@@ -9,9 +9,10 @@ struct RadialDistortion {
   double k2 = 0;
 
   /// The factor from undistorted coordinates at `radius` to distorted ones.
-  double distorting_factor(double radius) const {
-    return 1 + radius * radius * (k1 + radius * radius * k2);
-  }
+  double distorting_factor(double radius) const { return 1 + shift(radius * radius); }
+
+  /// The same less one. @param square  of the radius
+  double shift(double square) const { return square * (k1 + square * k2); }
 
   /// The factor from distorted coordinates at `distorted_radius` to undistorted ones, by Newton's
   /// method.

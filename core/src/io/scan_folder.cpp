@@ -127,7 +127,8 @@ Scan scan_from(const json& document) {
   Scan scan{.sensor_name = std::move(sensor.name),
             .sensor_serial = std::move(sensor.serial),
             .intrinsics = sensor.intrinsics,
-            .laser = std::move(sensor.laser)};
+            .laser = std::move(sensor.laser),
+            .optics = sensor.optics};
   for (const JsonValue& shot : root.at("snapshots").elements()) {
     scan.shots.push_back(shot_from(shot, number, scan.laser));
   }
@@ -193,9 +194,17 @@ void use_sensor_map(Scan& scan, const std::filesystem::path& file) {
   scan.sensor_map = std::make_shared<const SensorMap>(read_sensor_map(file, scan.intrinsics));
 }
 
-DepthFrame corrected(DepthFrame frame, const Scan& scan) {
-  return scan.sensor_map ? corrected(std::move(frame), *scan.sensor_map, scan.intrinsics.depth_unit)
-                         : std::move(frame);
+Snapshot make_snapshot(DepthFrame frame, const Scan& scan, const Shot& shot) {
+  Snapshot snapshot{.frame = scan.sensor_map ? corrected(std::move(frame), *scan.sensor_map,
+                                                         scan.intrinsics.depth_unit)
+                                             : std::move(frame),
+                    .intrinsics = model_intrinsics(scan, shot),
+                    .object_from_sensor = model_pose(scan, shot),
+                    .pose = shot.pose};
+  if (const auto optics = model_optics(scan, shot)) {
+    snapshot.frame = rectified(std::move(snapshot.frame), scan.intrinsics, *optics);
+  }
+  return snapshot;
 }
 
 Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, const Shot& shot) {
@@ -206,10 +215,7 @@ Snapshot read_snapshot(const std::filesystem::path& folder, const Scan& scan, co
   const std::string png = read_scan_file(folder / shot.file);
   DepthFrame frame = decode_depth_png(shot.file, std::as_bytes(std::span(png)), intrinsics.width,
                                       intrinsics.height);
-  return {.frame = corrected(std::move(frame), scan),
-          .intrinsics = intrinsics,
-          .object_from_sensor = model_pose(scan, shot),
-          .pose = shot.pose};
+  return make_snapshot(std::move(frame), scan, shot);
 }
 
 void write_scan(const std::filesystem::path& folder, const Scan& scan) {
@@ -223,7 +229,8 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
       {"sensor", to_json(SensorJson{.name = scan.sensor_name,
                                     .serial = scan.sensor_serial,
                                     .intrinsics = scan.intrinsics,
-                                    .laser = scan.laser})},
+                                    .laser = scan.laser,
+                                    .optics = scan.optics})},
       {"snapshots", shots},
   };
   if (!has_free_poses(scan)) {

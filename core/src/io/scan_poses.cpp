@@ -52,6 +52,17 @@ Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot) {
   return known(scan, shot.pose) * object_from_sensor(sensor, shot.angle);
 }
 
+std::optional<SensorOptics> model_optics(const Scan& scan, const Shot& shot) {
+  const auto& solved =
+      scan.poses.empty() ? scan.solved : scan.poses[static_cast<std::size_t>(shot.pose)].solved;
+  return solved && solved->optics ? solved->optics->value : scan.optics;
+}
+
+Intrinsics model_intrinsics(const Scan& scan, const Shot& shot) {
+  const auto optics = model_optics(scan, shot);
+  return optics ? rectified(scan.intrinsics, *optics) : scan.intrinsics;
+}
+
 std::vector<Placement> placements(const Scan& scan) {
   std::vector<Placement> all;
   for (std::size_t i = 0; i < scan.poses.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/intrinsics_json.hpp"
+#include "octurn/optics_json.hpp"
 
 namespace octurn {
 namespace {
@@ -32,6 +33,9 @@ SensorJson sensor_from(const JsonValue& object) {
     sensor.laser = laser_camera_from(keys, sensor.intrinsics);
   } else {
     sensor.intrinsics.depth_unit = depth_unit_from(keys);
+    if (const auto optics = keys.value("optics")) {
+      sensor.optics = optics_from(*optics);
+    }
   }
   sensor.serial = keys.text("serial").value_or("");
   return sensor;
@@ -47,6 +51,9 @@ nlohmann::json to_json(const SensorJson& sensor) {
     add_laser_camera(object, *sensor.laser);
   } else {
     object["depth_unit_m"] = intrinsics.depth_unit;
+    if (sensor.optics) {
+      object["optics"] = to_json(*sensor.optics);
+    }
   }
   if (!sensor.serial.empty()) {
     object["serial"] = sensor.serial;

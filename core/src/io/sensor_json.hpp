@@ -17,7 +17,8 @@ struct SensorJson {
   std::string name = {};
   std::string serial = {};  ///< empty if there is none
   Intrinsics intrinsics = {};
-  std::optional<LaserCamera> laser = {};  ///< none: the sensor measures depth
+  std::optional<LaserCamera> laser = {};    ///< none: the sensor measures depth
+  std::optional<SensorOptics> optics = {};  ///< of a depth sensor, if they were known
 };
 
 SensorJson sensor_from(const JsonValue& object);

@@ -170,7 +170,7 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
 
 /// Makes the registration input of a depth sensor's turn.
 RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop) {
-  RegistrationTurn one{.intrinsics = turn.scan.intrinsics,
+  RegistrationTurn one{.intrinsics = model_intrinsics(turn.scan, turn.scan.shots.front()),
                        .platform_from_sensor = model_pose(turn.scan),
                        .clip = turn.scan.clip};
   for (const Shot& shot : turn.scan.shots) {

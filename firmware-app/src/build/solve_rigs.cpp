@@ -12,13 +12,14 @@ namespace {
 constexpr std::size_t max_kept_bytes = 16'000'000;  // cached depth images of all turns
 
 /// Turns with the same configured pose come from one rig if their solved poses agree. Then all get
-/// the mean, which is more accurate than each. Does nothing if a turn is registered already.
+/// the mean, which is more accurate than each. Does nothing if a turn is registered already, or has
+/// solved optics, with which its pose belongs.
 void share_rig(std::vector<StoredTurn>& turns) {
   std::vector<SolvedPose> solved;
   const Eigen::Isometry3d& told = turns.front().scan.platform_from_sensor;
   for (const StoredTurn& turn : turns) {
     const Scan& scan = turn.scan;
-    if (turn.object_from_platform || !scan.solved ||
+    if (turn.object_from_platform || !scan.solved || scan.solved->optics ||
         scan.platform_from_sensor.matrix() != told.matrix()) {
       return;
     }
@@ -41,9 +42,11 @@ void solve_rig(StoredTurn& turn, std::size_t kept_bytes, int threads, const std:
                                    return snapshot;
                                  }};
   const ScanSolution solution = solve_scan(turn.folder, turn.scan, read_once, threads, stop);
-  turn.kept = kept;
   if (solution.replaces_told) {
     turn.scan.solved = solution.solved;
+  }
+  if (!solution.report.optics_differ) {  // else other depth images follow from the same files
+    turn.kept = kept;
   }
 }
 

@@ -43,10 +43,13 @@ CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, 
                 "the scan is of several poses, and a pose is solved from one turn",
                 "Solve each turn before they are merged.");
   }
-  CalibrationTurn turn{.intrinsics = scan.intrinsics,
+  Scan told = scan;
+  told.solved.reset();
+  CalibrationTurn turn{.intrinsics = model_intrinsics(told, told.shots.front()),
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},
                        .has_sensor_map = scan.sensor_map != nullptr,
+                       .knows_optics = scan.optics.has_value(),
                        .read = {}};
   for (const Shot& shot : scan.shots) {
     turn.angles.push_back(shot.angle);
@@ -60,7 +63,8 @@ SolvedPose to_solved_pose(const CalibrationReport& report) {
           .position_sigma = report.position_sigma,
           .direction_sigma = report.direction_sigma,
           .before = report.before,
-          .after = report.after};
+          .after = report.after,
+          .optics = report.optics_differ ? report.optics : std::nullopt};
 }
 
 ScanCalibration to_scan_calibration(const CalibrationReport& report) {

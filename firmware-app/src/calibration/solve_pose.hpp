@@ -13,7 +13,7 @@ namespace octurn {
 
 /// Solves the sensor's pose of a stored scan from its snapshots, starting at the configured pose.
 ///
-/// @param snapshots  of the scan
+/// @param snapshots  of the scan without a solved pose, whose optics would be in them
 /// @throws Error "scan-malformed"  if the scan is of several turns; and errors of `snapshots`
 CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, int threads);
 

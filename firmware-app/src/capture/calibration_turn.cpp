@@ -38,11 +38,18 @@ void add_frame(Slice& slice, const DepthFrame& frame, const Intrinsics& lens,
   }
 }
 
-Slice slice_of_frames(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor) {
+/// @param optics  that replace the sensor's own, if any
+Slice slice_of_frames(const CalibrationTurn& turn, const Eigen::Isometry3d& platform_from_sensor,
+                      const std::optional<SolvedOptics>& optics) {
   Slice slice;
   for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
-    add_frame(slice, turn.read(stop), turn.intrinsics,
-              object_from_sensor(platform_from_sensor, turn.angles[stop]));
+    const Eigen::Isometry3d pose = object_from_sensor(platform_from_sensor, turn.angles[stop]);
+    if (optics) {
+      add_frame(slice, rectified(turn.read(stop), turn.intrinsics, optics->value),
+                rectified(turn.intrinsics, optics->value), pose);
+    } else {
+      add_frame(slice, turn.read(stop), turn.intrinsics, pose);
+    }
   }
   return thinned(slice);
 }
@@ -120,9 +127,11 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings, const Senso
   try {
     TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
     report.replaces_told = report.calibration.accepted && !report.calibration.confirms_told();
-    report.before = slice_of_frames(turn, turn.platform_from_sensor);
+    report.before = slice_of_frames(turn, turn.platform_from_sensor, {});
     if (report.calibration.accepted) {
-      report.after = slice_of_frames(turn, report.calibration.platform_from_sensor);
+      report.after = slice_of_frames(
+          turn, report.calibration.platform_from_sensor,
+          report.calibration.optics_differ ? report.calibration.optics : std::nullopt);
     }
     return report;
   } catch (const Stopped&) {

@@ -34,7 +34,8 @@ std::optional<DepthFrame> retake_first_stop(Rig& rig, const ScanSettings& settin
 void store_object_motion(const std::filesystem::path& folder, const DepthFrame& again) try {
   const Scan scan = read_scan(folder);
   const Snapshot first = read_snapshot(folder, scan, scan.shots.front());
-  if (const auto move = measure_move(first, corrected(again, scan), scan.clip)) {
+  if (const auto move =
+          measure_move(first, make_snapshot(again, scan, scan.shots.front()).frame, scan.clip)) {
     write_object_move(folder, *move);
   }
 } catch (const Error& error) {

@@ -47,6 +47,13 @@ std::string to_text(const CalibrationReport& report) {
          << "Two stops disagree about the object by " << mm_from_metres(report.after)
          << " mm; with the configured pose, by " << mm_from_metres(report.before) << " mm.\n";
   }
+  if (report.optics_differ) {
+    const SensorOptics& seen = report.optics->value;
+    const SensorOptics& sigma = report.optics->sigma;
+    text << "The sensor's optics are not its data sheet's: focal length " << seen.fx << " +- "
+         << sigma.fx << " pixels, middle at " << seen.cx << " +- " << sigma.cx << ", " << seen.cy
+         << " +- " << sigma.cy << ", k1 " << seen.k1 << " +- " << sigma.k1 << ".\n";
+  }
   for (const CalibrationFinding& finding : report.findings) {
     text << finding.code << ": " << finding.detail << ". " << finding.hint << '\n';
   }
@@ -82,6 +89,7 @@ void write_calibration_report(const CalibrationReport& report, const std::vector
 bool calibrate_from(const std::filesystem::path& folder, const CalibrateArguments& arguments) {
   const SignalStop signal;
   Scan scan = read_scan(folder);
+  scan.solved.reset();
   if (arguments.sensor_map) {
     use_sensor_map(scan, *arguments.sensor_map);
   }

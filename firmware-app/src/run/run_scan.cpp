@@ -115,10 +115,7 @@ bool Run::take_depth(const Stop& at, double angle) {
   const Shot shot{.file = shot_file(done()), .angle = angle, .lost_share = rig_.take_lost_share()};
   store_snapshot(folder_, scan_, shot, *frame);
   observer_.on_progress(Phase::capturing, done());
-  add([added = Snapshot{.frame = corrected(*std::move(frame), scan_),
-                        .intrinsics = scan_.intrinsics,
-                        .object_from_sensor =
-                            object_from_sensor(model_pose(scan_), stored_angle(angle))},
+  add([added = make_snapshot(*std::move(frame), scan_, {.angle = stored_angle(angle)}),
        index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
     check_.add(index, added);
     reconstruction.add(added, stop_);

@@ -30,8 +30,8 @@ enum class PoseSource {
 std::string_view to_string(PoseSource source);
 
 /// Range of the factor of a sensor's depths: a larger error has another cause.
-inline constexpr double min_depth_scale = 0.97;
-inline constexpr double max_depth_scale = 1.03;
+inline constexpr double min_depth_scale = 0.9;
+inline constexpr double max_depth_scale = 1.1;
 
 /// Ranges of settings that are wider in files than in requests.
 struct SettingRanges {

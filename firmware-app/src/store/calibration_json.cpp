@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "octurn/optics_json.hpp"
 #include "octurn/units.hpp"
 #include "settings/pose_json.hpp"
 #include "store/laser_planes.hpp"
@@ -31,11 +32,15 @@ json to_json(const CalibrationFinding& finding) {
 }
 
 json to_json(const SolvedPose& solved) {
-  return {{"platform_from_sensor", to_rows(solved.platform_from_sensor)},
-          {"sigma_mm", mm_from_metres(solved.position_sigma)},
-          {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
-          {"before_mm", mm_from_metres(solved.before)},
-          {"after_mm", mm_from_metres(solved.after)}};
+  json object{{"platform_from_sensor", to_rows(solved.platform_from_sensor)},
+              {"sigma_mm", mm_from_metres(solved.position_sigma)},
+              {"sigma_deg", degrees_from_radians(solved.direction_sigma)},
+              {"before_mm", mm_from_metres(solved.before)},
+              {"after_mm", mm_from_metres(solved.after)}};
+  if (solved.optics) {
+    object["optics"] = to_json(*solved.optics);
+  }
+  return object;
 }
 
 CalibrationFinding to_finding(const JsonValue& object) {
@@ -55,11 +60,13 @@ CalibrationFinding to_finding(const JsonValue& object) {
 SolvedPose to_solved_pose(const JsonValue& object) {
   JsonObject keys(object);
   const auto metres = [&](std::string_view key) { return metres_from_mm(keys.at(key).number()); };
+  const auto optics = keys.value("optics");
   return {.platform_from_sensor = to_pose(keys.at("platform_from_sensor")),
           .position_sigma = metres("sigma_mm"),
           .direction_sigma = radians_from_degrees(keys.at("sigma_deg").number()),
           .before = metres("before_mm"),
-          .after = metres("after_mm")};
+          .after = metres("after_mm"),
+          .optics = optics ? std::optional(solved_optics_from(*optics)) : std::nullopt};
 }
 
 }  // namespace
@@ -96,6 +103,7 @@ json to_json(const CalibrationReport& report, const std::vector<double>& angles)
           {"sigma_deg", degrees_from_radians(report.direction_sigma)},
           {"before_mm", mm_from_metres(report.before)},
           {"after_mm", mm_from_metres(report.after)},
+          {"optics", report.optics ? to_json(*report.optics) : json(nullptr)},
           {"stops", std::move(stops)},
           {"findings", to_json(report.findings)}};
 }

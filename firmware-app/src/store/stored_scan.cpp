@@ -18,7 +18,7 @@ namespace octurn {
 namespace {
 
 Snapshot empty_snapshot(const Scan& scan, const Shot& shot) {
-  const Intrinsics& lens = scan.intrinsics;
+  const Intrinsics lens = model_intrinsics(scan, shot);
   const auto size = static_cast<std::size_t>(lens.width) * static_cast<std::size_t>(lens.height);
   return {.frame = {.width = lens.width,
                     .height = lens.height,

@@ -224,43 +224,97 @@ std::optional<CalibrationFinding> finding(const CalibrationReport& report,
   return found == report.findings.end() ? std::nullopt : std::optional(*found);
 }
 
-TEST(Calibrate, TellsAFocalLengthThatIsTwoPerCentOff) {
+/// The sensor of the rendered turns, as told with other optics. @param ratio  true focal length
+/// over the told one
+Intrinsics told_lens(double ratio, double cx = 320, double cy = 240) {
+  return {.fx = Intrinsics().fx / ratio, .fy = Intrinsics().fy / ratio, .cx = cx, .cy = cy};
+}
+
+/// Expects the rendered sensor's optics within three sigma, which are at most 0.5 % and 4 pixels.
+void expect_true_optics(const CalibrationReport& report) {
+  ASSERT_TRUE(report.accepted) << report.reason;
+  ASSERT_TRUE(report.optics);
+  const SensorOptics& seen = report.optics->value;
+  const SensorOptics& sigma = report.optics->sigma;
+  EXPECT_LT(sigma.fx, 0.005 * Intrinsics().fx);
+  EXPECT_LT(std::max(sigma.cx, sigma.cy), 4);
+  EXPECT_NEAR(seen.fx, Intrinsics().fx, 3 * sigma.fx);
+  EXPECT_NEAR(seen.cx, Intrinsics().cx, 3 * sigma.cx);
+  EXPECT_NEAR(seen.cy, Intrinsics().cy, 3 * sigma.cy);
+}
+
+TEST(Calibrate, SolvesAFocalLengthThatIsTwoPerCentOff) {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   for (const double ratio : {0.98, 1.02}) {
-    turn.intrinsics = {.fx = Intrinsics().fx / ratio, .fy = Intrinsics().fy / ratio};
+    turn.intrinsics = told_lens(ratio);
     const CalibrationReport report = calibrate(turn);
-    const auto wrong = finding(report, "focal-length");
-    ASSERT_TRUE(wrong) << ratio;
-    constexpr std::string_view before = "the sensor's focal length is ";
-    ASSERT_TRUE(wrong->detail.starts_with(before)) << wrong->detail;
-    // Three sigma: the ratio's sigma is 0.3 %.
-    EXPECT_NEAR(std::stod(wrong->detail.substr(before.size())), 2, 0.9) << wrong->detail;
-    EXPECT_NE(wrong->detail.find(ratio > 1 ? "longer than configured" : "shorter than configured"),
-              std::string::npos);
-    const Parameters& values = wrong->parameters;
-    ASSERT_EQ(values.size(), 3U);
-    EXPECT_NEAR(std::get<double>(values.at(ratio > 1 ? "longer_share" : "shorter_share")), 0.02,
-                0.009);
-    EXPECT_DOUBLE_EQ(std::get<double>(values.at("told_px")), turn.intrinsics.fx);
-    EXPECT_NEAR(std::get<double>(values.at("seen_px")), Intrinsics().fx, 0.009 * Intrinsics().fx);
+    expect_true_optics(report);
+    EXPECT_TRUE(report.optics_differ) << ratio;
+    EXPECT_FALSE(report.confirms_told()) << ratio;
+    EXPECT_LT(report.after, report.before);
+    EXPECT_TRUE(report.findings.empty());
   }
+}
+
+TEST(Calibrate, SolvesAPrincipalPointThatIsElevenPixelsOff) {
+  CalibrationTurn turn = rendered_turn(figure(), 12);
+  turn.intrinsics = told_lens(1.01, 311, 246.5);
+  const CalibrationReport report = calibrate(turn);
+  expect_true_optics(report);
+  EXPECT_TRUE(report.optics_differ);
+}
+
+TEST(Calibrate, KeepsOpticsThatAreRight) {
+  const CalibrationReport report = calibrate(rendered_turn(figure(), 8));
+  expect_true_optics(report);
+  EXPECT_FALSE(report.optics_differ);
+  EXPECT_TRUE(report.confirms_told());
 }
 
 // A sensor map from one wall leaves an error of some 0.1 units of disparity.
-TEST(Calibrate, FindsAWrongFocalLengthOnlyWithASensorMap) {
+TEST(Calibrate, DoubtsOpticsMoreWithoutASensorMap) {
   const CalibrationTurn seen = rendered_turn(figure(), 8);
-  for (const bool has_map : {false, true}) {
+  double sigma = 0;
+  for (const bool has_map : {true, false}) {
     CalibrationTurn turn = with_pattern(seen, has_map ? 0.1 : 0.8);
     turn.has_sensor_map = has_map;
-    EXPECT_FALSE(finding(calibrate(turn), "focal-length")) << has_map;
-    turn.intrinsics = {.fx = 0.98 * Intrinsics().fx, .fy = 0.98 * Intrinsics().fy};
-    EXPECT_EQ(finding(calibrate(turn), "focal-length").has_value(), has_map);
+    const CalibrationReport right = calibrate(turn);
+    EXPECT_FALSE(right.optics_differ) << has_map;
+    ASSERT_TRUE(right.optics);
+    EXPECT_GT(right.optics->sigma.fx, 1.5 * sigma);
+    sigma = right.optics->sigma.fx;
+    turn.intrinsics = told_lens(1.05);
+    EXPECT_TRUE(calibrate(turn).optics_differ) << has_map;
   }
 }
 
+TEST(Calibrate, SolvesNoOpticsThatAreKnown) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  turn.intrinsics = told_lens(1.02);
+  turn.knows_optics = true;
+  const CalibrationReport report = calibrate(turn);
+  EXPECT_FALSE(report.optics);
+  EXPECT_FALSE(report.optics_differ);
+}
+
+TEST(Calibrate, TellsAFocalLengthThatNoKinectHas) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  turn.intrinsics = told_lens(1.12);
+  const CalibrationReport report = calibrate(turn);
+  EXPECT_FALSE(report.optics_differ);
+  const auto wrong = finding(report, "focal-length");
+  ASSERT_TRUE(wrong);
+  EXPECT_NE(wrong->detail.find("longer than configured"), std::string::npos) << wrong->detail;
+  const Parameters& values = wrong->parameters;
+  ASSERT_EQ(values.size(), 3U);
+  EXPECT_DOUBLE_EQ(std::get<double>(values.at("told_px")), turn.intrinsics.fx);
+  // The prior, of 1.5 %, pulls it towards the told one.
+  EXPECT_NEAR(std::get<double>(values.at("seen_px")), Intrinsics().fx, 0.02 * Intrinsics().fx);
+}
+
 // With a ball, only the platform's tilt against the axis depends on the focal length.
-TEST(Calibrate, TellsNoFocalLengthOfABall) {
-  EXPECT_FALSE(finding(calibrate(rendered_turn(ball({0.02, 0, 0.05}, 0.05), 8)), "focal-length"));
+TEST(Calibrate, AppliesNoOpticsSeenWithABall) {
+  EXPECT_FALSE(calibrate(rendered_turn(ball({0.02, 0, 0.05}, 0.05), 8)).optics_differ);
 }
 
 TEST(Calibrate, ReadsEachDepthImageOnce) {

@@ -230,5 +230,52 @@ TEST(ParseScan, RefusesDeepNesting) {
   expect_refused(closed, "nested more than 32 deep");
 }
 
+const json optics =
+    json::parse(R"({"fx": 590.5, "fy": 591, "cx": 332, "cy": 246, "k1": -0.06, "k2": 0.01,
+                                    "depth_scale": 1.012, "depth_offset_per_m": 0.002})");
+
+TEST(ParseScan, TakesOpticsThatWereKnown) {
+  EXPECT_FALSE(parse_scan(contract.dump()).optics);
+  const Scan scan = parse_scan(with("/sensor/optics", optics));
+  ASSERT_TRUE(scan.optics);
+  EXPECT_EQ(scan.optics->fy, 591);
+  EXPECT_EQ(scan.optics->k1, -0.06);
+  EXPECT_EQ(scan.optics->depth_offset_per_m, 0.002);
+  const Intrinsics lens = model_intrinsics(scan, scan.shots.front());
+  EXPECT_EQ(lens.cx, 332);
+  EXPECT_DOUBLE_EQ(lens.depth_unit, 0.0001012);
+  EXPECT_EQ(scan.intrinsics.cx, 320.5);  // as the sensor tells
+}
+
+TEST(ParseScan, RefusesOpticsThatAreIncompleteOrOutOfBounds) {
+  for (const auto& [key, value] : optics.items()) {
+    json broken = optics;
+    broken.erase(key);
+    expect_refused(with("/sensor/optics", broken), "sensor.optics." + key);
+    broken[key] = 1e9;
+    expect_refused(with("/sensor/optics", broken), "sensor.optics." + key);
+  }
+}
+
+TEST(ParseScan, PrefersSolvedOpticsToKnownOnes) {
+  json solved = optics;
+  solved["fx"] = 580;
+  solved["sigma"] = optics;
+  solved["sigma"]["k1"] = 0.01;
+  json changed = json::parse(with("/sensor/optics", optics));
+  changed["calibration"]["solved"] = {
+      {"platform_from_sensor", contract["calibration"]["platform_from_sensor"]},
+      {"sigma_mm", 0.1},
+      {"sigma_deg", 0.1},
+      {"before_mm", 1},
+      {"after_mm", 0.5},
+      {"optics", solved}};
+  const Scan scan = parse_scan(changed.dump());
+  EXPECT_EQ(model_intrinsics(scan, scan.shots.front()).fx, 580);
+  EXPECT_EQ(scan.solved->optics->sigma.k1, 0.01);
+  changed["calibration"]["solved"]["optics"].erase("sigma");
+  expect_refused(changed.dump(), "calibration.solved.optics.sigma");
+}
+
 }  // namespace
 }  // namespace octurn

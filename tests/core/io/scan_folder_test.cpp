@@ -190,6 +190,7 @@ TEST(WriteSolvedPose, StandsBesideTheToldOneAndIsThatOfModels) {
   SolvedPose solved{.position_sigma = 0.00025, .direction_sigma = 0.001, .before = 0.002};
   solved.after = 0.0005;
   solved.platform_from_sensor.translation() = Eigen::Vector3d(0.25, -0.5, 0.125);
+  solved.optics = {.value = {.fx = 590, .k1 = -0.1}, .sigma = {.fx = 2}};
 
   write_solved_pose(folder.path(), solved);
 
@@ -206,7 +207,10 @@ TEST(WriteSolvedPose, StandsBesideTheToldOneAndIsThatOfModels) {
   EXPECT_EQ(read_snapshot(folder.path(), read, read.shots[0]).object_from_sensor.translation(),
             Eigen::Vector3d(0.25, -0.5, 0.125));
   write_scan(folder.path(), read);
-  EXPECT_TRUE(read_scan(folder.path()).solved);
+  const Scan again = read_scan(folder.path());
+  ASSERT_TRUE(again.solved && again.solved->optics);
+  EXPECT_EQ(again.solved->optics->value.k1, -0.1);
+  EXPECT_EQ(again.solved->optics->sigma.fx, 2);
 }
 
 TEST(WriteScan, ReplacesWhatIsNoUtf8InASensorsName) {

@@ -1,0 +1,273 @@
+#include "calibrate/optics_solver.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "calibrate/normal_equations.hpp"
+#include "calibrate/platform_samples.hpp"
+#include "depth/pinhole.hpp"
+#include "octurn/sensor_map.hpp"
+#include "octurn/units.hpp"
+
+namespace octurn {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Unknowns: the axis as in `axis_row`, the platform's height and its tilt against the axis, the
+// focal length's relative change, the principal point's in pixels, and k1's.
+constexpr int height_at = 4;
+constexpr int tilt_at = 5;
+constexpr int optics_at = 7;
+constexpr int optics_count = 4;
+constexpr int optics_unknowns = optics_at + optics_count;
+using UnknownVector = Eigen::Matrix<double, optics_unknowns, 1>;
+using UnknownMatrix = Eigen::Matrix<double, optics_unknowns, optics_unknowns>;
+using Optics = Eigen::Matrix<double, optics_count, 1>;
+using OpticsMotion = Eigen::Matrix<double, 3, optics_count>;
+
+// Most need three or four iterations, and a sensor whose principal point is far off up to eight.
+constexpr int max_optics_steps = 10;
+constexpr ResidualLimits first_limits{.max_distance = 0.01, .cauchy_scale = 0.003};
+constexpr ResidualLimits later_limits{.max_distance = 0.005, .cauchy_scale = 0.002};
+
+/// Sigmas of the sensor's own optics: the spread of published Kinects.
+const Optics unit_spread(0.015, 8, 8, 0.08);
+// Of what no turn tells: it stays as the sensor tells it.
+constexpr double k2_sigma = 0.1;
+constexpr double depth_scale_sigma = 0.01;
+constexpr double depth_offset_sigma = 0.003;  // 1/m: a step of disparity
+constexpr double square_sigma_deg = 0.05;     // of the platform's tilt against its axis
+// Samples of the platform, one in 4 x 4 pixels, that share the sensor's fixed error: its pattern is
+// 50 pixels wide.
+constexpr double correlated_samples = 490;
+constexpr double min_unevenness = 0.15;      // units of disparity
+constexpr double max_platform_residual = 6;  // the object's foot, or the rim
+constexpr double reading_height = 0.0025;    // metres above the platform, of the object's readings
+constexpr double max_focal_change = 0.2;     // of the focal length, in one iteration
+constexpr double settled_optics = 1e-5;      // metres, of the axis: `calibrate` wants no more
+
+/// A pixel whose readings at all stops are the platform's.
+struct PlatformPixel {
+  int u = 0;
+  int v = 0;
+  double inverse_depth = 0;  // 1/m, mean
+};
+
+std::vector<PlatformPixel> platform_pixels(const PlatformSamples& samples,
+                                           const PlatformPlane& plane) {
+  const std::vector<bool> is_plane = find_plane_pixels(samples, plane);
+  std::vector<PlatformPixel> pixels;
+  for (std::size_t i = 0; i < is_plane.size(); ++i) {
+    if (!is_plane[i]) {
+      continue;
+    }
+    double sum = 0;
+    double count = 0;
+    for (const std::vector<float>& depths : samples.depths) {
+      if (depths[i] > 0) {
+        sum += 1 / static_cast<double>(depths[i]);
+        ++count;
+      }
+    }
+    pixels.push_back({.u = static_cast<int>(i % samples.columns) * platform_step,
+                      .v = static_cast<int>(i / samples.columns) * platform_step,
+                      .inverse_depth = sum / count});
+  }
+  return pixels;
+}
+
+/// The camera and the axis that are solved, and how they move.
+class OpticsState {
+ public:
+  OpticsState(const Intrinsics& sensor, const Isometry3d& pose)
+      : camera{.pinhole = sensor}, pose(pose), sensor_(sensor) {}
+
+  /// Derivatives of a point of the platform's frame by the optics.
+  OpticsMotion motion(const Vector3d& point_in_platform) const {
+    const Vector3d point = pose.inverse() * point_in_platform;
+    const Vector3d across(point.x(), point.y(), 0);
+    OpticsMotion moved;
+    moved.col(0) = -across;
+    moved.col(1) = Vector3d(-point.z() / camera.pinhole.fx, 0, 0);
+    moved.col(2) = Vector3d(0, -point.z() / camera.pinhole.fy, 0);
+    moved.col(3) = -across.squaredNorm() / (point.z() * point.z()) * across;
+    return pose.linear() * moved;
+  }
+
+  void move(const UnknownVector& step) {
+    optics += step.tail<optics_count>();
+    camera.pinhole.fx = sensor_.fx * (1 + optics[0]);
+    camera.pinhole.fy = sensor_.fy * (1 + optics[0]);
+    camera.pinhole.cx = sensor_.cx + optics[1];
+    camera.pinhole.cy = sensor_.cy + optics[2];
+    camera.distortion.k1 = optics[3];
+    const Vector3d rotation(step[0], step[1], 0);
+    Isometry3d change = Isometry3d::Identity();
+    if (const double angle = rotation.norm(); angle > 0) {
+      change.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+    }
+    change.translation() = Vector3d(step[2], step[3], step[height_at]);
+    pose = change * pose;
+    tilt += step.segment<2>(tilt_at);
+  }
+
+  DistortedCamera camera;
+  Isometry3d pose;
+  Vector2d tilt = Vector2d::Zero();  // of the platform against the axis: dz/dx and dz/dy
+  Optics optics = Optics::Zero();    // their change, in the order of the optics_unknowns
+
+ private:
+  Intrinsics sensor_;
+};
+
+void read_again(TurnViews& turn, const OpticsState& state) {
+  ObjectView::Mask mask = make_mask(state.pose);
+  mask.min_height = reading_height;
+  for (std::size_t stop = 0; stop < turn.views.size(); ++stop) {
+    turn.views[stop].set_camera(state.camera, mask);
+    turn.readings[stop] = turn.views[stop].readings(turn.spacing);
+  }
+}
+
+/// The residuals of the platform's flatness, in units of their sigma.
+NormalEquations<optics_unknowns> platform_equations(const OpticsState& state,
+                                                    const std::vector<PlatformPixel>& pixels) {
+  NormalEquations<optics_unknowns> all;
+  double squares = 0;
+  for (const PlatformPixel& pixel : pixels) {
+    const Vector3d seen = state.camera.ray(pixel.u, pixel.v) / pixel.inverse_depth;
+    const Vector3d point = state.pose * seen;
+    // A unit of disparity moves a reading along its ray; what counts is how far that is upward.
+    const double unit =
+        std::abs((state.pose.linear() * seen).z()) * disparity_unit / pixel.inverse_depth;
+    const double residual = (point.z() - state.tilt.dot(point.head<2>())) / unit;
+    UnknownVector row = UnknownVector::Zero();
+    row[0] = point.y();
+    row[1] = -point.x();
+    row[height_at] = 1;
+    row.segment<2>(tilt_at) = -point.head<2>();
+    row.tail<optics_count>() = state.motion(point).row(2).transpose();
+    if (std::abs(residual) < max_platform_residual) {
+      all.add(row / unit, residual, 1);
+      squares += residual * residual;
+    }
+  }
+  const double uneven = std::sqrt(squares / std::max<double>(static_cast<double>(all.count), 1));
+  const double sigma = std::max(uneven, min_unevenness);
+  return all.scaled(sigma * sigma * correlated_samples);
+}
+
+/// The residuals between stops. `correlation` and systematic errors are not in their weights.
+NormalEquations<optics_unknowns> object_equations(const TurnViews& views, const OpticsState& state,
+                                                  const ResidualLimits& limits, int threads) {
+  return normal_equations<optics_unknowns>(
+      views, state.pose, limits, threads, [&](const StopResidual& residual) {
+        UnknownVector row = UnknownVector::Zero();
+        row.head<4>() = axis_row(residual);
+        row.tail<optics_count>() =
+            (residual.normal_from.transpose() * state.motion(residual.point_from) -
+             residual.normal_to.transpose() * state.motion(residual.point_to))
+                .transpose();
+        return row;
+      });
+}
+
+void add_priors(NormalEquations<optics_unknowns>& all, const OpticsState& state) {
+  const double square = std::pow(radians_from_degrees(square_sigma_deg), -2);
+  for (int axis = 0; axis < 2; ++axis) {
+    all.matrix(tilt_at + axis, tilt_at + axis) += square;
+    all.right[tilt_at + axis] -= square * state.tilt[axis];
+  }
+  for (int i = 0; i < optics_count; ++i) {
+    const double information = 1 / (unit_spread[i] * unit_spread[i]);
+    all.matrix(optics_at + i, optics_at + i) += information;
+    all.right[optics_at + i] -= information * state.optics[i];
+  }
+}
+
+SolvedOptics to_optics(const OpticsState& state, const Intrinsics& sensor, const Optics& sigma) {
+  const Intrinsics& lens = state.camera.pinhole;
+  return {.value = {.fx = lens.fx,
+                    .fy = lens.fy,
+                    .cx = lens.cx,
+                    .cy = lens.cy,
+                    .k1 = state.camera.distortion.k1},
+          .sigma = {.fx = sigma[0] * sensor.fx,
+                    .fy = sigma[0] * sensor.fy,
+                    .cx = sigma[1],
+                    .cy = sigma[2],
+                    .k1 = sigma[3],
+                    .k2 = k2_sigma,
+                    .depth_scale = depth_scale_sigma,
+                    .depth_offset_per_m = depth_offset_sigma}};
+}
+
+}  // namespace
+
+CalibrationFinding describe_focal_length(double seen, double told) {
+  const double error = std::abs(seen / told - 1);
+  std::array<char, 128> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "the sensor's focal length is %.1f %% %s than configured: %.0f pixels instead of %.0f",
+      100 * error, seen > told ? "longer" : "shorter", seen, told);
+  return {.code = "focal-length",
+          .detail = text.data(),
+          .hint =
+              "Look whether the scan is of this sensor, and its depth images "
+              "of their full size.",
+          .stop = {},
+          .angle = {},
+          .parameters = {{seen > told ? "longer_share" : "shorter_share", error},
+                         {"seen_px", seen},
+                         {"told_px", told}}};
+}
+
+std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSamples& samples,
+                                           const PlatformPlane& plane, const Intrinsics& sensor,
+                                           const Isometry3d& start, int threads) {
+  const std::vector<PlatformPixel> pixels = platform_pixels(samples, plane);
+  const double systematic = views.systematic_error;
+  OpticsState state(sensor, start);
+  UnknownMatrix covariance = UnknownMatrix::Identity();
+  Eigen::Matrix4d of_axis = Eigen::Matrix4d::Identity();  // with these optics
+  UnknownVector step = UnknownVector::Zero();
+  for (int i = 0; i < max_optics_steps; ++i) {
+    const auto sums = object_equations(views, state, i == 0 ? first_limits : later_limits, threads);
+    if (sums.count < min_residuals) {
+      return std::nullopt;
+    }
+    const double variance = sums.squares / sums.weight * views.correlation;
+    auto all = sums.scaled(variance + systematic * systematic * sums.weight);
+    const auto platform = platform_equations(state, pixels);
+    all.matrix += platform.matrix;
+    all.right += platform.right;
+    add_priors(all, state);
+    step = all.matrix.ldlt().solve(all.right);
+    if (!step.allFinite() || std::abs(step[optics_at]) > max_focal_change) {
+      return std::nullopt;
+    }
+    covariance = all.matrix.inverse();
+    of_axis = all.matrix.topLeftCorner<4, 4>().inverse();
+    state.move(step);
+    read_again(views, state);
+    if (step.segment<2>(2).norm() < settled_optics) {
+      break;
+    }
+  }
+  const auto of_optics = covariance.bottomRightCorner<optics_count, optics_count>();
+  return OpticsSolution{.optics = to_optics(state, sensor, of_optics.diagonal().cwiseSqrt()),
+                        .axis = {.platform_from_sensor = state.pose,
+                                 .covariance = of_axis,
+                                 .last_step = step.segment<2>(2).norm()},
+                        .significance = state.optics.dot(of_optics.ldlt().solve(state.optics))};
+}
+
+}  // namespace octurn

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "capture/take_depth_image.hpp"
 #include "capture/seen_rotation.hpp"
+#include "capture/take_depth_image.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {

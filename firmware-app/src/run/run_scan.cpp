@@ -86,6 +86,7 @@ class Run {
 };
 
 bool Run::take_snapshots() {
+  rig_.seen_stop() = {};  // of an earlier scan, maybe of another object
   const int steps = rig_.turntable().steps_per_turn();
   if (done() == 0) {
     begin_scan(scan_, settings_, folder_, rig_);

@@ -71,9 +71,19 @@ test('a look at the board is cancelled, or solved too early and refused in words
   await page.locator('#lens-outcome').getByText('Cancelled').waitFor();
   assert.ok(await overflow(page) <= 0);
 
-  await page.getByRole('button', {name: 'Show the board'}).click();
-  await page.getByRole('button', {name: 'That is enough'}).click();
-  await page.getByText('The lens is not known').waitFor();
+  // On a busy machine the click may come so late that the pictures suffice: then once more.
+  const isRefused = async () => {
+    await page.getByRole('button', {name: 'Show the board'}).click();
+    await page.getByRole('button', {name: 'That is enough'}).click();
+    const found = page.getByText('Lens calibrated');
+    await page.getByText('The lens is not known').or(found).waitFor();
+    const isFound = await found.isVisible();
+    isFound && await page.getByRole('button', {name: 'Discard it'}).click();
+    return !isFound;
+  };
+  for (let attempt = 1; !await isRefused(); ++attempt) {
+    assert.ok(attempt < 10, 'five pictures suffice');
+  }
   await page.getByText(/% of the picture only: a lens distorts most at the edges|only a tilted board shows the focal length/).waitFor();
   await picture(page, 'lens-refused');
   assert.ok(await overflow(page) <= 0);

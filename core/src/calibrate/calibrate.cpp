@@ -44,9 +44,6 @@ constexpr double settled_sigmas = 0.1;
 // Units of disparity. Noise leaves 0.03; of patterns of 0.8 the fitted plane leaves 0.25 to 0.74,
 // and on tables that real sensors saw 0.27 to 0.82.
 constexpr double max_unevenness = 0.2;
-// Metres: systematic error of the residuals by a pattern that no map has corrected. It moves the
-// solved principal point by up to 12 pixels, and the focal length by 0.6 %.
-constexpr double pattern_error = 8e-5;
 
 // Sigmas of the plane as a prior of the axis's direction: a loose one, for which the object
 // decides, and one for a platform that is square to its shaft.
@@ -241,9 +238,6 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   const SurfaceFindings surface =
       look_at_surface(report, reader.samples(), plane, turn.angles, levelled);
   const bool is_uneven = !turn.has_sensor_map && surface.unevenness.value_or(0) > max_unevenness;
-  if (is_uneven) {
-    views.systematic_error = pattern_error;
-  }
   if (is_uneven && !surface.bump) {
     add_no_map(report, *surface.unevenness);
   }
@@ -257,7 +251,8 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   double last_step = solution->last_step;
-  if (!turn.knows_optics && all_stand_as_told(report)) {
+  // A pattern that no map has corrected moves the principal point by up to 12 pixels.
+  if (!turn.knows_optics && !is_uneven && all_stand_as_told(report)) {
     last_step = take_optics(report, views, reader, turn, threads).value_or(last_step);
   }
   compare_with_told(report, turn.platform_from_sensor);

@@ -49,9 +49,11 @@ constexpr double square_sigma_deg = 0.05;     // of the platform's tilt against 
 constexpr double correlated_samples = 490;
 constexpr double min_unevenness = 0.15;      // units of disparity
 constexpr double max_platform_residual = 6;  // the object's foot, or the rim
-constexpr double reading_height = 0.0025;    // metres above the platform, of the object's readings
-constexpr double max_focal_change = 0.2;     // of the focal length, in one iteration
-constexpr double settled_optics = 1e-5;      // metres, of the axis: `calibrate` wants no more
+// Metres, of each residual: edges and grazing angles err in the same way at all stops.
+constexpr double systematic = 3e-5;
+constexpr double reading_height = 0.0025;  // metres above the platform, of the object's readings
+constexpr double max_focal_change = 0.2;   // of the focal length, in one iteration
+constexpr double settled_optics = 1e-5;    // metres, of the axis: `calibrate` wants no more
 
 /// A pixel whose readings at all stops are the platform's.
 struct PlatformPixel {
@@ -234,7 +236,6 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
                                            const PlatformPlane& plane, const Intrinsics& sensor,
                                            const Isometry3d& start, int threads) {
   const std::vector<PlatformPixel> pixels = platform_pixels(samples, plane);
-  const double systematic = views.systematic_error;
   OpticsState state(sensor, start);
   UnknownMatrix covariance = UnknownMatrix::Identity();
   Eigen::Matrix4d of_axis = Eigen::Matrix4d::Identity();  // with these optics

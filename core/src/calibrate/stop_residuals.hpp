@@ -20,9 +20,6 @@ struct TurnViews {
   /// Residuals per independent one: the sensor's errors are correlated in neighbouring pixels, and
   /// a reading is compared with several stops.
   double correlation = 1;
-  /// Metres: of the residuals at edges and grazing angles, all around an object. A focal length 1 %
-  /// off changes those of a flat box by as much.
-  double systematic_error = 3e-5;
 };
 
 /// Distance of a reading of one stop from the surface that another stop saw.

@@ -22,7 +22,7 @@ class WrappedSensor : public DepthSensor {
     return sensor_->read(stop);
   }
   std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
-  std::optional<int> damaged_frames() const override { return sensor_->damaged_frames(); }
+  std::optional<PacketCounts> packet_counts() const override { return sensor_->packet_counts(); }
   void show_angle(double angle) override { sensor_->show_angle(angle); }
   void show_wall(std::optional<double> distance) override { sensor_->show_wall(distance); }
   void set_object_pose(int pose) override { sensor_->set_object_pose(pose); }

@@ -272,19 +272,14 @@ TEST(Calibrate, KeepsOpticsThatAreRight) {
 }
 
 // A sensor map from one wall leaves an error of some 0.1 units of disparity.
-TEST(Calibrate, DoubtsOpticsMoreWithoutASensorMap) {
+TEST(Calibrate, SolvesOpticsOfAnUnevenSensorOnlyWithItsMap) {
   const CalibrationTurn seen = rendered_turn(figure(), 8);
-  double sigma = 0;
   for (const bool has_map : {true, false}) {
     CalibrationTurn turn = with_pattern(seen, has_map ? 0.1 : 0.8);
     turn.has_sensor_map = has_map;
-    const CalibrationReport right = calibrate(turn);
-    EXPECT_FALSE(right.optics_differ) << has_map;
-    ASSERT_TRUE(right.optics);
-    EXPECT_GT(right.optics->sigma.fx, 1.5 * sigma);
-    sigma = right.optics->sigma.fx;
+    EXPECT_FALSE(calibrate(turn).optics_differ) << has_map;
     turn.intrinsics = told_lens(1.05);
-    EXPECT_TRUE(calibrate(turn).optics_differ) << has_map;
+    EXPECT_EQ(calibrate(turn).optics_differ, has_map);
   }
 }
 
@@ -299,7 +294,7 @@ TEST(Calibrate, SolvesNoOpticsThatAreKnown) {
 
 TEST(Calibrate, TellsAFocalLengthThatNoKinectHas) {
   CalibrationTurn turn = rendered_turn(figure(), 8);
-  turn.intrinsics = told_lens(1.12);
+  turn.intrinsics = told_lens(1.09);
   const CalibrationReport report = calibrate(turn);
   EXPECT_FALSE(report.optics_differ);
   const auto wrong = finding(report, "focal-length");

@@ -53,6 +53,7 @@ TEST(Config, IsWrittenAsItIsRead) {
       "password_file": "/srv/password", "threads": 2, "memory_limit_mb": 64.5, "scan": {},
       "turntable": {"step_line": "GPIO2", "direction_line": "GPIO3", "enable_line": "GPIO4",
                     "microstep_lines": ["GPIO9", "GPIO10", "GPIO11"], "microsteps": 8,
+                    "driver": "DRV8825",
                     "full_steps": 400, "gear_ratio": 2.5, "reversed": true,
                     "speed_deg_per_s": 120.0, "start_speed_deg_per_s": 10.0,
                     "acceleration_deg_per_s2": 80.0, "settle_ms": 20, "idle_release_s": 30,
@@ -85,6 +86,7 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
     turntable[in_degrees] = turntable[in_steps].get<double>() * 360 / 16'000;
     turntable.erase(in_steps);
   }
+  turntable["driver"] = "A4988";
   EXPECT_EQ(to_json(read_config(golden / "octurn.json")), expected);
 }
 

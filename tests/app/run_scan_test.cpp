@@ -67,7 +67,9 @@ TEST(RunScan, TellsTheAngleOfEachStopAndTheSettings) {
 TEST(RunScan, TurnsOneWayAndSeesTheSameAgain) {
   const TemporaryFolder first;
   const TemporaryFolder second;
-  Rig rig(rig_of("octurn-simulator://?speed=20&noise=0"));
+  RigOptions options = rig_of("octurn-simulator://?speed=20&noise=0");
+  options.load.reset();  // a heavy platform swings on by what the frames happen to see
+  Rig rig(options);
   ASSERT_TRUE(run_scan(few_snapshots(), {}, first.path(), rig, {}, {}));
   const std::int64_t position = rig.turntable().position();
   ASSERT_TRUE(run_scan(few_snapshots(), {}, second.path(), rig, {}, {}));

@@ -32,7 +32,7 @@ TEST(ReadStillFrames, WaitsForAHeavyPlatform) {
 }
 
 TEST(ReadStillFrames, HardlyWaitsForTheDocumentedParts) {
-  Rig rig({.sensor_uri = simulation_uri({.speed = speed}), .speed = speed});
+  Rig rig({.sensor_uri = simulation_uri({.speed = speed}), .speed = speed, .load = PlatformLoad{}});
   int waits = 0;
   for (int stop = 1; stop <= 5; ++stop) {
     ASSERT_TRUE(rig.turntable().move_to(22 * stop, {}));
@@ -67,7 +67,7 @@ TEST(TakeDepthImage, IsTakenAgainWhereALatePulseLostSteps) {
 }
 
 TEST(TakeDepthImage, IsKeptWhereALatePulseLostNone) {
-  Rig rig({.sensor_uri = simulation_uri({.speed = speed}), .speed = speed});
+  Rig rig({.sensor_uri = simulation_uri({.speed = speed}), .speed = speed, .load = PlatformLoad{}});
   const ScanSettings settings;
   ASSERT_TRUE(take_depth_image(rig, {.index = 0, .position = 0}, settings, {}, {}));
   auto& turntable = dynamic_cast<SimulatedTurntable&>(rig.turntable());

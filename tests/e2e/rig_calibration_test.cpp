@@ -71,7 +71,7 @@ TEST(RigCalibration, IsSetByHandAndTakenBackAndKept) {
     EXPECT_EQ(parsed(set)["source"], "page");
     EXPECT_EQ(patch(daemon, {{"scale", 1.01}}).status, 200);
     EXPECT_EQ(parsed(daemon.get("/api/v1/settings"))["defaults"]["depth_scale"], 1.01);
-    for (const json& bad : {json{{"scale", 1.1}}, json{{"scale", "1"}}, json::object(),
+    for (const json& bad : {json{{"scale", 1.2}}, json{{"scale", "1"}}, json::object(),
                             json{{"platform_from_sensor", {{1}}}}, json{{"pose", 1}}}) {
       const Reply refused = patch(daemon, bad);
       EXPECT_EQ(refused.status, 400) << bad;

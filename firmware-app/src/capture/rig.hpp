@@ -42,7 +42,7 @@ struct RigOptions {
   double speed = 1.0;                           ///< of a simulated rig, relative to real time
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
   /// What a simulated turntable turns; nothing: it has no weight, and follows each pulse at once.
-  std::optional<PlatformLoad> load = PlatformLoad{};
+  std::optional<PlatformLoad> load = {};
   double platform_angle_deg = 0;  ///< initial angle
   Retries retries = {};           ///< by the clock of a simulated rig
   /// Settings of a camera with line lasers, which replaces the depth sensor.

@@ -1,6 +1,7 @@
 #include "capture/scan_of_rig.hpp"
 
 #include <cstddef>
+#include <system_error>
 
 #include "capture/depth_scale.hpp"
 #include "octurn/error.hpp"
@@ -33,6 +34,8 @@ ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& setting
 
 void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
                 Rig& rig) {
+  std::error_code ignored;  // if the folder cannot be made, the first image says why
+  std::filesystem::create_directories(folder, ignored);
   if (scan.laser) {
     scan.sensor_name = rig.camera().name();
     scan.sensor_serial = rig.camera().serial();

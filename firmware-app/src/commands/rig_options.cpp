@@ -89,8 +89,11 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
                                                 .misalignment = imperfection,
                                                 .wall = arguments.wall,
                                                 .speed = arguments.speed});
+  // A recording shows what was seen at an angle, and not at one that a heavy platform swings to.
+  const bool has_weight = !arguments.perfect && arguments.sensor_uri.empty();
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,
           .speed = arguments.speed,
+          .load = has_weight ? std::optional(PlatformLoad{}) : std::nullopt,
           .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
 }
 

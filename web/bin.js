@@ -5,7 +5,7 @@ import {element, list, part, setText, show} from './dom.js';
 import * as format from './format.js';
 import {text} from './texts.js';
 
-const undoLasts = 20000;  // milliseconds
+const undoLasts = 60000;  // milliseconds
 
 let revision = 0;  // of the scans, at the last read of the bin
 let timer = 0;

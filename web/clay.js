@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial, ShadowMaterial,
+  MeshStandardMaterial,
 } from './three.js';
 
 const clay = 0xd8d2c4;
@@ -59,32 +59,15 @@ ${shader.fragmentShader}`
   return material;
 }
 
-/** A light that moves with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
-export function lightBeside(camera) {
-  const light = new DirectionalLight(0xfff6e8, 0.9);
-  light.position.set(-0.5, 0.8, 1);
-  light.target = camera;
-  camera.add(light);
-}
-
-/** A light from above whose soft shadow lies on the platform. */
-export class LightAbove {
-  light = new DirectionalLight(0xffffff, 0.8);
-
-  constructor() {
-    this.light.castShadow = true;
-    this.light.shadow.mapSize.set(1024, 1024);
-    this.light.shadow.radius = 7;
-    this.light.shadow.bias = -0.002;
-  }
-
-  /** Aims it at an object on the platform. @param {number} radius  around the axis, millimetres @param {number} height  millimetres */
-  aim(radius, height) {
-    const reach = Math.hypot(radius, height);
-    this.light.position.set(-0.35 * reach, -0.25 * reach, 3 * reach);
-    const {camera} = this.light.shadow;
-    Object.assign(camera, {left: -1.5 * reach, right: 1.5 * reach, top: 1.5 * reach, bottom: -1.5 * reach, near: reach, far: 4 * reach});
-    camera.updateProjectionMatrix();
+/** Lights that move with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
+export function lightsBeside(camera) {
+  const key = new DirectionalLight(0xfff6e8, 2.1);
+  key.position.set(-0.5, 0.8, 1);
+  const rim = new DirectionalLight(0x7fe3dd, 1.1);
+  rim.position.set(1, 0.35, -0.8);
+  for (const light of [key, rim]) {
+    light.target = camera;
+    camera.add(light);
   }
 }
 
@@ -110,8 +93,6 @@ export function platform(radius) {
   const disc = new Mesh(new CircleGeometry(radius, 96),
       new MeshBasicMaterial({color: 0x5fb8b5, transparent: true, opacity: 0.07, depthWrite: false, side: 2}));
   const grid = new LineSegments(lines, new LineBasicMaterial({color: 0x7fc4c4, transparent: true, opacity: 0.28}));
-  const shadow = new Mesh(new CircleGeometry(radius, 96), new ShadowMaterial({opacity: 0.32, depthWrite: false}));
-  shadow.receiveShadow = true;
-  grid.add(disc, shadow);
+  grid.add(disc);
   return grid;
 }

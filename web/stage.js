@@ -57,7 +57,7 @@ function markPlaces() {
 /** @param {import('./stl.js').Mesh} mesh @param {boolean} isFirst  whether it is the first mesh of its object */
 function put(mesh, isFirst) {
   show(element('filled'), mesh.filled !== null);
-  viewer?.show(mesh, {isFirst});
+  viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing)});
   standUp();
   offerColours(due?.hasColours && due.model?.url || null);
   if (isFirst) {

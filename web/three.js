@@ -9,20 +9,18 @@ export {
   FloatType,
   Fog,
   Group,
+  HemisphereLight,
   LineBasicMaterial,
   LineSegments,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
   MeshStandardMaterial,
-  NeutralToneMapping,
-  PMREMGenerator,
   PerspectiveCamera,
   Points,
   PointsMaterial,
   Scene,
   ShaderMaterial,
-  ShadowMaterial,
   Sphere,
   SphereGeometry,
   Vector3,
@@ -30,5 +28,4 @@ export {
   WebGLRenderer,
 } from 'three';
 export {ConvexHull} from 'three/addons/math/ConvexHull.js';
-export {RoomEnvironment} from 'three/addons/environments/RoomEnvironment.js';
 export {OrbitControls} from 'three/addons/controls/OrbitControls.js';

@@ -1,11 +1,11 @@
 // The 3D view of a model in millimetres, Z up, on a drawing of the platform.
 
 import {
-  BufferAttribute, BufferGeometry, Group, Mesh, NeutralToneMapping, OrbitControls, PerspectiveCamera, PMREMGenerator, RoomEnvironment, Scene,
-  Sphere, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
+  WebGLRenderer,
 } from './three.js';
 import {fitToCanvas, onClick} from './canvas.js';
-import {clayMaterial, LightAbove, lightBeside, platform, ringStep} from './clay.js';
+import {clayMaterial, lightsBeside, platform, ringStep} from './clay.js';
 import {measureMark} from './measure_mark.js';
 import {smoothNormals} from './normals.js';
 import {placeAt} from './pick.js';
@@ -35,7 +35,6 @@ export class Viewer {
   #uprightHeights = [0, 0];
   /** @type {Vector3[]} */
   #samples = [];
-  #above = new LightAbove();
   #controls;
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
@@ -59,14 +58,8 @@ export class Viewer {
     this.#onTurning = onTurning;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
     this.#camera.up.set(0, 0, 1);
-    this.#renderer.toneMapping = NeutralToneMapping;
-    this.#renderer.shadowMap.enabled = true;
-    this.#renderer.shadowMap.autoUpdate = false;
-    this.#scene.add(this.#above.light, this.#camera, this.#subject);
-    lightBeside(this.#camera);
-    this.#scene.environment = new PMREMGenerator(this.#renderer).fromScene(new RoomEnvironment(), 0.04).texture;
-    this.#scene.environmentIntensity = 0.5;
-    this.#scene.environmentRotation.x = Math.PI / 2;  // from Y up to Z up
+    this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
+    lightsBeside(this.#camera);
     this.#controls = new OrbitControls(this.#camera, canvas);
     canvas.style.touchAction = 'pan-y';  // a vertical swipe scrolls the page, as the picture may be as wide as the page
     this.#controls.enableDamping = true;
@@ -87,13 +80,14 @@ export class Viewer {
 
   /**
    * @param {StlMesh} mesh  its positions are moved to the GPU and not kept in memory
-   * @param {{isFirst?: boolean}} [growth]  isFirst: false keeps the user's camera, for a further mesh of the same object
+   * @param {{isFirst?: boolean, isGrowing?: boolean}} [growth]  isFirst: false keeps the user's camera, for a further mesh of the same
+   *     object; isGrowing: it is replaced soon, and shaded flat
    */
-  show({positions, filled, min, max}, {isFirst = true} = {}) {
+  show({positions, filled, min, max}, {isFirst = true, isGrowing = false} = {}) {
     const isTurning = this.#controls.autoRotate;
     this.clear();
     const geometry = new BufferGeometry();
-    const isSmooth = positions.length <= 9 * maxSmooth;
+    const isSmooth = !isGrowing && positions.length <= 9 * maxSmooth;
     if (isSmooth) {
       geometry.setAttribute('normal', new BufferAttribute(smoothNormals(positions), 3, true));
     }
@@ -108,14 +102,12 @@ export class Viewer {
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
     geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // cannot be computed later, without the positions
     this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top, isSmooth}));
-    this.#model.castShadow = true;
     this.#uprightHeights = this.#heights = [min[2], max[2]];
     const corners = positions.length / 3;
     this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
       new Vector3().fromArray(positions, 3 * Math.floor(i * corners / Math.min(corners, samplesKept))));
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
     this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
-    this.#castShadow();
     this.#resize();
     if (isFirst) {
       this.reset();
@@ -164,7 +156,6 @@ export class Viewer {
       this.#heights = this.#uprightHeights;
     }
     this.#model.updateMatrixWorld();
-    this.#castShadow();
     this.showPlaces([]);
     this.reset();
   }
@@ -212,13 +203,6 @@ export class Viewer {
     this.#top.value = share < 1 ? height : uncut;
     this.#draw();
     return height;
-  }
-
-  /** Draws the model's shadow in the next frame. */
-  #castShadow() {
-    const {center, radius} = this.#ball();
-    this.#above.aim(Math.hypot(center.x, center.y) + radius, this.#heights[1]);
-    this.#renderer.shadowMap.needsUpdate = true;
   }
 
   /** The bounding sphere of the model in its current pose. */

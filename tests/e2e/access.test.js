@@ -38,7 +38,7 @@ const statesOf = (scanner, finished) => ({
   renaming: (page) => page.getByRole('button', {name: 'Rename this scan'}).click(),
   scanning: async (page) => {
     await page.keyboard.press('Escape');
-    await ask(scanner, 'scans', 'POST', {...draft, snapshots: 200});
+    await ask(scanner, 'scans', 'POST', {...draft, snapshots: 400});
     await page.getByRole('link', {name: 'Show its progress'}).click();
     await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
   },

@@ -76,7 +76,7 @@ async function lookAtColours(t, {url}, id) {
   await page.locator('#tools').waitFor();
   const clay = await page.locator('#view').screenshot();
   const names = await page.locator('#formats a').allInnerTexts();
-  assert.deepEqual(names, ['3MF', 'PLY', 'GLB', '3MF in colour', 'PLY in colour', 'GLB in colour', 'Raw scan']);
+  assert.deepEqual(names, ['3MF', 'PLY', 'GLB', 'OBJ', '3MF in colour', 'PLY in colour', 'GLB in colour', 'OBJ in colour', 'Raw scan']);
   const button = page.getByRole('button', {name: 'Show colours'});
   const answer = page.waitForResponse(/Scan\.ply\?colour=true/);
   await button.click();

@@ -88,8 +88,8 @@ std::vector<PlatformPixel> platform_pixels(const PlatformSamples& samples,
 /// The camera and the axis that are solved, and how they move.
 class OpticsState {
  public:
-  OpticsState(const Intrinsics& sensor, const Isometry3d& pose)
-      : camera{.pinhole = sensor}, pose(pose), sensor_(sensor) {}
+  OpticsState(const Intrinsics& sensor, const Isometry3d& start)
+      : camera{.pinhole = sensor}, pose(start), sensor_(sensor) {}
 
   /// Derivatives of a point of the platform's frame by the optics.
   OpticsMotion motion(const Vector3d& point_in_platform) const {

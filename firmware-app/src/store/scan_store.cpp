@@ -63,13 +63,17 @@ Job load(const fs::path& folder) {
   return job;
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw_data_error(folder, "make the folder", error);
+  }
+}
+
 /// Makes `scans`, a subfolder of `data`, and locks `data`.
 FileDescriptor make_and_lock(const fs::path& data, const fs::path& scans) {
-  std::error_code error;
-  fs::create_directories(scans, error);
-  if (error) {
-    throw_data_error(scans, "make the folder", error);
-  }
+  make_folder(scans);
   return lock_data_folder(data);
 }
 
@@ -86,14 +90,6 @@ std::uint64_t first_revision() {
 }
 
 ScanTime now() { return std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()); }
-
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw_data_error(folder, "make the folder", error);
-  }
-}
 
 bool is_there(const fs::path& path) {
   std::error_code unknown;
@@ -127,7 +123,7 @@ bool has_chosen_pose(const Job& job, const std::string& pose) {
 
 // As for scans: the next start removes folders whose names begin with a dot.
 fs::path unfinished_in(const fs::path& builds, int number) {
-  return builds / (".new-" + std::to_string(number));
+  return builds / (std::string(unfinished) + std::to_string(number));
 }
 
 fs::path leaving_in(const fs::path& builds, int number) {
@@ -248,11 +244,7 @@ Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>&
           .pose_of = pose_of};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
-  std::error_code error;
-  fs::create_directory(beginning, error);
-  if (error) {
-    throw_data_error(beginning, "make the folder", error);
-  }
+  make_folder(beginning);
   enter(beginning, job);
   return job;
 }
@@ -638,11 +630,7 @@ fs::path ScanStore::begin_build(std::string_view id, int number) {
   get(id);  // throws if there is no such scan
   make_room(max_model_bytes(), "a model");
   const fs::path beginning = unfinished_in(folder(id) / builds_folder, number);
-  std::error_code error;
-  fs::create_directories(beginning, error);
-  if (error) {
-    throw_data_error(beginning, "make the folder", error);
-  }
+  make_folder(beginning);
   return beginning / "Scan.stl";
 }
 
@@ -670,11 +658,7 @@ fs::path ScanStore::reserve_build(BuildRun& run) {
   const std::lock_guard writing(writing_);
   run.number = next_build(run.scan);
   fs::path kept = model_file(run.scan, run.number).parent_path();
-  std::error_code error;
-  fs::create_directories(kept, error);
-  if (error) {
-    throw_data_error(kept, "make the folder", error);
-  }
+  make_folder(kept);
   return kept;
 }
 

@@ -88,11 +88,11 @@ enum class Paint { clay, colours };
 
 /// The path of a model in another format. It is made if it is missing, or older than the model, the
 /// scan's name or the colours.
-fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model,
-                    const std::string& extension, Paint paint = Paint::clay) {
-  const MeshFormat& format = *find_mesh_format(extension);
+fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const MeshFormat& format,
+                    Paint paint = Paint::clay) {
   const bool is_coloured = paint == Paint::colours;
-  fs::path file = model.parent_path() / ((is_coloured ? "Scan-colour" : "Scan") + extension);
+  fs::path file = model.parent_path() / (is_coloured ? "Scan-colour" : "Scan");
+  file += format.extension;
   auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
   source = is_coloured ? std::max(source, written(colours_file(model))) : source;
   const fs::path thumbnail = format.has_thumbnail ? fresh_thumbnail(model) : fs::path();
@@ -158,7 +158,7 @@ Response send_in_format(App& app, const Request& request, const Job& job, const 
     keep_colours(app, job, model, build);
     suffix += "-colour";
   }
-  return file_response(request, fresh_mesh(app, job, model, extension, paint),
+  return file_response(request, fresh_mesh(app, job, model, *format, paint),
                        std::string(format->media_type), download_name(job, suffix + extension));
 }
 
@@ -166,7 +166,8 @@ Response send_in_format(App& app, const Request& request, const Job& job, const 
 
 fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
   fs::path model = find_model(app, job);
-  return find_mesh_format(extension) != nullptr ? fresh_mesh(app, job, model, extension) : model;
+  const MeshFormat* const format = find_mesh_format(extension);
+  return format != nullptr ? fresh_mesh(app, job, model, *format) : model;
 }
 
 Response send_mesh(App& app, const Request& request, std::string_view id) {

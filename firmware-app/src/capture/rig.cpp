@@ -43,8 +43,10 @@ DepthSensor& Rig::sensor() {
                 "tests of a turn need a depth sensor.");
   }
   if (!sensor_) {
-    sensor_ =
-        std::make_unique<SensorOfPlatform>(options_.open_sensor(options_.sensor_uri), simulated_);
+    sensor_ = options_.open_sensor(options_.sensor_uri);
+    if (options_.load) {
+      sensor_ = std::make_unique<SensorOfPlatform>(std::move(sensor_), simulated_);
+    }
     sensor_since_ = std::chrono::steady_clock::now();
     counted_ = PacketCounts();
     show_platform();

@@ -207,14 +207,14 @@ export const examine = () => json('doctor', {}, patienceWithDoctor);
 /** @returns {Promise<Scan[]>} newest first */
 export const scans = async () => (await json('scans')).scans;
 
-/** @returns {Promise<Settings>} the default settings of a scan */
-export const defaults = async () => (await json('settings')).defaults;
-
 /** What a visit begins with: the defaults of the form, and the formats of models. @returns {Promise<{defaults: Settings, formats: string[]}>} */
 export const configured = async () => {
   const {defaults: form, model_formats} = await json('settings');
   return {defaults: form, formats: model_formats};
 };
+
+/** @returns {Promise<Settings>} the default settings of a scan */
+export const defaults = async () => (await configured()).defaults;
 
 /**
  * @param {Partial<Settings>} settings

@@ -15,27 +15,24 @@ export const start = () => act('failure.start', async () => {
   return (now) => states.withStarted(now, scan);
 });
 
-export const pause = () => act('failure.pause', async () => {
-  const id = states.running(state)?.id;
+/** Asks the running scan to stop. @param {string} failure  key of the failure's text @param {(id: string) => Promise<unknown>} request */
+const stop = (failure, request) => act(failure, async () => {
+  const id = states.running(state)?.id ?? null;
   if (id) {
-    await api.pause(id);
+    await request(id);
   }
-  return (now) => states.withStopping(now, id ?? null);
+  return (now) => states.withStopping(now, id);
 });
+
+export const pause = () => stop('failure.pause', api.pause);
+
+export const cancel = () => stop('failure.end', api.cancel);
 
 /** @param {File} file */
 export const importScan = (file) => act('failure.import', async () => {
   const scan = await api.importScan(file);
   location.hash = scan.state === 'running' ? '' : scan.id;
   return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), scan.id);
-});
-
-export const cancel = () => act('failure.end', async () => {
-  const id = states.running(state)?.id;
-  if (id) {
-    await api.cancel(id);
-  }
-  return (now) => states.withStopping(now, id ?? null);
 });
 
 export const resume = () => act('failure.resume', async () => {

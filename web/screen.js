@@ -237,7 +237,7 @@ export function screenOf(state) {
   const chosen = scanOf(state, state.selected);
   const panel = !state.status ? 'waiting' : chosen ? 'details' : scan ? 'progress' : 'form';
   const shown = chosen && asShown(state, chosen);
-  const verdict = shown && verdictShown(state, shown);
+  const details = shown && detailsOf(state, shown);
   const hasModel = panel === 'details' && Boolean(shown?.model);
   const growing = panel === 'progress' && scan ? scan.preview : null;
   const has3D = hasModel || growing !== null;
@@ -253,7 +253,7 @@ export function screenOf(state) {
     panel,
     unfinished: unfinishedOf(state),
     progress: scan && {...progressOf(scan), ...(state.stopping === scan.id ? {text: text('phase.stopping')} : {}), isStopping: state.stopping === scan.id, ...(away ? {text: text('progress.away'), left: '', time: '', isStale: true} : {isStale: false})},
-    details: shown && detailsOf(state, shown),
+    details,
     builds: chosen && buildsOf(state, chosen),
     poses: chosen && posesOf(state, chosen),
     isScanElsewhere: panel === 'details' && scan !== null,
@@ -269,14 +269,14 @@ export function screenOf(state) {
       model: hasModel && chosen && shown?.model ? {...shown.model, url: pictureUrl(chosen, buildShown(state, chosen))} : null,
       hasColours: Boolean(chosen?.has_colours),
       object: chosen?.id ?? '',
-      places: verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
+      places: details?.verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,
       name: chosen ? nameOf(chosen) : growing ? text('stage.seen') : '',
       sensor: translated(state.status?.sensor.name ?? ''),
       isReachable: !away,
       isLive: state.status?.sensor.state === 'ready' && !away,
       isScanning: scan !== null,
-      hasHints: scan === null && !(panel === 'details' && shown && detailsOf(state, shown).canResume),  // on how the next scan may fail
+      hasHints: scan === null && !(panel === 'details' && details?.canResume),  // on how the next scan may fail
     },
     ...libraryOf(state),
     footer: state.status ? {version: `Octurn ${state.status.version}`, disk: text('foot.free', {bytes: format.bytes(state.status.disk_free_bytes)})} : null,

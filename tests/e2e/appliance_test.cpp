@@ -10,6 +10,7 @@
 #include "support/daemon.hpp"
 #include "support/upload.hpp"
 #include "support/zip.hpp"
+#include "version.hpp"
 
 namespace octurn {
 namespace {
@@ -75,7 +76,7 @@ TEST_F(Appliances, HandANameAndATimeZoneToRoot) {
 TEST_F(Appliances, HandAnUpdateToRoot) {
   const Daemon scanner = daemon();
   answer("update", "slot = a\nstate = none\n");
-  EXPECT_EQ(parsed(scanner.get(update_path)), (json{{"version", OCTURN_VERSION},
+  EXPECT_EQ(parsed(scanner.get(update_path)), (json{{"version", version()},
                                                     {"slot", "a"},
                                                     {"state", "none"},
                                                     {"update_version", ""},

@@ -6,6 +6,7 @@
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/zip.hpp"
+#include "version.hpp"
 
 namespace octurn {
 namespace {
@@ -32,7 +33,7 @@ TEST(Diagnostics, AreAFileThatTellsOfTheDaemon) {
 
   const std::vector<ArchivedFile> files = unzipped(reply.body);
   ASSERT_EQ(files.size(), 7U);
-  EXPECT_EQ(json_in(files, "versions.json")["octurn"], OCTURN_VERSION);
+  EXPECT_EQ(json_in(files, "versions.json")["octurn"], version());
   EXPECT_EQ(json_in(files, "settings.json")["data"], (folder.path() / "data").string());
   EXPECT_EQ(json_in(files, "doctor.json")["findings"][0]["state"], "ok");
   EXPECT_EQ(json_in(files, "devices.json")["sensor"]["state"], "ready");

@@ -7,6 +7,7 @@
 #include "support/daemon.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
+#include "version.hpp"
 
 namespace octurn {
 namespace {
@@ -40,7 +41,7 @@ TEST(DoctorCommand, ChecksTheSimulatedRig) {
   ASSERT_TRUE(report.is_object()) << doctor.output() << doctor.errors();
   expect_complete(report);
   EXPECT_EQ(status, report["state"] == "fault" ? 1 : 0);
-  EXPECT_EQ(report["version"], OCTURN_VERSION);
+  EXPECT_EQ(report["version"], version());
   EXPECT_EQ(finding(report, "sensor")["state"], "ok");
   EXPECT_EQ(finding(report, "sensor")["measured"], "Kinect v1 (simulated), 640 x 480");
   EXPECT_EQ(finding(report, "platform")["state"], "ok") << report;

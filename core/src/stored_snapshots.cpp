@@ -12,6 +12,20 @@ void fit_to_sensor(ReconstructOptions& options, const Scan& scan) {
   }
 }
 
+ReconstructOptions model_options(const Scan& scan) {
+  ReconstructOptions options{
+      .method = has_free_poses(scan) ? Method::intersection : Method::solid,
+      .clip = model_clip(scan),
+      .placements = placements(scan),
+  };
+  if (scan.laser) {
+    options.leaf_size = laser_leaf_size;
+    options.target_error = laser_target_error;
+  }
+  fit_to_sensor(options, scan);
+  return options;
+}
+
 SnapshotSource stored_snapshots(const std::filesystem::path& folder, const Scan& scan,
                                 const std::stop_token& stop) {
   if (scan.laser) {

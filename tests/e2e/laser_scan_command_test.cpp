@@ -163,6 +163,16 @@ TEST(LaserScanCommand, MakesAClosedModelOfTheObjectsSize) {
   const fs::path stored = fs::directory_iterator(folder.path() / "data" / "scans")->path();
   EXPECT_TRUE(fs::exists(stored / "snapshots" / "039-right.png"));
   EXPECT_NE(content_of(stored / "scan.json").find("\"solved\""), std::string::npos);
+
+  // Without options the program's model is the library's, finer than a depth sensor's.
+  const fs::path again = folder.path() / "again.stl";
+  Program reconstruct({octurn_program(), "reconstruct", stored.string(), "-o", again.string()});
+  ASSERT_EQ(reconstruct.wait(), 0) << reconstruct.errors();
+  const fs::path by_library = folder.path() / "library.stl";
+  Program example({example_program(), stored.string(), by_library.string()});
+  ASSERT_EQ(example.wait(), 0) << example.errors();
+  EXPECT_TRUE(content_of(by_library) == content_of(again));
+  EXPECT_GT(triangles_of_whole_stl(content_of(again)), 2 * triangles_of_whole_stl(stl));
 }
 
 TEST(LaserScanCommand, StopsWhenItIsInterruptedAndGoesOnWhereItWas) {

@@ -86,8 +86,8 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
     EXPECT_LT(pose.clip.max.z(), figure_height + 0.03) << "empty space costs time and memory";
   }
   const fs::path model = folder_.path() / "Scan.stl";
-  Program program({octurn_program(), "reconstruct", merged_.string(), "-o", model.string(),
-                   "--method", "solid", "--json"});
+  Program program(
+      {octurn_program(), "reconstruct", merged_.string(), "-o", model.string(), "--json"});
   ASSERT_EQ(program.wait(), 0) << program.errors();
   const json built = json::parse(program.output());
   EXPECT_TRUE(built["watertight"]);
@@ -95,6 +95,11 @@ TEST_F(MergeCommand, MakesOneScanOfAnObjectThatWasTurnedOver) {
   const double volume = volume_cm3(figure());
   // The space between the balls and the block that neither pose sees is filled in.
   EXPECT_NEAR(built["volume_cm3"], volume, 0.03 * volume);
+
+  const fs::path by_library = folder_.path() / "library.stl";
+  Program example({example_program(), merged_.string(), by_library.string()});
+  ASSERT_EQ(example.wait(), 0) << example.errors();
+  EXPECT_TRUE(content_of(by_library) == content_of(model));
 }
 
 TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {

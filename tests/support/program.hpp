@@ -32,6 +32,11 @@ inline std::string octurn_program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octurn";
 }
 
+/// The path of the README's example of the library, which is built there, too.
+inline std::string example_program() {
+  return std::filesystem::path(octurn_program()).replace_filename("core_example");
+}
+
 /// Resource limits of a program (setrlimit).
 struct ProgramLimits {
   std::optional<rlim_t> file_bytes = {};  ///< per file, to simulate a full disk

@@ -104,6 +104,11 @@ struct ReconstructOptions {
 /// behind the surface inside cannot be told from outside between two lines.
 inline constexpr double laser_truncation = 0.002;
 
+/// Leaf size and target error of models of scans by laser line, metres: they are finer than a depth
+/// sensor's.
+inline constexpr double laser_leaf_size = 0.0005;
+inline constexpr double laser_target_error = 0.00001;
+
 /// The memory that a model needs.
 struct MemoryNeed {
   std::size_t bytes = 0;         ///< of the whole process

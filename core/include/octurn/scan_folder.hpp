@@ -111,6 +111,15 @@ Box model_clip(const Scan& scan);
 /// the memory of its lines to `program_memory`.
 void fit_to_sensor(ReconstructOptions& options, const Scan& scan);
 
+/// The options by which `octurn reconstruct` makes the scan's model, if it is given none: `solid`
+/// within the clip boxes of all poses, and finer by laser line. Like all models, it is made with
+/// `model_pose`: a pose that the scan does not have yet is not solved.
+///
+/// For a scan with free poses the method is `intersection`, and its reconstruction is one of
+/// `make_tiled_reconstructor`.
+/// @throws Error  as `model_pose`
+ReconstructOptions model_options(const Scan& scan);
+
 /// Whether all shots belong to one turn of the platform, with one calibration and clip box.
 bool is_one_turn(const Scan& scan);
 

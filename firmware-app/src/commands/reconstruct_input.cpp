@@ -15,10 +15,11 @@ namespace {
 
 ModelSettings settings_from(const nlohmann::json& given, const Scan& scan) {
   JsonObject keys(given, ErrorCode::bad_settings, "");
-  ModelSettings settings;
-  if (scan.laser) {
-    use_laser_defaults(settings.scan);
-  }
+  const ReconstructOptions defaults = model_options(scan);
+  ModelSettings settings{.scan = {.method = defaults.method,
+                                  .leaf_size = defaults.leaf_size,
+                                  .target_error = defaults.target_error,
+                                  .clip = defaults.clip}};
   read_fields(keys, fields(settings));
   expect_options_of_method(given, fields(settings), to_string(settings.scan.method));
   check_leaf(keys, settings.scan);
@@ -100,9 +101,6 @@ ReconstructInput read_input(const ReconstructArguments& arguments, const std::st
   PosedScan posed = with_pose(std::move(told), arguments.folder, input.settings, stop);
   input.scan = std::move(posed.scan);
   input.findings = std::move(posed.findings);
-  if (!arguments.settings.contains("clip_mm")) {
-    input.settings.scan.clip = model_clip(input.scan);
-  }
   input.options = options_from(input.settings, input.scan);
   if (input.options.memory_limit != 0) {
     return_freed_memory();

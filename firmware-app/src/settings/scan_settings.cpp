@@ -166,7 +166,13 @@ std::vector<Field> fields(Limits& limits) {
 
 std::vector<Field> fields(ModelSettings& settings) {
   std::vector<Field> model = model_fields(settings.scan);
-  model.back().default_text = "the scan's";
+  for (Field& field : model) {
+    field.default_text = field.key == "method"         ? "solid; of a space: intersection"
+                         : field.key == "leaf_size_mm" ? "1; by laser line: 0.5"
+                         : field.key == "max_error_mm" ? "0.04; by laser line: 0.01"
+                         : field.key == "clip_mm"      ? "the scan's"
+                                                       : "";
+  }
   model.push_back({.key = "level",
                    .help = "surface of a coarser level; 0 is the root",
                    .access = whole(settings.level, 0, max_levels),
@@ -190,8 +196,8 @@ std::size_t half_of_memory() {
 }
 
 void use_laser_defaults(ScanSettings& settings) {
-  settings.leaf_size = 0.0005;
-  settings.target_error = 0.00001;
+  settings.leaf_size = laser_leaf_size;
+  settings.target_error = laser_target_error;
 }
 
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {

@@ -72,9 +72,9 @@ struct Limits {
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
-/// The settings of `octurn reconstruct`.
+/// The settings of `octurn reconstruct`. Those of `model_options` are its defaults.
 struct ModelSettings {
-  ScanSettings scan = {.method = Method::intersection};
+  ScanSettings scan = {};
   std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
   Limits limits = {.memory_bytes = 0};
 };

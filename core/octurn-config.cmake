@@ -1,0 +1,6 @@
+include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 3.4)
+find_dependency(Threads)
+find_dependency(PkgConfig)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
+include(${CMAKE_CURRENT_LIST_DIR}/octurn-targets.cmake)

@@ -23,9 +23,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t mb = std::size_t{1} << 20U;
 
 std::vector<std::string> command(const fs::path& scan, const std::string& leaf_size_mm,
-                                 std::vector<std::string> more = {}) {
-  std::vector<std::string> words{octurn_program(), "reconstruct", scan.string(), "-o", "-",
-                                 "--leaf-size-mm", leaf_size_mm};
+                                 std::vector<std::string> more = {},
+                                 const std::string& method = "intersection") {
+  std::vector<std::string> words{octurn_program(), "reconstruct", scan.string(), "-o",  "-",
+                                 "--leaf-size-mm", leaf_size_mm,  "--method",    method};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -77,10 +78,10 @@ TEST(Memory, StaysBelowItsLimitWithTheSameBytes) {
 TEST(Memory, OfASolidStaysBelowItsLimitWithTheSameBytes) {
   const TemporaryFolder folder;
   write_ball_scan(folder.path(), 6);
-  const Outcome free = outcome_of(command(folder.path(), "0.5", {"--method", "solid"}));
+  const Outcome free = outcome_of(command(folder.path(), "0.5", {}, "solid"));
   ASSERT_EQ(free.status, 0) << free.errors;
-  const Outcome tight = outcome_of(command(
-      folder.path(), "0.5", {"--method", "solid", "--threads", "1", "--memory-limit-mb", "48"}));
+  const Outcome tight = outcome_of(
+      command(folder.path(), "0.5", {"--threads", "1", "--memory-limit-mb", "48"}, "solid"));
   EXPECT_EQ(tight.status, 0) << tight.errors;
   EXPECT_LT(tight.peak_bytes, 48 * mb);
   EXPECT_GT(free.peak_bytes, 44 * mb);
@@ -102,9 +103,9 @@ TEST(Memory, SaysHowMuchItNeedsAtLeast) {
   const TemporaryFolder folder;
   write_ball_scan(folder.path(), 6);
   const auto solid = [&](std::size_t limit_mb) {
-    return outcome_of(command(
-        folder.path(), "2",
-        {"--method", "solid", "--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}));
+    return outcome_of(command(folder.path(), "2",
+                              {"--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)},
+                              "solid"));
   };
   const Outcome refused = solid(17);
   EXPECT_EQ(refused.status, 1);
@@ -148,12 +149,11 @@ void write_chamber_scan(const fs::path& folder) {
 TEST(Memory, OfTheShellOfASpaceStaysBelowItsLimitWithTheSameBytes) {
   const TemporaryFolder folder;
   write_chamber_scan(folder.path());
-  const Outcome free = outcome_of(command(folder.path(), "5", {"--method", "solid"}));
+  const Outcome free = outcome_of(command(folder.path(), "5", {}, "solid"));
   ASSERT_EQ(free.status, 0) << free.errors;
   for (const char* const threads : {"1", "2"}) {
-    const Outcome tight =
-        outcome_of(command(folder.path(), "5",
-                           {"--method", "solid", "--threads", threads, "--memory-limit-mb", "48"}));
+    const Outcome tight = outcome_of(
+        command(folder.path(), "5", {"--threads", threads, "--memory-limit-mb", "48"}, "solid"));
     EXPECT_EQ(tight.status, 0) << tight.errors;
     EXPECT_LT(tight.peak_bytes, 48 * mb);
     EXPECT_EQ(tight.model, free.model);
@@ -173,9 +173,9 @@ TEST(Memory, SaysHowMuchTheShellOfATileNeeds) {
   const TemporaryFolder folder;
   write_chamber_scan(folder.path());
   const auto solid = [&](std::size_t limit_mb) {
-    return outcome_of(command(
-        folder.path(), "2.5",
-        {"--method", "solid", "--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)}));
+    return outcome_of(command(folder.path(), "2.5",
+                              {"--threads", "1", "--memory-limit-mb", std::to_string(limit_mb)},
+                              "solid"));
   };
   std::size_t limit_mb = 40;
   Outcome outcome = solid(limit_mb);
@@ -256,12 +256,11 @@ TEST(Memory, HoldsNoModelHoweverLarge) {
 TEST(Memory, OfASolidIsSharedByTheThreads) {
   const TemporaryFolder folder;
   write_ball_scan(folder.path(), 6);
-  const Outcome free = outcome_of(command(folder.path(), "0.5", {"--method", "solid"}));
+  const Outcome free = outcome_of(command(folder.path(), "0.5", {}, "solid"));
   for (const char* const threads : {"1", "2"}) {
     SCOPED_TRACE(threads);
-    const Outcome tight =
-        outcome_of(command(folder.path(), "0.5",
-                           {"--method", "solid", "--threads", threads, "--memory-limit-mb", "64"}));
+    const Outcome tight = outcome_of(
+        command(folder.path(), "0.5", {"--threads", threads, "--memory-limit-mb", "64"}, "solid"));
     EXPECT_EQ(tight.status, 0) << tight.errors;
     EXPECT_LT(tight.peak_bytes, 64 * mb);
     EXPECT_EQ(tight.model, free.model);

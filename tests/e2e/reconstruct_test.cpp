@@ -11,6 +11,7 @@
 #include "support/small_scan.hpp"
 #include "support/stl.hpp"
 #include "support/temporary_folder.hpp"
+#include "version.hpp"
 
 namespace octurn {
 namespace {
@@ -21,10 +22,11 @@ class ReconstructCommand : public ::testing::Test {
  protected:
   ReconstructCommand() { write_small_scan(scan_, 4); }
 
-  /// The command `octurn reconstruct SCAN -o OUTPUT` with more options.
-  std::vector<std::string> command(std::vector<std::string> more = {}) const {
+  /// The command `octurn reconstruct SCAN -o OUTPUT --method METHOD` with more options.
+  std::vector<std::string> command(std::vector<std::string> more = {},
+                                   const std::string& method = "intersection") const {
     std::vector<std::string> words{octurn_program(), "reconstruct", scan_.string(), "-o",
-                                   output_.string()};
+                                   output_.string(), "--method",    method};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -118,7 +120,7 @@ TEST_F(ReconstructCommand, TakesTheClipBoxAndTheLevelGiven) {
 
 TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
   expect_failure({octurn_program()}, 2, "subcommand");
-  expect_failure({octurn_program(), "levitate"}, 2, "subcommand");
+  expect_failure({octurn_program(), "levitate"}, 2, "\"levitate\" is no command");
   expect_failure({octurn_program(), "reconstruct", scan_.string()}, 2, "--output");
   expect_failure(command({"--leaf-size"}), 2, "--leaf-size");
   expect_failure(command({"--leaf-size-mm", "one"}), 2, "--leaf-size-mm");
@@ -132,15 +134,15 @@ TEST_F(ReconstructCommand, EndsWith2ForBadUsage) {
   expect_failure(command({"--clip-mm", "0", "0", "0", "0", "1", "1"}), 2, "clip_mm");
   expect_failure(command({"--clip-mm", "0", "0", "0", "1e-7", "1", "1"}), 2, "clip_mm");
   for (const char* const method : {"solid", "intersection"}) {
-    expect_failure(command({"--method", method, "--clip-mm", "-1e300", "-1e300", "-1e300", "1e300",
-                            "1e300", "1e300"}),
-                   2, "clip_mm");
+    expect_failure(
+        command({"--clip-mm", "-1e300", "-1e300", "-1e300", "1e300", "1e300", "1e300"}, method), 2,
+        "clip_mm");
   }
   for (const char* const mb : {"0", "1e-9", "16", "nan", "inf", "1e300"}) {
     expect_failure(command({"--memory-limit-mb", mb}), 2, "memory_limit_mb");
   }
   expect_failure(command({"--level", "99"}), 2, "level");
-  expect_failure(command({"--method", "solid", "--level", "3"}), 2, "--level");
+  expect_failure(command({"--level", "3"}, "solid"), 2, "--level");
   expect_failure(command({"--max-error-mm", "1"}), 2, "--max-error-mm");
   expect_failure(command({"--threads", "0"}), 2, "threads");
 }
@@ -232,7 +234,7 @@ TEST_F(ReconstructCommand, RemovesThePartialFileWhenItIsInterrupted) {
 TEST(Octurn, TellsItsVersionAndItsUse) {
   Program version({octurn_program(), "--version"});
   EXPECT_EQ(version.wait(), 0);
-  EXPECT_EQ(version.output(), "octurn " OCTURN_VERSION "\n");
+  EXPECT_EQ(version.output(), "octurn " + std::string(octurn::version()) + "\n");
   Program help({octurn_program(), "--help"});
   EXPECT_EQ(help.wait(), 0);
   for (const char* const command : {"serve", "scan", "reconstruct"}) {

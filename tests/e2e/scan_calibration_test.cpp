@@ -114,7 +114,7 @@ TEST(ScanCalibration, GoesOnAfterAKillWhileTheModelIsBuiltAgain) {
   ASSERT_EQ(done["state"], "finished") << done;
   expect_same(calibration_in(folder_of(folder, done))["solved"], before["calibration"]["solved"]);
   Program again({octurn_program(), "reconstruct", folder_of(folder, done), "-o", "-",
-                 "--leaf-size-mm", "0.6", "--calibrate", "auto"});
+                 "--leaf-size-mm", "0.6", "--method", "intersection", "--calibrate", "auto"});
   EXPECT_EQ(again.wait(), 0) << again.errors();
   EXPECT_TRUE(again.output() == daemon.get("/Scan.stl").body);
 }

@@ -1,4 +1,4 @@
-// `octurn reconstruct --method solid`, end to end.
+// `octurn reconstruct` by the method solid, its default, end to end.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class SolidCommand : public ::testing::Test {
  protected:
   std::vector<std::string> command(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words{octurn_program(), "reconstruct", scan_.string(), "-o",
-                                   output_.string(), "--method",    "solid"};
+                                   output_.string()};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -196,7 +196,7 @@ TEST_F(SolidCommand, EndsWith2ForWhatItCannotTake) {
   EXPECT_EQ(no_number.wait(), 2);
   EXPECT_NE(no_number.errors().find("--max-error-mm"), std::string::npos);
   Program not_solid({octurn_program(), "reconstruct", scan_.string(), "-o", output_.string(),
-                     "--max-error-mm", "1"});
+                     "--method", "intersection", "--max-error-mm", "1"});
   EXPECT_EQ(not_solid.wait(), 2);
   EXPECT_NE(not_solid.errors().find("--max-error-mm"), std::string::npos);
 }

@@ -83,8 +83,10 @@ TEST_F(Spaces, AnImportThatFailsLeavesNothing) {
 TEST_F(Spaces, TilesJoinToTheBytesOfOneProcess) {
   write_room_scan(in("room"), small_room(), 8);
   for (const std::string method : {"intersection", "solid"}) {
-    std::vector<std::string> options{"--method", method, "--leaf-size-mm", "32"};
-    if (method == "intersection") {
+    std::vector<std::string> options{"--leaf-size-mm", "32"};
+    if (method == "solid") {
+      options.insert(options.end(), {"--method", "solid"});
+    } else {  // the default of a space
       options.insert(options.end(), {"--threshold-m2", "0.01"});
     }
     const auto reconstruct = [&](std::vector<std::string> words) {

@@ -73,7 +73,8 @@ TEST(ModelStream, IsMadeWhileItIsDownloaded) {
       {"leaf_size_mm=%32", {"--leaf-size-mm", "2"}},  // RFC 3986, 6.2.2.2: %32 is 2
   };
   for (const auto& [query, options] : ways) {
-    std::vector<std::string> command{octurn_program(), "reconstruct", stored, "-o", expected};
+    std::vector<std::string> command{octurn_program(), "reconstruct", stored,        "-o",
+                                     expected,         "--method",    "intersection"};
     command.insert(command.end(), options.begin(), options.end());
     Program reconstruct(command);
     ASSERT_EQ(reconstruct.wait(), 0) << reconstruct.errors();

@@ -29,6 +29,7 @@ export const texts = {
   'away.retry': 'Jetzt versuchen',
   'foot.help': 'Hilfe',
   'foot.programs': 'Für Programme',
+  'foot.licences': 'Lizenzen',
   'foot.private': 'Alles bleibt auf diesem Scanner.',
   'foot.free': '{bytes} frei',
   'problem.unreachable': 'Der Scanner antwortet nicht',

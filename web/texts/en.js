@@ -33,6 +33,7 @@ export const texts = {
   'away.retry': 'Try now',
   'foot.help': 'Help',
   'foot.programs': 'For programs',
+  'foot.licences': 'Licences',
   'foot.private': 'Everything stays on this scanner.',
   'foot.free': '{bytes} free',
   'problem.unreachable': 'The scanner does not answer',

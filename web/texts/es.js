@@ -29,6 +29,7 @@ export const texts = {
   'away.retry': 'Intentar ahora',
   'foot.help': 'Ayuda',
   'foot.programs': 'Para programas',
+  'foot.licences': 'Licencias',
   'foot.private': 'Todo queda en este escáner.',
   'foot.free': '{bytes} libres',
   'problem.unreachable': 'El escáner no responde',

@@ -29,6 +29,7 @@ export const texts = {
   'away.retry': 'Essayer maintenant',
   'foot.help': 'Aide',
   'foot.programs': 'Pour les programmes',
+  'foot.licences': 'Licences',
   'foot.private': 'Tout reste sur ce scanner.',
   'foot.free': '{bytes} libres',
   'problem.unreachable': 'Le scanner ne répond pas',

@@ -10,6 +10,9 @@
 
 #include "http/api.hpp"
 #include "octurn/file.hpp"
+#include "settings/field.hpp"
+#include "settings/scan_settings.hpp"
+#include "store/build_settings.hpp"
 
 namespace octurn {
 namespace {
@@ -80,6 +83,46 @@ TEST(OpenApi, RefersToWhatItHas) {
   EXPECT_FALSE(references.empty());
   for (const std::string& reference : references) {
     EXPECT_TRUE(document.contains(json::json_pointer(reference.substr(1)))) << reference;
+  }
+}
+
+/// A described setting in the form of the program's schema, which does not tell what may be null.
+json without_null(json setting) {
+  if (setting["type"].is_array()) {
+    setting["type"] = json(setting["type"][0]);
+  }
+  return setting;
+}
+
+void expect_settings(const std::string& name, const json& schema) {
+  const json described = description().at("components").at("schemas").at(name);
+  for (const auto& [key, setting] : schema.at("properties").items()) {
+    if (described["properties"][key].contains("oneOf")) {
+      continue;  // a pose or null
+    }
+    EXPECT_EQ(without_null(described["properties"][key]), setting)
+        << "components.schemas." << name << " of web/openapi.json differs: " << key;
+  }
+}
+
+TEST(OpenApi, HasTheSettingsOfTheProgram) {
+  ScanSettings scan;
+  expect_settings("ScanSettings", to_schema(fields(scan)));
+  BuildSettings build;
+  expect_settings("BuildSettings", to_schema(fields(build)));
+}
+
+TEST(OpenApi, KnowsEveryErrorCode) {
+  const json codes = description()
+                         .at("components")
+                         .at("schemas")
+                         .at("Problem")
+                         .at("properties")
+                         .at("code")
+                         .at("enum");
+  for (int code = 0; code <= static_cast<int>(ErrorCode::unknown); ++code) {
+    const std::string word(to_string(static_cast<ErrorCode>(code)));
+    EXPECT_EQ(std::ranges::count(codes, json(word)), 1) << word;
   }
 }
 

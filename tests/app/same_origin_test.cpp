@@ -71,7 +71,14 @@ TEST(SameOrigin, RefusesWhatAFormCanSend) {
                                  "multipart/form-data", "", "application/jsonp"}) {
     EXPECT_EQ(code(post({{"Content-Type", type}})), "wrong-content-type") << type;
   }
-  EXPECT_EQ(code(post({})), "wrong-content-type");
+  EXPECT_EQ(code(post({{"Content-Length", "2"}})), "wrong-content-type");
+  EXPECT_EQ(code(post({{"Transfer-Encoding", "chunked"}})), "wrong-content-type");
+}
+
+TEST(SameOrigin, TakesWhatHasNoBodyWithoutAType) {
+  EXPECT_EQ(code(post({})), "");
+  EXPECT_EQ(code(post({{"Content-Length", "0"}})), "");
+  EXPECT_EQ(code(post({{"Origin", "http://evil.example"}})), "wrong-origin");
 }
 
 TEST(SameOrigin, TakesAnUploadWhereOneIsExpected) {

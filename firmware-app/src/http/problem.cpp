@@ -38,7 +38,7 @@ constexpr std::array problem_types{
     ProblemType{ErrorCode::wrong_method, 405, "That cannot be done with this"},
     ProblemType{ErrorCode::too_slow, 408, "The request came too slowly"},
     ProblemType{ErrorCode::busy, 409, "The scanner is busy"},
-    ProblemType{ErrorCode::not_running, 409, "The scan is not running"},
+    ProblemType{ErrorCode::not_running, 409, "It is not running"},
     ProblemType{ErrorCode::not_paused, 409, "The scan cannot be resumed"},
     ProblemType{ErrorCode::length_required, 411, "The length is missing"},
     ProblemType{ErrorCode::changed, 412, "The file has changed in the meantime"},

@@ -55,6 +55,21 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
   return scheme != std::string_view::npos && same_token(origin.substr(scheme + 3), host);
 }
 
+/// Whether a body follows, by the request's head.
+bool has_body(const Request& request) {
+  return request.header("Content-Length").value_or("0") != "0" ||
+         request.header("Transfer-Encoding").has_value();
+}
+
+/// Whether the request names the type of its body, or has neither: pages of other sites, which may
+/// send a form without asking, are refused by their Origin.
+bool has_type(const Request& request, std::string_view body_type) {
+  const auto type = request.header("Content-Type");
+  return body_type == upload_type
+             ? is_upload(request)
+             : is_of_type(type.value_or(""), body_type) || (!type && !has_body(request));
+}
+
 }  // namespace
 
 bool is_own_host(std::string_view host, std::span<const std::string> host_names) {
@@ -85,10 +100,7 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
                    .detail = "the request comes from " + std::string(*origin),
                    .hint = "Use the scanner's own page."};
   }
-  const bool has_type = body_type == upload_type
-                            ? is_upload(request)
-                            : is_of_type(request.header("Content-Type").value_or(""), body_type);
-  if (request.method != "DELETE" && !has_type) {
+  if (request.method != "DELETE" && !has_type(request, body_type)) {
     return Failure{.code = ErrorCode::wrong_content_type,
                    .detail = request.method + " needs Content-Type: " + std::string(body_type),
                    .hint = "Send the body in that format, and name it in the header Content-Type."};

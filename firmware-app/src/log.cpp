@@ -7,6 +7,7 @@
 #include <string>
 
 #include "log_ring.hpp"
+#include "progress_bar.hpp"
 #include "utc.hpp"
 
 namespace octurn::log {
@@ -22,16 +23,24 @@ Kept& kept() {
   return all;
 }
 
+/// The start of a line for people: it replaces a progress bar that is drawn there.
+std::string terminal_prefix(char priority) {
+  return std::string(clear_line) + (priority == '3'   ? "error: "
+                                    : priority == '4' ? "warning: "
+                                                      : "");
+}
+
 /// Writes the line in one system call, so that lines of different threads do not mix.
 void write_line(char priority, std::string_view component, std::string_view message) {
-  std::string line = "<";
-  line.append(1, priority).append(">").append(component).append(": ").append(message).append("\n");
+  const std::string said = std::string(component).append(": ").append(message);
+  const std::string journal_prefix = std::string("<").append(1, priority).append(">");
+  const std::string line =
+      (::isatty(STDERR_FILENO) == 1 ? terminal_prefix(priority) : journal_prefix) + said + "\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
 
-  line.pop_back();
   const std::string time = utc_text(std::chrono::system_clock::now(), rfc3339);
   const std::lock_guard lock(kept().mutex);
-  kept().lines.add(time + " " + line);
+  kept().lines.add(time + " " + journal_prefix + said);
 }
 
 }  // namespace

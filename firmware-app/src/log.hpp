@@ -4,8 +4,8 @@
 #include <string_view>
 
 /// Log on standard error: one line for each change of state, with a priority that systemd's journal
-/// understands. The newest lines also stay in memory, because a service may not be allowed to read
-/// its own journal. Thread-safe.
+/// understands, or in words on a terminal. The newest lines also stay in memory, because a service
+/// may not be allowed to read its own journal. Thread-safe.
 namespace octurn::log {
 
 void error(std::string_view component, std::string_view message);

@@ -10,7 +10,6 @@ namespace octurn {
 namespace {
 
 constexpr int width = 30;  // characters
-constexpr const char* clear_line = "\r\033[K";
 
 }  // namespace
 

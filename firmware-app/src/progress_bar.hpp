@@ -4,6 +4,9 @@
 
 namespace octurn {
 
+/// Erases the line of a terminal on which a progress bar may be.
+inline constexpr const char* clear_line = "\r\033[K";
+
 /// Progress bar on standard error; prints nothing if that is no terminal. Thread-safe.
 class ProgressBar {
  public:

@@ -1,7 +1,14 @@
 #include "log.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdlib>
+#include <string>
+
+#include "file_descriptor.hpp"
 #include "log_ring.hpp"
 
 namespace octurn {
@@ -34,6 +41,22 @@ TEST(Log, KeepsWhatWasSaidWithItsTime) {
   EXPECT_LT(first, second);
   EXPECT_EQ(text.substr(second - 19, 2), "20");  // a year
   EXPECT_EQ(text[second - 9], 'T');
+}
+
+TEST(Log, SpeaksToATerminalInWords) {
+  const FileDescriptor terminal(::posix_openpt(O_RDWR | O_NOCTTY));
+  ASSERT_EQ(::grantpt(terminal.number()), 0);
+  ASSERT_EQ(::unlockpt(terminal.number()), 0);
+  const FileDescriptor screen(::open(::ptsname(terminal.number()), O_RDWR | O_NOCTTY));
+  const FileDescriptor usual(::dup(STDERR_FILENO));
+  ::dup2(screen.number(), STDERR_FILENO);
+  log::warning("scanner", "it slipped");
+  ::dup2(usual.number(), STDERR_FILENO);
+
+  std::array<char, 100> shown{};
+  const ssize_t size = ::read(terminal.number(), shown.data(), shown.size());
+  EXPECT_EQ(std::string(shown.data(), static_cast<std::size_t>(size)),
+            "\r\033[Kwarning: scanner: it slipped\r\n");
 }
 
 }  // namespace

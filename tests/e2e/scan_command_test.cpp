@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -130,6 +131,34 @@ TEST(ScanCommand, ScansAndWritesTheModel) {
   const std::string stl = content_of(folder.path() / "Scan.stl");
   EXPECT_GT(triangles_of_whole_stl(stl), 1000);
   EXPECT_EQ(open_edges(stl), 0);
+}
+
+TEST(ScanCommand, TellsTheVerdictAndItsReport) {
+  const TemporaryFolder folder;
+  std::vector<std::string> words = scan_to(folder.path() / "data", folder.path() / "Scan.stl");
+  words.emplace_back("--json");
+  Program program(words);
+  ASSERT_EQ(program.wait(), 0) << program.errors();
+  const auto report = nlohmann::json::parse(program.output());
+  EXPECT_EQ(report["state"], "finished");
+  EXPECT_EQ(report["model"]["bytes"], fs::file_size(folder.path() / "Scan.stl"));
+  const auto quality = report["model"]["quality"];
+  EXPECT_NE(quality["verdict"], "good") << "two stops do not see an object all around";
+  EXPECT_NE(program.errors().find(quality["reasons"][0]["detail"]), std::string::npos)
+      << program.errors();
+}
+
+TEST(ScanCommand, SaysWhereScansAreIfItKnowsNoneOfThatId) {
+  const TemporaryFolder folder;
+  for (const char* const option : {"--resume", "--pose-of"}) {
+    std::vector<std::string> words = scan_to(folder.path() / "data", folder.path() / "Scan.stl");
+    words.insert(words.end(), {option, "nope"});
+    Program program(words);
+    EXPECT_EQ(program.wait(), 1);
+    EXPECT_NE(program.errors().find("nope: is no scan in " + (folder.path() / "data").string()),
+              std::string::npos)
+        << program.errors();
+  }
 }
 
 TEST(ScanCommand, StopsWhenItIsInterrupted) {

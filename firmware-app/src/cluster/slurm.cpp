@@ -83,19 +83,23 @@ std::string last_line(const std::string& text) {
 
 /// Runs one of Slurm's programs. @return its output
 std::string run(const std::vector<std::string>& command, const std::stop_token& stop) {
-  const char* const hint = "Slurm has to be installed here, and its slurmctld to run.";
+  ProgramResult result;
   try {
-    ProgramResult result = run_program(command, stop);
-    if (result.status == 0) {
-      return std::move(result.output);
-    }
-    const std::string said = last_line(result.errors);
-    throw Error(ErrorCode::interrupted,
-                said.empty() ? command[0] + " ended with " + std::to_string(result.status) : said,
-                hint);
+    result = run_program(command, stop);
   } catch (const Error& error) {
-    throw Error(ErrorCode::interrupted, std::string("Slurm: ") + error.what(), hint);
+    throw Error(ErrorCode::interrupted, std::string("Slurm: ") + error.what(),
+                "Slurm has to be installed here.");
   }
+  if (result.status != 0) {
+    const std::string said = last_line(result.errors);
+    throw Error(
+        ErrorCode::interrupted,
+        "Slurm: " +
+            (said.empty() ? command[0] + " ended with " + std::to_string(result.status) : said),
+        "Its slurmctld has to run, and a node to have what the settings threads and "
+        "memory_limit_mb ask for.");
+  }
+  return std::move(result.output);
 }
 
 SlurmJob to_slurm_job(std::string_view text) {

@@ -56,6 +56,9 @@ void add_scan(CLI::App& program, ScanArguments& arguments) {
                   "scan folder elsewhere is left as it is: scan, then octurn merge both")
       ->type_name("ID|DIR")
       ->excludes(resume);
+  command.add_flag("--json", arguments.json,
+                   "print the scan, as the HTTP interface has it, as one line of JSON on standard "
+                   "output, or on standard error with -o -");
   command.callback([&arguments] { scan(arguments); });
 }
 
@@ -204,6 +207,12 @@ int run(int argc, char** argv) {
   add_update(program, update);
 
   block_signals();
+  const auto is_first_word = [&](const CLI::App* command) {
+    return command->get_name() == argv[1];
+  };
+  if (argc > 1 && argv[1][0] != '-' && program.get_subcommands(is_first_word).empty()) {
+    return fail("\"" + std::string(argv[1]) + "\" is no command", "octurn --help lists them", 2);
+  }
   try {
     program.parse(argc, argv);  // and runs the command
     return status;

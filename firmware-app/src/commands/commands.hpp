@@ -69,6 +69,7 @@ struct ScanArguments {
   std::optional<std::string> resume = {};     ///< id of a scan to resume, with its own settings
   std::optional<std::string> pose_of = {};    ///< id or folder of the scan before turning it over
   std::filesystem::path output = "Scan.stl";  ///< "-" is standard output
+  bool json = false;                          ///< one line of JSON on standard output
 };
 
 /// `octurn scan`: makes one scan. Writes the model to `output` and keeps the scan in `data`.

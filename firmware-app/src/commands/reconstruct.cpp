@@ -1,6 +1,5 @@
 #include <chrono>
 #include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 
 #include "commands/coloured_model.hpp"
 #include "commands/commands.hpp"
+#include "commands/model_report.hpp"
 #include "commands/reconstruct_input.hpp"
 #include "octurn/error.hpp"
 #include "octurn/model.hpp"
@@ -65,15 +65,6 @@ Json to_json(ModelSettings settings) {
     object["clip_mm"] = nullptr;
   }
   return object;
-}
-
-/// One line for people, if the model is not good.
-std::string to_text(const Quality& quality) {
-  std::string text = quality.verdict == Verdict::bad ? "The model is bad: " : "Look at the model: ";
-  for (const QualityReason& reason : quality.reasons) {
-    text += (&reason == quality.reasons.data() ? "" : "; ") + reason.detail;
-  }
-  return text + ".\n";
 }
 
 /// @param quality  nothing for a scan with free poses, which is not judged
@@ -149,19 +140,6 @@ std::filesystem::path spool_path(const std::filesystem::path& output) {
   return output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
 }
 
-/// Prints the report, where it is asked for.
-void print(const ReconstructArguments& arguments, const Json& report) {
-  if (!arguments.json) {
-    return;
-  }
-  const std::string line = report.dump() + "\n";
-  if (arguments.output == "-") {
-    std::cerr << line;  // standard output holds the model
-  } else {
-    write_standard_output(line);
-  }
-}
-
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
@@ -208,11 +186,11 @@ void reconstruct(const ReconstructArguments& arguments) try {
   std::optional<Quality> quality;
   if (scan_checks) {
     quality = judge(scan_checks->figures(options.threads), *report, findings);
-    if (quality->verdict != Verdict::good) {
-      std::cerr << to_text(*quality);
-    }
+    print_verdict(*quality);
   }
-  print(arguments, to_json(*report, quality, settings, times));
+  if (arguments.json) {
+    print_report(arguments.output, to_json(*report, quality, settings, times).dump());
+  }
 } catch (const Stopped&) {
   throw_stopped("no model was written");
 }

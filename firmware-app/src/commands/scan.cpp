@@ -1,10 +1,13 @@
 #include <chrono>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/model_report.hpp"
 #include "commands/options.hpp"
+#include "http/scan_json.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "process_memory.hpp"
@@ -81,10 +84,20 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
   }
 }
 
+/// Checks that the scan is in the store.
+const std::string& known_id(const std::string& told, const ScanStore& store) {
+  if (!store.find(told)) {
+    const std::string scans = (store.data() / "scans").string();
+    throw Error(ErrorCode::no_such_scan, told + ": is no scan in " + scans,
+                "ls " + scans + " lists them.");
+  }
+  return told;
+}
+
 /// Converts the folder of a scan in the store to the scan's id; an id stays as it is.
 std::string to_id(const std::string& told, const ScanStore& store) {
   if (store.find(told) || !std::filesystem::is_directory(told)) {
-    return told;
+    return known_id(told, store);
   }
   const auto folder = std::filesystem::canonical(told);
   std::string id = folder.filename();
@@ -111,7 +124,7 @@ ScanSettings pose_settings(const ScanArguments& arguments, const Job& first,
 std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& settings,
                          const ScanStore& store, Scanner& scanner) {
   if (arguments.resume) {
-    return scanner.resume(*arguments.resume);
+    return scanner.resume(known_id(*arguments.resume, store));
   }
   if (arguments.pose_of) {
     const std::string first = to_id(*arguments.pose_of, store);
@@ -156,7 +169,14 @@ void scan(const ScanArguments& arguments) {
   if (job.state != JobState::finished) {
     explain(job, store.folder(job.id));
   }
-  hand_over_model(store.model_file(scan_with_model(job, store)), arguments.output);
+  const Job whole = store.get(scan_with_model(job, store));
+  hand_over_model(store.model_file(whole.id), arguments.output);
+  if (const Model* model = chosen_model(whole); model != nullptr && model->quality) {
+    print_verdict(*model->quality);
+  }
+  if (arguments.json) {
+    print_report(arguments.output, to_json(whole).dump());
+  }
 }
 
 }  // namespace octurn

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "octurn/quality.hpp"
+
+namespace octurn {
+
+/// Prints why a model is not good, as one line on standard error; nothing for a good one.
+void print_verdict(const Quality& quality);
+
+/// Prints a line of JSON on standard output, or on standard error if the model is there.
+/// @param model  where the model was written; "-" is standard output
+void print_report(const std::filesystem::path& model, const std::string& json);
+
+}  // namespace octurn

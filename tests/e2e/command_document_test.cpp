@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/program.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace octurn {
 namespace {

@@ -16,6 +16,7 @@ constexpr std::size_t max_quote = 60;  // characters of a value in a message
 
 std::string plain(double number) {
   std::ostringstream text;
+  text.precision(10);  // 1767225600, not 1.76723e+09
   text << number;
   return text.str();
 }

@@ -173,6 +173,8 @@ TEST(JsonObject, SaysWhatAValueMustBe) {
             R"("k" is [0,"x"]: must be an array of 3)");
   EXPECT_EQ(on_array([](const JsonValue& k) { k.elements().at(1).number(1, 2); }),
             R"("k[1]" is "x": must be a number from 1 to 2)");
+  EXPECT_EQ(on_array([](const JsonValue& k) { k.elements().at(1).number(1767225600, 4102444800); }),
+            R"("k[1]" is "x": must be a number from 1767225600 to 4102444800)");
   EXPECT_EQ(on_array([](const JsonValue& k) { k.elements().at(0).whole_number(1, 2); }),
             R"("k[0]" is 0: must be a whole number from 1 to 2)");
   EXPECT_EQ(on_array([](const JsonValue& k) { JsonObject object(k); }),

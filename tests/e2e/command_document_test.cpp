@@ -45,9 +45,7 @@ std::set<std::string> commands() {
 
 /// The options that a command's help lists.
 std::set<std::string> options_of(const std::vector<std::string>& command) {
-  std::set<std::string> options = matches(help_of(command), "\n  (?:-[a-z],)?(--[a-z-]+)");
-  options.erase("--help");
-  return options;
+  return matches(help_of(command), "\n  (?:-[a-z],)?(--[a-z-]+)");
 }
 
 std::set<std::string> all_options() {

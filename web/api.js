@@ -49,6 +49,8 @@ import {refusalText} from './wording.js';
  * @property {boolean} [can_resume]
  * @property {Settings} settings
  * @property {number} late_pulses  motor pulses that came late
+ * @property {number} slips  pictures that showed lost steps
+ * @property {number} seconds_settling  that a stop waited at most for a platform that swung on
  * @property {{code: string, detail: string, hint: string, parameters?: Parameters} | null} error  in a running scan, the error for which a stop is retried
  * @property {Model | null} model
  * @property {ScanCalibration | null} [calibration]  solved by the scan itself

@@ -1,6 +1,6 @@
 // The page's words in German, and the scanner's sentences by the English ones.
 
-/** @type {import('../texts.js').Texts} */
+/** @type {import('../base/texts.js').Texts} */
 export const texts = {
   'top.skip': 'Zu den Bedienelementen springen',
   'top.start': 'Octurn, Anfang',

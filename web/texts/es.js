@@ -1,6 +1,6 @@
 // The page's words in Spanish, and the scanner's sentences by the English ones.
 
-/** @type {import('../texts.js').Texts} */
+/** @type {import('../base/texts.js').Texts} */
 export const texts = {
   'top.skip': 'Ir a los controles',
   'top.start': 'Octurn, inicio',

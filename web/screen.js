@@ -69,7 +69,7 @@ function factsOf(scan) {
     {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
     ...poseFacts(scan),
     ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: format.number(scan.late_pulses)})}] : []),
-    ...(scan.slips > 0 ? [{label: text('fact.motor'), text: text('fact.slips', {times: text('count.times', {count: scan.slips})}), tone: /** @type {const} */ ('warn')}] : []),
+    ...(scan.slips > 0 ? [{label: text('fact.motor'), text: text('fact.slips', {count: scan.slips}), tone: /** @type {const} */ ('warn')}] : []),
     ...(scan.seconds_settling >= 0.1 ? [{label: text('fact.platform'), text: text('fact.swung', {time: `${format.number(scan.seconds_settling)} s`})}] : []),
   ];
   if (!model) {

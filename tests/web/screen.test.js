@@ -189,8 +189,8 @@ test('late pulses of the motor are told, if there were any', () => {
 test('lost steps of the motor are told, if there were any', () => {
   const motor = (slips) => screenOf(looking({...finished, slips})).details.facts.find(({label}) => label === 'Motor');
   assert.equal(motor(0), undefined);
-  assert.match(motor(1).text, /^lost steps once/);
-  assert.match(motor(3).text, /^lost steps 3 times/);
+  assert.match(motor(1).text, /^lost steps at 1 stop,/);
+  assert.match(motor(3).text, /^lost steps at 3 stops,/);
 });
 
 test('a platform that swung on is told, if stops waited for it', () => {

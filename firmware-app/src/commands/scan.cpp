@@ -124,7 +124,7 @@ ScanSettings pose_settings(const ScanArguments& arguments, const Job& first,
 std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& settings,
                          const ScanStore& store, Scanner& scanner) {
   if (arguments.resume) {
-    return scanner.resume(known_id(*arguments.resume, store));
+    return scanner.resume(*arguments.resume);
   }
   if (arguments.pose_of) {
     const std::string first = to_id(*arguments.pose_of, store);
@@ -159,6 +159,11 @@ void scan(const ScanArguments& arguments) {
 
   const SignalStop signal;
   ScanStore store(config.data);
+  if (arguments.resume) {  // before the devices are opened
+    known_id(*arguments.resume, store);
+  } else if (arguments.pose_of) {
+    to_id(*arguments.pose_of, store);
+  }
   return_freed_memory();
   Scanner scanner(rig, config.limits, store);
 

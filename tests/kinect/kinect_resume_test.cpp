@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <tuple>
 
 #include "kinect/kinect_on_desk.hpp"
@@ -122,6 +124,51 @@ TEST_P(KinectFaultsThatPass, DoNotPauseAScan) {
   const json done = kinect.daemon().wait_until_done(scan);
   EXPECT_EQ(done["state"], "finished") << done;
   EXPECT_EQ(done["error"], nullptr);
+}
+
+/// A daemon whose Kinect loses what it does not wait for; the system stops it for a while, longer
+/// than a sensor may be silent and than opening one takes.
+class StoppedDaemon : public ::testing::Test {
+ protected:
+  StoppedDaemon() { desk_->is_hasty = true; }
+
+  void stop() { daemon_.program().send_signal(SIGSTOP); }
+  void go_on_after_a_while() {
+    std::this_thread::sleep_for(std::chrono::seconds(5));  // the fault is that real time passes
+    daemon_.program().send_signal(SIGCONT);
+  }
+
+  void expect_model(const std::string& scan) {
+    const json done = daemon_.wait_until_done(scan);
+    ASSERT_EQ(done["state"], "finished") << done;
+    EXPECT_EQ(daemon_.get(scan + "/Scan.stl").status, 200);
+  }
+
+  std::string start() { return daemon_.start(settings); }
+
+  KinectOnDesk desk_{{readings_of(simulated_frame())}};
+  TemporaryFolder folder_ = {};
+  Daemon daemon_{folder_.path(), {"--sensor", "kinect://", "--simulate-speed", "5"}};
+};
+
+TEST_F(StoppedDaemon, GoesOnWithItsScan) {
+  const std::string scan = start();
+  daemon_.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 2; });
+  stop();
+  go_on_after_a_while();
+  expect_model(scan);
+}
+
+TEST_F(StoppedDaemon, OpensItsKinectAfterAll) {
+  desk_->stalls = 1'000'000;
+  const std::string scan = start();
+  while (desk_->stalls > 999'990) {
+    std::this_thread::yield();
+  }
+  stop();
+  desk_->stalls = 0;
+  go_on_after_a_while();
+  expect_model(scan);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, KinectFaultsThatPass, ::testing::Values(silent, unplugged, damaged));

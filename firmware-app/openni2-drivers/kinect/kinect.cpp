@@ -21,6 +21,9 @@ constexpr std::uint8_t depth_endpoint = 0x82;
 constexpr std::uint16_t release_of_1414 = 0x010B;
 
 constexpr auto opening_patience = 4s;
+// An audio part vanishes for 2 s after a reset, and then has to be listed.
+constexpr auto audio_patience = 3s;
+constexpr auto audio_interval = 100ms;
 constexpr auto motor_patience = 500ms;
 // A stop request may come while the stream starts: together with the end of the transfers, 2 s.
 constexpr auto starting_patience = 1s;
@@ -55,10 +58,17 @@ std::unique_ptr<UsbDevice> open_beside(const UsbPart& camera,
   return nullptr;
 }
 
-std::string serial_of(const UsbDevice& camera, const UsbPart& part, int index) {
+/// Waits for an audio part that is away: by its port the Kinect would be another one, without its
+/// sensor map and its optics.
+std::string serial_of(const UsbDevice& camera, const UsbPart& part, int index,
+                      steady_clock::time_point deadline) {
   std::string serial = camera.serial();
   if (serial.empty()) {
-    const auto audio = open_beside(part, &UsbPart::is_audio);
+    auto audio = open_beside(part, &UsbPart::is_audio);
+    while (!audio && steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(audio_interval);
+      audio = open_beside(part, &UsbPart::is_audio);
+    }
     serial = audio ? audio->serial() : std::string();
   }
   return serial.empty() ? usb_place(index) : serial;
@@ -89,10 +99,11 @@ Kinect::Kinect(int index)
     : commands_(
           {.write = [this](auto data, auto timeout) { return camera_->write(0, data, timeout); },
            .read = [this](auto data, auto timeout) { return camera_->read(0, data, timeout); }}) {
+  const auto begin = steady_clock::now();
   const UsbPart camera = camera_of(index);
   camera_ = std::make_unique<UsbDevice>(camera);
-  parameters_ = commands_.parameters(steady_clock::now() + opening_patience);
-  serial_ = serial_of(*camera_, camera, index);
+  parameters_ = commands_.parameters(begin + opening_patience);
+  serial_ = serial_of(*camera_, camera, index, begin + audio_patience);
   has_near_mode_ = camera.is_for_windows();
   if (camera.release == release_of_1414) {
     motor_ = open_beside(camera, &UsbPart::is_motor);

@@ -21,6 +21,9 @@ inline constexpr std::uint16_t microsoft = 0x045E;
 std::uint16_t usb_product(KinectPart part, KinectModel model);
 std::uint16_t usb_release(KinectModel model);
 
+/// Only the camera of model 1414 has a serial number of its own; the others have zeros.
+std::string_view usb_serial_number(KinectPart part, KinectModel model);
+
 /// The largest packet of an isochronous endpoint: two transactions of 960 bytes a microframe.
 inline constexpr int max_iso_packet_bytes = 1920;
 

@@ -16,7 +16,7 @@ namespace octurn {
 
 /// The USB side of a Kinect v1's camera: commands and replies by control transfers, and depth in
 /// isochronous packets, one for each microframe of 125 us.
-class Camera {
+class EmulatedCamera {
  public:
   using Reading = std::uint16_t;
   static constexpr std::size_t pixels = std::size_t{640} * 480;
@@ -25,7 +25,8 @@ class Camera {
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 
-  Camera(EmulatedKinect& kinect, Frames frames) : kinect_(kinect), frames_(std::move(frames)) {}
+  EmulatedCamera(EmulatedKinect& kinect, Frames frames)
+      : kinect_(kinect), frames_(std::move(frames)) {}
 
   /// Accepts a command. @return false if the message is no command
   bool command(std::span<const std::uint8_t> message);
@@ -59,6 +60,6 @@ class Camera {
 };
 
 /// Repeats a sequence of frames. @param frames  readings of one or more whole frames
-Camera::Frames over_and_over(std::span<const Camera::Reading> frames);
+EmulatedCamera::Frames over_and_over(std::span<const EmulatedCamera::Reading> frames);
 
 }  // namespace octurn

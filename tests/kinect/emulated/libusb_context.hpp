@@ -34,8 +34,8 @@ struct libusb_context {
     octurn::MappedFile control;
     octurn::MappedFile frames;
     octurn::EmulatedKinect& kinect = control.as<octurn::EmulatedKinect>();
-    octurn::Camera camera =
-        octurn::Camera(kinect, octurn::over_and_over(frames.values<octurn::Camera::Reading>()));
+    octurn::EmulatedCamera camera = octurn::EmulatedCamera(
+        kinect, octurn::over_and_over(frames.values<octurn::EmulatedCamera::Reading>()));
   };
 
   std::optional<Bus> bus = {};

@@ -120,7 +120,7 @@ std::string_view usb_serial_number(KinectPart part, KinectModel model) {
 }
 
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
-                                          EmulatedKinect& kinect, Camera& camera,
+                                          EmulatedKinect& kinect, EmulatedCamera& camera,
                                           std::span<std::uint8_t> data) {
   if (part == KinectPart::motor && setup.is_in() && setup.request == 0x32) {
     return reply_of_motor(kinect, data);

@@ -42,7 +42,7 @@ struct UsbSetup {
 /// @param data  the request's data, or the buffer for its reply
 /// @return bytes transferred; nothing if the device stalls, as on an unsupported request
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
-                                          EmulatedKinect& kinect, Camera& camera,
+                                          EmulatedKinect& kinect, EmulatedCamera& camera,
                                           std::span<std::uint8_t> data);
 
 /// Answers a standard request (USB 2.0, 9.4), as a host sends it to enumerate devices.

@@ -53,6 +53,7 @@ struct EmulatedKinect {
   std::atomic<int> frames_sent = 0;
   std::atomic<int> frames_damaged = 0;
   std::atomic<int> video_starts = 0;
+  std::atomic<int> stream_priority = 0;  // real-time, of the thread that takes the packets
   std::atomic<bool> near_mode = false;
   std::atomic<bool> depth_on = false;
 };

@@ -1,6 +1,7 @@
 // The transfers of the libusb replacement, which deliver depth in real time.
 
 #include <libusb.h>
+#include <sched.h>
 #include <sys/time.h>
 
 #include <algorithm>
@@ -151,6 +152,10 @@ int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
   if (context->bus && context->bus->kinect.interruptions > 0) {
     --context->bus->kinect.interruptions;
     return LIBUSB_ERROR_INTERRUPTED;
+  }
+  sched_param parameters = {};
+  if (context->bus && ::sched_getparam(0, &parameters) == 0) {
+    context->bus->kinect.stream_priority = parameters.sched_priority;
   }
   constexpr auto tick = std::chrono::milliseconds(5);
   const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +

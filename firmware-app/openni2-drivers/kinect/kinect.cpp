@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
-#include <vector>
 
 #include "kinect/usb_place.hpp"
 #include "octurn/error.hpp"
@@ -167,8 +166,9 @@ void Kinect::stream(const std::stop_token& stop,
     }
   });
   try {
-    camera_->begin_stream(depth_endpoint, [&](std::span<const std::uint8_t> packet) {
-      frames.take(packet, steady_clock::now());
+    camera_->begin_stream(depth_endpoint, [&](const IsoPacket& packet) {
+      log(packet);
+      frames.take(packet.data, packet.time);
     });
     start_depth();
     while (!stop.stop_requested() && camera_->handle_events()) {
@@ -199,6 +199,38 @@ bool Kinect::count_packets(const ReceivedFrame& frame) {
 PacketCounts Kinect::packet_counts() const {
   const std::lock_guard lock(counts_mutex_);
   return counts_;
+}
+
+/// All memory is taken now, and none by the stream's thread.
+void Kinect::log_packets(std::size_t count) {
+  const std::lock_guard lock(log_mutex_);
+  log_.clear();
+  log_.reserve(count);
+  log_room_ = count;
+}
+
+std::size_t Kinect::take_logged(std::span<UsbPacket> packets) {
+  const std::lock_guard lock(log_mutex_);
+  const std::size_t count = std::min(log_.size(), packets.size());
+  const auto end = log_.begin() + static_cast<std::ptrdiff_t>(count);
+  std::copy(log_.begin(), end, packets.begin());
+  log_.erase(log_.begin(), end);
+  return count;
+}
+
+void Kinect::log(const IsoPacket& packet) {
+  const std::lock_guard lock(log_mutex_);
+  if (log_room_ == 0) {
+    return;
+  }
+  --log_room_;
+  UsbPacket& logged = log_.emplace_back();
+  logged.time_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(packet.time.time_since_epoch()).count();
+  logged.status = packet.status;
+  logged.bytes = static_cast<std::uint16_t>(packet.data.size());
+  std::copy_n(packet.data.begin(), std::min(packet.data.size(), logged.header.size()),
+              logged.header.begin());
 }
 
 }  // namespace octurn

@@ -162,11 +162,15 @@ void EmulatedCamera::begin_frame() {
 }
 
 /// Whether a packet of this frame is among those that this frame or the previous one loses, or is
-/// lost by chance or in a burst.
+/// lost by chance, in a burst or in a recording.
 bool EmulatedCamera::is_lost(int packet) {
   constexpr int burst_period = 7283;  // a second has 7260: each burst hits frames elsewhere
   const bool in_burst = ++packets_ % burst_period < kinect_.burst;
   if (in_burst || std::uniform_real_distribution()(random_) < kinect_.random_loss) {
+    return true;
+  }
+  const auto sent = static_cast<std::size_t>(frame_) * packets_in_frame;
+  if (!losses_.empty() && losses_[(sent + static_cast<std::size_t>(packet)) % losses_.size()]) {
     return true;
   }
   const auto loses = [this](int frame, int number) {

@@ -25,8 +25,9 @@ class EmulatedCamera {
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 
-  EmulatedCamera(EmulatedKinect& kinect, Frames frames)
-      : kinect_(kinect), frames_(std::move(frames)) {}
+  /// @param losses  whether each packet since the stream began is lost, over and over
+  EmulatedCamera(EmulatedKinect& kinect, Frames frames, std::vector<bool> losses = {})
+      : kinect_(kinect), frames_(std::move(frames)), losses_(std::move(losses)) {}
 
   /// Accepts a command. @return false if the message is no command
   bool command(std::span<const std::uint8_t> message);
@@ -46,6 +47,7 @@ class EmulatedCamera {
 
   EmulatedKinect& kinect_;
   Frames frames_;
+  std::vector<bool> losses_;
   std::map<std::uint16_t, std::uint16_t> registers_ = {};
   std::vector<std::uint8_t> reply_ = {};
   std::vector<std::uint8_t> reply_before_ = {};

@@ -163,6 +163,8 @@ TEST_F(StoppedDaemon, GoesOnWithItsScan) {
 
 TEST_F(StoppedDaemon, OpensItsKinectAfterAll) {
   desk_->stalls = 1'000'000;
+  desk_.unplug();  // it is open already, and has to be opened again
+  desk_.plug_in();
   const std::string scan = start();
   while (desk_->stalls > 999'990) {
     std::this_thread::yield();

@@ -43,7 +43,7 @@ class FailingKinect {
       : fault_(fault),
         daemon_(folder_.path(), {"--sensor", "kinect://", "--simulate-speed", speed}) {}
 
-  const Daemon& daemon() const { return daemon_; }
+  Daemon& daemon() { return daemon_; }
   void mend() { fault_.end(desk_); }
 
   /// Posts until it is accepted: a Kinect is not ready at once.
@@ -126,53 +126,41 @@ TEST_P(KinectFaultsThatPass, DoNotPauseAScan) {
   EXPECT_EQ(done["error"], nullptr);
 }
 
-/// A daemon whose Kinect loses what it does not wait for; the system stops it for a while, longer
-/// than a sensor may be silent and than opening one takes.
-class StoppedDaemon : public ::testing::Test {
- protected:
-  StoppedDaemon() { desk_->is_hasty = true; }
-
-  void stop() { daemon_.program().send_signal(SIGSTOP); }
-  void go_on_after_a_while() {
-    std::this_thread::sleep_for(std::chrono::seconds(5));  // the fault is that real time passes
-    daemon_.program().send_signal(SIGCONT);
-  }
-
-  void expect_model(const std::string& scan) {
-    const json done = daemon_.wait_until_done(scan);
-    ASSERT_EQ(done["state"], "finished") << done;
-    EXPECT_EQ(daemon_.get(scan + "/Scan.stl").status, 200);
-  }
-
-  std::string start() {
-    return daemon_.start(R"({"snapshots": 4, "frames": 2, "leaf_size_mm": 4})");
-  }
-
-  KinectOnDesk desk_{{readings_of(simulated_frame())}};
-  TemporaryFolder folder_ = {};
-  Daemon daemon_{folder_.path(), {"--sensor", "kinect://", "--simulate-speed", "5"}};
-};
-
-TEST_F(StoppedDaemon, GoesOnWithItsScan) {
-  const std::string scan = start();
-  daemon_.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 1; });
-  stop();
-  go_on_after_a_while();
-  expect_model(scan);
+/// Has the system stop a daemon for longer than a sensor may be silent, and than opening one takes.
+/// @param meanwhile  called while it is stopped
+template <typename Meanwhile>
+void stop_for_a_while(Daemon& daemon, Meanwhile meanwhile) {
+  daemon.program().send_signal(SIGSTOP);
+  meanwhile();
+  std::this_thread::sleep_for(std::chrono::seconds(5));  // the fault is that real time passes
+  daemon.program().send_signal(SIGCONT);
 }
 
-TEST_F(StoppedDaemon, OpensItsKinectAfterAll) {
-  desk_->stalls = 1'000'000;
-  desk_.unplug();  // it is open already, and has to be opened again
-  desk_.plug_in();
-  const std::string scan = start();
-  while (desk_->stalls > 999'990) {
-    std::this_thread::yield();
-  }
-  stop();
-  desk_->stalls = 0;
-  go_on_after_a_while();
-  expect_model(scan);
+TEST(StoppedDaemon, GoesOnWithItsScan) {
+  KinectOnDesk desk({readings_of(simulated_frame())});
+  desk->is_hasty = true;
+  const TemporaryFolder folder;
+  Daemon daemon(folder.path(), {"--sensor", "kinect://", "--simulate-speed", "5"});
+  const std::string scan = daemon.start(settings);
+  daemon.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 1; });
+  stop_for_a_while(daemon, [] {});
+  const json done = daemon.wait_until_done(scan);
+  EXPECT_EQ(done["state"], "finished") << done;
+}
+
+TEST(StoppedDaemon, OpensItsKinectAfterAll) {
+  const Fault plugged_in_again{"plugged in again",
+                               [](KinectOnDesk& desk) {
+                                 desk->stalls = 1'000'000;  // it does not open
+                                 desk.unplug();
+                                 desk.plug_in();
+                               },
+                               [](KinectOnDesk& desk) { desk->stalls = 0; }, "sensor-failed"};
+  FailingKinect kinect(plugged_in_again, "1");
+  const std::string scan = kinect.scan_that_fails(1);
+  stop_for_a_while(kinect.daemon(), [&] { kinect.mend(); });
+  const json done = kinect.daemon().wait_until_done(scan);
+  EXPECT_EQ(done["state"], "finished") << done;
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, KinectFaultsThatPass, ::testing::Values(silent, unplugged, damaged));
